@@ -1,0 +1,116 @@
+//! Lists of lists in two flat arrays (compressed sparse rows).
+
+/// `n` lists of `T`, end to end in one array.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Csr<T> {
+    offsets: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T> Default for Csr<T> {
+    fn default() -> Self {
+        Self { offsets: vec![0], items: Vec::new() }
+    }
+}
+
+impl<T> Csr<T> {
+    /// `offsets` has one entry more than there are lists, starts at 0, never
+    /// falls and ends at `items.len()`; `None` when it does not.
+    pub fn new(offsets: Vec<u32>, items: Vec<T>) -> Option<Self> {
+        let rises = offsets.windows(2).all(|w| w[0] <= w[1]);
+        let spans = offsets.first() == Some(&0) && offsets.last().map(|&o| o as usize) == Some(items.len());
+        (rises && spans).then_some(Self { offsets, items })
+    }
+
+    /// How many lists there are.
+    pub fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Whether there is no list at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// List `i`.
+    #[inline]
+    pub fn list(&self, i: usize) -> &[T] {
+        &self.items[self.offsets[i] as usize..self.offsets[i + 1] as usize]
+    }
+
+    /// List `i`, to be changed in place.
+    #[inline]
+    pub fn list_mut(&mut self, i: usize) -> &mut [T] {
+        &mut self.items[self.offsets[i] as usize..self.offsets[i + 1] as usize]
+    }
+
+    /// All lists in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> + '_ {
+        self.offsets.windows(2).map(|w| &self.items[w[0] as usize..w[1] as usize])
+    }
+
+    /// Where each list starts, and where the last one ends.
+    pub fn offsets(&self) -> &[u32] {
+        &self.offsets
+    }
+
+    /// All items, list after list.
+    pub fn items(&self) -> &[T] {
+        &self.items
+    }
+
+    /// Adds a list at the end.
+    ///
+    /// Panics past `u32::MAX` items in all.
+    pub fn push(&mut self, list: impl IntoIterator<Item = T>) {
+        self.items.extend(list);
+        self.offsets.push(u32::try_from(self.items.len()).expect("fewer than 2^32 items"));
+    }
+}
+
+impl<T: Copy + Default> Csr<T> {
+    /// Sorts `(list, item)` pairs into `n_lists` lists; items keep the order in
+    /// which `pairs` yields them. `pairs` is run through twice.
+    pub fn from_pairs<I>(n_lists: usize, pairs: impl Fn() -> I) -> Self
+    where
+        I: Iterator<Item = (usize, T)>,
+    {
+        let mut offsets = vec![0u32; n_lists + 1];
+        for (list, _) in pairs() {
+            offsets[list + 1] += 1;
+        }
+        for i in 0..n_lists {
+            offsets[i + 1] += offsets[i];
+        }
+        let mut items = vec![T::default(); offsets[n_lists] as usize];
+        let mut next = offsets.clone();
+        for (list, item) in pairs() {
+            items[next[list] as usize] = item;
+            next[list] += 1;
+        }
+        Self { offsets, items }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Csr;
+
+    #[test]
+    fn pairs_keep_their_order_within_a_list() {
+        let pairs = [(2, 'a'), (0, 'b'), (2, 'c'), (0, 'd')];
+        let lists = Csr::from_pairs(3, || pairs.iter().copied());
+        assert_eq!(lists.list(0), ['b', 'd']);
+        assert!(lists.list(1).is_empty());
+        assert_eq!(lists.list(2), ['a', 'c']);
+    }
+
+    #[test]
+    fn offsets_that_do_not_fit_are_refused() {
+        assert!(Csr::new(vec![0, 2, 1], vec![1, 2]).is_none());
+        assert!(Csr::new(vec![1, 2], vec![1, 2]).is_none());
+        assert!(Csr::new(vec![0, 3], vec![1, 2]).is_none());
+        assert!(Csr::<u8>::new(vec![], vec![]).is_none());
+        assert!(Csr::new(vec![0, 1, 2], vec![1, 2]).is_some());
+    }
+}

@@ -1,0 +1,128 @@
+//! The one error of the library: what went wrong, in which file, where, and what to do.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// `Result` with this library's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What kind of failure an [`Error`] is. The command line turns it into its
+/// exit status, the other doors into their own exceptions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// The data cannot be read, or is not what the operation needs.
+    Input,
+    /// The operating system refused a file.
+    Io,
+    /// A combination of options that means nothing.
+    Options,
+}
+
+/// A failure, told in up to four parts.
+///
+/// ```
+/// use motet::{Error, ErrorKind};
+/// let error = Error::input("vertex 17 is named, but the mesh has 12 points")
+///     .at("cell 4")
+///     .remedy("write the file again with zero-based ids")
+///     .in_file("vessel.vtu");
+/// assert_eq!(error.kind(), ErrorKind::Input);
+/// assert_eq!(
+///     error.to_string(),
+///     "vessel.vtu: cell 4: vertex 17 is named, but the mesh has 12 points; \
+///      write the file again with zero-based ids"
+/// );
+/// ```
+#[derive(Debug)]
+pub struct Error(Box<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    kind: ErrorKind,
+    file: Option<PathBuf>,
+    place: Option<String>,
+    what: String,
+    remedy: Option<String>,
+}
+
+impl Error {
+    /// An error of the given kind; `what` says what was expected and what came.
+    pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
+        Self(Box::new(Parts { kind, file: None, place: None, what: what.into(), remedy: None }))
+    }
+
+    /// Data that cannot be read, or are not what the operation needs.
+    pub fn input(what: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Input, what)
+    }
+
+    /// Options that mean nothing together.
+    pub fn options(what: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Options, what)
+    }
+
+    /// The operating system's word on a file.
+    pub fn io(file: impl AsRef<Path>, source: &std::io::Error) -> Self {
+        Self::new(ErrorKind::Io, source.to_string()).in_file(file)
+    }
+
+    /// Adds the place within the file or the mesh: a line, an element, a cell. The innermost place stays.
+    #[must_use]
+    pub fn at(mut self, place: impl Into<String>) -> Self {
+        self.0.place.get_or_insert_with(|| place.into());
+        self
+    }
+
+    /// Adds what the user can do about it. The innermost remedy stays.
+    #[must_use]
+    pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
+        self.0.remedy.get_or_insert_with(|| remedy.into());
+        self
+    }
+
+    /// Adds the file. The innermost file stays.
+    #[must_use]
+    pub fn in_file(mut self, file: impl AsRef<Path>) -> Self {
+        self.0.file.get_or_insert_with(|| file.as_ref().to_owned());
+        self
+    }
+
+    /// What kind of failure this is.
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The file it happened in, if any.
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file.as_deref()
+    }
+
+    /// The place within the file or mesh, if known.
+    pub fn place(&self) -> Option<&str> {
+        self.0.place.as_deref()
+    }
+
+    /// What the user can do about it.
+    pub fn remedy_text(&self) -> Option<&str> {
+        self.0.remedy.as_deref()
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.0.file {
+            write!(f, "{}: ", file.display())?;
+        }
+        if let Some(place) = &self.0.place {
+            write!(f, "{place}: ")?;
+        }
+        f.write_str(&self.0.what)?;
+        match &self.0.remedy {
+            Some(remedy) => write!(f, "; {remedy}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Error {}

@@ -1,0 +1,55 @@
+//! Typed ids: a `u32` that says what it counts.
+
+use std::fmt;
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(
+            Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash,
+            bytemuck::Pod, bytemuck::Zeroable, serde::Serialize,
+        )]
+        #[repr(transparent)]
+        #[serde(transparent)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            /// The id of place `index` in an array.
+            ///
+            /// Panics when `index` does not fit: arrays are checked against
+            /// [`Self::MAX_COUNT`] where they enter the library.
+            #[inline]
+            pub fn new(index: usize) -> Self {
+                Self(u32::try_from(index).expect("arrays are checked against MAX_COUNT on entry"))
+            }
+
+            /// The place in an array.
+            #[inline]
+            pub const fn index(self) -> usize {
+                self.0 as usize
+            }
+
+            /// How many of these one mesh may hold.
+            pub const MAX_COUNT: usize = (u32::MAX - 1) as usize;
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    };
+}
+
+id!(
+    /// A vertex: the place of its point in the array of points.
+    VertexId
+);
+id!(
+    /// A cell of any kind, in the order of the file.
+    CellId
+);
+id!(
+    /// A tetrahedron.
+    TetId
+);

@@ -1,0 +1,14 @@
+//! Floor 0: what every other module stands on.
+
+mod csr;
+mod error;
+mod ids;
+mod threads;
+
+pub use csr::Csr;
+pub use error::{Error, ErrorKind, Result};
+pub use ids::{CellId, TetId, VertexId};
+pub use threads::Threads;
+
+/// Coordinates of a point, or any other vector in space.
+pub type Point = [f64; 3];

@@ -1,0 +1,42 @@
+//! How many threads a call may use: always the caller's choice, never a global pool.
+
+use crate::base::{Error, Result};
+
+/// A pool of threads that belongs to the caller. Results do not depend on its size.
+#[derive(Debug, Default)]
+pub struct Threads {
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl Threads {
+    /// Everything runs on the calling thread.
+    pub fn single() -> Self {
+        Self { pool: None }
+    }
+
+    /// `n` threads; 0 means one for each core that the machine offers.
+    ///
+    /// # Errors
+    /// When the operating system will not start them.
+    pub fn new(n: usize) -> Result<Self> {
+        let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
+        if n == 1 {
+            return Ok(Self::single());
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
+        pool.map(|pool| Self { pool: Some(pool) }).map_err(|e| {
+            Error::options(format!("{n} threads could not be started: {e}")).remedy("ask for fewer")
+        })
+    }
+
+    /// How many threads work.
+    pub fn count(&self) -> usize {
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// The pool, where there is more than one thread. `None`: use a plain loop,
+    /// since a parallel iterator outside a pool would start the global one.
+    pub fn pool(&self) -> Option<&rayon::ThreadPool> {
+        self.pool.as_ref()
+    }
+}

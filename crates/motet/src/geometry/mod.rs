@@ -1,0 +1,5 @@
+//! Floor 1: pure functions on points; nothing here knows a mesh.
+
+pub mod predicates;
+pub mod quality;
+pub mod vector;

@@ -1,0 +1,1 @@
+//! Exact signs: orientation and in-sphere, with symbolic perturbation.

@@ -1,0 +1,1 @@
+//! One quality measure per file; each agrees with Verdict where Verdict has it.

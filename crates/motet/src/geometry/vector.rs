@@ -1,0 +1,45 @@
+//! The few vector operations that everything uses, on plain `[f64; 3]`.
+
+use crate::base::Point;
+
+/// `a - b`
+#[inline(always)]
+pub fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a + b`
+#[inline(always)]
+pub fn add(a: Point, b: Point) -> Point {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// `s a`
+#[inline(always)]
+pub fn scale(a: Point, s: f64) -> Point {
+    [a[0] * s, a[1] * s, a[2] * s]
+}
+
+/// `a . b`
+#[inline(always)]
+pub fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// `a x b`
+#[inline(always)]
+pub fn cross(a: Point, b: Point) -> Point {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `|a|`
+#[inline(always)]
+pub fn norm(a: Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// `|a - b|`
+#[inline(always)]
+pub fn distance(a: Point, b: Point) -> f64 {
+    norm(sub(a, b))
+}

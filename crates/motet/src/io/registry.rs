@@ -1,0 +1,165 @@
+//! Which format a file is in, and the two calls that read and write any of them.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use crate::base::{Error, ErrorKind, Result};
+use crate::mesh::Mesh;
+
+/// What a reader gets: the whole file, and its path for formats that lie in several files.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// Where the file lies.
+    pub path: &'a Path,
+    /// Its content.
+    pub bytes: &'a [u8],
+}
+
+/// How numbers are laid down, where a format leaves the choice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Encoding {
+    /// Text; numbers with as many digits as bring them back bit for bit.
+    Ascii,
+    /// Base64 inside the elements (XML formats); binary elsewhere.
+    Base64,
+    /// Raw bytes: appended (XML formats), binary elsewhere.
+    #[default]
+    Binary,
+}
+
+/// How blocks are compressed, where a format can.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Compression {
+    /// Not at all.
+    None,
+    /// zlib, which every reader knows.
+    #[default]
+    Zlib,
+    /// lz4: faster, larger.
+    Lz4,
+    /// lzma (xz): slower, smaller.
+    Lzma,
+}
+
+/// What the user may choose when writing.
+#[derive(Clone, Debug, Default)]
+pub struct WriteOptions {
+    /// How numbers are laid down.
+    pub encoding: Encoding,
+    /// How blocks are compressed.
+    pub compression: Compression,
+    /// The format's own version, such as `2.2` for MSH; the format's default when `None`.
+    pub version: Option<String>,
+}
+
+/// What a writer made: one or more files, and what the format could not hold.
+#[derive(Clone, Debug, Default)]
+pub struct Written {
+    /// File ending (with dot) and content; the ending replaces that of the path asked for.
+    /// An empty ending means the path itself.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// What the format cannot hold, each in a sentence for the user.
+    pub lost: Vec<String>,
+}
+
+impl Written {
+    /// A single file, nothing lost.
+    pub fn one(bytes: Vec<u8>) -> Self {
+        Self { files: vec![(String::new(), bytes)], lost: Vec::new() }
+    }
+}
+
+/// A reader: the whole file in, a mesh out.
+pub type Read = fn(&Input<'_>) -> Result<Mesh>;
+/// A writer: a mesh in, the content of one or more files out.
+pub type Write = fn(&Mesh, &WriteOptions) -> Result<Written>;
+
+/// A file format.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// Its name, for messages.
+    pub name: &'static str,
+    /// File endings, with the dot, in lower case.
+    pub endings: &'static [&'static str],
+    /// How it is read.
+    pub read: Option<Read>,
+    /// How it is written.
+    pub write: Option<Write>,
+}
+
+/// Every format, in the order in which endings are looked up.
+pub fn formats() -> &'static [Format] {
+    FORMATS
+}
+
+const FORMATS: &[Format] = &[];
+
+fn by_ending(path: &Path) -> Result<&'static Format> {
+    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    FORMATS.iter().find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
+        let known: Vec<_> = FORMATS.iter().flat_map(|f| f.endings).copied().collect();
+        Error::input("no format has this file ending")
+            .in_file(path)
+            .remedy(format!("known endings: {}", known.join(" ")))
+    })
+}
+
+/// Reads a file or folder in the format that its ending tells.
+///
+/// # Errors
+/// Names the file, the place in it, what was expected and found, and what to do.
+pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
+    let path = path.as_ref();
+    let format = by_ending(path)?;
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+    read_as(format, &Input { path, bytes: &bytes })
+}
+
+/// Reads `input` in the given format.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
+    let Some(read) = format.read else {
+        return Err(Error::new(ErrorKind::Input, format!("{} files can only be written", format.name))
+            .in_file(input.path));
+    };
+    let mesh = read(input).map_err(|e| e.in_file(input.path))?;
+    mesh.validate().map_err(|e| e.in_file(input.path))?;
+    Ok(mesh)
+}
+
+/// Writes a mesh in the format that the ending tells. The file appears whole or
+/// not at all: it is written beside its place and renamed into it.
+///
+/// Returns what the format could not hold.
+///
+/// # Errors
+/// When the format cannot hold the mesh, or the system refuses the file.
+pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
+    let path = path.as_ref();
+    let format = by_ending(path)?;
+    let Some(write) = format.write else {
+        return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
+    };
+    let written = write(mesh, options).map_err(|e| e.in_file(path))?;
+    for (ending, bytes) in &written.files {
+        let target = if ending.is_empty() { path.to_owned() } else { with_ending(path, ending) };
+        replace(&target, bytes)?;
+    }
+    Ok(written.lost)
+}
+
+fn with_ending(path: &Path, ending: &str) -> PathBuf {
+    path.with_extension(ending.trim_start_matches('.'))
+}
+
+/// Writes beside `path`, then renames into place.
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let io = |e: std::io::Error| Error::io(path, &e);
+    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(io)?;
+    file.write_all(bytes).map_err(io)?;
+    file.persist(path).map_err(|e| io(e.error))?;
+    Ok(())
+}

@@ -1,0 +1,24 @@
+//! motet keeps tetrahedral meshes good while the world in them moves.
+//!
+//! | module | floor | what it holds |
+//! |---|---|---|
+//! | [`base`] | 0 | typed ids, lists of lists, errors, threads |
+//! | [`geometry`] | 1 | pure functions on points: exact signs, simplices, quality |
+//! | [`mesh`] | 2 | the exchange form: points, cells of any kind, fields, labels, shapes |
+//! | [`io`] | 3 | one file per format, their registry, time series |
+//! | [`spatial`] | 3 | searching: which tet holds a point, which facet is nearest |
+//! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
+//! | [`motion`] | 7 | boundary displacement in, volume mesh out |
+//!
+//! A module imports only from lower floors; `tests/layers.rs` holds it to that.
+
+pub mod base;
+pub mod delaunay;
+pub mod geometry;
+pub mod io;
+pub mod mesh;
+pub mod motion;
+pub mod spatial;
+
+pub use base::{Error, ErrorKind, Result};
+pub use mesh::Mesh;

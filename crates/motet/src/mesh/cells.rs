@@ -1,0 +1,221 @@
+//! The cells of a mesh, in the order of the file, whatever their kinds.
+
+use crate::base::{CellId, Csr, Error, Result, VertexId};
+use crate::mesh::CellKind;
+
+/// Cells of any kinds, mixed as the file had them: a kind each, and the vertices
+/// of each, end to end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells {
+    kinds: Vec<CellKind>,
+    vertices: Csr<VertexId>,
+    /// For a polyhedron its faces, each a list of vertices; keyed by its place
+    /// among the polyhedra. Empty in meshes without polyhedra.
+    polyhedron_faces: Vec<Csr<VertexId>>,
+}
+
+impl Cells {
+    /// No cells yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// `n` cells of one kind, from their vertices end to end.
+    ///
+    /// # Errors
+    /// When the kind has no fixed number of vertices, or `vertices` is no multiple of it.
+    pub fn uniform(kind: CellKind, vertices: Vec<VertexId>) -> Result<Self> {
+        let n = kind.n_vertices().filter(|&n| n > 0);
+        let Some(n) = n.filter(|n| vertices.len().is_multiple_of(*n)) else {
+            return Err(Error::input(format!(
+                "{} vertex ids do not make cells of kind {}",
+                vertices.len(),
+                kind.label()
+            )));
+        };
+        let n_cells = vertices.len() / n;
+        if vertices.len() > VertexId::MAX_COUNT {
+            return Err(too_many(vertices.len()));
+        }
+        let offsets = (0..=n_cells).map(|i| (i * n) as u32).collect();
+        Self::from_parts(vec![kind; n_cells], offsets, vertices)
+    }
+
+    /// Cells from a kind each, where each starts (and the last one ends), and
+    /// all their vertices. Polyhedra cannot come this way: see [`Self::push_polyhedron`].
+    ///
+    /// # Errors
+    /// When the arrays do not fit together; the place is the first bad cell.
+    pub fn from_parts(kinds: Vec<CellKind>, offsets: Vec<u32>, vertices: Vec<VertexId>) -> Result<Self> {
+        if offsets.len() != kinds.len() + 1 {
+            return Err(Error::input(format!(
+                "{} cell types for {} cells",
+                kinds.len(),
+                offsets.len().saturating_sub(1)
+            )));
+        }
+        let n_vertices = vertices.len();
+        let vertices = Csr::new(offsets, vertices).ok_or_else(|| {
+            Error::input(format!(
+                "the cell offsets do not rise from 0 to the {n_vertices} vertex ids of the connectivity"
+            ))
+        })?;
+        for (i, kind) in kinds.iter().enumerate() {
+            let n = vertices.list(i).len();
+            if *kind == CellKind::POLYHEDRON {
+                return Err(Error::input("a polyhedron without its faces").at(format!("cell {i}")));
+            }
+            if let Some(expected) = kind.n_vertices().filter(|&e| e != n) {
+                return Err(Error::input(format!(
+                    "a {} has {expected} vertices, this one {n}",
+                    kind.label()
+                ))
+                .at(format!("cell {i}")));
+            }
+        }
+        Ok(Self { kinds, vertices, polyhedron_faces: Vec::new() })
+    }
+
+    /// Adds a cell.
+    ///
+    /// Panics when the number of vertices is not that of the kind: readers check it first.
+    pub fn push(&mut self, kind: CellKind, vertices: impl IntoIterator<Item = VertexId>) {
+        assert!(kind != CellKind::POLYHEDRON, "polyhedra come with their faces");
+        self.kinds.push(kind);
+        self.vertices.push(vertices);
+        debug_assert!(kind.n_vertices().is_none_or(|n| n == self.vertices.list(self.kinds.len() - 1).len()));
+    }
+
+    /// Adds a polyhedron by its vertices and its faces.
+    pub fn push_polyhedron(&mut self, vertices: impl IntoIterator<Item = VertexId>, faces: Csr<VertexId>) {
+        self.kinds.push(CellKind::POLYHEDRON);
+        self.vertices.push(vertices);
+        self.polyhedron_faces.push(faces);
+    }
+
+    /// How many cells there are.
+    pub fn len(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Whether there is no cell.
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// The kind of each cell.
+    pub fn kinds(&self) -> &[CellKind] {
+        &self.kinds
+    }
+
+    /// The kind of one cell.
+    pub fn kind(&self, cell: CellId) -> CellKind {
+        self.kinds[cell.index()]
+    }
+
+    /// The vertices of one cell, in VTK's order.
+    #[inline]
+    pub fn vertices(&self, cell: CellId) -> &[VertexId] {
+        self.vertices.list(cell.index())
+    }
+
+    /// The vertices of all cells as a list of lists.
+    pub fn connectivity(&self) -> &Csr<VertexId> {
+        &self.vertices
+    }
+
+    /// Faces of the polyhedra, in the order in which polyhedra stand among the cells.
+    pub fn polyhedron_faces(&self) -> &[Csr<VertexId>] {
+        &self.polyhedron_faces
+    }
+
+    /// All cells: id, kind, vertices.
+    pub fn iter(&self) -> impl Iterator<Item = (CellId, CellKind, &[VertexId])> + '_ {
+        self.kinds
+            .iter()
+            .zip(self.vertices.iter())
+            .enumerate()
+            .map(|(i, (&kind, v))| (CellId::new(i), kind, v))
+    }
+
+    /// The linear tetrahedra: where each stands among the cells, and its vertices.
+    pub fn tets(&self) -> impl Iterator<Item = (CellId, [VertexId; 4])> + '_ {
+        self.iter()
+            .filter(|(_, kind, _)| *kind == CellKind::TETRA)
+            .map(|(id, _, v)| (id, [v[0], v[1], v[2], v[3]]))
+    }
+
+    /// Every kind that occurs, with its count, by VTK's number.
+    pub fn counts(&self) -> Vec<(CellKind, usize)> {
+        let mut counts = [0usize; 256];
+        self.kinds.iter().for_each(|k| counts[k.0 as usize] += 1);
+        (0u8..=255).filter(|&k| counts[k as usize] > 0).map(|k| (CellKind(k), counts[k as usize])).collect()
+    }
+
+    /// The highest dimension of any cell.
+    pub fn dim(&self) -> Option<usize> {
+        self.counts().iter().filter_map(|(kind, _)| kind.dim()).max()
+    }
+
+    /// Checks that every vertex id is below `n_points`.
+    ///
+    /// # Errors
+    /// Names the first cell that goes beyond.
+    pub fn check_ids(&self, n_points: usize) -> Result<()> {
+        let beyond = |v: &[VertexId]| v.iter().map(|v| v.index()).find(|&v| v >= n_points);
+        if beyond(self.vertices.items()).is_none()
+            && self.polyhedron_faces.iter().all(|f| beyond(f.items()).is_none())
+        {
+            return Ok(());
+        }
+        let (cell, id) = self
+            .iter()
+            .find_map(|(cell, _, v)| beyond(v).map(|id| (cell.to_string(), id)))
+            .or_else(|| {
+                self.polyhedron_faces
+                    .iter()
+                    .find_map(|f| beyond(f.items()).map(|id| ("of a polyhedron".into(), id)))
+            })
+            .expect("one was found above");
+        Err(Error::input(format!(
+            "names point {id}, but there are {n_points} points (0 to {})",
+            n_points.saturating_sub(1)
+        ))
+        .at(format!("cell {cell}"))
+        .remedy("the file is damaged or its ids start at another base: write it again"))
+    }
+}
+
+fn too_many(n: usize) -> Error {
+    Error::input(format!("{n} vertex ids are more than the {} that a mesh can hold", VertexId::MAX_COUNT))
+        .remedy("split the mesh")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mesh_of_one_kind_equals_the_same_cells_pushed() {
+        let ids: Vec<_> = [0, 1, 2, 3, 1, 2, 3, 4].map(VertexId).to_vec();
+        let mut pushed = Cells::new();
+        pushed.push(CellKind::TETRA, ids[..4].iter().copied());
+        pushed.push(CellKind::TETRA, ids[4..].iter().copied());
+        assert_eq!(Cells::uniform(CellKind::TETRA, ids).unwrap(), pushed);
+    }
+
+    #[test]
+    fn a_cell_with_the_wrong_number_of_vertices_is_named() {
+        let ids = (0..7).map(VertexId).collect();
+        let error =
+            Cells::from_parts(vec![CellKind::TETRA, CellKind::TETRA], vec![0, 4, 7], ids).unwrap_err();
+        assert_eq!(error.to_string(), "cell 1: a tetra has 4 vertices, this one 3");
+    }
+
+    #[test]
+    fn an_id_beyond_the_points_is_named_with_its_cell() {
+        let cells = Cells::uniform(CellKind::LINE, [0, 1, 1, 9].map(VertexId).to_vec()).unwrap();
+        let error = cells.check_ids(5).unwrap_err().to_string();
+        assert!(error.starts_with("cell 1: names point 9, but there are 5 points (0 to 4)"), "{error}");
+    }
+}

@@ -1,0 +1,98 @@
+//! Everything that a mesh file holds.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::mesh::{Cells, Field, LabelNames};
+
+/// Points, cells of any kinds, and the arrays on them: what a file holds, and
+/// what goes from one capability to the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Coordinates of each vertex.
+    pub points: Vec<Point>,
+    /// The cells, in the order of the file.
+    pub cells: Cells,
+    /// Arrays with a row for each point.
+    pub point_data: Vec<Field>,
+    /// Arrays with a row for each cell.
+    pub cell_data: Vec<Field>,
+    /// Arrays about the mesh as a whole.
+    pub field_data: Vec<Field>,
+    /// Names of regions and patches.
+    pub label_names: LabelNames,
+}
+
+impl Mesh {
+    /// A mesh of points and cells, without arrays.
+    pub fn new(points: Vec<Point>, cells: Cells) -> Self {
+        Self { points, cells, ..Self::default() }
+    }
+
+    /// Checks that every array fits and every vertex id exists. Every reader
+    /// ends with it, so that nothing behind it needs to ask again.
+    ///
+    /// # Errors
+    /// Names the array or the cell that does not fit.
+    pub fn validate(&self) -> Result<()> {
+        if self.points.len() > VertexId::MAX_COUNT {
+            return Err(Error::input(format!("{} points are more than a mesh can hold", self.points.len())));
+        }
+        self.cells.check_ids(self.points.len())?;
+        check_rows(&self.point_data, self.points.len(), "point")?;
+        check_rows(&self.cell_data, self.cells.len(), "cell")
+    }
+
+    /// The point array of this name.
+    pub fn point_field(&self, name: &str) -> Option<&Field> {
+        self.point_data.iter().find(|f| f.name == name)
+    }
+
+    /// The cell array of this name.
+    pub fn cell_field(&self, name: &str) -> Option<&Field> {
+        self.cell_data.iter().find(|f| f.name == name)
+    }
+
+    /// Puts a point array in, in place of one of the same name.
+    pub fn set_point_field(&mut self, field: Field) {
+        set(&mut self.point_data, field);
+    }
+
+    /// Puts a cell array in, in place of one of the same name.
+    pub fn set_cell_field(&mut self, field: Field) {
+        set(&mut self.cell_data, field);
+    }
+
+    /// The corners of the smallest box, sides along the axes, that holds all
+    /// points with finite coordinates; `None` when there is no such point.
+    pub fn bounds(&self) -> Option<[Point; 2]> {
+        bounds(&self.points)
+    }
+}
+
+/// The corners of the smallest box, sides along the axes, around the finite
+/// ones of `points`; `None` when there is none.
+pub fn bounds(points: &[Point]) -> Option<[Point; 2]> {
+    points.iter().filter(|p| p.iter().all(|x| x.is_finite())).fold(None, |bounds, p| {
+        let [low, high] = bounds.unwrap_or([*p, *p]);
+        Some([[0, 1, 2].map(|i| low[i].min(p[i])), [0, 1, 2].map(|i| high[i].max(p[i]))])
+    })
+}
+
+fn set(fields: &mut Vec<Field>, field: Field) {
+    match fields.iter_mut().find(|f| f.name == field.name) {
+        Some(old) => *old = field,
+        None => fields.push(field),
+    }
+}
+
+fn check_rows(fields: &[Field], n: usize, what: &str) -> Result<()> {
+    match fields.iter().find(|f| f.values.len() != n * f.components) {
+        None => Ok(()),
+        Some(f) => Err(Error::input(format!(
+            "has {} values, but {n} {what}s of {} component(s) need {}",
+            f.values.len(),
+            f.components,
+            n * f.components
+        ))
+        .at(format!("{what} array {}", f.name))),
+    }
+}

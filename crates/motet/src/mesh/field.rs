@@ -1,0 +1,123 @@
+//! A named array on points, on cells, or on the mesh as a whole.
+
+use crate::base::{Error, Result};
+
+macro_rules! values {
+    ($($variant:ident($t:ty) $doc:literal;)*) => {
+        /// Numbers in the type that the file had them in, or texts.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Values {
+            $(#[doc = $doc] $variant(Vec<$t>),)*
+        }
+
+        impl Values {
+            /// How many values there are, components counted one by one.
+            pub fn len(&self) -> usize {
+                match self { $(Self::$variant(v) => v.len(),)* }
+            }
+        }
+
+        $(impl From<Vec<$t>> for Values {
+            fn from(v: Vec<$t>) -> Self { Self::$variant(v) }
+        })*
+    };
+}
+
+values! {
+    I8(i8) "8-bit signed";
+    U8(u8) "8-bit unsigned";
+    I16(i16) "16-bit signed";
+    U16(u16) "16-bit unsigned";
+    I32(i32) "32-bit signed";
+    U32(u32) "32-bit unsigned";
+    I64(i64) "64-bit signed";
+    U64(u64) "64-bit unsigned";
+    F32(f32) "single precision";
+    F64(f64) "double precision";
+    Text(String) "texts, one a value";
+}
+
+impl Values {
+    /// Whether there is no value.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether these are whole numbers.
+    pub fn is_integer(&self) -> bool {
+        !matches!(self, Self::F32(_) | Self::F64(_) | Self::Text(_))
+    }
+
+    /// Value `i` as a number; `None` for a text.
+    pub fn get_f64(&self, i: usize) -> Option<f64> {
+        Some(match self {
+            Self::I8(v) => v[i].into(),
+            Self::U8(v) => v[i].into(),
+            Self::I16(v) => v[i].into(),
+            Self::U16(v) => v[i].into(),
+            Self::I32(v) => v[i].into(),
+            Self::U32(v) => v[i].into(),
+            Self::I64(v) => v[i] as f64,
+            Self::U64(v) => v[i] as f64,
+            Self::F32(v) => v[i].into(),
+            Self::F64(v) => v[i],
+            Self::Text(_) => return None,
+        })
+    }
+
+    /// All values as double precision; `None` for texts.
+    pub fn to_f64(&self) -> Option<Vec<f64>> {
+        (0..self.len()).map(|i| self.get_f64(i)).collect()
+    }
+
+    /// All values as whole numbers; `None` for texts, and where one is not
+    /// whole or does not fit.
+    pub fn to_i64(&self) -> Option<Vec<i64>> {
+        match self {
+            Self::I64(v) => Some(v.clone()),
+            Self::U64(v) => v.iter().map(|&x| i64::try_from(x).ok()).collect(),
+            _ => self.to_f64()?.into_iter().map(|x| ((x as i64) as f64 == x).then_some(x as i64)).collect(),
+        }
+    }
+}
+
+/// A named array of `n` rows of `components` values each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    /// Its name, as users know it.
+    pub name: String,
+    /// Values in a row: 1 for a scalar, 3 for a vector, 9 for a tensor.
+    pub components: usize,
+    /// All rows, end to end.
+    pub values: Values,
+}
+
+impl Field {
+    /// A field of scalars.
+    pub fn scalars(name: impl Into<String>, values: impl Into<Values>) -> Self {
+        Self { name: name.into(), components: 1, values: values.into() }
+    }
+
+    /// A field of vectors, such as displacements.
+    pub fn vectors(name: impl Into<String>, values: &[[f64; 3]]) -> Self {
+        Self { name: name.into(), components: 3, values: Values::F64(values.as_flattened().to_vec()) }
+    }
+
+    /// How many rows there are.
+    pub fn n_rows(&self) -> usize {
+        self.values.len() / self.components.max(1)
+    }
+
+    /// The rows as vectors in space.
+    ///
+    /// # Errors
+    /// When the field has not three components, or holds texts.
+    pub fn to_vectors(&self) -> Result<Vec<[f64; 3]>> {
+        let flat = self.values.to_f64().filter(|_| self.components == 3);
+        let flat = flat.ok_or_else(|| {
+            Error::input(format!("has {} component(s), but a vector of 3 is needed", self.components))
+                .at(format!("array {}", self.name))
+        })?;
+        Ok(flat.as_chunks::<3>().0.to_vec())
+    }
+}

@@ -1,0 +1,100 @@
+//! Which region a volume cell belongs to, and which patch a surface cell.
+
+use std::collections::BTreeMap;
+
+use crate::mesh::{Field, Mesh, Values};
+
+/// Names of labels; a label without a name is known by its number.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LabelNames {
+    /// Names of regions, the labels of volume cells.
+    pub regions: BTreeMap<i32, String>,
+    /// Names of patches, the labels of surface cells.
+    pub patches: BTreeMap<i32, String>,
+}
+
+/// A label for each cell of a mesh; 0 for cells of other dimensions and for
+/// cells without one.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Labels {
+    /// The label of each cell, in the order of the cells.
+    pub ids: Vec<i32>,
+    /// Names, where there are any.
+    pub names: BTreeMap<i32, String>,
+}
+
+impl Labels {
+    /// The label that `text` means: a name, or a number written out.
+    pub fn find(&self, text: &str) -> Option<i32> {
+        let named = self.names.iter().find(|(_, name)| *name == text).map(|(&id, _)| id);
+        named.or_else(|| text.parse().ok().filter(|id| self.ids.contains(id)))
+    }
+
+    /// Every label that occurs, 0 left out, in rising order.
+    pub fn used(&self) -> Vec<i32> {
+        let mut used: Vec<i32> = self.ids.iter().copied().filter(|&id| id != 0).collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+
+    /// The name of a label, or its number.
+    pub fn name(&self, id: i32) -> String {
+        self.names.get(&id).cloned().unwrap_or_else(|| id.to_string())
+    }
+}
+
+/// Arrays in which the ecosystem keeps labels of volume cells, first choice first.
+const REGION_ARRAYS: &[&str] = &[
+    "region",
+    "gmsh:physical",
+    "medit:ref",
+    "tetgen:ref",
+    "ModelRegionID",
+    "CellEntityIds",
+    "gmsh:geometrical",
+];
+
+/// Arrays in which the ecosystem keeps labels of surface cells, first choice first.
+const PATCH_ARRAYS: &[&str] = &[
+    "patch",
+    "gmsh:physical",
+    "medit:ref",
+    "tetgen:ref",
+    "ModelFaceID",
+    "CellEntityIds",
+    "gmsh:geometrical",
+];
+
+impl Mesh {
+    /// Labels of the volume cells, found under the names that the ecosystem uses;
+    /// `None` where the mesh has none.
+    pub fn regions(&self) -> Option<Labels> {
+        self.labels_of(3, REGION_ARRAYS, &self.label_names.regions)
+    }
+
+    /// Labels of the surface cells, found likewise.
+    pub fn patches(&self) -> Option<Labels> {
+        self.labels_of(2, PATCH_ARRAYS, &self.label_names.patches)
+    }
+
+    fn labels_of(&self, dim: usize, arrays: &[&str], names: &BTreeMap<i32, String>) -> Option<Labels> {
+        let on_dim: Vec<bool> = self.cells.kinds().iter().map(|k| k.dim() == Some(dim)).collect();
+        arrays.iter().find_map(|array| {
+            let ids = label_ids(self.cell_field(array)?, &on_dim)?;
+            Some(Labels { ids, names: names.clone() })
+        })
+    }
+}
+
+/// The labels that `field` gives to the cells where `on_dim` holds; `None` when
+/// it is not made of whole numbers, or gives none of them a label.
+fn label_ids(field: &Field, on_dim: &[bool]) -> Option<Vec<i32>> {
+    if field.components != 1 || matches!(field.values, Values::Text(_)) {
+        return None;
+    }
+    let all = field.values.to_i64()?;
+    let ids: Option<Vec<i32>> =
+        all.iter().zip(on_dim).map(|(&id, &on)| if on { i32::try_from(id).ok() } else { Some(0) }).collect();
+    ids.filter(|ids| ids.iter().any(|&id| id != 0))
+}

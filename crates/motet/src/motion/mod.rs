@@ -1,0 +1,1 @@
+//! Floor 7: mesh motion. Boundary displacement in, volume mesh out.

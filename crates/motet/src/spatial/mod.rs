@@ -1,0 +1,1 @@
+//! Floor 3: searching in space.
