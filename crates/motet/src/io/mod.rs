@@ -3,6 +3,6 @@
 mod registry;
 
 pub use registry::{
-    Compression, Encoding, Format, Input, Read, Write, WriteOptions, Written, formats, read, read_as,
-    replace, write,
+    Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written, formats, read, read_as,
+    read_noted, replace, write,
 };

@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use crate::base::{Error, ErrorKind, Result};
 use crate::mesh::Mesh;
@@ -13,6 +14,29 @@ pub struct Input<'a> {
     pub path: &'a Path,
     /// Its content.
     pub bytes: &'a [u8],
+    /// Where a reader says what it passed over.
+    pub notes: &'a Notes,
+}
+
+/// What a reader passed over, each in a sentence for the user: sections that
+/// motet does not know, texture coordinates, a second label on one cell.
+#[derive(Debug, Default)]
+pub struct Notes(Mutex<Vec<String>>);
+
+impl Notes {
+    /// Adds a sentence, unless it has been said.
+    pub fn add(&self, note: impl Into<String>) {
+        let mut notes = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let note = note.into();
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
+    }
+
+    /// All sentences, in the order in which they came.
+    pub fn into_vec(self) -> Vec<String> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// How numbers are laid down, where a format leaves the choice.
@@ -109,10 +133,20 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
 /// # Errors
 /// Names the file, the place in it, what was expected and found, and what to do.
 pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
+    read_noted(path).map(|(mesh, _)| mesh)
+}
+
+/// As [`read`], and tells what the reader passed over, each in a sentence for the user.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let format = by_ending(path)?;
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
-    read_as(format, &Input { path, bytes: &bytes })
+    let notes = Notes::default();
+    let mesh = read_as(format, &Input { path, bytes: &bytes, notes: &notes })?;
+    Ok((mesh, notes.into_vec()))
 }
 
 /// Reads `input` in the given format.
