@@ -1,3 +1,31 @@
-//! The command line of motet.
+//! The command line of motet: words in, calls of the library, words out.
+//!
+//! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
+//! here: how the call is read (`args`), how the user is spoken to (`console`,
+//! `table`), how failures become exit statuses (`exit`).
 
-fn main() {}
+mod args;
+mod console;
+mod exit;
+mod table;
+mod verbs;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use crate::args::{Call, Verb};
+use crate::console::Console;
+
+fn main() -> ExitCode {
+    let call = match Call::try_parse() {
+        Ok(call) => call,
+        Err(misread) => return exit::misread(&misread, std::env::args_os().any(|a| a == "--json")),
+    };
+    let console = Console::new(&call.common);
+    let outcome = match call.verb {
+        Verb::Info(args) => verbs::info::run(&args, &call.common, &console),
+        Verb::Convert(args) => verbs::convert::run(&args, &console),
+    };
+    exit::status(outcome, &console)
+}

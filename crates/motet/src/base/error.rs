@@ -103,6 +103,11 @@ impl Error {
         self.0.place.as_deref()
     }
 
+    /// What was expected and what came.
+    pub fn what(&self) -> &str {
+        &self.0.what
+    }
+
     /// What the user can do about it.
     pub fn remedy_text(&self) -> Option<&str> {
         self.0.remedy.as_deref()

@@ -3,6 +3,6 @@
 mod registry;
 
 pub use registry::{
-    Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written, formats, read, read_as,
-    read_noted, replace, write,
+    Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written, can_write, formats,
+    read, read_as, read_noted, replace, write,
 };

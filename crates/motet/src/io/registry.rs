@@ -128,6 +128,30 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
     })
 }
 
+/// Whether a mesh could be written to `path`, so that a long run can ask before
+/// it starts: the ending is that of a format with a writer, and the folder is there.
+///
+/// # Errors
+/// Of kind [`ErrorKind::Options`] for the ending, [`ErrorKind::Io`] for the folder.
+pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
+    let path = path.as_ref();
+    let writable = by_ending(path).is_ok_and(|f| f.write.is_some());
+    if !writable {
+        let known: Vec<_> =
+            FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.endings).copied().collect();
+        return Err(Error::options("no format with this file ending can be written")
+            .in_file(path)
+            .remedy(format!("endings that can: {}", known.join(" "))));
+    }
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
+            .in_file(path)
+            .remedy("make the folder first")),
+        None => Ok(()),
+    }
+}
+
 /// Reads a file or folder in the format that its ending tells.
 ///
 /// # Errors
@@ -192,7 +216,11 @@ fn with_ending(path: &Path, ending: &str) -> PathBuf {
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let io = |e: std::io::Error| Error::io(path, &e);
-    let mut file = tempfile::NamedTempFile::new_in(folder).map_err(io)?;
+    let mut beside = tempfile::Builder::new();
+    // As any other file: the user's umask applies, while temporary files are private by default.
+    #[cfg(unix)]
+    beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = beside.tempfile_in(folder).map_err(io)?;
     file.write_all(bytes).map_err(io)?;
     file.persist(path).map_err(|e| io(e.error))?;
     Ok(())

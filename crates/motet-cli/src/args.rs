@@ -1,0 +1,52 @@
+//! How a call is read: the verbs, and the words that all of them know.
+
+use clap::{Args, Parser, Subcommand};
+use motet::base::Threads;
+
+use crate::verbs::{convert, info};
+
+/// motet keeps tetrahedral meshes good while the world in them moves.
+#[derive(Debug, Parser)]
+#[command(name = "motet", version, subcommand_required = true, arg_required_else_help = true)]
+#[command(after_help = "\
+File formats are told by their endings: .vtu .vtp .pvd .vtk .msh .mesh .stl .obj .node .xml ...
+Exit status: 0 done; 2 the words of the call are off; 3 an input cannot be read or is not what
+the verb needs; 4 the asked result was not reached (what was reached is written); 1 anything else.
+`motet help VERB` tells all about a verb, with examples.")]
+pub(crate) struct Call {
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+    #[command(flatten)]
+    pub(crate) common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    Info(info::InfoArgs),
+    Convert(convert::ConvertArgs),
+}
+
+/// The words that every verb knows.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Everywhere")]
+pub(crate) struct Common {
+    /// Print one JSON object on standard output, all else on standard error
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Threads to use; 0 = one for each core. Results do not depend on it
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// Print nothing but errors (and the JSON object)
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Print more: what is read, found and written, with times
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+}
+
+impl Common {
+    /// The threads that the call asks for.
+    pub(crate) fn threads(&self) -> motet::Result<Threads> {
+        Threads::new(self.threads)
+    }
+}

@@ -1,0 +1,70 @@
+//! How outcomes become exit statuses: the contract that scripts rely on.
+
+use std::process::ExitCode;
+
+use motet::{Error, ErrorKind};
+use serde_json::json;
+
+use crate::console::Console;
+
+/// What a verb came to, where nothing failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// All that was asked.
+    Done,
+    /// Less than was asked; what was reached is written and reported.
+    NotReached,
+}
+
+const DONE: u8 = 0;
+const ELSE: u8 = 1;
+const WORDS: u8 = 2;
+const INPUT: u8 = 3;
+const NOT_REACHED: u8 = 4;
+
+fn of_kind(kind: ErrorKind) -> u8 {
+    match kind {
+        ErrorKind::Options => WORDS,
+        ErrorKind::Input | ErrorKind::Io => INPUT,
+        _ => ELSE,
+    }
+}
+
+/// The status of a verb that ran; an error is printed first.
+pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> ExitCode {
+    ExitCode::from(match outcome {
+        Ok(Outcome::Done) => DONE,
+        Ok(Outcome::NotReached) => NOT_REACHED,
+        Err(error) => {
+            let code = of_kind(error.kind());
+            console.report(&json!({ "error": described(&error, code) }));
+            console.error(&error);
+            code
+        }
+    })
+}
+
+fn described(error: &Error, code: u8) -> serde_json::Value {
+    json!({
+        "exit": code,
+        "file": error.file(),
+        "place": error.place(),
+        "what": error.what(),
+        "remedy": error.remedy_text(),
+        "message": error.to_string(),
+    })
+}
+
+/// The status of a call that could not be read, or that only asked for help.
+pub(crate) fn misread(misread: &clap::Error, json: bool) -> ExitCode {
+    let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
+    if json && code != DONE {
+        let what = misread.to_string();
+        let what = what.trim_end();
+        println!("{:#}", json!({ "error": { "exit": code, "what": what, "message": what } }));
+        eprintln!("{what}");
+    } else {
+        let _ = misread.print();
+    }
+    ExitCode::from(code)
+}

@@ -1,0 +1,126 @@
+//! `motet convert`: one format in, another out.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use motet::io::{self, Compression, Encoding, WriteOptions};
+use serde_json::json;
+
+use crate::console::Console;
+use crate::exit::Outcome;
+use crate::table::{count, seconds};
+
+/// Turn a mesh file into another format, told by the file endings
+///
+/// Points, cells of every kind and all arrays are kept, bit for bit, where the
+/// format can hold them; what it cannot hold is told, each in a sentence.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  motet convert vessel.msh vessel.vtu                     for ParaView
+  motet convert mesh-complete/ vessel.vtu                 a SimVascular folder, faces as patches
+  motet convert vessel.vtu vessel.msh --version 2.2       for OpenFOAM's and old readers
+  motet convert a.vtu b.vtu --encoding ascii --compression none")]
+pub(crate) struct ConvertArgs {
+    /// The file (or folder) to read
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// The file to write
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    writing: WritingArgs,
+}
+
+/// How files are written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Writing")]
+pub(crate) struct WritingArgs {
+    /// Shorthand for --encoding ascii
+    #[arg(long, conflicts_with = "encoding")]
+    ascii: bool,
+    /// How numbers are laid down, where the format leaves the choice [default: binary]
+    #[arg(long, value_name = "HOW")]
+    encoding: Option<EncodingWord>,
+    /// How blocks are compressed, where the format can
+    #[arg(long, value_name = "HOW", default_value = "zlib")]
+    compression: CompressionWord,
+    /// The format's own version, such as 2.2 or 4.1 for .msh [default: the format's newest]
+    #[arg(long = "version", value_name = "V")]
+    version: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EncodingWord {
+    /// Text, with as many digits as bring every number back bit for bit
+    Ascii,
+    /// Base64 inside the elements (XML formats); binary elsewhere
+    Base64,
+    /// Raw bytes: appended (XML formats), binary elsewhere
+    Binary,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum CompressionWord {
+    /// Not at all
+    None,
+    /// Which every reader knows
+    Zlib,
+    /// Faster, larger
+    Lz4,
+    /// Slower, smaller
+    Lzma,
+}
+
+impl WritingArgs {
+    pub(crate) fn options(&self) -> WriteOptions {
+        let encoding = match self.encoding {
+            _ if self.ascii => Encoding::Ascii,
+            Some(EncodingWord::Ascii) => Encoding::Ascii,
+            Some(EncodingWord::Base64) => Encoding::Base64,
+            Some(EncodingWord::Binary) | None => Encoding::Binary,
+        };
+        let compression = match self.compression {
+            CompressionWord::None => Compression::None,
+            CompressionWord::Zlib => Compression::Zlib,
+            CompressionWord::Lz4 => Compression::Lz4,
+            CompressionWord::Lzma => Compression::Lzma,
+        };
+        WriteOptions { encoding, compression, version: self.version.clone() }
+    }
+}
+
+pub(crate) fn run(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
+    io::can_write(&args.output)?;
+    let start = Instant::now();
+    let (mesh, notes) = io::read_noted(&args.input)?;
+    let read = start.elapsed().as_secs_f64();
+    console.detail(format_args!("read {} in {}", args.input.display(), seconds(read)));
+    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
+    let write = start.elapsed().as_secs_f64() - read;
+    console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
+
+    notes.iter().chain(&lost).for_each(|what| console.warn(what));
+    console.say(format_args!(
+        "{} -> {}: {} points, {} cells, {} point and {} cell arrays",
+        args.input.display(),
+        args.output.display(),
+        count(mesh.points.len()),
+        count(mesh.cells.len()),
+        mesh.point_data.len(),
+        mesh.cell_data.len()
+    ));
+    console.report(&json!({
+        "input": args.input,
+        "output": args.output,
+        "points": mesh.points.len(),
+        "cells": mesh.cells.len(),
+        "point_arrays": mesh.point_data.iter().map(|f| &f.name).collect::<Vec<_>>(),
+        "cell_arrays": mesh.cell_data.iter().map(|f| &f.name).collect::<Vec<_>>(),
+        "passed_over": notes,
+        "lost": lost,
+        "seconds": { "read": read, "write": write },
+    }));
+    Ok(Outcome::Done)
+}

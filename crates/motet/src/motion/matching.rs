@@ -1,0 +1,310 @@
+//! Which vertex of a mesh each point of a surface file is, and how far it moved.
+//!
+//! A surface that was cut out of a mesh carries the ids of its points
+//! (`GlobalNodeID` counts from one, `vtkOriginalPointIds` from zero). Where it
+//! carries none, a point is the vertex that lies where it lies.
+
+use std::collections::HashMap;
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{norm, sub};
+use crate::mesh::{Mesh, bounds};
+
+/// Arrays that name vertices of the mesh, and the id of the first one where the
+/// mesh itself does not say.
+const ID_ARRAYS: &[(&str, i64)] = &[("GlobalNodeID", 1), ("vtkOriginalPointIds", 0)];
+
+/// Vector arrays on a surface that are taken for its displacement, first choice first.
+const DISPLACEMENT_ARRAYS: &[&str] = &["displacement", "Displacement", "u", "U", "disp"];
+
+/// Two points are one where they are nearer than this part of the bounding box's
+/// diagonal: single precision keeps 1.2e-7 of a coordinate.
+const SAME_PLACE: f64 = 1e-6;
+
+/// For each point of `surface` the vertex of `mesh` that it is: by the ids it
+/// carries, else by position.
+///
+/// # Errors
+/// When an id names no vertex, or points lie on none: says how many, which is
+/// the first and how far it is from the mesh.
+pub fn match_points(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
+    match match_by_id(mesh, surface)? {
+        Some(vertices) => Ok(vertices),
+        None => match_by_position(mesh, surface),
+    }
+}
+
+/// The vertices that the surface's own ids name; `None` where it carries none.
+fn match_by_id(mesh: &Mesh, surface: &Mesh) -> Result<Option<Vec<VertexId>>> {
+    for &(name, first) in ID_ARRAYS {
+        let Some(ids) = surface.point_field(name).filter(|f| f.components == 1) else { continue };
+        let Some(ids) = ids.values.to_i64() else { continue };
+        let own = mesh.point_field(name).filter(|f| f.components == 1).and_then(|f| f.values.to_i64());
+        let id_to_vertex: HashMap<i64, usize> = match own {
+            Some(own) => own.into_iter().enumerate().map(|(vertex, id)| (id, vertex)).collect(),
+            None => (0..mesh.points.len()).map(|vertex| (vertex as i64 + first, vertex)).collect(),
+        };
+        let vertices = ids.iter().enumerate().map(|(point, id)| match id_to_vertex.get(id) {
+            Some(&vertex) => Ok(VertexId::new(vertex)),
+            None => Err(Error::input(format!("{name} {id} is that of no point of the mesh"))
+                .at(format!("point {point}"))
+                .remedy("give the surface that belongs to this mesh")),
+        });
+        return vertices.collect::<Result<_>>().map(Some);
+    }
+    Ok(None)
+}
+
+fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
+    let grid = Grid::new(&mesh.points);
+    let found: Vec<_> = surface.points.iter().map(|&p| grid.vertex_at(p)).collect();
+    let lost: Vec<usize> = (0..found.len()).filter(|&i| found[i].is_none()).collect();
+    let Some(&first) = lost.first() else {
+        return Ok(found.into_iter().flatten().collect());
+    };
+    let [x, y, z] = surface.points[first];
+    let distance =
+        mesh.points.iter().map(|&p| norm(sub(p, surface.points[first]))).fold(f64::INFINITY, f64::min);
+    Err(Error::input(format!(
+        "{} of the surface's {} points lie on no vertex of the mesh; this one, ({x}, {y}, {z}), is {distance:.3e} \
+         from the nearest",
+        lost.len(),
+        found.len()
+    ))
+    .at(format!("point {first}"))
+    .remedy(
+        "give the surface a point array GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), or let it lie in the \
+         undeformed place with a vector array `displacement`",
+    ))
+}
+
+/// Vertices by where they lie, in cells as wide as the distance at which two
+/// points are one.
+struct Grid<'a> {
+    points: &'a [Point],
+    low: Point,
+    width: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+}
+
+impl<'a> Grid<'a> {
+    fn new(points: &'a [Point]) -> Self {
+        let [low, high] = bounds(points).unwrap_or_default();
+        let width = (norm(sub(high, low)) * SAME_PLACE).max(f64::MIN_POSITIVE);
+        let mut grid = Self { points, low, width, cells: HashMap::new() };
+        for (vertex, &p) in points.iter().enumerate() {
+            grid.cells.entry(grid.cell(p)).or_default().push(vertex as u32);
+        }
+        grid
+    }
+
+    fn cell(&self, p: Point) -> [i64; 3] {
+        [0, 1, 2].map(|i| ((p[i] - self.low[i]) / self.width).floor() as i64)
+    }
+
+    /// The nearest vertex within the width of a cell; of equally near ones the first.
+    fn vertex_at(&self, p: Point) -> Option<VertexId> {
+        let [i, j, k] = self.cell(p);
+        let mut nearest: Option<(f64, u32)> = None;
+        for n in 0..27 {
+            let cell =
+                [i.saturating_add(n / 9 - 1), j.saturating_add(n / 3 % 3 - 1), k.saturating_add(n % 3 - 1)];
+            for &vertex in self.cells.get(&cell).map_or(&[][..], Vec::as_slice) {
+                let candidate = (norm(sub(self.points[vertex as usize], p)), vertex);
+                if candidate.0 <= self.width && nearest.is_none_or(|n| candidate < n) {
+                    nearest = Some(candidate);
+                }
+            }
+        }
+        nearest.map(|(_, vertex)| VertexId(vertex))
+    }
+}
+
+/// Reads the displacements of a mesh's vertices off surfaces, one after the
+/// other: of one displaced surface, or of a series of them.
+///
+/// Where a surface lies away from the undeformed mesh, its points tell the
+/// displacement; where it lies on it, its vector array `displacement` does, and
+/// without one nothing has moved. Surfaces without ids must begin with one in
+/// the undeformed place: those after it have the same points in the same order.
+#[derive(Debug)]
+pub struct SurfaceMotion<'a> {
+    mesh: &'a Mesh,
+    /// Of the surface before: which vertex each of its points is.
+    vertices: Option<Vec<VertexId>>,
+}
+
+impl<'a> SurfaceMotion<'a> {
+    /// Nothing is read yet.
+    pub fn new(mesh: &'a Mesh) -> Self {
+        Self { mesh, vertices: None }
+    }
+
+    /// The vertices that the next surface holds, each once, and their displacements
+    /// from where they are in the mesh.
+    ///
+    /// # Errors
+    /// As [`match_points`]; when two points that are one vertex move apart; when
+    /// a displacement is not finite.
+    pub fn next(&mut self, surface: &Mesh) -> Result<Vec<(VertexId, Point)>> {
+        let vertices = self.vertices_of(surface)?;
+        let moved = self.displacements(surface, &vertices)?;
+        if let Some(i) = moved.iter().position(|d| d.iter().any(|x| !x.is_finite())) {
+            return Err(Error::input("a displacement that is no finite number").at(format!("point {i}")));
+        }
+        let pairs = self.once_each(&vertices, &moved)?;
+        self.vertices = Some(vertices);
+        Ok(pairs)
+    }
+
+    fn vertices_of(&self, surface: &Mesh) -> Result<Vec<VertexId>> {
+        if let Some(vertices) = match_by_id(self.mesh, surface)? {
+            return Ok(vertices);
+        }
+        match &self.vertices {
+            Some(before) if before.len() == surface.points.len() => Ok(before.clone()),
+            Some(before) => Err(Error::input(format!(
+                "has {} points, the surface before it {}; without ids they must be the same",
+                surface.points.len(),
+                before.len()
+            ))
+            .remedy("give the surfaces a point array GlobalNodeID (from 1)")),
+            None => match_by_position(self.mesh, surface),
+        }
+    }
+
+    fn displacements(&self, surface: &Mesh, vertices: &[VertexId]) -> Result<Vec<Point>> {
+        let points = vertices.iter().zip(&surface.points);
+        let moved: Vec<Point> = points.map(|(v, &p)| sub(p, self.mesh.points[v.index()])).collect();
+        let same_place = self.same_place();
+        // Told by what holds, not by what does not: a coordinate that is no number must not pass for unmoved.
+        let unmoved = moved.iter().all(|&d| norm(d) <= same_place);
+        if !unmoved {
+            return Ok(moved);
+        }
+        let field = DISPLACEMENT_ARRAYS.iter().find_map(|name| surface.point_field(name));
+        match field.filter(|f| f.components == 3) {
+            Some(field) => field.to_vectors(),
+            None => Ok(vec![[0.0; 3]; vertices.len()]),
+        }
+    }
+
+    fn same_place(&self) -> f64 {
+        self.mesh.bounds().map_or(0.0, |[low, high]| norm(sub(high, low)) * SAME_PLACE)
+    }
+
+    /// Points of several faces that are one vertex, taken together.
+    fn once_each(&self, vertices: &[VertexId], moved: &[Point]) -> Result<Vec<(VertexId, Point)>> {
+        let same_place = self.same_place();
+        let mut order: Vec<usize> = (0..vertices.len()).collect();
+        order.sort_by_key(|&i| vertices[i]);
+        let mut pairs: Vec<(VertexId, Point)> = Vec::with_capacity(order.len());
+        for i in order {
+            match pairs.last() {
+                Some((vertex, d)) if *vertex == vertices[i] => {
+                    let apart = norm(sub(*d, moved[i]));
+                    if apart > same_place {
+                        return Err(Error::input(format!(
+                            "is vertex {vertex} like another point, but they move {apart:.3e} apart"
+                        ))
+                        .at(format!("point {i}"))
+                        .remedy("give the vertex one displacement"));
+                    }
+                }
+                _ => pairs.push((vertices[i], moved[i])),
+            }
+        }
+        Ok(pairs)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Cells, Field};
+
+    fn mesh() -> Mesh {
+        let points = (0..27).map(|i| [i / 9, i / 3 % 3, i % 3].map(f64::from)).collect();
+        Mesh::new(points, Cells::new())
+    }
+
+    /// Every other vertex of the mesh, last first, moved by `by`.
+    fn surface(by: Point) -> (Mesh, Vec<VertexId>) {
+        let vertices: Vec<_> = (0..27).rev().step_by(2).map(VertexId).collect();
+        let points =
+            vertices.iter().map(|v| mesh().points[v.index()]).map(|p| [0, 1, 2].map(|i| p[i] + by[i]));
+        (Mesh::new(points.collect(), Cells::new()), vertices)
+    }
+
+    #[test]
+    fn points_are_found_by_position_within_single_precision() {
+        let (mut s, vertices) = surface([0.0; 3]);
+        s.points.iter_mut().flatten().for_each(|x| *x += 1e-7);
+        assert_eq!(match_points(&mesh(), &s).unwrap(), vertices);
+    }
+
+    #[test]
+    fn ids_win_over_position_and_follow_the_numbers_of_the_mesh() {
+        let (mut s, vertices) = surface([0.3, 0.0, 0.0]);
+        let ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0) + 1).collect();
+        s.set_point_field(Field::scalars("GlobalNodeID", ids.clone()));
+        assert_eq!(match_points(&mesh(), &s).unwrap(), vertices);
+        let mut numbered = mesh();
+        numbered.set_point_field(Field::scalars("GlobalNodeID", (1..=27i64).rev().collect::<Vec<_>>()));
+        let mirrored: Vec<_> = vertices.iter().map(|v| VertexId(26 - v.0)).collect();
+        assert_eq!(match_points(&numbered, &s).unwrap(), mirrored);
+    }
+
+    #[test]
+    fn points_that_lie_nowhere_are_counted_and_the_first_is_told() {
+        let (mut s, _) = surface([0.0; 3]);
+        s.points[3][1] += 0.25;
+        s.points[7][2] -= 0.5;
+        let error = match_points(&mesh(), &s).unwrap_err().to_string();
+        assert!(error.starts_with("point 3: 2 of the surface's 14 points"), "{error}");
+        assert!(error.contains("2.500e-1"), "{error}");
+    }
+
+    #[test]
+    fn a_series_without_ids_keeps_the_order_of_its_first_surface() {
+        let mesh = mesh();
+        let mut motion = SurfaceMotion::new(&mesh);
+        assert!(motion.next(&surface([0.0; 3]).0).unwrap().iter().all(|(_, d)| *d == [0.0; 3]));
+        let second = motion.next(&surface([0.5, 0.0, 0.0]).0).unwrap();
+        assert_eq!(second.len(), 14);
+        assert!(second.iter().all(|(v, d)| v.0 % 2 == 0 && *d == [0.5, 0.0, 0.0]));
+        let mut shorter = surface([0.5, 0.0, 0.0]).0;
+        shorter.points.pop();
+        assert!(motion.next(&shorter).is_err());
+    }
+
+    #[test]
+    fn an_array_tells_the_displacement_of_a_surface_in_its_first_place() {
+        let mesh = mesh();
+        let (mut s, _) = surface([0.0; 3]);
+        s.set_point_field(Field::vectors("displacement", &[[0.0, 0.1, 0.0]; 14]));
+        let moved = SurfaceMotion::new(&mesh).next(&s).unwrap();
+        assert!(moved.iter().all(|(_, d)| *d == [0.0, 0.1, 0.0]));
+    }
+
+    #[test]
+    fn one_vertex_cannot_go_two_ways() {
+        let mesh = mesh();
+        let (mut s, vertices) = surface([0.0; 3]);
+        let mut ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0)).collect();
+        ids[5] = ids[2];
+        s.set_point_field(Field::scalars("vtkOriginalPointIds", ids));
+        let error = SurfaceMotion::new(&mesh).next(&s).unwrap_err().to_string();
+        assert!(error.contains("apart"), "{error}");
+    }
+
+    #[test]
+    fn what_is_not_finite_is_refused() {
+        let mesh = mesh();
+        let (mut s, vertices) = surface([0.0; 3]);
+        let ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0) + 1).collect();
+        s.set_point_field(Field::scalars("GlobalNodeID", ids));
+        s.points[4] = [f64::NAN, 0.0, 0.0];
+        assert!(SurfaceMotion::new(&mesh).next(&s).unwrap_err().to_string().starts_with("point 4: "));
+    }
+}

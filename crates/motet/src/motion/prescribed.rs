@@ -1,0 +1,134 @@
+//! Motions told in words: turns, shifts, affine maps; each also part of the way.
+
+use crate::base::{Error, Point, Result};
+use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+
+/// A motion of space, of which any fraction can be asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Prescribed {
+    /// Every point by the same vector.
+    Shift(Point),
+    /// About an axis through a centre.
+    Turn {
+        /// Direction of the axis, of any length but zero.
+        axis: Point,
+        /// Angle in radians, right-handed about the axis.
+        angle: f64,
+        /// A point on the axis.
+        centre: Point,
+    },
+    /// `x' = A x + b`; each row holds one of A's and the entry of b.
+    Affine([[f64; 4]; 3]),
+    /// The first, then the others, each applied to where the one before it led.
+    Sequence(Vec<Prescribed>),
+}
+
+impl Prescribed {
+    /// Checks that all numbers are finite and axes point somewhere.
+    ///
+    /// # Errors
+    /// Of kind [`Options`](crate::base::ErrorKind::Options), saying which number is off.
+    pub fn check(&self) -> Result<()> {
+        let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
+        let fine = match self {
+            Self::Shift(by) => finite(by),
+            Self::Turn { axis, angle, centre } => {
+                if norm(*axis) == 0.0 {
+                    return Err(Error::options("the axis of a turn has no length"));
+                }
+                finite(axis) && angle.is_finite() && finite(centre)
+            }
+            Self::Affine(rows) => finite(rows.as_flattened()),
+            Self::Sequence(motions) => return motions.iter().try_for_each(Self::check),
+        };
+        if fine { Ok(()) } else { Err(Error::options("a motion with a number that is not finite")) }
+    }
+
+    /// Where `fraction` of the motion takes a point: 0 leaves it, 1 is all of it.
+    /// A turn goes by its angle, so that every fraction of it is rigid.
+    pub fn apply(&self, p: Point, fraction: f64) -> Point {
+        match self {
+            Self::Shift(by) => add(p, scale(*by, fraction)),
+            Self::Turn { axis, angle, centre } => {
+                add(*centre, turned(sub(p, *centre), *axis, angle * fraction))
+            }
+            Self::Affine(rows) => {
+                let image = rows.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d);
+                add(p, scale(sub(image, p), fraction))
+            }
+            Self::Sequence(motions) => motions.iter().fold(p, |p, motion| motion.apply(p, fraction)),
+        }
+    }
+
+    /// How far `fraction` of the motion takes a point.
+    pub fn displacement(&self, p: Point, fraction: f64) -> Point {
+        match self {
+            // Not as a difference of positions: that would round.
+            Self::Shift(by) => scale(*by, fraction),
+            _ => sub(self.apply(p, fraction), p),
+        }
+    }
+}
+
+/// Turns `v` by `angle` about an axis through the origin (Rodrigues 1840).
+fn turned(v: Point, axis: Point, angle: f64) -> Point {
+    let k = scale(axis, 1.0 / norm(axis));
+    let (sin, cos) = angle.sin_cos();
+    let along = scale(k, dot(k, v) * (1.0 - cos));
+    add(add(scale(v, cos), scale(cross(k, v), sin)), along)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const P: Point = [0.3, -1.2, 2.5];
+
+    fn near(a: Point, b: Point) -> bool {
+        norm(sub(a, b)) < 1e-14 * (1.0 + norm(a))
+    }
+
+    fn turn(angle: f64) -> Prescribed {
+        Prescribed::Turn { axis: [1.0, 2.0, -0.5], angle, centre: [4.0, 5.0, 6.0] }
+    }
+
+    #[test]
+    fn no_part_of_a_motion_leaves_points_in_place() {
+        let motions = [Prescribed::Shift([1.0, 2.0, 3.0]), turn(1.0), Prescribed::Affine([[2.0; 4]; 3])];
+        assert!(motions.iter().all(|m| near(m.apply(P, 0.0), P)));
+        assert!(near(Prescribed::Sequence(motions.to_vec()).apply(P, 0.0), P));
+    }
+
+    #[test]
+    fn half_a_turn_twice_is_the_turn() {
+        let half_way = turn(2.0).apply(P, 0.5);
+        assert!(near(turn(2.0).apply(half_way, 0.5), turn(2.0).apply(P, 1.0)));
+        assert!(near(turn(std::f64::consts::TAU).apply(P, 1.0), P));
+    }
+
+    #[test]
+    fn a_turn_is_right_handed_and_keeps_lengths() {
+        let quarter =
+            Prescribed::Turn { axis: [0.0, 0.0, 3.0], angle: std::f64::consts::FRAC_PI_2, centre: [0.0; 3] };
+        assert!(near(quarter.apply([1.0, 0.0, 0.0], 1.0), [0.0, 1.0, 0.0]));
+        let before = norm(sub(P, [4.0, 5.0, 6.0]));
+        let after = norm(sub(turn(1.3).apply(P, 0.7), [4.0, 5.0, 6.0]));
+        assert!((before - after).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_sequence_turns_first_where_the_turn_is_first() {
+        let shift = Prescribed::Shift([1.0, 0.0, 0.0]);
+        let sequence = Prescribed::Sequence(vec![turn(0.4), shift.clone()]);
+        assert!(near(sequence.apply(P, 1.0), shift.apply(turn(0.4).apply(P, 1.0), 1.0)));
+    }
+
+    #[test]
+    fn what_means_nothing_is_refused() {
+        let still = Prescribed::Turn { axis: [0.0; 3], angle: 1.0, centre: [0.0; 3] };
+        assert!(still.check().is_err());
+        assert!(Prescribed::Shift([f64::NAN, 0.0, 0.0]).check().is_err());
+        assert!(Prescribed::Sequence(vec![turn(f64::INFINITY)]).check().is_err());
+        assert!(turn(1.0).check().is_ok());
+    }
+}
