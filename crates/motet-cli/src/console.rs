@@ -21,11 +21,6 @@ impl Console {
         Self { json: common.json, quiet: common.quiet, verbose: common.verbose }
     }
 
-    /// Whether the result is a JSON object.
-    pub(crate) fn json(&self) -> bool {
-        self.json
-    }
-
     /// The result for people, on standard output; nothing where JSON is asked for.
     pub(crate) fn say(&self, text: impl Display) {
         if !self.json && !self.quiet {
@@ -61,6 +56,7 @@ impl Console {
         let _ = writeln!(std::io::stderr(), "error: {text}");
     }
 
+    #[expect(dead_code, reason = "the verbs that take time come next")]
     /// A bar of `steps` steps on standard error; invisible where that is no terminal.
     pub(crate) fn bar(&self, steps: u64, what: &'static str) -> ProgressBar {
         if self.quiet {
