@@ -2,4 +2,7 @@
 
 pub mod predicates;
 pub mod quality;
+pub mod segment;
+pub mod tet;
+pub mod triangle;
 pub mod vector;

@@ -1,13 +1,19 @@
 //! Floor 2: the exchange form. Plain arrays that hold everything a file holds.
 
+pub mod adjacency;
+mod boundary;
 mod cell_kind;
 mod cells;
 mod exchange;
+pub mod facets;
 mod field;
 mod labels;
+mod volume;
 
+pub use boundary::Boundary;
 pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use exchange::{Mesh, bounds};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels};
+pub use volume::{cell_volume, cell_volumes, cone_volume};

@@ -1,0 +1,108 @@
+//! The boundary of the volume cells: the facets that only one of them uses.
+
+use crate::base::{CellId, Csr, Point, VertexId};
+use crate::mesh::adjacency::{FacetUse, Facets};
+use crate::mesh::facets::facet_shapes;
+use crate::mesh::{CellKind, Cells, cell_volume};
+
+/// The facets that exactly one volume cell uses, whatever its kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Boundary {
+    /// The vertices of each facet: corners first, as a ring that runs
+    /// counter-clockwise seen from outside when its cell has positive volume
+    /// (else see [`Self::turn_outward`]), then middle nodes in VTK's order.
+    pub facets: Csr<VertexId>,
+    /// What kind of surface cell each facet is.
+    pub kinds: Vec<CellKind>,
+    /// The volume cell of each facet, in rising order.
+    pub cells: Vec<CellId>,
+    /// Every vertex of the facets once, in rising order.
+    pub vertices: Vec<VertexId>,
+    /// How many volume cells are of a kind whose facets are not known (Lagrange
+    /// cells); their boundary is missing here.
+    pub n_unknown: usize,
+}
+
+impl Boundary {
+    /// The boundary of the volume cells among `cells`; others are passed over.
+    pub fn of(cells: &Cells) -> Self {
+        let facets = Facets::of(cells);
+        let mut alone: Vec<FacetUse> = Vec::new();
+        facets.for_each_shared(|uses| {
+            if let [single] = uses {
+                alone.push(*single);
+            }
+        });
+        alone.sort_unstable();
+        let mut boundary = Self { n_unknown: count_unknown(cells), ..Self::default() };
+        for facet in alone {
+            let (kind, vertices) = facets.vertices(facet);
+            boundary.facets.push(vertices);
+            boundary.kinds.push(kind);
+            boundary.cells.push(facet.cell);
+        }
+        boundary.vertices = unique(boundary.facets.items());
+        boundary
+    }
+
+    /// How many facets there are.
+    pub fn len(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Whether there is no facet.
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// Turns the facets of cells with negative volume around, so that all face
+    /// outward: files do not always number their cells the way VTK does.
+    pub fn turn_outward(&mut self, cells: &Cells, points: &[Point]) {
+        let facets = Facets::of(cells);
+        for i in 0..self.len() {
+            if cell_volume(&facets, self.cells[i], points) < 0.0 {
+                let n_corners = n_corners(self.kinds[i], self.facets.list(i).len());
+                turn(self.facets.list_mut(i), n_corners);
+            }
+        }
+    }
+}
+
+/// How many of the `n` vertices of a facet are corners.
+pub(crate) fn n_corners(kind: CellKind, n: usize) -> usize {
+    match kind {
+        CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE => 3,
+        CellKind::QUADRATIC_QUAD | CellKind::BIQUADRATIC_QUAD | CellKind::QUADRATIC_LINEAR_QUAD => 4,
+        CellKind::QUADRATIC_POLYGON => n / 2,
+        _ => n,
+    }
+}
+
+/// Reverses a ring of corners, its first corner staying; middles follow their edges.
+fn turn(facet: &mut [VertexId], n_corners: usize) {
+    let (corners, middles) = facet.split_at_mut(n_corners);
+    corners[1..].reverse();
+    match middles.len() {
+        // Edge i runs from corner i to i + 1: the whole list turns.
+        n if n >= n_corners => middles[..n_corners].reverse(),
+        // Quads with middles on edges 0 and 2 only: their edges become 3 and 1,
+        // so the ring starts one corner later.
+        2 => corners.rotate_right(1),
+        _ => {}
+    }
+}
+
+fn count_unknown(cells: &Cells) -> usize {
+    let unknown = |kind: CellKind| {
+        kind.dim() == Some(3) && kind != CellKind::POLYHEDRON && facet_shapes(kind).is_none()
+    };
+    cells.counts().iter().filter(|(kind, _)| unknown(*kind)).map(|(_, n)| n).sum()
+}
+
+/// Every id once, in rising order.
+fn unique(ids: &[VertexId]) -> Vec<VertexId> {
+    let n = ids.iter().map(|v| v.index() + 1).max().unwrap_or(0);
+    let mut seen = vec![false; n];
+    ids.iter().for_each(|v| seen[v.index()] = true);
+    (0..n).filter(|&v| seen[v]).map(VertexId::new).collect()
+}
