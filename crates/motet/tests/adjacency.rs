@@ -221,13 +221,13 @@ proptest! {
         uses.retain(|facet, _| facet.len() == 3);
         let neighbors = tet_neighbors(&tets);
         for (t, tet) in tets.iter().enumerate() {
-            for i in 0..4 {
+            for (i, &neighbor) in neighbors[t].iter().enumerate() {
                 let of_facet = uses.get(&sorted_facet(*tet, i)).map_or(&[][..], |u| &u[..]);
                 let expected = match of_facet {
                     [a, b] => if *a == (t as u32, i) { b.0 } else { a.0 },
                     _ => NO_TET,
                 };
-                prop_assert_eq!(neighbors[t][i], expected);
+                prop_assert_eq!(neighbor, expected);
             }
         }
         let cells = Cells::uniform(CellKind::TETRA, tets.as_flattened().to_vec()).unwrap();
