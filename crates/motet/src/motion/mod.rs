@@ -1,7 +1,9 @@
 //! Floor 7: mesh motion. Boundary displacement in, volume mesh out.
 
+mod boundary_motion;
 mod matching;
 mod prescribed;
 
+pub use boundary_motion::{BoundaryMotion, Taken};
 pub use matching::{SurfaceMotion, match_points};
 pub use prescribed::Prescribed;

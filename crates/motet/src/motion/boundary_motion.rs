@@ -1,0 +1,120 @@
+//! What every boundary vertex is told to do: stay, follow a motion, or go where a file says.
+
+use crate::base::{Point, Result, VertexId};
+use crate::motion::Prescribed;
+
+/// The asked motion of the boundary of a mesh, at any fraction of it.
+///
+/// A vertex obeys the first that is told about it; vertices that nothing is told
+/// about stay where they are.
+#[derive(Clone, Debug)]
+pub struct BoundaryMotion {
+    /// Every boundary vertex, rising.
+    vertices: Vec<VertexId>,
+    orders: Vec<Order>,
+    motions: Vec<Prescribed>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Order {
+    None,
+    Stay,
+    Go(Point),
+    Follow(usize),
+}
+
+/// How an order was taken up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taken {
+    /// Boundary vertices that now obey it.
+    pub obeying: usize,
+    /// Boundary vertices that obey an order given before.
+    pub refused: usize,
+    /// Vertices that are inside the mesh: these follow the boundary, whatever is said.
+    pub inside: usize,
+}
+
+impl BoundaryMotion {
+    /// Nothing moves: `boundary` holds each boundary vertex once, rising.
+    pub fn still(boundary: &[VertexId]) -> Self {
+        debug_assert!(boundary.is_sorted());
+        Self { vertices: boundary.to_vec(), orders: vec![Order::None; boundary.len()], motions: Vec::new() }
+    }
+
+    /// `vertices` stay, whatever is told about them later.
+    pub fn hold(&mut self, vertices: &[VertexId]) -> Taken {
+        self.give(vertices.iter().map(|&v| (v, Order::Stay)))
+    }
+
+    /// `vertices` follow `motion`.
+    ///
+    /// # Errors
+    /// As [`Prescribed::check`].
+    pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed) -> Result<Taken> {
+        motion.check()?;
+        self.motions.push(motion);
+        let number = self.motions.len() - 1;
+        Ok(self.give(vertices.iter().map(|&v| (v, Order::Follow(number)))))
+    }
+
+    /// Each of these vertices goes by its own displacement.
+    pub fn go(&mut self, displacements: &[(VertexId, Point)]) -> Taken {
+        self.give(displacements.iter().map(|&(v, d)| (v, Order::Go(d))))
+    }
+
+    /// How many vertices are told to move.
+    pub fn n_moving(&self) -> usize {
+        self.orders.iter().filter(|o| matches!(o, Order::Go(_) | Order::Follow(_))).count()
+    }
+
+    /// The vertices that are told to move, rising.
+    pub fn moving(&self) -> Vec<VertexId> {
+        let all = self.vertices.iter().zip(&self.orders);
+        all.filter(|(_, o)| matches!(o, Order::Go(_) | Order::Follow(_))).map(|(&v, _)| v).collect()
+    }
+
+    /// The displacement of each boundary vertex, in their order, at `fraction` of the motion;
+    /// `points` are those of the undeformed mesh.
+    pub fn displacements(&self, points: &[Point], fraction: f64) -> Vec<Point> {
+        let one = |(vertex, order): (&VertexId, &Order)| match order {
+            Order::None | Order::Stay => [0.0; 3],
+            Order::Go(d) => d.map(|x| x * fraction),
+            Order::Follow(motion) => self.motions[*motion].displacement(points[vertex.index()], fraction),
+        };
+        self.vertices.iter().zip(&self.orders).map(one).collect()
+    }
+
+    fn give(&mut self, orders: impl Iterator<Item = (VertexId, Order)>) -> Taken {
+        let mut taken = Taken::default();
+        for (vertex, order) in orders {
+            match self.vertices.binary_search(&vertex) {
+                Err(_) => taken.inside += 1,
+                Ok(i) if self.orders[i] == Order::None => {
+                    self.orders[i] = order;
+                    taken.obeying += 1;
+                }
+                Ok(_) => taken.refused += 1,
+            }
+        }
+        taken
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_order_holds_and_the_untold_stay() {
+        let boundary = [1, 3, 4, 7].map(VertexId);
+        let mut motion = BoundaryMotion::still(&boundary);
+        assert_eq!(motion.hold(&[VertexId(3)]), Taken { obeying: 1, refused: 0, inside: 0 });
+        let shift = Prescribed::Shift([2.0, 0.0, 0.0]);
+        let taken = motion.follow(&[2, 3, 4].map(VertexId), shift).unwrap();
+        assert_eq!(taken, Taken { obeying: 1, refused: 1, inside: 1 });
+        motion.go(&[(VertexId(4), [9.0; 3]), (VertexId(7), [0.0, 4.0, 0.0])]);
+        let half = motion.displacements(&[[0.0; 3]; 8], 0.5);
+        assert_eq!(half, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
+        assert_eq!(motion.moving(), [4, 7].map(VertexId));
+    }
+}
