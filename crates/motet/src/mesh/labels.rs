@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::VertexId;
-use crate::mesh::{Cells, Field, Mesh, Values};
+use crate::mesh::{Field, Mesh, Values};
 
 /// Names of labels; a label without a name is known by its number.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -37,15 +36,6 @@ impl Labels {
         used.sort_unstable();
         used.dedup();
         used
-    }
-
-    /// The vertices of the cells with this label, each once, rising.
-    pub fn vertices(&self, cells: &Cells, id: i32) -> Vec<VertexId> {
-        let labelled = cells.connectivity().iter().zip(&self.ids).filter(|(_, label)| **label == id);
-        let mut vertices: Vec<VertexId> = labelled.flat_map(|(vertices, _)| vertices).copied().collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices
     }
 
     /// The name of a label, or its number.

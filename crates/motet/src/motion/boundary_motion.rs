@@ -3,7 +3,8 @@
 use crate::base::{Point, Result, VertexId};
 use crate::motion::Prescribed;
 
-/// The asked motion of the boundary of a mesh, at any fraction of it.
+/// The asked motion of the boundary of a mesh, at any fraction of it. Vertices
+/// inside that are moved, too, such as those of an interface, count as boundary.
 ///
 /// A vertex obeys the first that is told about it; vertices that nothing is told
 /// about stay where they are.
@@ -26,12 +27,12 @@ enum Order {
 /// How an order was taken up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
-    /// Boundary vertices that now obey it.
+    /// Vertices that now obey it.
     pub obeying: usize,
-    /// Boundary vertices that obey an order given before.
+    /// Vertices that obey an order given before.
     pub refused: usize,
-    /// Vertices that are inside the mesh: these follow the boundary, whatever is said.
-    pub inside: usize,
+    /// Vertices that this is not about: they follow the others.
+    pub unknown: usize,
 }
 
 impl BoundaryMotion {
@@ -62,15 +63,23 @@ impl BoundaryMotion {
         self.give(displacements.iter().map(|&(v, d)| (v, Order::Go(d))))
     }
 
-    /// How many vertices are told to move.
-    pub fn n_moving(&self) -> usize {
-        self.orders.iter().filter(|o| matches!(o, Order::Go(_) | Order::Follow(_))).count()
+    /// Every vertex that this is about, rising.
+    pub fn vertices(&self) -> &[VertexId] {
+        &self.vertices
     }
 
-    /// The vertices that are told to move, rising.
-    pub fn moving(&self) -> Vec<VertexId> {
+    /// The vertices that something is told about, other than to stay; rising.
+    pub fn told(&self) -> Vec<VertexId> {
         let all = self.vertices.iter().zip(&self.orders);
         all.filter(|(_, o)| matches!(o, Order::Go(_) | Order::Follow(_))).map(|(&v, _)| v).collect()
+    }
+
+    /// The vertices that the whole motion leaves elsewhere, or that a turn goes through; rising.
+    pub fn moving(&self, points: &[Point]) -> Vec<VertexId> {
+        let half = self.displacements(points, 0.5);
+        let whole = self.displacements(points, 1.0);
+        let all = self.vertices.iter().zip(half.iter().zip(&whole));
+        all.filter(|(_, (half, whole))| **half != [0.0; 3] || **whole != [0.0; 3]).map(|(&v, _)| v).collect()
     }
 
     /// The displacement of each boundary vertex, in their order, at `fraction` of the motion;
@@ -88,7 +97,7 @@ impl BoundaryMotion {
         let mut taken = Taken::default();
         for (vertex, order) in orders {
             match self.vertices.binary_search(&vertex) {
-                Err(_) => taken.inside += 1,
+                Err(_) => taken.unknown += 1,
                 Ok(i) if self.orders[i] == Order::None => {
                     self.orders[i] = order;
                     taken.obeying += 1;
@@ -108,13 +117,16 @@ mod tests {
     fn the_first_order_holds_and_the_untold_stay() {
         let boundary = [1, 3, 4, 7].map(VertexId);
         let mut motion = BoundaryMotion::still(&boundary);
-        assert_eq!(motion.hold(&[VertexId(3)]), Taken { obeying: 1, refused: 0, inside: 0 });
+        assert_eq!(motion.hold(&[VertexId(3)]), Taken { obeying: 1, refused: 0, unknown: 0 });
         let shift = Prescribed::Shift([2.0, 0.0, 0.0]);
         let taken = motion.follow(&[2, 3, 4].map(VertexId), shift).unwrap();
-        assert_eq!(taken, Taken { obeying: 1, refused: 1, inside: 1 });
+        assert_eq!(taken, Taken { obeying: 1, refused: 1, unknown: 1 });
         motion.go(&[(VertexId(4), [9.0; 3]), (VertexId(7), [0.0, 4.0, 0.0])]);
         let half = motion.displacements(&[[0.0; 3]; 8], 0.5);
         assert_eq!(half, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
-        assert_eq!(motion.moving(), [4, 7].map(VertexId));
+        assert_eq!(motion.told(), [4, 7].map(VertexId));
+        motion.go(&[(VertexId(1), [0.0; 3])]);
+        assert_eq!(motion.told(), [1, 4, 7].map(VertexId));
+        assert_eq!(motion.moving(&[[0.0; 3]; 8]), [4, 7].map(VertexId));
     }
 }

@@ -21,17 +21,14 @@ const DISPLACEMENT_ARRAYS: &[&str] = &["displacement", "Displacement", "u", "U",
 /// diagonal: single precision keeps 1.2e-7 of a coordinate.
 const SAME_PLACE: f64 = 1e-6;
 
-/// For each point of `surface` the vertex of `mesh` that it is: by the ids it
-/// carries, else by position.
+/// For each point of `surface`, which lies on the undeformed mesh, the vertex of
+/// `mesh` that it is: the one that lies there, else the one that its id names.
 ///
 /// # Errors
-/// When an id names no vertex, or points lie on none: says how many, which is
-/// the first and how far it is from the mesh.
-pub fn match_points(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
-    match match_by_id(mesh, surface)? {
-        Some(vertices) => Ok(vertices),
-        None => match_by_position(mesh, surface),
-    }
+/// When points lie on no vertex and carry no ids: says how many, which is the
+/// first and how far it is from the mesh. When an id names no vertex.
+pub fn match_patch(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
+    match_by_position(mesh, surface).or_else(|lost| match_by_id(mesh, surface)?.ok_or(lost))
 }
 
 /// The vertices that the surface's own ids name; `None` where it carries none.
@@ -144,7 +141,7 @@ impl<'a> SurfaceMotion<'a> {
     /// from where they are in the mesh.
     ///
     /// # Errors
-    /// As [`match_points`]; when two points that are one vertex move apart; when
+    /// When a point is no vertex of the mesh, as [`match_patch`]; when two points that are one vertex move apart; when
     /// a displacement is not finite.
     pub fn next(&mut self, surface: &Mesh) -> Result<Vec<(VertexId, Point)>> {
         let vertices = self.vertices_of(surface)?;
@@ -240,19 +237,19 @@ mod tests {
     fn points_are_found_by_position_within_single_precision() {
         let (mut s, vertices) = surface([0.0; 3]);
         s.points.iter_mut().flatten().for_each(|x| *x += 1e-7);
-        assert_eq!(match_points(&mesh(), &s).unwrap(), vertices);
+        assert_eq!(match_patch(&mesh(), &s).unwrap(), vertices);
     }
 
     #[test]
-    fn ids_win_over_position_and_follow_the_numbers_of_the_mesh() {
+    fn ids_name_points_that_moved_and_follow_the_numbers_of_the_mesh() {
         let (mut s, vertices) = surface([0.3, 0.0, 0.0]);
         let ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0) + 1).collect();
         s.set_point_field(Field::scalars("GlobalNodeID", ids.clone()));
-        assert_eq!(match_points(&mesh(), &s).unwrap(), vertices);
+        assert_eq!(match_patch(&mesh(), &s).unwrap(), vertices);
         let mut numbered = mesh();
         numbered.set_point_field(Field::scalars("GlobalNodeID", (1..=27i64).rev().collect::<Vec<_>>()));
         let mirrored: Vec<_> = vertices.iter().map(|v| VertexId(26 - v.0)).collect();
-        assert_eq!(match_points(&numbered, &s).unwrap(), mirrored);
+        assert_eq!(match_patch(&numbered, &s).unwrap(), mirrored);
     }
 
     #[test]
@@ -260,7 +257,7 @@ mod tests {
         let (mut s, _) = surface([0.0; 3]);
         s.points[3][1] += 0.25;
         s.points[7][2] -= 0.5;
-        let error = match_points(&mesh(), &s).unwrap_err().to_string();
+        let error = match_patch(&mesh(), &s).unwrap_err().to_string();
         assert!(error.starts_with("point 3: 2 of the surface's 14 points"), "{error}");
         assert!(error.contains("2.500e-1"), "{error}");
     }
