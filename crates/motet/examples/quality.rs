@@ -1,0 +1,47 @@
+//! Reads tets as raw little-endian f64 (12 a tet), writes all measures of each (8 a tet).
+//!
+//! `quality IN OUT`; the order is eas, equi-angle skew, smallest and largest
+//! dihedral angle (radians), mean ratio, Cubit mean ratio, edge ratio, volume.
+
+use std::process::ExitCode;
+
+use motet::geometry::quality::{
+    cubit_mean_ratio, dihedral, eas, edge_ratio, equiangle_skew, mean_ratio, volume,
+};
+
+fn measures(tet: [[f64; 3]; 4]) -> [f64; 8] {
+    let [low, high] = dihedral::min_max(tet);
+    [
+        eas(tet),
+        equiangle_skew(tet),
+        low,
+        high,
+        mean_ratio(tet),
+        cubit_mean_ratio(tet),
+        edge_ratio(tet),
+        volume(tet),
+    ]
+}
+
+fn run(input: &str, output: &str) -> std::io::Result<()> {
+    let bytes = std::fs::read(input)?;
+    let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+    let tets = numbers.as_chunks::<3>().0.as_chunks::<4>().0;
+    let written: Vec<u8> = tets.iter().flat_map(|tet| measures(*tet)).flat_map(f64::to_le_bytes).collect();
+    std::fs::write(output, written)
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [input, output] = &arguments[..] else {
+        eprintln!("quality IN OUT");
+        return ExitCode::from(2);
+    };
+    match run(input, output) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Dihedral angles: between the two facets at each edge, in radians.
+
+use crate::base::Point;
+use crate::geometry::quality::cotangents::{self, angle, extremes};
+use crate::geometry::quality::scaled::Scaled;
+
+/// The dihedral angle of the regular tet, acos(1/3), in radians.
+pub const REGULAR: f64 = 1.230_959_417_340_774_7;
+
+/// The dihedral angle at each edge, in the order of [`EDGES`](crate::geometry::tet::EDGES),
+/// in [0, pi]. An inverted tet has those of its mirror image; where a facet has no
+/// area its angles count as 0.
+pub fn angles(tet: [Point; 4]) -> [f64; 6] {
+    cotangents::dihedral(&Scaled::new(tet)).map(angle)
+}
+
+/// The smallest dihedral angle.
+pub fn min(tet: [Point; 4]) -> f64 {
+    min_max(tet)[0]
+}
+
+/// The largest dihedral angle.
+pub fn max(tet: [Point; 4]) -> f64 {
+    min_max(tet)[1]
+}
+
+/// The smallest and the largest dihedral angle: half the work of asking for each.
+pub fn min_max(tet: [Point; 4]) -> [f64; 2] {
+    let [low, high] = extremes(&cotangents::dihedral(&Scaled::new(tet)));
+    [angle(high), angle(low)]
+}

@@ -1,0 +1,16 @@
+//! EAS, the equi-angle quality: the measure that motet judges by.
+
+use crate::base::Point;
+use crate::geometry::quality::equiangle_skew::skew;
+use crate::geometry::quality::scaled::Scaled;
+
+/// `sign(volume) (1 - skew)` with [`equiangle_skew`](super::equiangle_skew):
+/// 1 regular, 0 degenerate, negative inverted. A tet is *bad* below 0.2.
+pub fn eas(tet: [Point; 4]) -> f64 {
+    let tet = Scaled::new(tet);
+    let volume_6 = tet.volume_6();
+    if volume_6 == 0.0 {
+        return 0.0;
+    }
+    (1.0 - skew(&tet)).copysign(volume_6)
+}
