@@ -1,0 +1,168 @@
+//! Meshes over time: a PVD file that names a file for each time, as ParaView plays it.
+
+use std::path::{Path, PathBuf};
+
+use quick_xml::Reader;
+use quick_xml::escape::escape;
+use quick_xml::events::{BytesStart, Event};
+
+use crate::base::{Error, Result};
+use crate::io::{WriteOptions, replace, write};
+use crate::mesh::Mesh;
+
+/// The times of a series and the file of each, in the order in which they are written down.
+///
+/// A file without a time gets its place in the series. Names are taken to be relative
+/// to where the series lies.
+///
+/// # Errors
+/// When the file cannot be read or is no series, when a time is no finite number, and
+/// when several files make up one time: names the place.
+pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+    let frames = parse(&bytes).map_err(|e| e.in_file(path))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
+}
+
+fn parse(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
+    let mut reader = Reader::from_reader(bytes);
+    let mut is_series = false;
+    let mut frames: Vec<(f64, String)> = Vec::new();
+    loop {
+        let at = reader.buffer_position();
+        let event = reader
+            .read_event()
+            .map_err(|e| Error::input(format!("no well-formed XML: {e}")).at(format!("byte {at}")))?;
+        match event {
+            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == b"VTKFile" => {
+                is_series = attribute(&e, "type")?.is_some_and(|t| t == "Collection");
+            }
+            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == b"DataSet" && is_series => {
+                let place = format!("entry {}", frames.len());
+                frames.push(frame(&e, frames.len()).map_err(|e| e.at(place))?);
+            }
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    if !is_series {
+        return Err(Error::input("is no series: a VTKFile of type Collection is expected"));
+    }
+    match frames.windows(2).position(|f| f[0].0 == f[1].0) {
+        Some(i) => Err(Error::input(format!(
+            "has the time {} once more, but one file a time is expected",
+            frames[i].0
+        ))
+        .at(format!("entry {}", i + 1))
+        .remedy("join the parts of each time into one file")),
+        None => Ok(frames),
+    }
+}
+
+fn frame(element: &BytesStart<'_>, place: usize) -> Result<(f64, String)> {
+    let file = attribute(element, "file")?.ok_or_else(|| Error::input("names no file"))?;
+    let time = match attribute(element, "timestep")? {
+        None => place as f64,
+        Some(text) => text
+            .trim()
+            .parse()
+            .ok()
+            .filter(|t: &f64| t.is_finite())
+            .ok_or_else(|| Error::input(format!("the time `{text}` is no finite number")))?,
+    };
+    Ok((time, file))
+}
+
+fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
+    let bad = |e: &dyn std::fmt::Display| Error::input(format!("no well-formed XML: {e}"));
+    let Some(attribute) = element.try_get_attribute(name).map_err(|e| bad(&e))? else { return Ok(None) };
+    Ok(Some(attribute.unescape_value().map_err(|e| bad(&e))?.into_owned()))
+}
+
+/// A series that grows frame by frame. The PVD file is replaced after each frame, so
+/// that a run that is stopped leaves a whole, shorter series.
+#[derive(Debug)]
+pub struct SeriesWriter {
+    path: PathBuf,
+    frames: Vec<(f64, String)>,
+    options: WriteOptions,
+}
+
+impl SeriesWriter {
+    /// A series that will lie at `path`, with its frames beside it. Nothing is written yet.
+    pub fn new(path: impl Into<PathBuf>, options: WriteOptions) -> Self {
+        Self { path: path.into(), frames: Vec::new(), options }
+    }
+
+    /// Where frame `k` lies: beside the series, under its name and the number.
+    pub fn frame_path(&self, k: usize) -> PathBuf {
+        self.path.with_file_name(self.frame_name(k))
+    }
+
+    fn frame_name(&self, k: usize) -> String {
+        let stem = self.path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        format!("{stem}_{k:04}.vtu")
+    }
+
+    /// Adds a frame: its file first, then the series that names it.
+    ///
+    /// Returns what the format could not hold.
+    ///
+    /// # Errors
+    /// As [`write`].
+    pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<Vec<String>> {
+        let k = self.frames.len();
+        let lost = write(self.frame_path(k), mesh, &self.options)?;
+        self.frames.push((time, self.frame_name(k)));
+        replace(&self.path, self.text().as_bytes())?;
+        Ok(lost)
+    }
+
+    fn text(&self) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n",
+        );
+        for (time, file) in &self.frames {
+            text += &format!("    <DataSet timestep=\"{time:?}\" part=\"0\" file=\"{}\"/>\n", escape(file));
+        }
+        text + "  </Collection>\n</VTKFile>\n"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let mut writer = SeriesWriter::new("a <b>.pvd", WriteOptions::default());
+        writer.frames = (0..3).map(|k| (0.1 * f64::from(k), writer.frame_name(k as usize))).collect();
+        assert_eq!(parse(writer.text().as_bytes()).unwrap(), writer.frames);
+        assert_eq!(writer.frames[2], (0.2, "a <b>_0002.vtu".to_string()));
+    }
+
+    #[test]
+    fn what_is_no_series_is_told() {
+        let refused = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
+        assert!(refused("").contains("no series"));
+        assert!(refused("<VTKFile type=\"PolyData\"/>").contains("no series"));
+        assert!(
+            refused("<VTKFile type=\"Collection\"><DataSet/></VTKFile>")
+                .starts_with("entry 0: names no file")
+        );
+        assert!(
+            refused("<VTKFile type=\"Collection\"><DataSet file='a' timestep='x'/></VTKFile>")
+                .contains("`x`")
+        );
+        assert!(refused("<VTKFile type=\"Collection\"><DataSet file='a' timestep='1'/><DataSet file='b' timestep='1'/></VTKFile>").contains("once more"));
+        assert!(refused("<VTKFile type=\"Collection\"><DataSet file=").contains("XML"));
+    }
+
+    #[test]
+    fn times_that_are_missing_are_counted() {
+        let text = "<VTKFile type='Collection'><Collection><DataSet file='a.vtp'/><DataSet file='b.vtp'></DataSet></Collection></VTKFile>";
+        assert_eq!(parse(text.as_bytes()).unwrap(), [(0.0, "a.vtp".to_string()), (1.0, "b.vtp".to_string())]);
+    }
+}
