@@ -1,0 +1,167 @@
+"""What the benches share: the machine, contenders run in turn, medians, tables.
+
+A contender is a command that prints one JSON object on its last line, with at least
+`seconds`: a list, one per repeat, clocked inside the program (no start-up, no file reading).
+"""
+import json
+import os
+import platform
+import signal
+import statistics
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+TARGET = HERE / "target"
+MOTET = Path(os.environ.get("MOTET_BIN_DIR") or ROOT / "target" / "release")
+# A run counts as disturbed when other programs kept more than this share of one core busy.
+DISTURBED = 0.1
+
+
+def machine():
+    """Processor, cores, memory, system: what a figure is worth nothing without."""
+    model = platform.processor()
+    try:
+        for line in open("/proc/cpuinfo"):
+            if line.startswith("model name"):
+                model = line.split(":", 1)[1].strip()
+                break
+        memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    except (OSError, ValueError):
+        memory = 0.0
+    cores = len(os.sched_getaffinity(0))
+    return {"processor": model, "cores": cores, "memory_gib": round(memory, 1),
+            "system": f"{platform.system()} {platform.release()}"}
+
+
+def busy_seconds():
+    """CPU seconds that all programs of the machine have used since it started."""
+    try:
+        user, nice, system, _idle, _wait, irq, softirq, _steal = map(
+            int, Path("/proc/stat").read_text().split("\n", 1)[0].split()[1:9])
+    except (OSError, ValueError):
+        return 0.0
+    return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
+
+
+class Record:
+    """Results: a JSON line each in a file, and kept for the tables."""
+
+    def __init__(self, path):
+        self.file = open(path, "a")
+        self.rows = []
+
+    def add(self, **row):
+        row = {k: float(f"{v:.6g}") if isinstance(v, float) else v for k, v in row.items()}
+        self.rows.append(row)
+        self.file.write(json.dumps(row) + "\n")
+        self.file.flush()
+
+    def of(self, **wanted):
+        """The first row with these values, or None."""
+        return next((r for r in self.rows if all(r.get(k) == v for k, v in wanted.items())), None)
+
+
+def own_seconds():
+    """CPU seconds of this process and of its children that have ended."""
+    used = os.times()
+    return used.user + used.system + used.children_user + used.children_system
+
+
+def call(command, limit):
+    """Runs a contender once: its JSON object plus `peak_mib`, `wall` and `others` (CPU seconds that other
+    programs used meanwhile); `error` when it failed."""
+    start, busy, own = time.perf_counter(), busy_seconds(), own_seconds()
+    process = subprocess.Popen([sys.executable, "-c", _WRAPPER, *map(str, command)], text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+    try:
+        out, err = process.communicate(timeout=limit)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        return {"error": f"> {limit:g} s"}
+    if process.returncode != 0:
+        return {"error": (err.strip().splitlines() or ["?"])[-1][:200]}
+    result = json.loads(out)
+    result["wall"] = time.perf_counter() - start
+    result["others"] = max(0.0, busy_seconds() - busy - (own_seconds() - own))
+    return result
+
+
+# Runs a command and adds its peak memory: that of the children of *this* small process alone.
+_WRAPPER = """
+import json, resource, subprocess, sys
+done = subprocess.run(sys.argv[1:], stdout=subprocess.PIPE, text=True)
+if done.returncode: sys.exit(f"{sys.argv[1]} ended with {done.returncode}: {done.stdout[-200:]}")
+result = json.loads(done.stdout.strip().splitlines()[-1])
+result["peak_mib"] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+print(json.dumps(result))
+"""
+
+
+def in_turn(contenders, rounds, limit=300.0):
+    """Runs the contenders one after the other, `rounds` times round, so that a disturbance meets all of them.
+
+    `contenders`: {name: command}. Gives {name: result}: the program's own JSON of the last round with
+    `seconds` replaced by the median over all repeats of all rounds, `best`, `runs`, `peak_mib`, and
+    `other_cpu` (cores kept busy by other programs meanwhile). A contender that fails is not called again and
+    gives {"error": why}.
+    """
+    results = {name: [] for name in contenders}
+    for _ in range(rounds):
+        for name, command in contenders.items():
+            if not (results[name] and "error" in results[name][-1]):
+                results[name].append(call(command, limit))
+    return {name: combine(parts) for name, parts in results.items()}
+
+
+def combine(parts):
+    """One result of a contender's rounds."""
+    failed = next((p for p in parts if "error" in p), None)
+    if failed:
+        return failed
+    seconds = [s for p in parts for s in p["seconds"]]
+    whole = dict(parts[-1])
+    del whole["wall"], whole["others"]
+    whole.update(seconds=statistics.median(seconds), best=min(seconds), runs=len(seconds),
+                 peak_mib=min(p["peak_mib"] for p in parts),
+                 other_cpu=sum(p["others"] for p in parts) / sum(p["wall"] for p in parts))
+    return whole
+
+
+def reference(name="results.jsonl"):
+    """Figures from another machine of this kind, when the folder that holds them is there."""
+    path = Path(os.environ.get("MOTET_REFERENCE") or ROOT.parent / "shared" / "bench" / name)
+    if not path.is_file():
+        return []
+    return [json.loads(line) for line in path.read_text().splitlines() if line.strip()]
+
+
+def seconds_text(seconds):
+    """Three digits with the unit that fits."""
+    if seconds is None:
+        return "-"
+    for factor, unit in ((1, "s"), (1e3, "ms"), (1e6, "us")):
+        if seconds * factor >= 1:
+            return f"{seconds * factor:.3g} {unit}"
+    return f"{seconds * 1e9:.3g} ns"
+
+
+def cell(result, text):
+    """A table's cell: the text, a star where other programs disturbed the run, a reason where there is none."""
+    if result is None:
+        return "-"
+    if "error" in result:
+        return result["error"] if result["error"].startswith(">") else "failed"
+    return text + ("*" if result.get("other_cpu", 0.0) > DISTURBED else "")
+
+
+def table(header, rows):
+    """A markdown table, columns aligned."""
+    cells = [list(map(str, header)), *[list(map(str, r)) for r in rows]]
+    width = [max(len(r[i]) for r in cells) for i in range(len(header))]
+    line = lambda r: "| " + " | ".join(c.ljust(w) for c, w in zip(r, width)) + " |"
+    return "\n".join([line(cells[0]), "|" + "|".join("-" * (w + 2) for w in width) + "|", *map(line, cells[1:])])
