@@ -111,7 +111,7 @@ impl SeriesWriter {
     /// Returns what the format could not hold.
     ///
     /// # Errors
-    /// As [`write`].
+    /// As [`write()`].
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<Vec<String>> {
         let k = self.frames.len();
         let lost = write(self.frame_path(k), mesh, &self.options)?;
