@@ -1,10 +1,15 @@
 //! Floor 3: files. One format a file, one registry for all.
 
+mod labels;
 mod registry;
+mod replace;
+mod scalar;
 mod series;
+mod vtkxml;
 
 pub use registry::{
     Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written, can_write, formats,
-    read, read_as, read_noted, replace, write,
+    read, read_as, read_noted, write,
 };
+pub use replace::{replace, replace_all};
 pub use series::{SeriesWriter, read_series};

@@ -1,10 +1,11 @@
 //! Which format a file is in, and the two calls that read and write any of them.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crate::base::{Error, ErrorKind, Result};
+use crate::io::replace::replace_all;
+use crate::io::vtkxml;
 use crate::mesh::Mesh;
 
 /// What a reader gets: the whole file, and its path for formats that lie in several files.
@@ -103,7 +104,7 @@ pub type Write = fn(&Mesh, &WriteOptions) -> Result<Written>;
 pub struct Format {
     /// Its name, for messages.
     pub name: &'static str,
-    /// File endings, with the dot, in lower case.
+    /// File endings, with the dot, in lower case; `/` for a format that is a folder.
     pub endings: &'static [&'static str],
     /// How it is read.
     pub read: Option<Read>,
@@ -116,11 +117,15 @@ pub fn formats() -> &'static [Format] {
     FORMATS
 }
 
-const FORMATS: &[Format] = &[];
+const FORMATS: &[Format] = &[vtkxml::VTU, vtkxml::VTP];
+
+/// Formats that are known only to be refused with advice.
+const REFUSED: &[Format] = &[vtkxml::OTHERS];
 
 fn by_ending(path: &Path) -> Result<&'static Format> {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    FORMATS.iter().find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
+    let mut all = FORMATS.iter().chain(REFUSED);
+    all.find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
         let known: Vec<_> = FORMATS.iter().flat_map(|f| f.endings).copied().collect();
         Error::input("no format has this file ending")
             .in_file(path)
@@ -152,6 +157,13 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     }
 }
 
+/// The format of a folder: one whose endings have `/`.
+fn folder_format(path: &Path) -> Result<&'static Format> {
+    FORMATS.iter().find(|f| f.endings.contains(&"/")).ok_or_else(|| {
+        Error::input("is a folder, not a mesh file").in_file(path).remedy("name one of the files in it")
+    })
+}
+
 /// Reads a file or folder in the format that its ending tells.
 ///
 /// # Errors
@@ -166,8 +178,11 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 /// As [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
-    let format = by_ending(path)?;
-    let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+    let (format, bytes) = if path.is_dir() {
+        (folder_format(path)?, Vec::new())
+    } else {
+        (by_ending(path)?, std::fs::read(path).map_err(|e| Error::io(path, &e))?)
+    };
     let notes = Notes::default();
     let mesh = read_as(format, &Input { path, bytes: &bytes, notes: &notes })?;
     Ok((mesh, notes.into_vec()))
@@ -200,28 +215,14 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
     let Some(write) = format.write else {
         return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
     };
+    mesh.validate()?;
     let written = write(mesh, options).map_err(|e| e.in_file(path))?;
-    for (ending, bytes) in &written.files {
-        let target = if ending.is_empty() { path.to_owned() } else { with_ending(path, ending) };
-        replace(&target, bytes)?;
-    }
+    let files = written.files.iter().map(|(ending, bytes)| (with_ending(path, ending), bytes.as_slice()));
+    replace_all(&files.collect::<Vec<_>>())?;
     Ok(written.lost)
 }
 
+/// `path`, its ending changed; itself where `ending` is empty.
 fn with_ending(path: &Path, ending: &str) -> PathBuf {
-    path.with_extension(ending.trim_start_matches('.'))
-}
-
-/// Writes beside `path`, then renames into place.
-pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let io = |e: std::io::Error| Error::io(path, &e);
-    let mut beside = tempfile::Builder::new();
-    // As any other file: the user's umask applies, while temporary files are private by default.
-    #[cfg(unix)]
-    beside.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = beside.tempfile_in(folder).map_err(io)?;
-    file.write_all(bytes).map_err(io)?;
-    file.persist(path).map_err(|e| io(e.error))?;
-    Ok(())
+    if ending.is_empty() { path.to_owned() } else { path.with_extension(ending.trim_start_matches('.')) }
 }

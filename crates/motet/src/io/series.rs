@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use quick_xml::Reader;
-use quick_xml::escape::escape;
+use quick_xml::escape::{escape, unescape};
 use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
@@ -36,10 +36,10 @@ fn parse(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
             .read_event()
             .map_err(|e| Error::input(format!("no well-formed XML: {e}")).at(format!("byte {at}")))?;
         match event {
-            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == b"VTKFile" => {
+            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == "VTKFile" => {
                 is_series = attribute(&e, "type")?.is_some_and(|t| t == "Collection");
             }
-            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == b"DataSet" && is_series => {
+            Event::Start(e) | Event::Empty(e) if e.name().as_ref() == "DataSet" && is_series => {
                 let place = format!("entry {}", frames.len());
                 frames.push(frame(&e, frames.len()).map_err(|e| e.at(place))?);
             }
@@ -78,7 +78,7 @@ fn frame(element: &BytesStart<'_>, place: usize) -> Result<(f64, String)> {
 fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
     let bad = |e: &dyn std::fmt::Display| Error::input(format!("no well-formed XML: {e}"));
     let Some(attribute) = element.try_get_attribute(name).map_err(|e| bad(&e))? else { return Ok(None) };
-    Ok(Some(attribute.unescape_value().map_err(|e| bad(&e))?.into_owned()))
+    Ok(Some(unescape(&attribute.value).map_err(|e| bad(&e))?.into_owned()))
 }
 
 /// A series that grows frame by frame. The PVD file is replaced after each frame, so

@@ -1,0 +1,193 @@
+//! Types of numbers as files have them, and numbers to bytes and back.
+
+use std::borrow::Cow;
+
+use crate::base::Result;
+use crate::mesh::Values;
+
+/// Which way round the bytes of a number stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ByteOrder {
+    Little,
+    Big,
+}
+
+impl ByteOrder {
+    pub(super) const NATIVE: Self = if cfg!(target_endian = "little") { Self::Little } else { Self::Big };
+}
+
+macro_rules! scalars {
+    ($($name:ident($t:ty);)*) => {
+        /// A type of number.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(super) enum Scalar { $($name,)* }
+
+        impl Scalar {
+            /// How many bytes a number takes.
+            pub(super) fn size(self) -> usize {
+                match self { $(Self::$name => size_of::<$t>(),)* }
+            }
+
+            /// `n` numbers, whose bytes `fill` puts in place. The caller has
+            /// made sure that the file can hold so many.
+            pub(super) fn filled(
+                self, n: usize, order: ByteOrder, fill: impl FnOnce(&mut [u8]) -> Result<()>,
+            ) -> Result<Values> {
+                Ok(match self {
+                    $(Self::$name => {
+                        let mut values = vec![<$t>::default(); n];
+                        fill(bytemuck::cast_slice_mut(&mut values))?;
+                        if order != ByteOrder::NATIVE {
+                            swap_all(bytemuck::cast_slice_mut(&mut values), size_of::<$t>());
+                        }
+                        Values::$name(values)
+                    })*
+                })
+            }
+
+            /// `n` numbers from text, blanks between them. `Err` has the first
+            /// piece of text that is not such a number; too few are not an error.
+            pub(super) fn parse<'a>(
+                self, n: usize, tokens: &mut impl Iterator<Item = &'a str>,
+            ) -> Result<Values, &'a str> {
+                Ok(match self {
+                    $(Self::$name => Values::$name(
+                        tokens.take(n).map(|t| t.parse::<$t>().map_err(|_| t)).collect::<Result<_, _>>()?,
+                    ),)*
+                })
+            }
+        }
+
+        /// The bytes of all numbers, as they stand in memory; of texts, each ended by a zero byte.
+        pub(super) fn native_bytes(values: &Values) -> Cow<'_, [u8]> {
+            match values {
+                $(Values::$name(v) => Cow::Borrowed(bytemuck::cast_slice(v)),)*
+                Values::Text(v) => {
+                    Cow::Owned(v.iter().flat_map(|t| t.bytes().chain(std::iter::once(0))).collect())
+                }
+            }
+        }
+
+        /// The given rows, in the given order.
+        pub(super) fn select_rows(values: &Values, components: usize, rows: &[usize]) -> Values {
+            let places = || rows.iter().flat_map(|&row| row * components..(row + 1) * components);
+            match values {
+                $(Values::$name(v) => Values::$name(places().map(|i| v[i]).collect()),)*
+                Values::Text(v) => Values::Text(places().map(|i| v[i].clone()).collect()),
+            }
+        }
+
+        /// Adds the values of `more`; `false` when they are of another type.
+        pub(super) fn append(values: &mut Values, more: Values) -> bool {
+            match (values, more) {
+                $((Values::$name(v), Values::$name(more)) => v.extend(more),)*
+                (Values::Text(v), Values::Text(more)) => v.extend(more),
+                _ => return false,
+            }
+            true
+        }
+    };
+}
+
+scalars! {
+    I8(i8);
+    U8(u8);
+    I16(i16);
+    U16(u16);
+    I32(i32);
+    U32(u32);
+    I64(i64);
+    U64(u64);
+    F32(f32);
+    F64(f64);
+}
+
+impl Scalar {
+    /// Numbers from `bytes`; a rest that makes no whole number is left out.
+    pub(super) fn numbers(self, bytes: &[u8], order: ByteOrder) -> Result<Values> {
+        let n = bytes.len() / self.size();
+        self.filled(n, order, |out| {
+            out.copy_from_slice(&bytes[..out.len()]);
+            Ok(())
+        })
+    }
+
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+/// Turns every number of `size` bytes round.
+pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
+    fn turn<const N: usize>(bytes: &mut [u8]) {
+        bytes.as_chunks_mut::<N>().0.iter_mut().for_each(|number| number.reverse());
+    }
+    match size {
+        2 => turn::<2>(bytes),
+        4 => turn::<4>(bytes),
+        8 => turn::<8>(bytes),
+        _ => {}
+    }
+}
+
+/// Whole numbers as 32-bit ids. `Err` has the first that is none: negative or
+/// too large, or no whole number at all.
+pub(super) fn to_ids(values: &Values) -> Result<Vec<u32>, String> {
+    fn all<T: Copy + TryInto<u32> + ToString>(values: &[T]) -> Result<Vec<u32>, String> {
+        // Without a branch for each number, so that the loop is vectorised.
+        let mut fits = true;
+        let ids: Vec<u32> = values
+            .iter()
+            .map(|&x| {
+                x.try_into().unwrap_or_else(|_| {
+                    fits = false;
+                    0
+                })
+            })
+            .collect();
+        if fits {
+            return Ok(ids);
+        }
+        let bad = values.iter().find(|&&x| x.try_into().is_err());
+        Err(bad.map(ToString::to_string).unwrap_or_default())
+    }
+    match values {
+        Values::I8(v) => all(v),
+        Values::U8(v) => all(v),
+        Values::I16(v) => all(v),
+        Values::U16(v) => all(v),
+        Values::I32(v) => all(v),
+        Values::U32(v) => Ok(v.clone()),
+        Values::I64(v) => all(v),
+        Values::U64(v) => all(v),
+        Values::F32(_) | Values::F64(_) => match values.to_i64() {
+            Some(whole) => all(&whole),
+            None => Err("a fraction".into()),
+        },
+        Values::Text(_) => Err("a text".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_come_back_in_either_order() {
+        let values = Values::F64(vec![1.5, -0.0, f64::MIN_POSITIVE]);
+        let bytes = native_bytes(&values).into_owned();
+        assert_eq!(Scalar::F64.numbers(&bytes, ByteOrder::NATIVE).unwrap(), values);
+        let mut turned = bytes;
+        swap_all(&mut turned, 8);
+        let other = if ByteOrder::NATIVE == ByteOrder::Big { ByteOrder::Little } else { ByteOrder::Big };
+        assert_eq!(Scalar::F64.numbers(&turned, other).unwrap(), values);
+    }
+
+    #[test]
+    fn the_first_number_that_is_no_id_is_named() {
+        assert_eq!(to_ids(&Values::I64(vec![3, -1, 1 << 40])), Err("-1".into()));
+        assert_eq!(to_ids(&Values::I64(vec![3, 1 << 40])), Err("1099511627776".into()));
+        assert_eq!(to_ids(&Values::F64(vec![3.0, 4.0])), Ok(vec![3, 4]));
+        assert_eq!(to_ids(&Values::F64(vec![3.5])), Err("a fraction".into()));
+    }
+}

@@ -1,0 +1,344 @@
+//! A VTK XML file opened: what it holds, how it lays data down, and its arrays.
+
+use std::borrow::Cow;
+
+use crate::base::{Error, Point, Result};
+use crate::io::Compression;
+use crate::io::scalar::{ByteOrder, Scalar, to_ids};
+use crate::io::vtkxml::codec::by_vtk_name;
+use crate::io::vtkxml::document::{Document, Element};
+use crate::io::vtkxml::payload::{Layout, Payload};
+use crate::mesh::{Field, Values};
+
+/// An opened file.
+#[derive(Debug)]
+pub(super) struct File<'a> {
+    document: Document<'a>,
+    layout: Layout,
+    /// Where arrays start in the appended data, in rising order.
+    starts: Vec<usize>,
+}
+
+impl<'a> File<'a> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
+        let document = Document::parse(bytes)?;
+        let root = &document.root;
+        if root.name != "VTKFile" {
+            return Err(Error::input(format!("the first element is {}, not VTKFile", root.name))
+                .at(format!("line {}", root.line))
+                .remedy("this is no VTK file: give it the ending of its own format"));
+        }
+        let layout = layout(root)?;
+        let mut starts = Vec::new();
+        collect_starts(root, &mut starts);
+        starts.sort_unstable();
+        Ok(Self { document, layout, starts })
+    }
+
+    /// What the file holds: `UnstructuredGrid`, `PolyData`, `Collection`, ...
+    pub(super) fn kind(&self) -> &str {
+        self.document.root.attribute("type").unwrap_or("unknown")
+    }
+
+    /// The element that holds the data set, named as the file's kind.
+    pub(super) fn data_set(&self) -> Result<&Element<'a>> {
+        let kind = self.kind();
+        self.document.root.child(kind).ok_or_else(|| {
+            Error::input(format!("the element {kind} is missing"))
+                .at(self.document.root.place())
+                .remedy("the file is cut off or damaged: write it again")
+        })
+    }
+
+    /// The arrays among the children of `element`, which may be missing.
+    pub(super) fn arrays<'s>(
+        &'s self,
+        element: Option<&'s Element<'a>>,
+    ) -> impl Iterator<Item = Result<Array<'s, 'a>>> {
+        let children = element.map(|e| e.children.as_slice()).unwrap_or_default();
+        children
+            .iter()
+            .filter(|c| c.name == "DataArray" || c.name == "Array")
+            .map(|element| Array::open(self, element))
+    }
+
+    /// The array called `name` among the children of `element`.
+    pub(super) fn array<'s>(&'s self, element: &'s Element<'a>, name: &str) -> Result<Option<Array<'s, 'a>>> {
+        let mut named = element.children.iter().filter(|c| c.attribute("Name") == Some(name));
+        named.next().map(|element| Array::open(self, element)).transpose()
+    }
+
+    /// The array called `name`, which must be there.
+    pub(super) fn needed_array<'s>(&'s self, element: &'s Element<'a>, name: &str) -> Result<Array<'s, 'a>> {
+        self.array(element, name)?.ok_or_else(|| {
+            Error::input(format!("the array {name} is missing"))
+                .at(element.place())
+                .remedy("the file is damaged: write it again")
+        })
+    }
+
+    /// One field for each array of `element`, `n_rows` rows each, or as many as it says (`None`).
+    pub(super) fn fields(&self, element: Option<&Element<'a>>, n_rows: Option<usize>) -> Result<Vec<Field>> {
+        let mut fields = Vec::new();
+        for array in self.arrays(element) {
+            let array = array?;
+            let n_rows = match n_rows {
+                Some(n) => Some(n),
+                None => array.element.count("NumberOfTuples")?,
+            };
+            let name = array.element.raw_attribute("Name").unwrap_or("unnamed").to_owned();
+            fields.push(Field { name, components: array.components, values: array.values(n_rows)? });
+        }
+        Ok(fields)
+    }
+}
+
+fn layout(root: &Element<'_>) -> Result<Layout> {
+    let unknown = |name: &str, value: &str, known: &str| {
+        Error::input(format!("{name}=\"{value}\" is not known"))
+            .at(root.place())
+            .remedy(format!("write {known}"))
+    };
+    let order = match root.attribute("byte_order") {
+        None | Some("LittleEndian") => ByteOrder::Little,
+        Some("BigEndian") => ByteOrder::Big,
+        Some(other) => return Err(unknown("byte_order", other, "LittleEndian or BigEndian")),
+    };
+    let word = match root.attribute("header_type") {
+        None | Some("UInt32") => 4,
+        Some("UInt64") => 8,
+        Some(other) => return Err(unknown("header_type", other, "UInt32 or UInt64")),
+    };
+    let compression = root.attribute("compressor").map_or(Ok(Compression::None), by_vtk_name)?;
+    Ok(Layout { order, word, compression })
+}
+
+fn collect_starts(element: &Element<'_>, starts: &mut Vec<usize>) {
+    starts.extend(element.attribute("offset").and_then(|o| o.parse::<usize>().ok()));
+    element.children.iter().for_each(|c| collect_starts(c, starts));
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Type {
+    Number(Scalar),
+    Bit,
+    Text,
+}
+
+/// A `DataArray`, its attributes understood, its data not yet read.
+#[derive(Debug)]
+pub(super) struct Array<'s, 'a> {
+    file: &'s File<'a>,
+    pub(super) element: &'s Element<'a>,
+    kind: Type,
+    pub(super) components: usize,
+}
+
+enum Content<'s> {
+    Ascii(&'s str),
+    Binary(Payload<'s>),
+}
+
+impl<'s, 'a> Array<'s, 'a> {
+    fn open(file: &'s File<'a>, element: &'s Element<'a>) -> Result<Self> {
+        let kind = match element.attribute("type").unwrap_or("Float32") {
+            "Int8" => Type::Number(Scalar::I8),
+            "UInt8" => Type::Number(Scalar::U8),
+            "Int16" => Type::Number(Scalar::I16),
+            "UInt16" => Type::Number(Scalar::U16),
+            "Int32" => Type::Number(Scalar::I32),
+            "UInt32" => Type::Number(Scalar::U32),
+            "Int64" => Type::Number(Scalar::I64),
+            "UInt64" => Type::Number(Scalar::U64),
+            "Float32" => Type::Number(Scalar::F32),
+            "Float64" => Type::Number(Scalar::F64),
+            "Bit" => Type::Bit,
+            "String" => Type::Text,
+            other => {
+                return Err(Error::input(format!("values of type {other} are not known"))
+                    .at(element.place())
+                    .remedy("known: Int8 to Int64, UInt8 to UInt64, Float32, Float64, Bit, String"));
+            }
+        };
+        match element.count("NumberOfComponents")?.unwrap_or(1) {
+            0 => Err(Error::input("has no component").at(element.place())),
+            components => Ok(Self { file, element, kind, components }),
+        }
+    }
+
+    /// The values: `n_rows` rows, or as many as there are.
+    pub(super) fn values(&self, n_rows: Option<usize>) -> Result<Values> {
+        self.read(n_rows).map_err(|e| e.at(self.element.place()))
+    }
+
+    /// The values as ids of points or cells, or as places in a list of them.
+    pub(super) fn ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
+        to_ids(&self.values(n_rows)?).map_err(|bad| {
+            Error::input(format!("{bad} is no id"))
+                .at(self.element.place())
+                .remedy("the file is damaged, or has more than 2^32 points")
+        })
+    }
+
+    /// The values as `n` points in space.
+    pub(super) fn points(&self, n: usize) -> Result<Vec<Point>> {
+        if self.components != 3 {
+            return Err(Error::input(format!("points have {} components, 3 are needed", self.components))
+                .at(self.element.place()));
+        }
+        let values = self.values(Some(n))?;
+        let flat = match values {
+            Values::F64(flat) => flat,
+            other => other
+                .to_f64()
+                .ok_or_else(|| Error::input("points are texts, not numbers").at(self.element.place()))?,
+        };
+        Ok(flat.as_chunks::<3>().0.to_vec())
+    }
+
+    fn read(&self, n_rows: Option<usize>) -> Result<Values> {
+        let expected = match n_rows {
+            Some(n) => Some(n.checked_mul(self.components).ok_or_else(|| {
+                Error::input(format!("{n} rows of {} components are more than memory holds", self.components))
+            })?),
+            None => None,
+        };
+        if expected == Some(0) {
+            return self.empty();
+        }
+        match (self.content()?, self.kind) {
+            (Content::Ascii(text), Type::Number(kind)) => read_ascii(text, kind, expected),
+            (Content::Ascii(text), Type::Bit) => read_ascii(text, Scalar::U8, expected),
+            (Content::Ascii(text), Type::Text) => split_texts(&ascii_characters(text)?, expected),
+            (Content::Binary(payload), Type::Number(kind)) => {
+                read_binary(&payload, kind, self.file.layout, expected)
+            }
+            (Content::Binary(payload), Type::Bit) => read_bits(&payload, expected),
+            (Content::Binary(payload), Type::Text) => split_texts(&payload.to_bytes()?, expected),
+        }
+    }
+
+    fn empty(&self) -> Result<Values> {
+        match self.kind {
+            Type::Number(kind) => kind.numbers(&[], ByteOrder::NATIVE),
+            Type::Bit => Ok(Values::U8(Vec::new())),
+            Type::Text => Ok(Values::Text(Vec::new())),
+        }
+    }
+
+    fn content(&self) -> Result<Content<'s>> {
+        match self.element.attribute("format").unwrap_or("ascii") {
+            "ascii" => std::str::from_utf8(self.element.text)
+                .map(Content::Ascii)
+                .map_err(|_| Error::input("the text is not made of numbers").remedy(WRITE_AGAIN)),
+            "binary" if self.element.text.is_empty() => {
+                Err(Error::input("holds no data").remedy(WRITE_AGAIN))
+            }
+            "binary" => Payload::open_base64(self.element.text, self.file.layout).map(Content::Binary),
+            "appended" => self.appended().map(Content::Binary),
+            other => Err(Error::input(format!("the format {other} is not known"))
+                .remedy("known: ascii, binary, appended")),
+        }
+    }
+
+    fn appended(&self) -> Result<Payload<'s>> {
+        let Some(appended) = &self.file.document.appended else {
+            return Err(Error::input("its data are appended, but there is no AppendedData")
+                .remedy("the file is cut off or damaged: write it again"));
+        };
+        let Some(offset) = self.element.count("offset")? else {
+            return Err(Error::input("its data are appended, but the offset is missing").remedy(WRITE_AGAIN));
+        };
+        let Some(bytes) = appended.bytes.get(offset..) else {
+            return Err(Error::input(format!(
+                "its data start at byte {offset} of the appended data, which have {}",
+                appended.bytes.len()
+            ))
+            .remedy("the file is cut off or damaged: copy or write it again"));
+        };
+        if !appended.base64 {
+            return Payload::open(Cow::Borrowed(bytes), self.file.layout);
+        }
+        let starts = &self.file.starts;
+        let next = starts.get(starts.partition_point(|&s| s <= offset)).map(|&s| s - offset);
+        let text = bytes.get(..next.unwrap_or(usize::MAX)).unwrap_or(bytes);
+        let end = text.iter().position(|&b| b == b'<').unwrap_or(text.len());
+        Payload::open_base64(&text[..end], self.file.layout)
+    }
+}
+
+const WRITE_AGAIN: &str = "the file is damaged: write it again";
+
+fn wrong_count(found: usize, expected: usize) -> Error {
+    Error::input(format!("holds {found} values, {expected} are needed"))
+        .remedy("the file is cut off or damaged: write it again")
+}
+
+fn read_binary(
+    payload: &Payload<'_>,
+    kind: Scalar,
+    layout: Layout,
+    expected: Option<usize>,
+) -> Result<Values> {
+    let n = payload.len() / kind.size();
+    if expected.is_some_and(|e| e != n) || !payload.len().is_multiple_of(kind.size()) {
+        return Err(wrong_count(n, expected.unwrap_or(n)));
+    }
+    kind.filled(n, layout.order, |out| payload.read_into(out))
+}
+
+fn read_ascii(text: &str, kind: Scalar, expected: Option<usize>) -> Result<Values> {
+    let mut tokens = text.split_ascii_whitespace();
+    let values = kind.parse(expected.unwrap_or(usize::MAX), &mut tokens).map_err(|bad| {
+        let bad: String = bad.chars().take(30).collect();
+        let what = if kind.is_integer() { "whole number of its type" } else { "number" };
+        Error::input(format!("`{bad}` is no {what}")).remedy(WRITE_AGAIN)
+    })?;
+    let found = values.len() + tokens.count();
+    match expected {
+        Some(expected) if expected != found => Err(wrong_count(found, expected)),
+        _ => Ok(values),
+    }
+}
+
+fn read_bits(payload: &Payload<'_>, expected: Option<usize>) -> Result<Values> {
+    let bytes = payload.to_bytes()?;
+    let n = expected.unwrap_or(bytes.len() * 8);
+    if bytes.len() != n.div_ceil(8) {
+        return Err(wrong_count(bytes.len() * 8, n));
+    }
+    Ok(Values::U8((0..n).map(|i| bytes[i / 8] >> (7 - i % 8) & 1).collect()))
+}
+
+/// Texts stand in ASCII files as the numbers of their bytes; VTK writes those
+/// beyond 127 as negative numbers.
+fn ascii_characters(text: &str) -> Result<Vec<u8>> {
+    text.split_ascii_whitespace()
+        .map(|t| {
+            let number = t.parse::<i16>().ok().filter(|n| (-128..256).contains(n));
+            number
+                .map(|n| n as u8)
+                .ok_or_else(|| Error::input(format!("`{t}` is no character")).remedy(WRITE_AGAIN))
+        })
+        .collect()
+}
+
+fn split_texts(bytes: &[u8], expected: Option<usize>) -> Result<Values> {
+    let mut parts: Vec<&[u8]> = bytes.split(|&b| b == 0).collect();
+    // Every text ends with a zero, so that the last part is the empty rest.
+    if parts.last().is_some_and(|rest| rest.is_empty()) {
+        parts.pop();
+    }
+    match expected {
+        Some(expected) if expected != parts.len() => Err(wrong_count(parts.len(), expected)),
+        _ => Ok(Values::Text(parts.into_iter().map(text).collect())),
+    }
+}
+
+/// UTF-8 where it is; else each byte a character, as in Latin-1.
+pub(in crate::io) fn text(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
+}

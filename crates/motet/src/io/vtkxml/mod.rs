@@ -1,0 +1,79 @@
+//! VTK's XML files: `.vtu`, `.vtp`, and the parts that both share.
+//!
+//! Written here rather than taken from the crate `vtkio`: its last stable version
+//! reads no compressed file, and its release candidate (0.7.0-rc2) fails on raw
+//! appended data, which is what ParaView writes, loses point data packed with xz
+//! without a word, and panics on polygonal data from PyVista. `quick-xml` reads
+//! the XML part; all behind it are byte offsets.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `document` | the XML as a tree, up to the appended data |
+//! | `payload` | one array's bytes: header and blocks |
+//! | `codec` | zlib, lz4, xz |
+//! | `file` | the file's layout; arrays as values |
+//! | `polyhedra` | faces of polyhedra, in both layouts |
+//! | `vtu`, `vtp` | the two kinds of meshes |
+//! | `writer` | elements and arrays out |
+
+mod codec;
+mod document;
+mod file;
+mod payload;
+mod pieces;
+mod polyhedra;
+mod vtp;
+mod vtu;
+mod writer;
+
+use crate::base::{Error, Result};
+use crate::io::registry::{Format, Input};
+use crate::mesh::Mesh;
+
+/// Unstructured grids: cells of any kind.
+pub(super) const VTU: Format = Format {
+    name: "VTK XML unstructured grid",
+    endings: &[".vtu"],
+    read: Some(read),
+    write: Some(vtu::write),
+};
+
+/// Polygonal data: vertices, lines, polygons, strips.
+pub(super) const VTP: Format =
+    Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(vtp::write) };
+
+/// Kinds of VTK XML files that are known, so that they can be refused with advice.
+pub(super) const OTHERS: Format = Format {
+    name: "VTK XML",
+    endings: &[".vti", ".vtr", ".vts", ".vtm", ".vtmb", ".pvtu", ".pvtp", ".pvti", ".pvtr", ".pvts", ".vtpd"],
+    read: Some(read),
+    write: None,
+};
+
+/// Reads whichever kind of mesh the file says it holds.
+fn read(input: &Input<'_>) -> Result<Mesh> {
+    let file = file::File::open(input.bytes)?;
+    match file.kind() {
+        "UnstructuredGrid" => vtu::read(&file),
+        "PolyData" => vtp::read(&file),
+        other => Err(Error::input(format!("the file holds {other}, not a mesh of points and cells"))
+            .at("VTKFile")
+            .remedy(remedy(other))),
+    }
+}
+
+fn remedy(kind: &str) -> &'static str {
+    match kind {
+        "PUnstructuredGrid" | "PPolyData" => {
+            "it only names its pieces: read those, or open it in ParaView and save the data as one file"
+        }
+        "Collection" => "it is a series: read the files that it names",
+        "ImageData" | "RectilinearGrid" | "StructuredGrid" => {
+            "in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu"
+        }
+        "vtkMultiBlockDataSet" | "vtkPartitionedDataSet" | "vtkPartitionedDataSetCollection" => {
+            "in ParaView, apply `Merge Blocks` and save the data as .vtu"
+        }
+        _ => "save it as .vtu or .vtp",
+    }
+}

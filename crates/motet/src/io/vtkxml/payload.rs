@@ -1,0 +1,237 @@
+//! The bytes of one binary array: its header, its blocks, and what they unpack to.
+//!
+//! ```text
+//! plain        [bytes] data
+//! compressed   [blocks][block size][size of the last, 0 = full][packed size]... block block ...
+//! ```
+//! A number in brackets has the file's `header_type`. In base64, header and data may
+//! each be padded on their own.
+
+use std::borrow::Cow;
+
+use base64::Engine as _;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+
+use crate::base::{Error, Result};
+use crate::io::Compression;
+use crate::io::scalar::ByteOrder;
+use crate::io::vtkxml::codec::{Unpacker, largest_output};
+
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+        .with_decode_allow_trailing_bits(true),
+);
+
+/// How the file lays its binary data down, from the attributes of `VTKFile`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub(super) order: ByteOrder,
+    /// Bytes of a number in the header: 4 or 8.
+    pub(super) word: usize,
+    pub(super) compression: Compression,
+}
+
+/// One array's bytes, its header read and found to be possible.
+#[derive(Debug)]
+pub(super) struct Payload<'a> {
+    bytes: Cow<'a, [u8]>,
+    compression: Compression,
+    /// Where the data starts behind the header.
+    start: usize,
+    /// Packed size of each block; one block in a plain array.
+    packed: Vec<usize>,
+    block: usize,
+    /// Bytes when unpacked.
+    len: usize,
+}
+
+impl<'a> Payload<'a> {
+    /// The array at the start of `bytes`.
+    pub(super) fn open(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
+        match layout.compression {
+            Compression::None => Self::open_plain(bytes, layout),
+            _ => Self::open_blocks(bytes, layout),
+        }
+    }
+
+    /// The array at the start of base64 `text`.
+    pub(super) fn open_base64(text: &[u8], layout: Layout) -> Result<Self> {
+        Self::open(Cow::Owned(decode_base64(text)?), layout)
+    }
+
+    fn open_plain(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
+        let len = Words { bytes: &bytes, layout }.get(0)?;
+        let there = bytes.len() - layout.word;
+        if len > there {
+            return Err(cut_off(format!("its header promises {len} bytes, {there} are there")));
+        }
+        Ok(Self {
+            bytes,
+            compression: Compression::None,
+            start: layout.word,
+            packed: vec![len],
+            block: len,
+            len,
+        })
+    }
+
+    fn open_blocks(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
+        let words = Words { bytes: &bytes, layout };
+        let n_blocks = words.get(0)?;
+        if n_blocks == 0 {
+            return Ok(Self {
+                bytes,
+                compression: layout.compression,
+                start: 0,
+                packed: Vec::new(),
+                block: 0,
+                len: 0,
+            });
+        }
+        let start = n_blocks.checked_add(3).and_then(|n| n.checked_mul(layout.word));
+        let Some(start) = start.filter(|&s| s <= bytes.len()) else {
+            return Err(cut_off(format!(
+                "its header promises {n_blocks} blocks, {} bytes are there",
+                bytes.len()
+            )));
+        };
+        let (block, last) = (words.get(1)?, words.get(2)?);
+        let last = if last == 0 { block } else { last };
+        let packed = (0..n_blocks).map(|i| words.get(3 + i)).collect::<Result<Vec<_>>>()?;
+        let mut left = bytes.len() - start;
+        for (i, &size) in packed.iter().enumerate() {
+            let unpacked = if i + 1 == n_blocks { last } else { block };
+            if size > left {
+                return Err(cut_off(format!("block {i} of {n_blocks} has {size} bytes, {left} are there")));
+            }
+            if unpacked > largest_output(layout.compression, size) {
+                return Err(damaged(format!("block {i} of {n_blocks}: {size} bytes cannot hold {unpacked}")));
+            }
+            left -= size;
+        }
+        // No overflow: every block was just found to be possible.
+        let len = (n_blocks - 1) * block + last;
+        if last > block {
+            return Err(damaged(format!("its last block has {last} bytes, the others {block}")));
+        }
+        Ok(Self { bytes, compression: layout.compression, start, packed, block, len })
+    }
+
+    /// How many bytes the array has, unpacked.
+    pub(super) fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Puts the first `out.len()` bytes of the array into `out`; there are as many.
+    pub(super) fn read_into(&self, out: &mut [u8]) -> Result<()> {
+        let data = &self.bytes[self.start..];
+        if self.compression == Compression::None || out.is_empty() {
+            out.copy_from_slice(&data[..out.len()]);
+            return Ok(());
+        }
+        let mut unpacker = Unpacker::new(self.compression);
+        let mut from = 0;
+        for ((i, &size), out) in self.packed.iter().enumerate().zip(out.chunks_mut(self.block)) {
+            let packed = &data[from..from + size];
+            unpacker
+                .unpack(packed, out)
+                .map_err(|what| damaged(format!("block {i} of {}: {what}", self.packed.len())))?;
+            from += size;
+        }
+        Ok(())
+    }
+
+    /// All bytes of the array.
+    pub(super) fn to_bytes(&self) -> Result<Cow<'_, [u8]>> {
+        if self.compression == Compression::None {
+            return Ok(Cow::Borrowed(&self.bytes[self.start..self.start + self.len]));
+        }
+        let mut out = vec![0; self.len];
+        self.read_into(&mut out)?;
+        Ok(Cow::Owned(out))
+    }
+}
+
+/// The numbers of a header.
+struct Words<'a> {
+    bytes: &'a [u8],
+    layout: Layout,
+}
+
+impl Words<'_> {
+    fn get(&self, i: usize) -> Result<usize> {
+        let word = self.layout.word;
+        let Some(bytes) = self.bytes.get(i * word..(i + 1) * word) else {
+            return Err(cut_off("the data end within their header".into()));
+        };
+        let mut wide = [0; 8];
+        wide[..word].copy_from_slice(bytes);
+        if self.layout.order == ByteOrder::Big {
+            wide[..word].reverse();
+        }
+        usize::try_from(u64::from_le_bytes(wide))
+            .map_err(|_| damaged("a size beyond this machine's memory".into()))
+    }
+}
+
+/// Bytes from base64 text that may be broken by blanks, and padded within.
+pub(super) fn decode_base64(text: &[u8]) -> Result<Vec<u8>> {
+    let mut compact = Cow::Borrowed(text.trim_ascii());
+    if compact.iter().any(u8::is_ascii_whitespace) {
+        compact = compact.iter().copied().filter(|b| !b.is_ascii_whitespace()).collect();
+    }
+    let mut rest: &[u8] = &compact;
+    let mut bytes = Vec::with_capacity(rest.len() / 4 * 3 + 3);
+    while !rest.is_empty() {
+        let end = rest.iter().position(|&b| b == b'=').unwrap_or(rest.len());
+        let padding = rest[end..].iter().take_while(|&&b| b == b'=').count();
+        let (part, next) = rest.split_at(end + padding);
+        BASE64
+            .decode_vec(part, &mut bytes)
+            .map_err(|e| damaged(format!("its base64 cannot be read: {e}")))?;
+        rest = next;
+    }
+    Ok(bytes)
+}
+
+fn cut_off(what: String) -> Error {
+    Error::input(what).remedy("the file is cut off or damaged: copy or write it again")
+}
+
+fn damaged(what: String) -> Error {
+    Error::input(what).remedy("the file is damaged: copy or write it again")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAIN: Layout = Layout { order: ByteOrder::Little, word: 4, compression: Compression::None };
+
+    #[test]
+    fn base64_may_be_padded_between_header_and_data() {
+        let together = Payload::open_base64(b"AwAAAGFiYw==", PLAIN).unwrap();
+        let apart = Payload::open_base64(b"AwAAAA==\nYWJj", PLAIN).unwrap();
+        assert_eq!(together.to_bytes().unwrap(), b"abc".as_slice());
+        assert_eq!(apart.to_bytes().unwrap(), b"abc".as_slice());
+    }
+
+    #[test]
+    fn a_size_beyond_the_bytes_is_refused_before_anything_is_allocated() {
+        let mut file = (1u64 << 60).to_le_bytes().to_vec();
+        file.extend([0; 16]);
+        let layout = Layout { word: 8, ..PLAIN };
+        assert!(Payload::open(Cow::Borrowed(&file), layout).is_err());
+        for compression in [Compression::Zlib, Compression::Lz4, Compression::Lzma] {
+            let layout = Layout { compression, ..layout };
+            assert!(Payload::open(Cow::Borrowed(&file), layout).is_err());
+            // One block of 8 bytes that promises 2^40.
+            let bomb: Vec<u8> = [1u64, 1 << 40, 0, 8, 0].iter().flat_map(|w| w.to_le_bytes()).collect();
+            let error = Payload::open(Cow::Borrowed(&bomb), layout).unwrap_err();
+            assert!(error.to_string().contains("cannot hold 1099511627776"), "{error}");
+        }
+    }
+}

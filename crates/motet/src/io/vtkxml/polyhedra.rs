@@ -1,0 +1,105 @@
+//! Faces of polyhedra, in the two layouts that VTK has for them.
+//!
+//! ```text
+//! old          faces                 n faces, then for each: n vertices, vertex, vertex, ...
+//!              faceoffsets           for each cell where its faces end, -1 where it is no polyhedron
+//! from 9.4 on  face_connectivity     vertices, face after face
+//!              face_offsets          where each face ends
+//!              polyhedron_to_faces   faces, cell after cell
+//!              polyhedron_offsets    where the faces of each cell end
+//! ```
+//! The old one is written: every VTK reads it.
+
+use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::vtkxml::document::Element;
+use crate::io::vtkxml::file::File;
+use crate::mesh::{CellKind, Cells};
+
+/// The faces of each polyhedron, in the order of the cells; `cells` is the
+/// element that has the arrays, `kinds` the kind of each cell.
+pub(super) fn read(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
+    let new = cells.children.iter().any(|c| c.attribute("Name") == Some("polyhedron_to_faces"));
+    if new { read_new(file, cells, kinds) } else { read_old(file, cells, kinds) }
+}
+
+fn read_old(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
+    let stream = file.needed_array(cells, "faces")?.ids(None)?;
+    let ends =
+        file.needed_array(cells, "faceoffsets")?.values(Some(kinds.len()))?.to_i64().unwrap_or_default();
+    let mut rest = stream.as_slice();
+    let mut all = Vec::new();
+    for (cell, _) in kinds.iter().enumerate().filter(|(_, k)| **k == CellKind::POLYHEDRON) {
+        let faces = next_polyhedron(&mut rest).filter(|_| {
+            ends.get(cell).is_some_and(|&end| usize::try_from(end) == Ok(stream.len() - rest.len()))
+        });
+        all.push(faces.ok_or_else(|| misfit(cell))?);
+    }
+    Ok(all)
+}
+
+/// Takes the faces of one polyhedron, in the old layout, off the front of `stream`.
+pub(in crate::io) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
+    let (&n_faces, mut rest) = stream.split_first()?;
+    let mut faces = Csr::default();
+    for _ in 0..n_faces {
+        let (&n, behind) = rest.split_first()?;
+        let (face, behind) = behind.split_at_checked(n as usize)?;
+        faces.push(face.iter().map(|&v| VertexId(v)));
+        rest = behind;
+    }
+    *stream = rest;
+    Some(faces)
+}
+
+fn read_new(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
+    let ids = |name: &str| file.needed_array(cells, name)?.ids(None);
+    let (vertices, face_ends) = (ids("face_connectivity")?, ids("face_offsets")?);
+    let (faces, cell_ends) = (ids("polyhedron_to_faces")?, ids("polyhedron_offsets")?);
+    let mut all = Vec::new();
+    for (cell, _) in kinds.iter().enumerate().filter(|(_, k)| **k == CellKind::POLYHEDRON) {
+        let faces = list(&cell_ends, &faces, cell).ok_or_else(|| misfit(cell))?;
+        let mut of_cell = Csr::default();
+        for &face in faces {
+            let face = list(&face_ends, &vertices, face as usize).ok_or_else(|| misfit(cell))?;
+            // A face may be named again and again: the sum is not bounded by the file.
+            if of_cell.items().len() + face.len() > vertices.len() {
+                return Err(misfit(cell));
+            }
+            of_cell.push(face.iter().map(|&v| VertexId(v)));
+        }
+        all.push(of_cell);
+    }
+    Ok(all)
+}
+
+/// List `i` of the lists that end at `ends`.
+fn list<'a>(ends: &[u32], items: &'a [u32], i: usize) -> Option<&'a [u32]> {
+    let start = if i == 0 { 0 } else { *ends.get(i - 1)? };
+    items.get(start as usize..*ends.get(i)? as usize)
+}
+
+fn misfit(cell: usize) -> Error {
+    Error::input("the arrays of faces do not fit together at this polyhedron")
+        .at(format!("cell {cell}"))
+        .remedy("the file is damaged: write it again")
+}
+
+/// `faces` and `faceoffsets` of the old layout.
+pub(super) fn old_layout(cells: &Cells) -> (Vec<i64>, Vec<i64>) {
+    let (mut stream, mut ends) = (Vec::new(), Vec::with_capacity(cells.len()));
+    let mut polyhedra = cells.polyhedron_faces().iter();
+    for kind in cells.kinds() {
+        let faces = if *kind == CellKind::POLYHEDRON { polyhedra.next() } else { None };
+        let Some(faces) = faces else {
+            ends.push(-1);
+            continue;
+        };
+        stream.push(faces.len() as i64);
+        for face in faces.iter() {
+            stream.push(face.len() as i64);
+            stream.extend(face.iter().map(|v| i64::from(v.0)));
+        }
+        ends.push(stream.len() as i64);
+    }
+    (stream, ends)
+}

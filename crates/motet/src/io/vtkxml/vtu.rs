@@ -1,0 +1,121 @@
+//! Unstructured grids (`.vtu`): cells of any kind.
+
+use crate::base::{Error, Result, VertexId};
+use crate::io::labels::label_fields;
+use crate::io::vtkxml::document::Element;
+use crate::io::vtkxml::file::File;
+use crate::io::vtkxml::pieces::read_pieces;
+use crate::io::vtkxml::polyhedra;
+use crate::io::vtkxml::writer::{Data, Writer, ends, numbers, plain};
+use crate::io::{WriteOptions, Written};
+use crate::mesh::{CellKind, Cells, Field, Mesh};
+
+const KIND: &str = "UnstructuredGrid";
+
+pub(super) fn read(file: &File<'_>) -> Result<Mesh> {
+    read_pieces(file, read_piece)
+}
+
+fn read_piece<'a>(file: &File<'a>, piece: &Element<'a>) -> Result<Mesh> {
+    let n_points = piece.needed_count("NumberOfPoints")?;
+    let n_cells = piece.needed_count("NumberOfCells")?;
+    Ok(Mesh {
+        points: read_points(file, piece, n_points)?,
+        cells: read_cells(file, piece, n_cells)?,
+        point_data: file.fields(piece.child("PointData"), Some(n_points))?,
+        cell_data: file.fields(piece.child("CellData"), Some(n_cells))?,
+        ..Mesh::default()
+    })
+}
+
+/// The points of a piece.
+pub(super) fn read_points(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Vec<[f64; 3]>> {
+    if n > VertexId::MAX_COUNT {
+        return Err(Error::input(format!("{n} points are more than a mesh can hold")).at(piece.place()));
+    }
+    let mut arrays = file.arrays(piece.child("Points"));
+    match arrays.next() {
+        Some(array) => array?.points(n),
+        None if n == 0 => Ok(Vec::new()),
+        None => Err(Error::input(format!("{n} points are promised, but there is no array of points"))
+            .at(piece.place())
+            .remedy("the file is damaged: write it again")),
+    }
+}
+
+fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
+    if n == 0 {
+        return Ok(Cells::new());
+    }
+    let Some(element) = piece.child("Cells") else {
+        return Err(Error::input(format!("{n} cells are promised, but the element Cells is missing"))
+            .at(piece.place())
+            .remedy("the file is damaged: write it again"));
+    };
+    let kinds = file.needed_array(element, "types")?.ids(Some(n))?;
+    let kinds = kinds.iter().map(|&k| u8::try_from(k).map(CellKind)).collect::<Result<Vec<_>, _>>();
+    let kinds = kinds.map_err(|_| Error::input("a cell type is beyond 255").at(element.place()))?;
+    let mut offsets = file.needed_array(element, "offsets")?.ids(Some(n))?;
+    offsets.insert(0, 0);
+    let ids = file.needed_array(element, "connectivity")?.ids(None)?;
+    let vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
+    if !kinds.contains(&CellKind::POLYHEDRON) {
+        return Cells::from_parts(kinds, offsets, vertices).map_err(|e| e.at(element.place()));
+    }
+    let faces = polyhedra::read(file, element, &kinds)?;
+    cells_with_polyhedra(&kinds, offsets, vertices, faces).map_err(|e| e.at(element.place()))
+}
+
+fn cells_with_polyhedra(
+    kinds: &[CellKind],
+    offsets: Vec<u32>,
+    vertices: Vec<VertexId>,
+    faces: Vec<crate::base::Csr<VertexId>>,
+) -> Result<Cells> {
+    // Checked as polygons, which may have any number of vertices.
+    let stand_in = |k: &CellKind| if *k == CellKind::POLYHEDRON { CellKind::POLYGON } else { *k };
+    let checked = Cells::from_parts(kinds.iter().map(stand_in).collect(), offsets, vertices)?;
+    let mut faces = faces.into_iter();
+    let mut cells = Cells::new();
+    for ((_, _, vertices), &kind) in checked.iter().zip(kinds) {
+        let vertices = vertices.iter().copied();
+        match kind {
+            CellKind::POLYHEDRON => cells.push_polyhedron(vertices, faces.next().unwrap_or_default()),
+            _ => cells.push(kind, vertices),
+        }
+    }
+    Ok(cells)
+}
+
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let (label_cells, label_names) = label_fields(mesh);
+    let kinds = numbers(mesh.cells.kinds());
+    let mut writer = Writer::new(KIND, options);
+    let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();
+    if !field_data.is_empty() {
+        writer.fields("FieldData", &field_data, true)?;
+    }
+    writer.open(&format!(
+        "Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\"",
+        mesh.points.len(),
+        mesh.cells.len()
+    ));
+    writer.fields("PointData", &mesh.point_data.iter().collect::<Vec<_>>(), false)?;
+    writer.fields("CellData", &mesh.cell_data.iter().chain(&label_cells).collect::<Vec<_>>(), false)?;
+    writer.open("Points");
+    writer.array("Points", 3, None, Data::Points(&mesh.points))?;
+    writer.close("Points");
+    writer.open("Cells");
+    writer.array("connectivity", 1, None, Data::Ids(plain(mesh.cells.connectivity().items())))?;
+    writer.array("offsets", 1, None, Data::Ids(ends(mesh.cells.connectivity())))?;
+    writer.array("types", 1, None, Data::Bytes(&kinds))?;
+    if !mesh.cells.polyhedron_faces().is_empty() {
+        let (faces, face_ends) = polyhedra::old_layout(&mesh.cells);
+        writer.array("faces", 1, None, Data::Int64(faces))?;
+        writer.array("faceoffsets", 1, None, Data::Int64(face_ends))?;
+    }
+    writer.close("Cells");
+    writer.close("Piece");
+    let (bytes, lost) = writer.finish(KIND)?;
+    Ok(Written { lost, ..Written::one(bytes) })
+}
