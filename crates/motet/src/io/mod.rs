@@ -1,10 +1,16 @@
 //! Floor 3: files. One format a file, one registry for all.
 
 mod labels;
+mod msh;
+mod node_order;
 mod registry;
 mod replace;
 mod scalar;
+mod select;
 mod series;
+mod stl;
+mod tags;
+mod text;
 mod vtkxml;
 
 pub use registry::{

@@ -117,7 +117,7 @@ pub fn formats() -> &'static [Format] {
     FORMATS
 }
 
-const FORMATS: &[Format] = &[vtkxml::VTU, vtkxml::VTP];
+const FORMATS: &[Format] = &[vtkxml::VTU, vtkxml::VTP, super::msh::FORMAT, super::stl::FORMAT];
 
 /// Formats that are known only to be refused with advice.
 const REFUSED: &[Format] = &[vtkxml::OTHERS];

@@ -1,0 +1,448 @@
+//! Reading MSH files, both versions in both forms.
+
+use std::collections::HashMap;
+
+use super::data::{Data, Place};
+use super::kinds::{ElementType, element_types};
+use super::source::{Form, Source};
+use crate::base::{Point, Result, VertexId};
+use crate::io::tags::Tags;
+use crate::io::text::quoted;
+use crate::io::{Input, Notes};
+use crate::mesh::{Cells, Field, LabelNames, Mesh, Values};
+
+/// Dimension and number of a geometrical entity.
+type EntityKey = (i32, i32);
+
+/// What a geometrical entity gives to its elements.
+#[derive(Clone, Copy, Default)]
+struct Entity {
+    physical: i32,
+    /// The entity that this one is a part of; itself where it is none.
+    geometrical: i32,
+    partition: i32,
+}
+
+/// What has been read so far.
+#[derive(Default)]
+struct Reader {
+    version: Version,
+    node_tags: Vec<u64>,
+    nodes: Option<Tags>,
+    points: Vec<Point>,
+    node_entities: Vec<i32>,
+    entities: HashMap<EntityKey, Entity>,
+    cells: Cells,
+    element_tags: Vec<u64>,
+    labels: Vec<Entity>,
+    label_names: LabelNames,
+    field_data: Vec<Field>,
+    data: Vec<Data>,
+}
+
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Version {
+    /// No `$MeshFormat` yet.
+    #[default]
+    Unknown,
+    V2,
+    V4,
+}
+
+/// Reads an MSH file.
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
+    let mut source = Source::new(input.bytes);
+    let mut reader = Reader::default();
+    while let Some(name) = source.section()? {
+        reader.section(&mut source, &name, input.notes)?;
+    }
+    reader.into_mesh(&source, input.notes)
+}
+
+impl Reader {
+    fn section(&mut self, source: &mut Source<'_>, name: &str, notes: &Notes) -> Result<()> {
+        match (name, self.version) {
+            ("MeshFormat", _) => self.format(source)?,
+            ("Comments", _) => return source.skip_section(name),
+            ("NOD" | "ELM", _) => {
+                return Err(source
+                    .error("this is MSH version 1; versions 2.2 and 4.1 are read")
+                    .remedy("turn it into another version: gmsh FILE -save -format msh41 -o NEW.msh"));
+            }
+            (_, Version::Unknown) => {
+                return Err(source
+                    .error(format!("expected $MeshFormat at the head of the file, found ${name}"))
+                    .remedy("is this a Gmsh file? A geometry (.geo) has to be meshed first"));
+            }
+            ("PhysicalNames", _) => self.physical_names(source)?,
+            ("Nodes" | "ParametricNodes", _) if self.nodes.is_some() => {
+                return Err(source.error("a second section of nodes"));
+            }
+            ("Nodes", Version::V2) => self.nodes2(source, false)?,
+            ("ParametricNodes", Version::V2) => self.nodes2(source, true)?,
+            ("Nodes", _) => self.nodes4(source)?,
+            ("Entities", Version::V4) => self.entities4(source, notes)?,
+            ("PartitionedEntities", Version::V4) => self.partitioned4(source, notes)?,
+            ("Elements", Version::V2) => self.elements2(source, notes)?,
+            ("Elements", _) => self.elements4(source)?,
+            ("NodeData", _) => self.data.push(Data::read(source, Place::Node)?),
+            ("ElementData", _) => self.data.push(Data::read(source, Place::Element)?),
+            _ => {
+                notes.add(format!("section ${name} is passed over: a mesh here has no place for it"));
+                return source.skip_section(name);
+            }
+        }
+        source.end_section(name)
+    }
+
+    fn format(&mut self, source: &mut Source<'_>) -> Result<()> {
+        source.form = Form::Ascii;
+        let version = source.text.expect("the version of the format")?;
+        self.version = match version {
+            b"2" | b"2.0" | b"2.1" | b"2.2" => Version::V2,
+            b"4.1" => Version::V4,
+            _ => {
+                return Err(source
+                    .error(format!("this is MSH version {}; versions 2.2 and 4.1 are read", quoted(version)))
+                    .remedy("turn it into another version: gmsh FILE -save -format msh41 -o NEW.msh"));
+            }
+        };
+        let binary = source.int("the kind of file (0 ascii, 1 binary)")? != 0;
+        source.size_bytes = match source.int("the size of numbers")? {
+            4 => 4,
+            8 => 8,
+            other => return Err(source.error(format!("numbers of {other} bytes; 4 and 8 are read"))),
+        };
+        if binary {
+            source.text.line();
+            source.form = Form::Binary { swapped: false };
+            source.form = match source.int("the number 1, by which the order of bytes is known")? {
+                1 => Form::Binary { swapped: false },
+                0x0100_0000 => Form::Binary { swapped: true },
+                other => {
+                    return Err(source
+                        .error(format!("expected the number 1 in either order of bytes, found {other}"))
+                        .remedy("the file is damaged, or not binary as it says"));
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// `dimension number "name"`, a line each; text also in binary files.
+    fn physical_names(&mut self, source: &mut Source<'_>) -> Result<()> {
+        let text = &mut source.text;
+        for _ in 0..text.count("physical names", 3)? {
+            let dim = text.int("dimension of a physical group")?;
+            let tag = text.int32("number of a physical group")?;
+            let line = text.line().ok_or_else(|| text.ends("name of a physical group"))?;
+            let name = unquoted(line);
+            match dim {
+                3 => drop(self.label_names.regions.insert(tag, name)),
+                2 => drop(self.label_names.patches.insert(tag, name)),
+                1 => self.field_data.push(Field::scalars(format!("curve:{name}"), vec![tag])),
+                0 => self.field_data.push(Field::scalars(format!("point:{name}"), vec![tag])),
+                _ => return Err(text.error(format!("{dim} is no dimension of a physical group"))),
+            }
+        }
+        Ok(())
+    }
+
+    fn entities4(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
+        let counts = entity_counts(source)?;
+        for (dim, n) in (0..).zip(counts) {
+            for _ in 0..n {
+                let tag = source.int("number of an entity")?;
+                let entity = Entity { geometrical: tag, ..Entity::default() };
+                self.entity_body(source, (dim, tag), entity, notes)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn partitioned4(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
+        source.size("the number of partitions")?;
+        for _ in 0..source.count("ghost entities", 2)? {
+            source.int("number of a ghost entity")?;
+            source.int("partition of a ghost entity")?;
+            notes.add("ghost entities are passed over: a mesh here has no place for them");
+        }
+        let counts = entity_counts(source)?;
+        for (dim, n) in (0..).zip(counts) {
+            for _ in 0..n {
+                let tag = source.int("number of a partitioned entity")?;
+                let parent_dim = source.int("dimension of the parent entity")?;
+                let parent = source.int("number of the parent entity")?;
+                let mut partition = 0;
+                for i in 0..source.count("partitions of an entity", 1)? {
+                    let number = source.int("number of a partition")?;
+                    partition = if i == 0 { number } else { partition };
+                }
+                let geometrical = if parent_dim == dim { parent } else { tag };
+                let entity = Entity { geometrical, partition, physical: 0 };
+                self.entity_body(source, (dim, tag), entity, notes)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The box, the physical groups and the boundary of an entity.
+    fn entity_body(
+        &mut self,
+        source: &mut Source<'_>,
+        key: EntityKey,
+        mut entity: Entity,
+        notes: &Notes,
+    ) -> Result<()> {
+        for _ in 0..if key.0 == 0 { 3 } else { 6 } {
+            source.double("box of an entity")?;
+        }
+        let n_physical = source.count("physical groups of an entity", 1)?;
+        for i in 0..n_physical {
+            // The sign tells whether the group turns the entity round, which its elements already are.
+            let tag = source.int("number of a physical group")?.saturating_abs();
+            entity.physical = if i == 0 { tag } else { entity.physical };
+        }
+        if n_physical > 1 {
+            notes.add("some entities are in several physical groups: their cells keep the first of them");
+        }
+        if key.0 > 0 {
+            for _ in 0..source.count("bounding entities", 1)? {
+                source.int("number of a bounding entity")?;
+            }
+        }
+        self.entities.insert(key, entity);
+        Ok(())
+    }
+
+    fn nodes2(&mut self, source: &mut Source<'_>, parametric: bool) -> Result<()> {
+        let n = source.text.count("nodes", 4)?;
+        source.text.line();
+        let n = source.checked(n as u64, "nodes", 4)?;
+        self.reserve_nodes(n);
+        for _ in 0..n {
+            let tag = source.int("number of a node")?;
+            let tag =
+                u64::try_from(tag).map_err(|_| source.error(format!("{tag} is no number of a node")))?;
+            self.node_tags.push(tag);
+            self.points.push(source.point()?);
+            if parametric {
+                let dim = source.int("dimension of an entity")?;
+                source.int("number of an entity")?;
+                for _ in 0..if (1..3).contains(&dim) { dim } else { 0 } {
+                    source.double("parameter of a node")?;
+                }
+            }
+        }
+        self.nodes = Some(Tags::new(&self.node_tags, "node").map_err(|e| e.at("$Nodes"))?);
+        Ok(())
+    }
+
+    fn nodes4(&mut self, source: &mut Source<'_>) -> Result<()> {
+        let n_blocks = source.count("blocks of nodes", 4)?;
+        let n_nodes = source.count("nodes", 4)?;
+        source.size("the least number of a node")?;
+        source.size("the largest number of a node")?;
+        self.reserve_nodes(n_nodes);
+        for _ in 0..n_blocks {
+            let dim = source.int("dimension of an entity")?;
+            let entity = source.int("number of an entity")?;
+            let parametric = source.int("whether nodes are parametric")? != 0;
+            let n = source.count("nodes of a block", 4)?;
+            let n_parameters = if parametric { dim.clamp(0, 3) } else { 0 };
+            for _ in 0..n {
+                self.node_tags.push(source.size("number of a node")?);
+            }
+            for _ in 0..n {
+                self.points.push(source.point()?);
+                for _ in 0..n_parameters {
+                    source.double("parameter of a node")?;
+                }
+                self.node_entities.extend([dim, entity]);
+            }
+        }
+        if self.points.len() != n_nodes {
+            return Err(source
+                .error(format!("{n_nodes} nodes are announced, but the blocks hold {}", self.points.len()))
+                .remedy("the file is damaged: write it again"));
+        }
+        self.nodes = Some(Tags::new(&self.node_tags, "node").map_err(|e| e.at("$Nodes"))?);
+        Ok(())
+    }
+
+    fn reserve_nodes(&mut self, n: usize) {
+        self.node_tags.reserve(n);
+        self.points.reserve(n);
+    }
+
+    fn elements2(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
+        let types = element_types();
+        let n = source.text.count("elements", 4)?;
+        source.text.line();
+        let n = source.checked(n as u64, "elements", 2)?;
+        let mut done = 0;
+        while done < n {
+            let (header_tag, number, n_here) = match source.form {
+                Form::Ascii => {
+                    let tag = source.int("number of an element")?;
+                    (Some(tag), source.int("type of an element")?, 1)
+                }
+                Form::Binary { .. } => {
+                    let number = source.int("type of elements")?;
+                    (None, number, source.int_count("elements of a block", 2)?)
+                }
+            };
+            let element_type = find_type(&types, number, source)?;
+            let n_tags = source.int_count("tags of an element", 1)?;
+            for _ in 0..n_here {
+                let tag = match header_tag {
+                    Some(tag) => tag,
+                    None => source.int("number of an element")?,
+                };
+                let labels = tags2(source, n_tags, notes)?;
+                // Numbers of elements are only names here: a negative one names as well.
+                self.element(source, element_type, i64::from(tag) as u64, labels)?;
+            }
+            if n_here == 0 {
+                return Err(source.error("a block without an element"));
+            }
+            done += n_here;
+        }
+        Ok(())
+    }
+
+    fn elements4(&mut self, source: &mut Source<'_>) -> Result<()> {
+        let types = element_types();
+        let n_blocks = source.count("blocks of elements", 4)?;
+        let n_elements = source.count("elements", 2)?;
+        source.size("the least number of an element")?;
+        source.size("the largest number of an element")?;
+        self.element_tags.reserve(n_elements);
+        let before = self.cells.len();
+        for _ in 0..n_blocks {
+            let dim = source.int("dimension of an entity")?;
+            let entity = source.int("number of an entity")?;
+            let number = source.int("type of elements")?;
+            let element_type = find_type(&types, number, source)?;
+            let n = source.count("elements of a block", 1 + element_type.vtk_to_gmsh.len())?;
+            let unnamed = Entity { geometrical: entity, ..Entity::default() };
+            let labels = self.entities.get(&(dim, entity)).copied().unwrap_or(unnamed);
+            for _ in 0..n {
+                let tag = source.size("number of an element")?;
+                self.element(source, element_type, tag, labels)?;
+            }
+        }
+        if self.cells.len() - before != n_elements {
+            return Err(source
+                .error(format!(
+                    "{n_elements} elements are announced, but the blocks hold {}",
+                    self.cells.len() - before
+                ))
+                .remedy("the file is damaged: write it again"));
+        }
+        Ok(())
+    }
+
+    /// Reads the nodes of an element and keeps it.
+    fn element(
+        &mut self,
+        source: &mut Source<'_>,
+        element_type: &ElementType,
+        tag: u64,
+        labels: Entity,
+    ) -> Result<()> {
+        let order = &element_type.vtk_to_gmsh;
+        let mut gmsh = [VertexId::default(); 32];
+        let Some(nodes) = &self.nodes else {
+            return Err(source.error("elements come before the nodes").remedy("write the file again"));
+        };
+        for vertex in &mut gmsh[..order.len()] {
+            let node = match self.version {
+                Version::V2 => i64::from(source.int("node of an element")?) as u64,
+                _ => source.size("node of an element")?,
+            };
+            *vertex = VertexId(nodes.place(node).ok_or_else(|| {
+                source
+                    .error(format!("element {tag} names node {}, which is not among the nodes", node as i64))
+                    .remedy("the file is damaged: write it again")
+            })?);
+        }
+        self.cells.push(element_type.kind, order.iter().map(|&i| gmsh[i]));
+        self.element_tags.push(tag);
+        self.labels.push(labels);
+        Ok(())
+    }
+
+    fn into_mesh(self, source: &Source<'_>, notes: &Notes) -> Result<Mesh> {
+        let Some(nodes) = &self.nodes else {
+            return Err(source
+                .error("there is no section $Nodes")
+                .remedy("the file holds no mesh, or is cut off: get it again"));
+        };
+        let mut mesh = Mesh::new(self.points, self.cells);
+        if !self.node_entities.is_empty() {
+            let values = Values::I32(self.node_entities);
+            mesh.set_point_field(Field { name: "gmsh:dim_tags".into(), components: 2, values });
+        }
+        let mut label = |name: &str, of: fn(&Entity) -> i32| {
+            let values: Vec<i32> = self.labels.iter().map(of).collect();
+            if values.iter().any(|&v| v != 0) {
+                mesh.set_cell_field(Field::scalars(name, values));
+            }
+        };
+        label("gmsh:physical", |e| e.physical);
+        label("gmsh:geometrical", |e| e.geometrical);
+        label("gmsh:partition", |e| e.partition);
+        let of_elements = self.data.iter().any(|d| d.place == Place::Element);
+        // Numbers of elements may repeat, so long as no data are given by them.
+        let elements = if of_elements { Some(Tags::new(&self.element_tags, "element")?) } else { None };
+        for data in self.data {
+            data.put(&mut mesh, nodes, elements.as_ref(), notes)?;
+        }
+        mesh.label_names = self.label_names;
+        mesh.field_data = self.field_data;
+        Ok(mesh)
+    }
+}
+
+/// The labels in the tags of a version 2 element: physical group, entity, number
+/// of partitions, partitions.
+fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity> {
+    let mut labels = Entity::default();
+    for i in 0..n_tags {
+        let tag = source.int("tag of an element")?;
+        match i {
+            0 => labels.physical = tag,
+            1 => labels.geometrical = tag,
+            3 => labels.partition = tag.saturating_abs(),
+            4 => notes.add("some elements are in several partitions: they keep the first of them"),
+            _ => {}
+        }
+    }
+    Ok(labels)
+}
+
+fn entity_counts(source: &mut Source<'_>) -> Result<[usize; 4]> {
+    let mut counts = [0; 4];
+    for n in &mut counts {
+        *n = source.count("entities", 4)?;
+    }
+    Ok(counts)
+}
+
+fn find_type<'t>(types: &'t [ElementType], number: i32, source: &Source<'_>) -> Result<&'t ElementType> {
+    types.iter().find(|t| t.number == number).ok_or_else(|| {
+        source
+            .error(format!(
+                "elements of type {number} are not read: only those of first and second order are"
+            ))
+            .remedy("write the mesh with a lower order (gmsh -order 2)")
+    })
+}
+
+/// What stands between quotes, or the whole line where there are none.
+fn unquoted(line: &[u8]) -> String {
+    let line = String::from_utf8_lossy(line);
+    let line = line.trim();
+    line.strip_prefix('"').and_then(|l| l.strip_suffix('"')).unwrap_or(line).to_owned()
+}

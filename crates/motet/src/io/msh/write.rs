@@ -1,0 +1,449 @@
+//! Writing MSH files, both versions in both forms.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use super::kinds::{ElementType, element_types};
+use crate::base::{Error, Result};
+use crate::io::select::{keep_cells, lost_arrays};
+use crate::io::text::push_floats;
+use crate::io::{Encoding, WriteOptions, Written};
+use crate::mesh::{CellKind, Field, Mesh, Values};
+
+/// Arrays in which labels of curves and points may be.
+const LABEL_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
+/// Entity of each node, as meshio names it.
+const NODE_ENTITIES: &str = "gmsh:dim_tags";
+
+/// Where numbers go, as text or as bytes.
+struct Sink {
+    out: Vec<u8>,
+    binary: bool,
+}
+
+impl Sink {
+    fn int(&mut self, n: i32) {
+        if self.binary { self.out.extend(n.to_ne_bytes()) } else { self.word(n) }
+    }
+
+    fn size(&mut self, n: usize) {
+        if self.binary { self.out.extend((n as u64).to_ne_bytes()) } else { self.word(n) }
+    }
+
+    fn doubles(&mut self, numbers: &[f64]) {
+        if self.binary {
+            numbers.iter().for_each(|x| self.out.extend(x.to_ne_bytes()));
+        } else {
+            push_floats(&mut self.out, numbers);
+            self.out.push(b' ');
+        }
+    }
+
+    fn word(&mut self, n: impl std::fmt::Display) {
+        write!(self.out, "{n} ").expect("writing into memory does not fail");
+    }
+
+    /// Ends a line of text; nothing in binary.
+    fn end_line(&mut self) {
+        if !self.binary {
+            self.out.pop_if(|b| *b == b' ');
+            self.out.push(b'\n');
+        }
+    }
+
+    /// A line that is text in binary files as well.
+    fn line(&mut self, line: impl std::fmt::Display) {
+        writeln!(self.out, "{line}").expect("writing into memory does not fail");
+    }
+
+    fn end_section(&mut self, name: &str) {
+        if self.binary {
+            self.out.push(b'\n');
+        }
+        self.line(format_args!("$End{name}"));
+    }
+}
+
+/// The labels of each cell in Gmsh's terms.
+struct Tagged {
+    /// Dimension of each cell.
+    dims: Vec<i32>,
+    physical: Vec<i32>,
+    /// Entity of each cell, at least 1; one entity has one physical group.
+    entities: Vec<i32>,
+    partitions: Option<Vec<i32>>,
+}
+
+/// Writes an MSH file: 4.1 unless 2.2 is asked for.
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let types = element_types();
+    let version2 = match options.version.as_deref() {
+        None | Some("4.1" | "4") => false,
+        Some("2.2" | "2") => true,
+        Some(other) => {
+            return Err(
+                Error::options(format!("MSH version {other} is not written")).remedy("ask for 4.1 or 2.2")
+            );
+        }
+    };
+    let (mesh, mut lost) = keep_cells(mesh, "MSH", |kind| types.iter().any(|t| t.kind == kind));
+    let tagged = Tagged::of(&mesh, &mut lost)?;
+    let mut sink = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
+    header(&mut sink, if version2 { "2.2" } else { "4.1" });
+    physical_names(&mut sink, &mesh);
+    if version2 {
+        nodes2(&mut sink, &mesh);
+        elements2(&mut sink, &mesh, &types, &tagged);
+    } else {
+        let node_entities = node_entities(&mesh, &tagged);
+        entities4(&mut sink, &mesh, &tagged, &node_entities);
+        nodes4(&mut sink, &mesh, &node_entities);
+        elements4(&mut sink, &mesh, &types, &tagged);
+    }
+    data(&mut sink, &mesh, &tagged, version2, &mut lost);
+    Ok(Written { files: vec![(String::new(), sink.out)], lost })
+}
+
+impl Tagged {
+    fn of(mesh: &Mesh, lost: &mut Vec<String>) -> Result<Self> {
+        let dims: Vec<i32> = mesh.cells.kinds().iter().map(|k| k.dim().unwrap_or(0) as i32).collect();
+        let physical = physical_of(mesh, &dims);
+        let wanted = int_column(mesh, "gmsh:geometrical").unwrap_or_else(|| physical.clone());
+        let entities = entities_of(&dims, &wanted, &physical)?;
+        let given = mesh.cell_field("gmsh:geometrical").is_some();
+        if given && entities != wanted {
+            lost.push(
+                "gmsh:geometrical: entities without a number, or with cells of several labels, got new numbers".into(),
+            );
+        }
+        Ok(Self { dims, physical, entities, partitions: int_column(mesh, "gmsh:partition") })
+    }
+
+    /// Whether what an array says stands in the tags already.
+    fn holds(&self, mesh: &Mesh, field: &Field, version2: bool) -> bool {
+        let of_dim = |dim: i32| {
+            let labels = self.physical.iter().zip(&self.dims);
+            labels.map(|(&label, &d)| if d == dim { label } else { 0 }).collect::<Vec<_>>()
+        };
+        match (field.name.as_str(), int_column(mesh, &field.name)) {
+            ("gmsh:geometrical", Some(_)) => true,
+            ("gmsh:partition", Some(_)) => version2,
+            ("gmsh:physical", Some(labels)) => labels == self.physical,
+            ("region", Some(labels)) => labels == of_dim(3),
+            ("patch", Some(labels)) => labels == of_dim(2),
+            _ => false,
+        }
+    }
+}
+
+/// The label of each cell, whatever array it comes from.
+fn physical_of(mesh: &Mesh, dims: &[i32]) -> Vec<i32> {
+    let mut physical = vec![0; dims.len()];
+    let low = LABEL_ARRAYS.iter().find_map(|name| int_column(mesh, name));
+    for (labels, dim) in [(mesh.regions().map(|l| l.ids), 3), (mesh.patches().map(|l| l.ids), 2), (low, 1)] {
+        let Some(ids) = labels else { continue };
+        for (i, label) in ids.into_iter().enumerate() {
+            if dims[i] == dim || (dim == 1 && dims[i] == 0) {
+                physical[i] = label;
+            }
+        }
+    }
+    physical
+}
+
+fn int_column(mesh: &Mesh, name: &str) -> Option<Vec<i32>> {
+    let field = mesh.cell_field(name).filter(|f| f.components == 1)?;
+    field.values.to_i64()?.into_iter().map(|v| i32::try_from(v).ok()).collect()
+}
+
+/// An entity for each cell: the one wanted where it is positive and has no other
+/// label yet, else a new one, since an entity has one physical group in version 4.
+fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32>> {
+    let mut label_of = BTreeMap::new();
+    let mut entity_of = BTreeMap::new();
+    let mut next = [0i32; 4];
+    for (&dim, &entity) in dims.iter().zip(wanted) {
+        next[dim as usize] = next[dim as usize].max(entity);
+    }
+    let mut entities = Vec::with_capacity(dims.len());
+    for ((&dim, &entity), &label) in dims.iter().zip(wanted).zip(physical) {
+        let fits = entity > 0 && *label_of.entry((dim, entity)).or_insert(label) == label;
+        if fits {
+            entities.push(entity);
+            continue;
+        }
+        let new = match entity_of.get(&(dim, entity, label)) {
+            Some(&new) => new,
+            None => {
+                let new = next[dim as usize].checked_add(1).ok_or_else(|| {
+                    Error::input("no number is left for a new entity").remedy("leave gmsh:geometrical out")
+                })?;
+                next[dim as usize] = new;
+                entity_of.insert((dim, entity, label), new);
+                new
+            }
+        };
+        entities.push(new);
+    }
+    Ok(entities)
+}
+
+fn header(sink: &mut Sink, version: &str) {
+    sink.line("$MeshFormat");
+    sink.line(format_args!("{version} {} 8", i32::from(sink.binary)));
+    if sink.binary {
+        sink.int(1);
+    }
+    sink.end_section("MeshFormat");
+}
+
+fn physical_names(sink: &mut Sink, mesh: &Mesh) {
+    let mut names: Vec<(i32, i32, &str)> = Vec::new();
+    for (prefix, dim) in [("point:", 0), ("curve:", 1)] {
+        for field in &mesh.field_data {
+            let label = field.values.to_i64().and_then(|v| i32::try_from(*v.first()?).ok());
+            if let (Some(name), Some(label)) = (field.name.strip_prefix(prefix), label) {
+                names.push((dim, label, name));
+            }
+        }
+    }
+    names.extend(mesh.label_names.patches.iter().map(|(&label, name)| (2, label, name.as_str())));
+    names.extend(mesh.label_names.regions.iter().map(|(&label, name)| (3, label, name.as_str())));
+    if names.is_empty() {
+        return;
+    }
+    sink.line("$PhysicalNames");
+    sink.line(names.len());
+    for (dim, label, name) in names {
+        sink.line(format_args!("{dim} {label} \"{}\"", one_line(name)));
+    }
+    sink.line("$EndPhysicalNames");
+}
+
+/// A name that stays on its line and between its quotes.
+fn one_line(name: &str) -> String {
+    name.replace('"', "'").replace(['\n', '\r'], " ")
+}
+
+/// The entity of each node: as the mesh has it, else the cells' first of the highest dimension.
+fn node_entities(mesh: &Mesh, tagged: &Tagged) -> Vec<[i32; 2]> {
+    let given = mesh.point_field(NODE_ENTITIES).filter(|f| f.components == 2).and_then(|f| f.values.to_i64());
+    let given = given.and_then(|tags| {
+        tags.as_chunks::<2>()
+            .0
+            .iter()
+            .map(|&[dim, tag]| {
+                Some([i32::try_from(dim).ok()?, i32::try_from(tag).ok()?])
+                    .filter(|[dim, tag]| (0..4).contains(dim) && *tag > 0)
+            })
+            .collect::<Option<Vec<_>>>()
+    });
+    given.unwrap_or_else(|| {
+        let highest = tagged.dims.iter().zip(&tagged.entities).max_by_key(|(dim, tag)| (**dim, -**tag));
+        let entity = highest.map_or([3, 1], |(&dim, &tag)| [dim, tag]);
+        vec![entity; mesh.points.len()]
+    })
+}
+
+/// Every entity that cells or nodes name, with its box and its physical group.
+fn entities4(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, node_entities: &[[i32; 2]]) {
+    let mut groups: BTreeMap<(i32, i32), i32> = BTreeMap::new();
+    let mut boxes: BTreeMap<(i32, i32), [[f64; 3]; 2]> = BTreeMap::new();
+    let mut grow = |key: (i32, i32), p: [f64; 3]| {
+        let [low, high] = boxes.entry(key).or_insert([p, p]);
+        for i in 0..3 {
+            low[i] = low[i].min(p[i]);
+            high[i] = high[i].max(p[i]);
+        }
+    };
+    for (cell, _, vertices) in mesh.cells.iter() {
+        let i = cell.index();
+        groups.insert((tagged.dims[i], tagged.entities[i]), tagged.physical[i]);
+        vertices.iter().for_each(|v| grow((tagged.dims[i], tagged.entities[i]), mesh.points[v.index()]));
+    }
+    for (&[dim, tag], &p) in node_entities.iter().zip(&mesh.points) {
+        groups.entry((dim, tag)).or_insert(0);
+        grow((dim, tag), p);
+    }
+    sink.line("$Entities");
+    for dim in 0..4 {
+        sink.size(groups.keys().filter(|key| key.0 == dim).count());
+    }
+    sink.end_line();
+    for (key, &label) in &groups {
+        let [low, high] = boxes.get(key).copied().unwrap_or_default();
+        sink.int(key.1);
+        sink.doubles(&low);
+        if key.0 > 0 {
+            sink.doubles(&high);
+        }
+        sink.size(usize::from(label != 0));
+        if label != 0 {
+            sink.int(label);
+        }
+        if key.0 > 0 {
+            sink.size(0);
+        }
+        sink.end_line();
+    }
+    sink.end_section("Entities");
+}
+
+fn nodes4(sink: &mut Sink, mesh: &Mesh, node_entities: &[[i32; 2]]) {
+    let runs: Vec<&[[i32; 2]]> = node_entities.chunk_by(|a, b| a == b).collect();
+    sink.line("$Nodes");
+    for n in [runs.len(), mesh.points.len(), usize::from(!mesh.points.is_empty()), mesh.points.len()] {
+        sink.size(n);
+    }
+    sink.end_line();
+    let mut first = 0;
+    for run in runs {
+        let [dim, tag] = run[0];
+        [dim, tag, 0].into_iter().for_each(|n| sink.int(n));
+        sink.size(run.len());
+        sink.end_line();
+        for i in first..first + run.len() {
+            sink.size(i + 1);
+            sink.end_line();
+        }
+        for point in &mesh.points[first..first + run.len()] {
+            sink.doubles(point);
+            sink.end_line();
+        }
+        first += run.len();
+    }
+    sink.end_section("Nodes");
+}
+
+fn elements4(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &Tagged) {
+    let n = mesh.cells.len();
+    let kinds = mesh.cells.kinds();
+    let key = |i: usize| (tagged.entities[i], kinds[i]);
+    let places: Vec<usize> = (0..n).collect();
+    let runs: Vec<&[usize]> = places.chunk_by(|&a, &b| key(a) == key(b)).collect();
+    sink.line("$Elements");
+    [runs.len(), n, usize::from(n > 0), n].into_iter().for_each(|n| sink.size(n));
+    sink.end_line();
+    for run in runs {
+        let t = type_of(types, kinds[run[0]]);
+        sink.int(tagged.dims[run[0]]);
+        sink.int(tagged.entities[run[0]]);
+        sink.int(t.number);
+        sink.size(run.len());
+        sink.end_line();
+        for &i in run {
+            sink.size(i + 1);
+            gmsh_nodes(mesh, i, t, |node| sink.size(node));
+            sink.end_line();
+        }
+    }
+    sink.end_section("Elements");
+}
+
+fn nodes2(sink: &mut Sink, mesh: &Mesh) {
+    sink.line("$Nodes");
+    sink.line(mesh.points.len());
+    for (i, point) in (1..).zip(&mesh.points) {
+        sink.int(i);
+        sink.doubles(point);
+        sink.end_line();
+    }
+    sink.end_section("Nodes");
+}
+
+fn elements2(sink: &mut Sink, mesh: &Mesh, types: &[ElementType], tagged: &Tagged) {
+    sink.line("$Elements");
+    sink.line(mesh.cells.len());
+    let n_tags = if tagged.partitions.is_some() { 4 } else { 2 };
+    let places: Vec<usize> = (0..mesh.cells.len()).collect();
+    let kinds = mesh.cells.kinds();
+    for run in places.chunk_by(|&a, &b| kinds[a] == kinds[b]) {
+        let t = type_of(types, kinds[run[0]]);
+        if sink.binary {
+            [t.number, run.len() as i32, n_tags].into_iter().for_each(|n| sink.int(n));
+        }
+        for &i in run {
+            sink.int(i as i32 + 1);
+            if !sink.binary {
+                sink.int(t.number);
+                sink.int(n_tags);
+            }
+            sink.int(tagged.physical[i]);
+            sink.int(tagged.entities[i]);
+            if let Some(partitions) = &tagged.partitions {
+                sink.int(1);
+                sink.int(partitions[i]);
+            }
+            gmsh_nodes(mesh, i, t, |node| sink.int(node as i32));
+            sink.end_line();
+        }
+    }
+    sink.end_section("Elements");
+}
+
+fn type_of(types: &[ElementType], kind: CellKind) -> &ElementType {
+    types.iter().find(|t| t.kind == kind).expect("only kinds with a type are kept")
+}
+
+/// Calls `put` with the number of each node of cell `i`, in Gmsh's order.
+fn gmsh_nodes(mesh: &Mesh, i: usize, t: &ElementType, mut put: impl FnMut(usize)) {
+    let vertices = mesh.cells.connectivity().list(i);
+    let mut nodes = [0; 32];
+    for (vtk, &gmsh) in t.vtk_to_gmsh.iter().enumerate() {
+        nodes[gmsh] = vertices[vtk].index() + 1;
+    }
+    nodes[..vertices.len()].iter().for_each(|&node| put(node));
+}
+
+fn data(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, version2: bool, lost: &mut Vec<String>) {
+    let is_entity = |f: &&Field| !version2 && f.name == NODE_ENTITIES;
+    let point_data: Vec<_> = mesh.point_data.iter().filter(|f| !is_entity(f)).collect();
+    let cell_data: Vec<_> = mesh.cell_data.iter().filter(|f| !tagged.holds(mesh, f, version2)).collect();
+    for (section, fields) in [("NodeData", &point_data), ("ElementData", &cell_data)] {
+        for field in fields {
+            if let Some(values) = field.values.to_f64().filter(|_| field.components > 0) {
+                data_section(sink, section, field, &values);
+            }
+        }
+    }
+    let all = || point_data.iter().chain(&cell_data).copied();
+    lost.extend(lost_arrays("MSH", "text", all().filter(|f| matches!(f.values, Values::Text(_)))));
+    let other: Vec<&str> = all()
+        .filter(|f| !matches!(f.values, Values::Text(_) | Values::F64(_)))
+        .map(|f| f.name.as_str())
+        .collect();
+    if !other.is_empty() {
+        lost.push(format!(
+            "MSH has arrays in double precision only; as such come back: {}",
+            other.join(", ")
+        ));
+    }
+    let names = |f: &&Field| !f.name.starts_with("point:") && !f.name.starts_with("curve:");
+    lost.extend(lost_arrays("MSH", "field", mesh.field_data.iter().filter(names)));
+}
+
+fn data_section(sink: &mut Sink, section: &str, field: &Field, values: &[f64]) {
+    sink.line(format_args!("${section}"));
+    sink.line(format_args!("1\n\"{}\"\n1\n0.0\n3\n0", one_line(&field.name)));
+    sink.line(format_args!("{}\n{}", field.components, field.n_rows()));
+    for (i, row) in (1..).zip(values.chunks_exact(field.components)) {
+        sink.int(i);
+        sink.doubles(row);
+        sink.end_line();
+    }
+    sink.end_section(section);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entity_has_one_label_and_none_is_below_one() {
+        let dims = [3, 3, 3, 2, 2];
+        let wanted = [7, 7, 0, 7, -1];
+        let physical = [1, 2, 0, 3, 3];
+        let entities = entities_of(&dims, &wanted, &physical).unwrap();
+        assert_eq!(entities, [7, 8, 9, 7, 8]);
+    }
+}

@@ -1,0 +1,85 @@
+//! The part of a mesh that a format can hold, and a sentence about the rest.
+
+use std::borrow::Cow;
+
+use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
+
+/// The mesh with those cells whose kind `holds`, and what was left out.
+pub(super) fn keep_cells<'m>(
+    mesh: &'m Mesh,
+    format: &str,
+    holds: impl Fn(CellKind) -> bool,
+) -> (Cow<'m, Mesh>, Vec<String>) {
+    let counts = mesh.cells.counts();
+    let lost: Vec<String> = counts
+        .iter()
+        .filter(|(kind, _)| !holds(*kind))
+        .map(|(kind, n)| {
+            format!("{n} cells of kind {} are left out: {format} has no such cells", kind.label())
+        })
+        .collect();
+    if lost.is_empty() {
+        return (Cow::Borrowed(mesh), lost);
+    }
+    let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| holds(mesh.cells.kinds()[i])).collect();
+    let mut cells = Cells::new();
+    for (_, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| holds(*kind)) {
+        cells.push(kind, vertices.iter().copied());
+    }
+    let cell_data = mesh.cell_data.iter().map(|f| rows(f, &kept)).collect();
+    let kept = Mesh {
+        points: mesh.points.clone(),
+        cells,
+        point_data: mesh.point_data.clone(),
+        cell_data,
+        field_data: mesh.field_data.clone(),
+        label_names: mesh.label_names.clone(),
+    };
+    (Cow::Owned(kept), lost)
+}
+
+/// The rows of `field` named in `rows`, in that order.
+pub(super) fn rows(field: &Field, rows: &[usize]) -> Field {
+    fn pick<T: Clone>(values: &[T], components: usize, rows: &[usize]) -> Vec<T> {
+        rows.iter().flat_map(|&row| values[row * components..][..components].iter().cloned()).collect()
+    }
+    macro_rules! picked {
+        ($($variant:ident)*) => {
+            match &field.values {
+                $(Values::$variant(v) => Values::$variant(pick(v, field.components, rows)),)*
+            }
+        };
+    }
+    let values = picked!(I8 U8 I16 U16 I32 U32 I64 U64 F32 F64 Text);
+    Field { name: field.name.clone(), components: field.components, values }
+}
+
+/// A sentence on arrays that a format has no place for; none where there are none.
+pub(super) fn lost_arrays<'f>(
+    format: &str,
+    what: &str,
+    fields: impl IntoIterator<Item = &'f Field>,
+) -> Option<String> {
+    let names: Vec<&str> = fields.into_iter().map(|f| f.name.as_str()).collect();
+    (!names.is_empty())
+        .then(|| format!("{what} arrays are left out, {format} has none: {}", names.join(", ")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::VertexId;
+
+    #[test]
+    fn the_arrays_go_with_the_cells() {
+        let mut cells = Cells::new();
+        cells.push(CellKind::LINE, [0, 1].map(VertexId));
+        cells.push(CellKind::TRIANGLE, [0, 1, 2].map(VertexId));
+        let mut mesh = Mesh::new(vec![[0.0; 3]; 3], cells);
+        mesh.set_cell_field(Field { name: "v".into(), components: 2, values: vec![1u8, 2, 3, 4].into() });
+        let (kept, lost) = keep_cells(&mesh, "X", |kind| kind == CellKind::TRIANGLE);
+        assert_eq!(kept.cells.len(), 1);
+        assert_eq!(kept.cell_data[0].values, vec![3u8, 4].into());
+        assert_eq!(lost, ["1 cells of kind line are left out: X has no such cells"]);
+    }
+}

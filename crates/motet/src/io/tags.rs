@@ -1,0 +1,95 @@
+//! From the numbers that a file gives its points or cells to their places in arrays.
+
+use std::collections::HashMap;
+
+use crate::base::{Error, Result};
+
+/// Where each numbered thing stands.
+#[derive(Debug)]
+pub(super) enum Tags {
+    /// Place `i` has number `first + i`: what most files have.
+    Running { first: u64, n: usize },
+    /// The place of number `first + i`, [`NOWHERE`] where there is none.
+    Dense { first: u64, places: Vec<u32> },
+    /// Numbers with wide gaps.
+    Sparse(HashMap<u64, u32>),
+}
+
+const NOWHERE: u32 = u32::MAX;
+/// Up to this many places a number are worth an array.
+const DENSE_LIMIT: usize = 8;
+
+impl Tags {
+    /// Takes the numbers of `what` in the order of their places.
+    ///
+    /// # Errors
+    /// When a number occurs twice.
+    pub(super) fn new(numbers: &[u64], what: &str) -> Result<Self> {
+        let first = numbers.iter().copied().min().unwrap_or(0);
+        if numbers.iter().zip(first..).all(|(&number, running)| number == running) {
+            return Ok(Self::Running { first, n: numbers.len() });
+        }
+        let span = numbers.iter().copied().max().map_or(0, |last| last - first);
+        let twice = |number: u64| {
+            Error::input(format!("{what} {number} occurs twice")).remedy("give each its own number")
+        };
+        if span < (DENSE_LIMIT * numbers.len()) as u64 {
+            let mut places = vec![NOWHERE; span as usize + 1];
+            for (place, &number) in (0u32..).zip(numbers) {
+                let slot = &mut places[(number - first) as usize];
+                if std::mem::replace(slot, place) != NOWHERE {
+                    return Err(twice(number));
+                }
+            }
+            return Ok(Self::Dense { first, places });
+        }
+        let mut places = HashMap::with_capacity(numbers.len());
+        for (place, &number) in (0u32..).zip(numbers) {
+            if places.insert(number, place).is_some() {
+                return Err(twice(number));
+            }
+        }
+        Ok(Self::Sparse(places))
+    }
+
+    /// Where `number` stands.
+    #[inline]
+    pub(super) fn place(&self, number: u64) -> Option<u32> {
+        match self {
+            Self::Running { first, n } => {
+                number.checked_sub(*first).filter(|&i| i < *n as u64).map(|i| i as u32)
+            }
+            Self::Dense { first, places } => {
+                let place = *places.get(usize::try_from(number.checked_sub(*first)?).ok()?)?;
+                (place != NOWHERE).then_some(place)
+            }
+            Self::Sparse(places) => places.get(&number).copied(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_finds_its_place_and_no_other_does() {
+        for numbers in [vec![5, 6, 7], vec![9, 1, 4], vec![1 << 60, 3, 77], vec![u64::MAX, 0], vec![]] {
+            let tags = Tags::new(&numbers, "node").unwrap();
+            for (place, number) in numbers.iter().enumerate() {
+                assert_eq!(tags.place(*number), Some(place as u32), "{tags:?}");
+            }
+            for other in [0, 2, 8, 1 << 59, u64::MAX].into_iter().filter(|n| !numbers.contains(n)) {
+                assert_eq!(tags.place(other), None, "{tags:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_number_given_twice_is_named() {
+        for numbers in [vec![1, 2, 2], vec![1, 1 << 40, 1]] {
+            let error = Tags::new(&numbers, "node").unwrap_err().to_string();
+            assert!(error.contains("occurs twice"), "{error}");
+        }
+    }
+}
