@@ -1,8 +1,11 @@
 //! Floor 3: files. One format a file, one registry for all.
 
 mod labels;
+mod cell_labels;
+mod medit;
 mod msh;
 mod node_order;
+mod obj;
 mod registry;
 mod replace;
 mod scalar;
@@ -10,6 +13,7 @@ mod select;
 mod series;
 mod stl;
 mod tags;
+mod tetgen;
 mod text;
 mod vtkxml;
 

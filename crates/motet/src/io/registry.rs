@@ -117,7 +117,15 @@ pub fn formats() -> &'static [Format] {
     FORMATS
 }
 
-const FORMATS: &[Format] = &[vtkxml::VTU, vtkxml::VTP, super::msh::FORMAT, super::stl::FORMAT];
+const FORMATS: &[Format] = &[
+    vtkxml::VTU,
+    vtkxml::VTP,
+    super::msh::FORMAT,
+    super::stl::FORMAT,
+    super::obj::FORMAT,
+    super::medit::FORMAT,
+    super::tetgen::FORMAT,
+];
 
 /// Formats that are known only to be refused with advice.
 const REFUSED: &[Format] = &[vtkxml::OTHERS];

@@ -121,7 +121,9 @@ fn ascii(bytes: &[u8]) -> Result<Mesh> {
     let mut solid_of_triangle: Vec<i32> = Vec::new();
     while let Some(word) = text.word() {
         if !word.eq_ignore_ascii_case(b"solid") {
-            return Err(text.unexpected("a solid", "`solid`", word).remedy("the file is damaged: get it again"));
+            return Err(text
+                .unexpected("a solid", "`solid`", word)
+                .remedy("the file is damaged: get it again"));
         }
         let name = String::from_utf8_lossy(text.line().unwrap_or_default()).trim().to_owned();
         let known = solids.iter().position(|solid| *solid == name && !name.is_empty());
@@ -186,11 +188,8 @@ fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let kept = |f: &&Field| (!binary && f.name == "patch") || (binary && f.name == "attribute");
     lost.extend(lost_arrays("STL", "cell", mesh.cell_data.iter().filter(|f| !kept(f))));
     lost.extend(lost_arrays("STL", "field", &mesh.field_data));
-    let bytes = if binary {
-        write_binary(&mesh, &triangles, &mut lost)?
-    } else {
-        write_ascii(&mesh, &triangles)
-    };
+    let bytes =
+        if binary { write_binary(&mesh, &triangles, &mut lost)? } else { write_ascii(&mesh, &triangles) };
     Ok(Written { files: vec![(String::new(), bytes)], lost })
 }
 
@@ -235,8 +234,9 @@ fn normal([a, b, c]: [Point; 3]) -> Point {
 }
 
 fn write_binary(mesh: &Mesh, triangles: &[Triangle], lost: &mut Vec<String>) -> Result<Vec<u8>> {
-    let n = u32::try_from(triangles.len())
-        .map_err(|_| Error::input(format!("{} triangles are more than a binary STL holds", triangles.len())))?;
+    let n = u32::try_from(triangles.len()).map_err(|_| {
+        Error::input(format!("{} triangles are more than a binary STL holds", triangles.len()))
+    })?;
     let attributes = mesh.cell_field("attribute").and_then(|f| f.values.to_i64());
     let mut out = Vec::with_capacity(HEAD_BYTES + TRIANGLE_BYTES * triangles.len());
     out.extend([b' '; 80]);

@@ -5,13 +5,12 @@ use std::io::Write as _;
 
 use super::kinds::{ElementType, element_types};
 use crate::base::{Error, Result};
+use crate::io::cell_labels::{cell_labels, int_column, say_all};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_floats;
 use crate::io::{Encoding, WriteOptions, Written};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// Arrays in which labels of curves and points may be.
-const LABEL_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
 /// Entity of each node, as meshio names it.
 const NODE_ENTITIES: &str = "gmsh:dim_tags";
 
@@ -107,7 +106,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
 impl Tagged {
     fn of(mesh: &Mesh, lost: &mut Vec<String>) -> Result<Self> {
         let dims: Vec<i32> = mesh.cells.kinds().iter().map(|k| k.dim().unwrap_or(0) as i32).collect();
-        let physical = physical_of(mesh, &dims);
+        let physical = cell_labels(mesh);
         let wanted = int_column(mesh, "gmsh:geometrical").unwrap_or_else(|| physical.clone());
         let entities = entities_of(&dims, &wanted, &physical)?;
         let given = mesh.cell_field("gmsh:geometrical").is_some();
@@ -121,39 +120,14 @@ impl Tagged {
 
     /// Whether what an array says stands in the tags already.
     fn holds(&self, mesh: &Mesh, field: &Field, version2: bool) -> bool {
-        let of_dim = |dim: i32| {
-            let labels = self.physical.iter().zip(&self.dims);
-            labels.map(|(&label, &d)| if d == dim { label } else { 0 }).collect::<Vec<_>>()
-        };
         match (field.name.as_str(), int_column(mesh, &field.name)) {
             ("gmsh:geometrical", Some(_)) => true,
             ("gmsh:partition", Some(_)) => version2,
-            ("gmsh:physical", Some(labels)) => labels == self.physical,
-            ("region", Some(labels)) => labels == of_dim(3),
-            ("patch", Some(labels)) => labels == of_dim(2),
-            _ => false,
+            // Kept as data besides: their names tell where they come from.
+            ("medit:ref" | "tetgen:ref", _) => false,
+            _ => say_all(&self.physical, mesh, field),
         }
     }
-}
-
-/// The label of each cell, whatever array it comes from.
-fn physical_of(mesh: &Mesh, dims: &[i32]) -> Vec<i32> {
-    let mut physical = vec![0; dims.len()];
-    let low = LABEL_ARRAYS.iter().find_map(|name| int_column(mesh, name));
-    for (labels, dim) in [(mesh.regions().map(|l| l.ids), 3), (mesh.patches().map(|l| l.ids), 2), (low, 1)] {
-        let Some(ids) = labels else { continue };
-        for (i, label) in ids.into_iter().enumerate() {
-            if dims[i] == dim || (dim == 1 && dims[i] == 0) {
-                physical[i] = label;
-            }
-        }
-    }
-    physical
-}
-
-fn int_column(mesh: &Mesh, name: &str) -> Option<Vec<i32>> {
-    let field = mesh.cell_field(name).filter(|f| f.components == 1)?;
-    field.values.to_i64()?.into_iter().map(|v| i32::try_from(v).ok()).collect()
 }
 
 /// An entity for each cell: the one wanted where it is positive and has no other

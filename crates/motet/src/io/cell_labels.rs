@@ -1,0 +1,57 @@
+//! One label for each cell, for formats that have labels of their own.
+
+use crate::io::select::lost_arrays;
+use crate::mesh::{Field, Mesh};
+
+/// Arrays in which labels of curves and points may be.
+const LOW_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
+
+/// The label of each cell: its region or its patch, or what `gmsh:physical` and
+/// its kin say of curves and points; 0 where there is none.
+pub(super) fn cell_labels(mesh: &Mesh) -> Vec<i32> {
+    let mut labels = vec![0; mesh.cells.len()];
+    let low = LOW_ARRAYS.iter().find_map(|name| int_column(mesh, name));
+    let sources =
+        [(mesh.regions().map(|l| l.ids), &[3][..]), (mesh.patches().map(|l| l.ids), &[2]), (low, &[0, 1])];
+    for (ids, dims) in sources {
+        for ((label, kind), id) in labels.iter_mut().zip(mesh.cells.kinds()).zip(ids.into_iter().flatten()) {
+            if dims.contains(&kind.dim().unwrap_or(0)) {
+                *label = id;
+            }
+        }
+    }
+    labels
+}
+
+/// A cell array of whole numbers.
+pub(super) fn int_column(mesh: &Mesh, name: &str) -> Option<Vec<i32>> {
+    let field = mesh.cell_field(name).filter(|f| f.components == 1)?;
+    field.values.to_i64()?.into_iter().map(|v| i32::try_from(v).ok()).collect()
+}
+
+/// Whether `labels` say all that a cell array says.
+pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
+    let dim = match field.name.as_str() {
+        "region" => Some(3),
+        "patch" => Some(2),
+        name if LOW_ARRAYS.contains(&name) => None,
+        _ => return false,
+    };
+    let said = |(&label, kind): (&i32, &crate::mesh::CellKind)| {
+        if dim.is_none() || kind.dim() == dim { label } else { 0 }
+    };
+    int_column(mesh, &field.name)
+        .is_some_and(|values| labels.iter().zip(mesh.cells.kinds()).map(said).eq(values))
+}
+
+/// A sentence on the cell arrays that say more than `labels` do.
+pub(super) fn lost_cell_arrays(format: &str, mesh: &Mesh, labels: &[i32]) -> Option<String> {
+    lost_arrays(format, "cell", mesh.cell_data.iter().filter(|f| !say_all(labels, mesh, f)))
+}
+
+/// A sentence on the names of labels, for formats without any.
+pub(super) fn lost_names(format: &str, mesh: &Mesh) -> Option<String> {
+    let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
+    let names: Vec<&str> = names.map(String::as_str).collect();
+    (!names.is_empty()).then(|| format!("{format} has no names of labels: {}", names.join(", ")))
+}

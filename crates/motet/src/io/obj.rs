@@ -1,0 +1,260 @@
+//! Wavefront OBJ: vertices, points, lines, polygons, and groups as patches.
+//!
+//! Written here, because `tobj` (4.0) cuts everything into triangles, duplicates
+//! or drops vertices for the sake of texture coordinates, forgets which line was
+//! wrong, and drops `l` and `p`.
+//!
+//! A patch is what the last `o` or `g` says; there are patches only where at
+//! least two differ. Texture coordinates, normals, materials, smoothing groups
+//! and free-form geometry are passed over with a note.
+
+use std::io::Write as _;
+
+use crate::base::{Error, Result, VertexId};
+use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
+use crate::io::select::{keep_cells, lost_arrays};
+use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
+use crate::io::{Format, Input, WriteOptions, Written};
+use crate::mesh::{CellKind, Cells, Field, Mesh};
+
+pub(super) const FORMAT: Format =
+    Format { name: "Wavefront OBJ", endings: &[".obj"], read: Some(read), write: Some(write) };
+
+#[derive(Default)]
+struct Reader {
+    points: Vec<[f64; 3]>,
+    cells: Cells,
+    labels: Vec<i32>,
+    names: Vec<String>,
+    label: i32,
+    /// The largest vertex named before it was given, and its line.
+    ahead: Option<(usize, usize)>,
+}
+
+fn read(input: &Input<'_>) -> Result<Mesh> {
+    let mut text = Text::with_comments(input.bytes, b'#');
+    let mut reader = Reader::default();
+    while let Some(statement) = text.word() {
+        match statement {
+            b"v" => reader.vertex(&mut text, input)?,
+            b"f" => reader.element(&mut text, face_kind)?,
+            b"l" => reader.element(&mut text, line_kind)?,
+            b"p" => reader.element(&mut text, point_kind)?,
+            b"g" | b"o" => reader.group(&mut text),
+            _ if is_known(statement) => {
+                input.notes.add(format!("statements {} are passed over", quoted(statement)));
+                while in_line(&mut text).is_some() {}
+            }
+            _ => {
+                return Err(text
+                    .unexpected("a statement", "one of Wavefront OBJ's (v, f, l, p, g, o, ...)", statement)
+                    .remedy("the file is damaged or no OBJ: get it again"));
+            }
+        }
+    }
+    reader.into_mesh()
+}
+
+/// Statements that mean something to others.
+fn is_known(statement: &[u8]) -> bool {
+    const KNOWN: &[&str] = &[
+        "vn",
+        "vt",
+        "vp",
+        "s",
+        "mg",
+        "usemtl",
+        "mtllib",
+        "usemap",
+        "maplib",
+        "bevel",
+        "c_interp",
+        "d_interp",
+        "lod",
+        "shadow_obj",
+        "trace_obj",
+        "ctech",
+        "stech",
+        "cstype",
+        "deg",
+        "bmat",
+        "step",
+        "curv",
+        "curv2",
+        "surf",
+        "parm",
+        "trim",
+        "hole",
+        "scrv",
+        "sp",
+        "end",
+        "con",
+        "call",
+        "csh",
+    ];
+    KNOWN.iter().any(|known| known.as_bytes() == statement)
+}
+
+/// The next word of the statement, which a backslash carries over to the next line.
+fn in_line<'a>(text: &mut Text<'a>) -> Option<&'a [u8]> {
+    loop {
+        match text.word_in_line() {
+            Some(b"\\") => text.line(),
+            word => return word,
+        };
+    }
+}
+
+fn face_kind(n: usize) -> Option<CellKind> {
+    match n {
+        0..3 => None,
+        3 => Some(CellKind::TRIANGLE),
+        4 => Some(CellKind::QUAD),
+        _ => Some(CellKind::POLYGON),
+    }
+}
+
+fn line_kind(n: usize) -> Option<CellKind> {
+    match n {
+        0..2 => None,
+        2 => Some(CellKind::LINE),
+        _ => Some(CellKind::POLY_LINE),
+    }
+}
+
+fn point_kind(n: usize) -> Option<CellKind> {
+    match n {
+        0 => None,
+        1 => Some(CellKind::VERTEX),
+        _ => Some(CellKind::POLY_VERTEX),
+    }
+}
+
+impl Reader {
+    fn vertex(&mut self, text: &mut Text<'_>, input: &Input<'_>) -> Result<()> {
+        let mut point = [0.0; 3];
+        for x in &mut point {
+            let word = in_line(text).ok_or_else(|| {
+                text.error("a vertex has three coordinates").remedy("the file is damaged: get it again")
+            })?;
+            *x = parse_float(word).ok_or_else(|| text.unexpected("coordinate", "a number", word))?;
+        }
+        let mut n_further = 0;
+        while in_line(text).is_some() {
+            n_further += 1;
+        }
+        if n_further > 0 {
+            input.notes.add("weights or colours behind the coordinates of vertices are passed over");
+        }
+        self.points.push(point);
+        Ok(())
+    }
+
+    fn element(&mut self, text: &mut Text<'_>, kind: fn(usize) -> Option<CellKind>) -> Result<()> {
+        let mut vertices = Vec::with_capacity(4);
+        while let Some(word) = in_line(text) {
+            let id = word.split(|&b| b == b'/').next().unwrap_or_default();
+            let id = parse_int(id).ok_or_else(|| text.unexpected("vertex", "a whole number", word))?;
+            vertices.push(self.vertex_id(id, text)?);
+        }
+        let Some(kind) = kind(vertices.len()) else {
+            return Err(text
+                .error(format!("{} vertices are too few for this element", vertices.len()))
+                .remedy("the file is damaged: get it again"));
+        };
+        self.cells.push(kind, vertices);
+        self.labels.push(self.label);
+        Ok(())
+    }
+
+    /// Ids count from 1; negative ones count back from the vertex given last.
+    fn vertex_id(&mut self, id: i64, text: &Text<'_>) -> Result<VertexId> {
+        let n = self.points.len();
+        let place = if id > 0 { id.checked_sub(1) } else { (n as i64).checked_add(id).filter(|_| id < 0) };
+        let place = place.and_then(|place| usize::try_from(place).ok()).filter(|&p| p < VertexId::MAX_COUNT);
+        let Some(place) = place else {
+            return Err(text
+                .error(format!("vertex {id} is named, but {n} vertices come before"))
+                .remedy("ids of vertices begin at 1; the file is damaged: get it again"));
+        };
+        if place >= n && self.ahead.is_none_or(|(largest, _)| place > largest) {
+            self.ahead = Some((place, text.line_number()));
+        }
+        Ok(VertexId::new(place))
+    }
+
+    fn group(&mut self, text: &mut Text<'_>) {
+        let mut words = Vec::new();
+        while let Some(word) = in_line(text) {
+            words.push(String::from_utf8_lossy(word));
+        }
+        let name = words.join(" ");
+        let known = self.names.iter().position(|known| *known == name);
+        if known.is_none() {
+            self.names.push(name);
+        }
+        self.label = known.map_or(self.names.len(), |i| i + 1) as i32;
+    }
+
+    fn into_mesh(self) -> Result<Mesh> {
+        if let Some((place, line)) = self.ahead.filter(|(place, _)| *place >= self.points.len()) {
+            return Err(Error::input(format!(
+                "vertex {} is named, but the file has {}",
+                place + 1,
+                self.points.len()
+            ))
+            .at(format!("line {line}"))
+            .remedy("the file is cut off or damaged: get it again"));
+        }
+        if self.points.is_empty() {
+            return Err(Error::input("a file without a vertex").remedy("export the surface again"));
+        }
+        let mut mesh = Mesh::new(self.points, self.cells);
+        if self.labels.iter().any(|&label| label != self.labels[0]) {
+            mesh.set_cell_field(Field::scalars("patch", self.labels));
+            let named = (1..).zip(self.names).filter(|(_, name)| !name.is_empty());
+            mesh.label_names.patches = named.collect();
+        }
+        Ok(mesh)
+    }
+}
+
+fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
+    let (mesh, mut lost) = keep_cells(mesh, "OBJ", |kind| statement(kind).is_some());
+    let labels = cell_labels(&mesh);
+    let names = mesh.patches().map(|p| p.names).unwrap_or_default();
+    lost.extend(lost_arrays("OBJ", "point", &mesh.point_data));
+    lost.extend(lost_cell_arrays("OBJ", &mesh, &labels));
+    lost.extend(lost_arrays("OBJ", "field", &mesh.field_data));
+    let mut out = Vec::new();
+    for point in &mesh.points {
+        out.extend(b"v ");
+        push_floats(&mut out, point);
+        out.push(b'\n');
+    }
+    let mut group = 0;
+    for (cell, kind, vertices) in mesh.cells.iter() {
+        let label = labels[cell.index()];
+        if label != group {
+            let name =
+                names.get(&label).map_or_else(|| label.to_string(), |n| n.replace(['\n', '\r', '#'], " "));
+            writeln!(out, "g {name}").expect("writing into memory does not fail");
+            group = label;
+        }
+        out.extend(statement(kind).expect("other kinds are left out").as_bytes());
+        for v in vertices {
+            write!(out, " {}", v.0 + 1).expect("writing into memory does not fail");
+        }
+        out.push(b'\n');
+    }
+    Ok(Written { files: vec![(String::new(), out)], lost })
+}
+
+fn statement(kind: CellKind) -> Option<&'static str> {
+    match kind {
+        CellKind::TRIANGLE | CellKind::QUAD | CellKind::POLYGON => Some("f"),
+        CellKind::LINE | CellKind::POLY_LINE => Some("l"),
+        CellKind::VERTEX | CellKind::POLY_VERTEX => Some("p"),
+        _ => None,
+    }
+}
