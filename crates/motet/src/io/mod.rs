@@ -1,7 +1,7 @@
 //! Floor 3: files. One format a file, one registry for all.
 
-mod labels;
 mod cell_labels;
+mod labels;
 mod medit;
 mod msh;
 mod node_order;

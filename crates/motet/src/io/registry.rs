@@ -205,9 +205,24 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
         return Err(Error::new(ErrorKind::Input, format!("{} files can only be written", format.name))
             .in_file(input.path));
     };
+    if !format.endings.contains(&"/") {
+        refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
+    }
     let mesh = read(input).map_err(|e| e.in_file(input.path))?;
     mesh.validate().map_err(|e| e.in_file(input.path))?;
     Ok(mesh)
+}
+
+/// Refuses what lies in place of a mesh, whatever the format.
+fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
+    if bytes.is_empty() {
+        return Err(Error::input("is empty (0 bytes)").remedy("get the file again"));
+    }
+    if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
+        return Err(Error::input("is a pointer of Git LFS, not the file itself")
+            .remedy("fetch the file: git lfs pull"));
+    }
+    Ok(())
 }
 
 /// Writes a mesh in the format that the ending tells. The file appears whole or
