@@ -8,6 +8,7 @@ mod exchange;
 pub mod facets;
 mod field;
 mod labels;
+pub mod shapes;
 mod volume;
 
 pub use boundary::Boundary;

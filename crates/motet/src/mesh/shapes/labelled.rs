@@ -1,0 +1,34 @@
+//! Volume cells and their boundary, labelled, as one mesh.
+
+use std::collections::BTreeMap;
+
+use crate::base::{Point, VertexId};
+use crate::mesh::{Boundary, Cells, Field, LabelNames, Mesh};
+
+/// The mesh of `cells`, all of one region, with its boundary facets behind them
+/// as cells of the patches. `patch_of` says to which of `patches` (names of
+/// labels 1, 2, ...) a facet belongs, by its place in the list.
+pub(super) fn labelled(
+    points: Vec<Point>,
+    mut cells: Cells,
+    region: &str,
+    patches: &[&str],
+    patch_of: impl Fn(&[VertexId]) -> usize,
+) -> Mesh {
+    let boundary = Boundary::of(&cells);
+    let mut region_ids = vec![1; cells.len()];
+    let mut patch_ids = vec![0; cells.len()];
+    for (facet, &kind) in boundary.facets.iter().zip(&boundary.kinds) {
+        cells.push(kind, facet.iter().copied());
+        region_ids.push(0);
+        patch_ids.push(patch_of(facet) as i32 + 1);
+    }
+    let names = |names: &[&str]| -> BTreeMap<i32, String> {
+        (1..).zip(names.iter().map(|name| (*name).to_owned())).collect()
+    };
+    Mesh {
+        cell_data: vec![Field::scalars("region", region_ids), Field::scalars("patch", patch_ids)],
+        label_names: LabelNames { regions: names(&[region]), patches: names(patches) },
+        ..Mesh::new(points, cells)
+    }
+}

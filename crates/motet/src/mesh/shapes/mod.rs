@@ -1,0 +1,32 @@
+//! Built-in geometry for demonstrations, tests and benchmarks.
+//!
+//! | shape | cells | patches |
+//! |---|---|---|
+//! | [`box_grid`] | tets | `xmin` `xmax` `ymin` `ymax` `zmin` `zmax` |
+//! | [`ball`] | tets | `sphere` |
+//! | [`sphere_in_box`] | tets | `sphere` `box` |
+//! | [`tube`] | tets; wedges or thin tets at the wall, if wanted | `wall` `inlet` `outlet` |
+//! | [`mixed`] | hexahedra, wedges, pyramids, tets | `surface` |
+//! | [`quadratic`] | quadratic tets, from any of the tet shapes | as they were |
+//!
+//! Each has a cell array `region` on its volume cells and `patch` on its surface
+//! cells, which cover the whole boundary, and names for both. Cells are positive
+//! and conforming, and the same arguments give the same bytes. Most are built of
+//! hexahedra that [`to_tets`] then splits.
+
+mod ball;
+mod boxes;
+mod cubed_sphere;
+mod labelled;
+mod mixed;
+mod quadratic;
+mod split;
+mod tube;
+
+pub use ball::ball;
+pub use boxes::box_grid;
+pub use cubed_sphere::sphere_in_box;
+pub use mixed::mixed;
+pub use quadratic::quadratic;
+pub use split::to_tets;
+pub use tube::{TubeOptions, WallCells, tube};
