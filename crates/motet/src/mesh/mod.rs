@@ -9,6 +9,8 @@ pub mod facets;
 mod field;
 mod labels;
 pub mod shapes;
+mod surface;
+mod triangulate;
 mod volume;
 
 pub use boundary::Boundary;
@@ -17,4 +19,6 @@ pub use cells::Cells;
 pub use exchange::{Mesh, bounds};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels};
+pub use surface::Surface;
+pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

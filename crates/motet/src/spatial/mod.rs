@@ -1,1 +1,5 @@
 //! Floor 3: searching in space.
+
+mod nearest;
+
+pub use nearest::{Closest, NearestTriangle};

@@ -1,0 +1,73 @@
+//! A surface of triangles, taken from a mesh: what distances and contact work on.
+
+use std::collections::BTreeMap;
+
+use crate::base::{CellId, Point, VertexId};
+use crate::mesh::triangulate::triangulate;
+use crate::mesh::{Boundary, CellKind, Labels, Mesh};
+
+/// Triangles over the points of a mesh. Vertices keep the ids they have there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// All points of the mesh, also those that no triangle uses.
+    pub points: Vec<Point>,
+    /// The triangles, turned as the cells they come from.
+    pub triangles: Vec<[VertexId; 3]>,
+    /// The cell each triangle is a part of: a surface cell, or for a boundary
+    /// that was found ([`Surface::boundary_of`]) the volume cell behind it.
+    pub triangle_to_cell: Vec<CellId>,
+    /// The patch of each triangle; 0 where it has none.
+    pub patches: Vec<i32>,
+    /// Names of patches, where there are any.
+    pub patch_names: BTreeMap<i32, String>,
+}
+
+impl Surface {
+    /// The surface cells of a mesh as triangles, with their patches: triangles,
+    /// quads, polygons with or without dents, strips, pixels, quadratic ones.
+    pub fn of(mesh: &Mesh) -> Self {
+        let labels = mesh.patches();
+        let cells = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
+        Self::from_cells(mesh, labels.as_ref(), cells)
+    }
+
+    /// The boundary of the volume cells of a mesh as triangles facing outward, all of patch 0.
+    pub fn boundary_of(mesh: &Mesh) -> Self {
+        let mut boundary = Boundary::of(&mesh.cells);
+        boundary.turn_outward(&mesh.cells, &mesh.points);
+        let facets = boundary.cells.iter().zip(&boundary.kinds).zip(boundary.facets.iter());
+        Self::from_cells(mesh, None, facets.map(|((&cell, &kind), vertices)| (cell, kind, vertices)))
+    }
+
+    fn from_cells<'a>(
+        mesh: &Mesh,
+        labels: Option<&Labels>,
+        cells: impl Iterator<Item = (CellId, CellKind, &'a [VertexId])>,
+    ) -> Self {
+        let mut surface = Self {
+            points: mesh.points.clone(),
+            patch_names: labels.map(|l| l.names.clone()).unwrap_or_default(),
+            ..Self::default()
+        };
+        for (cell, kind, vertices) in cells {
+            triangulate(kind, vertices, &mesh.points, &mut |t| surface.triangles.push(t));
+            let patch = labels.map_or(0, |l| l.ids[cell.index()]);
+            surface.triangle_to_cell.resize(surface.triangles.len(), cell);
+            surface.patches.resize(surface.triangles.len(), patch);
+        }
+        surface
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub fn corners(&self, triangle: usize) -> [Point; 3] {
+        self.triangles[triangle].map(|v| self.points[v.index()])
+    }
+
+    /// Every vertex of the triangles once, in rising order.
+    pub fn vertices(&self) -> Vec<VertexId> {
+        let mut seen = vec![false; self.points.len()];
+        self.triangles.as_flattened().iter().for_each(|v| seen[v.index()] = true);
+        (0..seen.len()).filter(|&v| seen[v]).map(VertexId::new).collect()
+    }
+}

@@ -1,0 +1,186 @@
+//! Nearest triangles: against brute force, and by what closest means.
+
+use motet::base::{Point, VertexId};
+use motet::geometry::triangle;
+use motet::geometry::vector::{add, distance, dot, norm, scale, sub};
+use motet::mesh::shapes::{TubeOptions, mixed, sphere_in_box, tube};
+use motet::mesh::{CellKind, Cells, Mesh, Surface, triangulate};
+use motet::spatial::NearestTriangle;
+use proptest::prelude::*;
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    prop_oneof![2 => -1.0f64..1.0, 1 => (-2i32..3).prop_map(|i| f64::from(i) / 2.0)]
+}
+
+fn points(n: usize) -> impl Strategy<Value = Vec<Point>> {
+    prop::collection::vec(prop::array::uniform3(coordinate()), n)
+}
+
+fn soup() -> impl Strategy<Value = Vec<[VertexId; 3]>> {
+    prop::collection::vec(prop::array::uniform3((0u32..12).prop_map(VertexId)), 1..60)
+}
+
+fn by_brute_force(points: &[Point], triangles: &[[VertexId; 3]], p: Point) -> (usize, f64) {
+    let distance_squared = |t: &[VertexId; 3]| {
+        let corners = t.map(|v| points[v.index()]);
+        let offset = sub(triangle::at(corners, triangle::closest(corners, p)), p);
+        dot(offset, offset)
+    };
+    let all = triangles.iter().map(distance_squared).enumerate();
+    all.min_by(|x, y| x.1.total_cmp(&y.1)).expect("there is a triangle")
+}
+
+proptest! {
+    #[test]
+    fn the_tree_finds_what_a_look_at_every_triangle_finds(
+        points in points(12), triangles in soup(), p in prop::array::uniform3(-2.0f64..2.0),
+        unit in prop::sample::select(vec![1.0, 1e-3, 1e-9, 1e6]),
+    ) {
+        let points: Vec<Point> = points.iter().map(|x| scale(*x, unit)).collect();
+        let p = scale(p, unit);
+        let found = NearestTriangle::new(&points, &triangles).closest(p).unwrap();
+        prop_assert_eq!((found.triangle, found.distance_squared), by_brute_force(&points, &triangles, p));
+        let weights = found.weights;
+        prop_assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)));
+        prop_assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        let corners = triangles[found.triangle].map(|v| points[v.index()]);
+        prop_assert_eq!(triangle::at(corners, weights), found.point);
+        let far = found.distance_squared.sqrt();
+        let tree = NearestTriangle::new(&points, &triangles);
+        prop_assert_eq!(tree.closest_within(p, far * 1.001 + 1e-300), Some(found));
+        prop_assert_eq!(tree.closest_within(p, far * 0.999), None.or((far == 0.0).then_some(found)));
+    }
+
+    #[test]
+    fn no_point_of_the_triangle_is_closer(
+        corners in prop::array::uniform3(prop::array::uniform3(coordinate())),
+        p in prop::array::uniform3(-2.0f64..2.0),
+    ) {
+        // c is the point of a convex set closest to p exactly when nothing of the
+        // set lies on p's side of the plane through c across p - c.
+        let c = triangle::at(corners, triangle::closest(corners, p));
+        let away = sub(p, c);
+        for corner in corners {
+            prop_assert!(dot(away, sub(corner, c)) <= 1e-13 * norm(away).max(1e-3), "{:?}", corner);
+        }
+    }
+}
+
+#[test]
+fn needles_and_points_count_as_what_they_are() {
+    let line = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
+    let ids = [[0, 1, 2].map(VertexId)];
+    let on_line = NearestTriangle::new(&line, &ids).closest([2.0, 1.0, 0.0]).unwrap();
+    assert_eq!((on_line.point, on_line.distance_squared), ([2.0, 0.0, 0.0], 1.0));
+    let dot = [[1.0, 2.0, 3.0]; 3];
+    assert_eq!(NearestTriangle::new(&dot, &ids).closest([1.0, 2.0, 5.0]).unwrap().distance_squared, 4.0);
+    let needle = [[0.0, 0.0, 0.0], [1.0, 1e-17, 0.0], [2.0, 0.0, 1e-18]];
+    let found = NearestTriangle::new(&needle, &ids).closest([1.5, 1.0, 0.0]).unwrap();
+    assert!((found.distance_squared - 1.0).abs() < 1e-15 && (found.point[0] - 1.5).abs() < 1e-15);
+}
+
+#[test]
+fn a_search_without_an_answer_says_so() {
+    assert!(NearestTriangle::new(&[], &[]).closest([0.0; 3]).is_none());
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0], [0.0, 1.0, 0.0]];
+    let tree = NearestTriangle::new(&corners, &[[0, 1, 2].map(VertexId), [0, 1, 3].map(VertexId)]);
+    assert_eq!(tree.closest([0.1, 0.1, 1.0]).map(|c| c.triangle), Some(1));
+    assert!(tree.closest([f64::NAN, 0.0, 0.0]).is_none());
+    assert!(tree.closest([f64::INFINITY, 0.0, 0.0]).is_none());
+    let huge = [[-3.4e38, 0.0, 0.0], [3.4e38, 0.0, 0.0], [0.0, 3.4e38, 0.0]];
+    let found = NearestTriangle::new(&huge, &[[0, 1, 2].map(VertexId)]).closest([0.0, 1.0, 2e38]).unwrap();
+    assert!((found.distance_squared / 4e76 - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn distances_to_a_sphere_are_those_of_the_radius() {
+    let mesh = sphere_in_box(12, 2);
+    let mut surface = Surface::of(&mesh);
+    let sphere = mesh.patches().unwrap().find("sphere").unwrap();
+    let mut patches = surface.patches.iter();
+    surface.triangles.retain(|_| patches.next() == Some(&sphere));
+    let tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    for p in &mesh.points {
+        let found = tree.closest(*p).unwrap().distance_squared.sqrt();
+        // The surface lies within the sphere by at most the sagitta of its longest edge.
+        let exact = norm(*p) - 1.0;
+        assert!((exact - 1e-12..exact + 0.02).contains(&found), "{found} {exact}");
+    }
+}
+
+fn area_of(surface: &Surface) -> f64 {
+    (0..surface.triangles.len()).map(|t| triangle::area(surface.corners(t))).sum()
+}
+
+/// Six times the enclosed volume, signed.
+fn enclosed(surface: &Surface) -> f64 {
+    let cone = |t| {
+        let corners = surface.corners(t);
+        dot(triangle::area_vector(corners), triangle::centroid(corners)) / 3.0
+    };
+    (0..surface.triangles.len()).map(cone).sum()
+}
+
+#[test]
+fn the_surface_cells_and_the_boundary_found_are_one_surface() {
+    let wedges = TubeOptions {
+        wall_layers: 2,
+        wall_cells: motet::mesh::shapes::WallCells::Wedges,
+        ..TubeOptions::default()
+    };
+    for mesh in [mixed(2), tube(&wedges), sphere_in_box(4, 2)] {
+        let (given, found) = (Surface::of(&mesh), Surface::boundary_of(&mesh));
+        assert_eq!(given.triangles, found.triangles);
+        let volume: f64 = motet::mesh::cell_volumes(&mesh.cells, &mesh.points).iter().sum();
+        assert!((enclosed(&given) - volume).abs() < 1e-11 * volume);
+        assert!(given.patches.iter().all(|&p| p != 0) && !given.patch_names.is_empty());
+        assert_eq!(given.vertices(), motet::mesh::Boundary::of(&mesh.cells).vertices);
+    }
+    assert!((area_of(&Surface::of(&mixed(2))) - 14.0).abs() < 1e-12);
+}
+
+#[test]
+fn surface_cells_of_every_kind_keep_their_area_and_their_side() {
+    // The unit square, in every way in which VTK can hold it; area vector (0, 0, 1).
+    let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
+    let middle = |i: usize, j: usize| scale(add(square[i], square[j]), 0.5);
+    let middles = [middle(0, 1), middle(1, 2), middle(2, 3), middle(3, 0)];
+    let with = |extra: &[Point]| square.iter().chain(extra).copied().collect::<Vec<_>>();
+    let dented = vec![[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [1., 0.5, 0.], [0., 1., 0.], [0.5, 0.4, 0.]];
+    let cases = [
+        (CellKind::QUAD, with(&[]), 1.0),
+        (CellKind::PIXEL, vec![square[0], square[1], square[3], square[2]], 1.0),
+        (CellKind::POLYGON, with(&[]), 1.0),
+        (CellKind::TRIANGLE_STRIP, vec![square[0], square[1], square[3], square[2]], 1.0),
+        (CellKind::QUADRATIC_QUAD, with(&middles), 1.0),
+        (CellKind::BIQUADRATIC_QUAD, with(&[&middles[..], &[middle(0, 2)]].concat()), 1.0),
+        (CellKind::QUADRATIC_LINEAR_QUAD, with(&[middles[0], middles[2]]), 1.0),
+        (CellKind::QUADRATIC_POLYGON, with(&middles), 1.0),
+        (CellKind::TRIANGLE, square[..3].to_vec(), 0.5),
+        (
+            CellKind::QUADRATIC_TRIANGLE,
+            [&square[..3], &[middle(0, 1), middle(1, 2), middle(2, 0)]].concat(),
+            0.5,
+        ),
+        (
+            CellKind::BIQUADRATIC_TRIANGLE,
+            [&square[..3], &[middle(0, 1), middle(1, 2), middle(2, 0), [0.6, 0.4, 0.0]]].concat(),
+            0.5,
+        ),
+        (CellKind::POLYGON, dented, 1.25),
+    ];
+    for (kind, points, area) in cases {
+        let ids: Vec<_> = (0..points.len()).map(VertexId::new).collect();
+        let mut cells = Cells::new();
+        cells.push(kind, ids.iter().copied());
+        let surface = Surface::of(&Mesh::new(points.clone(), cells));
+        assert_eq!(surface.vertices(), ids, "{}", kind.label());
+        let vectors = (0..surface.triangles.len()).map(|t| triangle::area_vector(surface.corners(t)));
+        assert!(vectors.clone().all(|v| v[2] > 0.0), "{} {:?}", kind.label(), surface.triangles);
+        assert!(distance(vectors.fold([0.0; 3], add), [0.0, 0.0, area]) < 1e-15, "{}", kind.label());
+        assert_eq!(surface.triangle_to_cell.len(), surface.triangles.len());
+    }
+    let mut none = 0;
+    triangulate(CellKind::LINE, &[VertexId(0), VertexId(1)], &square, &mut |_| none += 1);
+    assert_eq!(none, 0);
+}
