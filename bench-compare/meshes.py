@@ -65,6 +65,28 @@ def sphere_in_box(name, folder):
     path = os.path.join(folder, f"sphere_in_box_{name}.npz")
     if not os.path.exists(path):
         points, tets = build(*SIZES[name])
-        np.savez(path, points=points, tets=tets)
+        sphere, walls = boundary_vertices(points)
+        np.savez(path, points=points, tets=tets, sphere=sphere, walls=walls)
     kept = np.load(path)
-    return kept["points"], kept["tets"], *boundary_vertices(kept["points"])
+    return kept["points"], kept["tets"], kept["sphere"], kept["walls"]
+
+
+def vtu(name, folder):
+    """The same mesh as a VTU file, for programs that read files; its path."""
+    path = os.path.join(folder, f"sphere_in_box_{name}.vtu")
+    points, tets, _, _ = sphere_in_box(name, folder)
+    if not os.path.exists(path):
+        import vtk
+        from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+
+        grid, places, cells = vtk.vtkUnstructuredGrid(), vtk.vtkPoints(), vtk.vtkCellArray()
+        places.SetData(numpy_to_vtk(points, deep=True))
+        cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 4 * len(tets) + 1, 4), deep=True),
+                      numpy_to_vtkIdTypeArray(tets.ravel().astype(np.int64), deep=True))
+        grid.SetPoints(places)
+        grid.SetCells(vtk.VTK_TETRA, cells)
+        writer = vtk.vtkXMLUnstructuredGridWriter()
+        writer.SetFileName(path)
+        writer.SetInputData(grid)
+        writer.Write()
+    return path
