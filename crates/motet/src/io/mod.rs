@@ -1,6 +1,7 @@
 //! Floor 3: files. One format a file, one registry for all.
 
 mod cell_labels;
+mod dolfin;
 mod labels;
 mod medit;
 mod msh;

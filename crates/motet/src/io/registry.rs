@@ -125,6 +125,7 @@ const FORMATS: &[Format] = &[
     super::obj::FORMAT,
     super::medit::FORMAT,
     super::tetgen::FORMAT,
+    super::dolfin::FORMAT,
 ];
 
 /// Formats that are known only to be refused with advice.
