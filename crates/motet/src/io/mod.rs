@@ -12,6 +12,7 @@ mod replace;
 mod scalar;
 mod select;
 mod series;
+mod simvascular;
 mod stl;
 mod tags;
 mod tetgen;

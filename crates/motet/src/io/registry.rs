@@ -126,6 +126,7 @@ const FORMATS: &[Format] = &[
     super::medit::FORMAT,
     super::tetgen::FORMAT,
     super::dolfin::FORMAT,
+    super::simvascular::FORMAT,
 ];
 
 /// Formats that are known only to be refused with advice.
