@@ -3,10 +3,14 @@
 mod cell_labels;
 mod dolfin;
 mod labels;
+mod latin;
+mod legacy;
 mod medit;
 mod msh;
 mod node_order;
 mod obj;
+mod polygonal;
+mod polyhedra;
 mod registry;
 mod replace;
 mod scalar;

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::base::{Error, ErrorKind, Result};
 use crate::io::replace::replace_all;
-use crate::io::vtkxml;
+use crate::io::{legacy, vtkxml};
 use crate::mesh::Mesh;
 
 /// What a reader gets: the whole file, and its path for formats that lie in several files.
@@ -120,6 +120,7 @@ pub fn formats() -> &'static [Format] {
 const FORMATS: &[Format] = &[
     vtkxml::VTU,
     vtkxml::VTP,
+    legacy::VTK,
     super::msh::FORMAT,
     super::stl::FORMAT,
     super::obj::FORMAT,

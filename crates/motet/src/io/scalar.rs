@@ -1,8 +1,9 @@
 //! Types of numbers as files have them, and numbers to bytes and back.
 
 use std::borrow::Cow;
+use std::io::Write as _;
 
-use crate::base::Result;
+use crate::base::{Point, Result};
 use crate::mesh::Values;
 
 /// Which way round the bytes of a number stand.
@@ -68,6 +69,22 @@ macro_rules! scalars {
             }
         }
 
+        /// The bytes of all numbers, the big end first; of texts, none.
+        pub(super) fn big_bytes(values: &Values) -> Vec<u8> {
+            match values {
+                $(Values::$name(v) => v.iter().flat_map(|x| x.to_be_bytes()).collect(),)*
+                Values::Text(_) => Vec::new(),
+            }
+        }
+
+        /// Adds numbers as text; texts are left out.
+        pub(super) fn write_text(out: &mut Vec<u8>, values: &Values) {
+            match values {
+                $(Values::$name(v) => write_lines(out, v),)*
+                Values::Text(_) => {}
+            }
+        }
+
         /// The given rows, in the given order.
         pub(super) fn select_rows(values: &Values, components: usize, rows: &[usize]) -> Values {
             let places = || rows.iter().flat_map(|&row| row * components..(row + 1) * components);
@@ -117,6 +134,18 @@ impl Scalar {
     }
 }
 
+/// Adds numbers as text, in lines of up to twelve; a float with the fewest
+/// digits that bring it back.
+pub(super) fn write_lines<T: std::fmt::Debug>(out: &mut Vec<u8>, values: &[T]) {
+    for line in values.chunks(12) {
+        for value in line {
+            write!(out, "{value:?} ").expect("memory takes everything");
+        }
+        out.pop();
+        out.push(b'\n');
+    }
+}
+
 /// Turns every number of `size` bytes round.
 pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
     fn turn<const N: usize>(bytes: &mut [u8]) {
@@ -128,6 +157,47 @@ pub(super) fn swap_all(bytes: &mut [u8], size: usize) {
         8 => turn::<8>(bytes),
         _ => {}
     }
+}
+
+/// Values as points in space; `None` for texts.
+pub(super) fn to_points(values: Values) -> Option<Vec<Point>> {
+    let flat = match values {
+        Values::F64(flat) => flat,
+        other => other.to_f64()?,
+    };
+    // Without a copy, unless the room behind the values is no whole point.
+    Some(
+        bytemuck::allocation::try_cast_vec(flat).unwrap_or_else(|(_, flat)| flat.as_chunks::<3>().0.to_vec()),
+    )
+}
+
+/// Adds whole numbers of 32 or 64 bits as ids; `false` when one is negative or too large.
+pub(super) fn extend_ids(ids: &mut Vec<u32>, kind: Scalar, order: ByteOrder, bytes: &[u8]) -> bool {
+    // The bits of all numbers together, so that the loop has no branch.
+    let mut bits = 0u64;
+    let mut add = |wide: u64| {
+        bits |= wide;
+        wide as u32
+    };
+    let (fours, eights) = (bytes.as_chunks::<4>().0, bytes.as_chunks::<8>().0);
+    match (kind, order) {
+        (Scalar::I32, ByteOrder::Little) => {
+            ids.extend(fours.iter().map(|&b| add(i32::from_le_bytes(b) as u64)))
+        }
+        (Scalar::I32, ByteOrder::Big) => ids.extend(fours.iter().map(|&b| add(i32::from_be_bytes(b) as u64))),
+        (Scalar::U32, ByteOrder::Little) => {
+            ids.extend(fours.iter().map(|&b| add(u32::from_le_bytes(b).into())))
+        }
+        (Scalar::U32, ByteOrder::Big) => ids.extend(fours.iter().map(|&b| add(u32::from_be_bytes(b).into()))),
+        (Scalar::I64 | Scalar::U64, ByteOrder::Little) => {
+            ids.extend(eights.iter().map(|&b| add(u64::from_le_bytes(b))));
+        }
+        (Scalar::I64 | Scalar::U64, ByteOrder::Big) => {
+            ids.extend(eights.iter().map(|&b| add(u64::from_be_bytes(b))))
+        }
+        _ => return false,
+    }
+    bits >> 32 == 0
 }
 
 /// Whole numbers as 32-bit ids. `Err` has the first that is none: negative or

@@ -4,7 +4,7 @@
 /// motet itself can do nothing with.
 ///
 /// Vertices of a cell are in VTK's order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct CellKind(pub u8);
 

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use crate::base::{Error, Point, Result};
 use crate::io::Compression;
-use crate::io::scalar::{ByteOrder, Scalar, to_ids};
+use crate::io::latin::latin_or_utf8;
+use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
 use crate::io::vtkxml::payload::{Layout, Payload};
@@ -173,6 +174,45 @@ impl<'s, 'a> Array<'s, 'a> {
 
     /// The values as ids of points or cells, or as places in a list of them.
     pub(super) fn ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
+        self.ids_behind(&[], n_rows)
+    }
+
+    /// Where each of `n` lists starts and the last one ends, from where each ends.
+    pub(super) fn offsets(&self, n: usize) -> Result<Vec<u32>> {
+        self.ids_behind(&[0], Some(n))
+    }
+
+    fn ids_behind(&self, first: &[u32], n_rows: Option<usize>) -> Result<Vec<u32>> {
+        if let Some(ids) = self.fast_ids(first, n_rows).map_err(|e| e.at(self.element.place()))? {
+            return Ok(ids);
+        }
+        let ids = self.slow_ids(n_rows)?;
+        Ok(if first.is_empty() { ids } else { [first, &ids].concat() })
+    }
+
+    /// Binary ids of the usual types, converted block by block as they are
+    /// unpacked; `None` for all else, and where one does not fit.
+    fn fast_ids(&self, first: &[u32], n_rows: Option<usize>) -> Result<Option<Vec<u32>>> {
+        let Type::Number(kind @ (Scalar::I32 | Scalar::U32 | Scalar::I64 | Scalar::U64)) = self.kind else {
+            return Ok(None);
+        };
+        if n_rows == Some(0) || self.element.attribute("format") == Some("ascii") {
+            return Ok(None);
+        }
+        let Content::Binary(payload) = self.content()? else { return Ok(None) };
+        let n = payload.len() / kind.size();
+        let fits = payload.len().is_multiple_of(kind.size()) && payload.block().is_multiple_of(kind.size());
+        if !fits || n_rows.is_some_and(|rows| rows.checked_mul(self.components) != Some(n)) {
+            return Ok(None);
+        }
+        let mut ids = Vec::with_capacity(first.len() + n);
+        ids.extend_from_slice(first);
+        let mut fits = true;
+        payload.for_each_block(|block| fits &= extend_ids(&mut ids, kind, self.file.layout.order, block))?;
+        Ok(fits.then_some(ids))
+    }
+
+    fn slow_ids(&self, n_rows: Option<usize>) -> Result<Vec<u32>> {
         to_ids(&self.values(n_rows)?).map_err(|bad| {
             Error::input(format!("{bad} is no id"))
                 .at(self.element.place())
@@ -186,14 +226,8 @@ impl<'s, 'a> Array<'s, 'a> {
             return Err(Error::input(format!("points have {} components, 3 are needed", self.components))
                 .at(self.element.place()));
         }
-        let values = self.values(Some(n))?;
-        let flat = match values {
-            Values::F64(flat) => flat,
-            other => other
-                .to_f64()
-                .ok_or_else(|| Error::input("points are texts, not numbers").at(self.element.place()))?,
-        };
-        Ok(flat.as_chunks::<3>().0.to_vec())
+        to_points(self.values(Some(n))?)
+            .ok_or_else(|| Error::input("points are texts, not numbers").at(self.element.place()))
     }
 
     fn read(&self, n_rows: Option<usize>) -> Result<Values> {
@@ -331,14 +365,6 @@ fn split_texts(bytes: &[u8], expected: Option<usize>) -> Result<Values> {
     }
     match expected {
         Some(expected) if expected != parts.len() => Err(wrong_count(parts.len(), expected)),
-        _ => Ok(Values::Text(parts.into_iter().map(text).collect())),
-    }
-}
-
-/// UTF-8 where it is; else each byte a character, as in Latin-1.
-pub(in crate::io) fn text(bytes: &[u8]) -> String {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+        _ => Ok(Values::Text(parts.into_iter().map(latin_or_utf8).collect())),
     }
 }

@@ -135,13 +135,39 @@ impl<'a> Payload<'a> {
         let mut unpacker = Unpacker::new(self.compression);
         let mut from = 0;
         for ((i, &size), out) in self.packed.iter().enumerate().zip(out.chunks_mut(self.block)) {
-            let packed = &data[from..from + size];
-            unpacker
-                .unpack(packed, out)
-                .map_err(|what| damaged(format!("block {i} of {}: {what}", self.packed.len())))?;
+            self.unpack(&mut unpacker, i, &data[from..from + size], out)?;
             from += size;
         }
         Ok(())
+    }
+
+    /// Bytes that are unpacked at a time.
+    pub(super) fn block(&self) -> usize {
+        self.block
+    }
+
+    /// Calls `each` with all bytes of the array, a block at a time.
+    pub(super) fn for_each_block(&self, mut each: impl FnMut(&[u8])) -> Result<()> {
+        if self.compression == Compression::None {
+            each(&self.to_bytes()?);
+            return Ok(());
+        }
+        let mut unpacker = Unpacker::new(self.compression);
+        let mut unpacked = vec![0; self.block.min(self.len)];
+        let (mut from, mut left) = (self.start, self.len);
+        for (i, &size) in self.packed.iter().enumerate() {
+            let out = &mut unpacked[..self.block.min(left)];
+            self.unpack(&mut unpacker, i, &self.bytes[from..from + size], out)?;
+            each(out);
+            from += size;
+            left -= out.len();
+        }
+        Ok(())
+    }
+
+    fn unpack(&self, unpacker: &mut Unpacker, i: usize, packed: &[u8], out: &mut [u8]) -> Result<()> {
+        let n = self.packed.len();
+        unpacker.unpack(packed, out).map_err(|what| damaged(format!("block {i} of {n}: {what}")))
     }
 
     /// All bytes of the array.

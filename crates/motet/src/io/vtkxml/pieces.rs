@@ -19,14 +19,16 @@ pub(super) fn read_pieces<'a>(
     for element in data_set.children_named("Piece") {
         field_data.extend(file.fields(element.child("FieldData"), None)?);
         let piece = read_piece(file, element)?;
-        // Before anything relies on it: ids and lengths are those of this piece.
-        piece.validate().map_err(|e| e.at(element.place()))?;
         let empty = piece.points.is_empty() && piece.cells.is_empty();
         whole = match whole {
             None => Some(piece),
             Some(whole) if empty => Some(whole),
             Some(whole) if whole.points.is_empty() && whole.cells.is_empty() => Some(piece),
-            Some(whole) => Some(join(whole, piece).map_err(|e| e.at(element.place()))?),
+            Some(whole) => {
+                // Before ids are raised: afterwards they would be found among another piece's points.
+                piece.validate().and_then(|()| whole.validate()).map_err(|e| e.at(element.place()))?;
+                Some(join(whole, piece).map_err(|e| e.at(element.place()))?)
+            }
         };
     }
     let mut mesh = whole.unwrap_or_default();

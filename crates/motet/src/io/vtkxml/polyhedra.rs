@@ -11,6 +11,7 @@
 //! The old one is written: every VTK reads it.
 
 use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::polyhedra::{face_stream, next_polyhedron};
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
 use crate::mesh::{CellKind, Cells};
@@ -35,20 +36,6 @@ fn read_old(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<
         all.push(faces.ok_or_else(|| misfit(cell))?);
     }
     Ok(all)
-}
-
-/// Takes the faces of one polyhedron, in the old layout, off the front of `stream`.
-pub(in crate::io) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
-    let (&n_faces, mut rest) = stream.split_first()?;
-    let mut faces = Csr::default();
-    for _ in 0..n_faces {
-        let (&n, behind) = rest.split_first()?;
-        let (face, behind) = behind.split_at_checked(n as usize)?;
-        faces.push(face.iter().map(|&v| VertexId(v)));
-        rest = behind;
-    }
-    *stream = rest;
-    Some(faces)
 }
 
 fn read_new(file: &File<'_>, cells: &Element<'_>, kinds: &[CellKind]) -> Result<Vec<Csr<VertexId>>> {
@@ -94,11 +81,7 @@ pub(super) fn old_layout(cells: &Cells) -> (Vec<i64>, Vec<i64>) {
             ends.push(-1);
             continue;
         };
-        stream.push(faces.len() as i64);
-        for face in faces.iter() {
-            stream.push(face.len() as i64);
-            stream.extend(face.iter().map(|v| i64::from(v.0)));
-        }
+        stream.extend(face_stream(faces).into_iter().map(i64::from));
         ends.push(stream.len() as i64);
     }
     (stream, ends)

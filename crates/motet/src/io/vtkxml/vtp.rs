@@ -2,6 +2,7 @@
 
 use crate::base::{CellId, Csr, Error, Result, VertexId};
 use crate::io::labels::label_fields;
+use crate::io::polygonal::{SECTIONS, kind_in_section, section_of};
 use crate::io::scalar::select_rows;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
@@ -12,9 +13,6 @@ use crate::io::{WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 const KIND: &str = "PolyData";
-
-/// The sections, in the order in which VTK counts the cells of polygonal data.
-const SECTIONS: [&str; 4] = ["Verts", "Lines", "Polys", "Strips"];
 
 pub(super) fn read(file: &File<'_>) -> Result<Mesh> {
     read_pieces(file, read_piece)
@@ -34,7 +32,7 @@ fn read_piece<'a>(file: &File<'a>, piece: &Element<'a>) -> Result<Mesh> {
 
 fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
     let mut cells = Cells::new();
-    for (section, name) in SECTIONS.iter().enumerate() {
+    for (section, (name, _)) in SECTIONS.iter().enumerate() {
         let n = piece.count(&format!("NumberOf{name}"))?.unwrap_or(0);
         if n == 0 {
             continue;
@@ -44,8 +42,7 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
                 .at(piece.place())
                 .remedy("the file is damaged: write it again"));
         };
-        let mut offsets = file.needed_array(element, "offsets")?.ids(Some(n))?;
-        offsets.insert(0, 0);
+        let offsets = file.needed_array(element, "offsets")?.offsets(n)?;
         let ids = file.needed_array(element, "connectivity")?.ids(None)?;
         let n_ids = ids.len();
         if cells.connectivity().items().len() + n_ids > VertexId::MAX_COUNT {
@@ -57,46 +54,21 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>) -> Result<Cells> {
                 .at(element.place())
                 .remedy("the file is damaged: write it again")
         })?;
-        lists.iter().for_each(|list| cells.push(kind(section, list.len()), list.iter().copied()));
+        lists.iter().for_each(|list| cells.push(kind_in_section(section, list.len()), list.iter().copied()));
     }
     Ok(cells)
 }
 
-/// The kind of a cell of a section, as VTK tells it.
-pub(in crate::io) fn kind(section: usize, n_vertices: usize) -> CellKind {
-    match (section, n_vertices) {
-        (_, 0) => CellKind::EMPTY,
-        (0, 1) => CellKind::VERTEX,
-        (0, _) => CellKind::POLY_VERTEX,
-        (1, 2) => CellKind::LINE,
-        (1, _) => CellKind::POLY_LINE,
-        (2, 3) => CellKind::TRIANGLE,
-        (2, 4) => CellKind::QUAD,
-        (2, _) => CellKind::POLYGON,
-        _ => CellKind::TRIANGLE_STRIP,
-    }
-}
-
-fn section_of(kind: CellKind) -> Option<usize> {
-    match kind {
-        CellKind::VERTEX | CellKind::POLY_VERTEX => Some(0),
-        CellKind::LINE | CellKind::POLY_LINE => Some(1),
-        CellKind::TRIANGLE | CellKind::POLYGON | CellKind::PIXEL | CellKind::QUAD => Some(2),
-        CellKind::TRIANGLE_STRIP => Some(3),
-        _ => None,
-    }
-}
-
 /// The cells of a mesh by section, and what that changes.
-pub(in crate::io) struct Sections {
-    pub(in crate::io) lists: [Csr<VertexId>; 4],
+struct Sections {
+    lists: [Csr<VertexId>; 4],
     /// The cells in the order of the file; `None` where that is the mesh's own.
     order: Option<Vec<usize>>,
-    pub(in crate::io) lost: Vec<String>,
+    lost: Vec<String>,
 }
 
 impl Sections {
-    pub(in crate::io) fn of(cells: &Cells) -> Result<Self> {
+    fn of(cells: &Cells) -> Result<Self> {
         let mut sorted: [Vec<usize>; 4] = Default::default();
         let mut left_out = Vec::new();
         for (cell, kind, _) in cells.iter() {
@@ -131,7 +103,7 @@ impl Sections {
     }
 
     /// A cell array in the order of the file.
-    pub(in crate::io) fn sorted(&self, field: &Field) -> Field {
+    fn sorted(&self, field: &Field) -> Field {
         match &self.order {
             None => field.clone(),
             Some(order) => {
@@ -169,7 +141,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let counts: String = SECTIONS
         .iter()
         .zip(&sections.lists)
-        .map(|(name, l)| format!(" NumberOf{name}=\"{}\"", l.len()))
+        .map(|((name, _), l)| format!(" NumberOf{name}=\"{}\"", l.len()))
         .collect();
     writer.open(&format!("Piece NumberOfPoints=\"{}\"{counts}", mesh.points.len()));
     writer.fields("PointData", &mesh.point_data.iter().collect::<Vec<_>>(), false)?;
@@ -177,7 +149,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     writer.open("Points");
     writer.array("Points", 3, None, Data::Points(&mesh.points))?;
     writer.close("Points");
-    for (name, lists) in SECTIONS.iter().zip(&sections.lists) {
+    for ((name, _), lists) in SECTIONS.iter().zip(&sections.lists) {
         writer.open(name);
         writer.array("connectivity", 1, None, Data::Ids(plain(lists.items())))?;
         writer.array("offsets", 1, None, Data::Ids(ends(lists)))?;

@@ -6,9 +6,9 @@ use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
 use crate::io::vtkxml::pieces::read_pieces;
 use crate::io::vtkxml::polyhedra;
-use crate::io::vtkxml::writer::{Data, Writer, ends, numbers, plain};
+use crate::io::vtkxml::writer::{Data, Writer, ends, plain};
 use crate::io::{WriteOptions, Written};
-use crate::mesh::{CellKind, Cells, Field, Mesh};
+use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 const KIND: &str = "UnstructuredGrid";
 
@@ -52,11 +52,8 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
             .at(piece.place())
             .remedy("the file is damaged: write it again"));
     };
-    let kinds = file.needed_array(element, "types")?.ids(Some(n))?;
-    let kinds = kinds.iter().map(|&k| u8::try_from(k).map(CellKind)).collect::<Result<Vec<_>, _>>();
-    let kinds = kinds.map_err(|_| Error::input("a cell type is beyond 255").at(element.place()))?;
-    let mut offsets = file.needed_array(element, "offsets")?.ids(Some(n))?;
-    offsets.insert(0, 0);
+    let kinds = read_kinds(file, element, n)?;
+    let offsets = file.needed_array(element, "offsets")?.offsets(n)?;
     let ids = file.needed_array(element, "connectivity")?.ids(None)?;
     let vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
     if !kinds.contains(&CellKind::POLYHEDRON) {
@@ -64,6 +61,17 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
     }
     let faces = polyhedra::read(file, element, &kinds)?;
     cells_with_polyhedra(&kinds, offsets, vertices, faces).map_err(|e| e.at(element.place()))
+}
+
+fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<CellKind>> {
+    let array = file.needed_array(element, "types")?;
+    let numbers = match array.values(Some(n))? {
+        Values::U8(numbers) => Some(numbers),
+        other => other.to_i64().and_then(|wide| wide.into_iter().map(|k| u8::try_from(k).ok()).collect()),
+    };
+    let numbers =
+        numbers.ok_or_else(|| Error::input("a cell type is not in 0 to 255").at(element.place()))?;
+    Ok(bytemuck::allocation::cast_vec(numbers))
 }
 
 fn cells_with_polyhedra(
@@ -89,7 +97,6 @@ fn cells_with_polyhedra(
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let (label_cells, label_names) = label_fields(mesh);
-    let kinds = numbers(mesh.cells.kinds());
     let mut writer = Writer::new(KIND, options);
     let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();
     if !field_data.is_empty() {
@@ -108,7 +115,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     writer.open("Cells");
     writer.array("connectivity", 1, None, Data::Ids(plain(mesh.cells.connectivity().items())))?;
     writer.array("offsets", 1, None, Data::Ids(ends(mesh.cells.connectivity())))?;
-    writer.array("types", 1, None, Data::Bytes(&kinds))?;
+    writer.array("types", 1, None, Data::Bytes(bytemuck::cast_slice(mesh.cells.kinds())))?;
     if !mesh.cells.polyhedron_faces().is_empty() {
         let (faces, face_ends) = polyhedra::old_layout(&mesh.cells);
         writer.array("faces", 1, None, Data::Int64(faces))?;

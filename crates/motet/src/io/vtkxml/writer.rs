@@ -1,16 +1,15 @@
 //! Elements and arrays of a VTK XML file, written out.
 
 use std::borrow::Cow;
-use std::io::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::base::{Csr, Point, Result, VertexId};
-use crate::io::scalar::native_bytes;
+use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Packer, vtk_name};
 use crate::io::{Compression, Encoding, WriteOptions};
-use crate::mesh::{CellKind, Field, Values};
+use crate::mesh::{Field, Values};
 
 /// Bytes packed at a time: VTK's own choice, and the reach of zlib's window.
 const BLOCK: usize = 32 << 10;
@@ -281,41 +280,15 @@ fn write_raw(
     Ok(header)
 }
 
-/// Numbers as text, in lines of up to twelve; a float with the fewest digits that bring it back.
+/// As text; texts as the numbers of their bytes.
 fn write_ascii(out: &mut Vec<u8>, data: &Data<'_>) {
     match data {
-        Data::Values(values) => write_ascii_values(out, values),
-        Data::Points(points) => lines(out, points.as_flattened(), |out, x| write!(out, "{x:?}")),
-        Data::Ids(ids) => lines(out, ids, |out, x| write!(out, "{x}")),
-        Data::Int64(values) => lines(out, values, |out, x| write!(out, "{x}")),
-        Data::Bytes(bytes) => lines(out, bytes, |out, x| write!(out, "{x}")),
-    }
-}
-
-fn write_ascii_values(out: &mut Vec<u8>, values: &Values) {
-    match values {
-        Values::I8(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::U8(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::I16(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::U16(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::I32(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::U32(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::I64(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::U64(v) => lines(out, v, |out, x| write!(out, "{x}")),
-        Values::F32(v) => lines(out, v, |out, x| write!(out, "{x:?}")),
-        Values::F64(v) => lines(out, v, |out, x| write!(out, "{x:?}")),
-        Values::Text(_) => lines(out, &native_bytes(values), |out, x| write!(out, "{x}")),
-    }
-}
-
-fn lines<T>(out: &mut Vec<u8>, values: &[T], write: impl Fn(&mut Vec<u8>, &T) -> std::io::Result<()>) {
-    for line in values.chunks(12) {
-        for value in line {
-            write(out, value).expect("writing to memory does not fail");
-            out.push(b' ');
-        }
-        out.pop();
-        out.push(b'\n');
+        Data::Values(values @ Values::Text(_)) => write_lines(out, &native_bytes(values)),
+        Data::Values(values) => write_text(out, values),
+        Data::Points(points) => write_lines(out, points.as_flattened()),
+        Data::Ids(ids) => write_lines(out, ids),
+        Data::Int64(values) => write_lines(out, values),
+        Data::Bytes(bytes) => write_lines(out, bytes),
     }
 }
 
@@ -327,9 +300,4 @@ pub(super) fn plain(ids: &[VertexId]) -> &[u32] {
 /// Where each list ends.
 pub(super) fn ends(lists: &Csr<VertexId>) -> &[u32] {
     &lists.offsets()[1..]
-}
-
-/// VTK's numbers of kinds of cells.
-pub(super) fn numbers(kinds: &[CellKind]) -> Vec<u8> {
-    kinds.iter().map(|k| k.0).collect()
 }

@@ -1,0 +1,9 @@
+//! Bytes that should be text.
+
+/// UTF-8 where it is; else each byte a character, as in Latin-1.
+pub(super) fn latin_or_utf8(bytes: &[u8]) -> String {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+    }
+}

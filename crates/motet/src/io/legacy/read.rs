@@ -1,0 +1,367 @@
+//! The sections of a legacy VTK file, put together to a mesh.
+
+use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::labels::take_label_names;
+use crate::io::legacy::arrays::{Type, decode, skip_metadata, values};
+use crate::io::legacy::source::{Source, short};
+use crate::io::polygonal::{SECTIONS, kind_in_section};
+use crate::io::polyhedra::next_polyhedron;
+use crate::io::registry::{Input, Notes};
+use crate::io::scalar::{Scalar, to_ids, to_points};
+use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
+
+const TABLES: &str = "lookup tables were left out: colours are no part of a mesh";
+const NAMES: &str = "names of single components of arrays were left out";
+
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
+    let mut source = Source::new(input.bytes);
+    let grid = read_header(&mut source)?;
+    let mut reader =
+        Reader { source, notes: input.notes, mesh: Mesh::default(), lists: Default::default(), kinds: None };
+    reader.read_sections(grid)?;
+    let mut mesh = reader.mesh;
+    take_label_names(&mut mesh);
+    Ok(mesh)
+}
+
+/// Whether the file holds an unstructured grid; else it holds polygonal data.
+fn read_header(source: &mut Source<'_>) -> Result<bool> {
+    let first = source.line().unwrap_or_default();
+    if !first.to_ascii_lowercase().starts_with(b"# vtk datafile version") {
+        let xml = first.trim_ascii_start().starts_with(b"<");
+        return Err(Error::input("the first line is not `# vtk DataFile Version ...`").at("line 1").remedy(
+            if xml {
+                "this is an XML file: give it the ending .vtu or .vtp"
+            } else {
+                "this is no legacy VTK file: give it the ending of its own format"
+            },
+        ));
+    }
+    source.line();
+    source.binary = match source.text("ASCII or BINARY")?.to_ascii_uppercase().as_str() {
+        "ASCII" => false,
+        "BINARY" => true,
+        other => {
+            return Err(source.fault(format!("ASCII or BINARY should stand here, not `{}`", short(other))));
+        }
+    };
+    let word = source.text("DATASET")?;
+    if !word.eq_ignore_ascii_case("DATASET") {
+        return Err(source.fault(format!("DATASET should stand here, not `{}`", short(word))));
+    }
+    match source.text("the kind of data set")?.to_ascii_uppercase().as_str() {
+        "UNSTRUCTURED_GRID" => Ok(true),
+        "POLYDATA" => Ok(false),
+        other => Err(Error::input(format!(
+            "the file holds {}, not an UNSTRUCTURED_GRID or POLYDATA",
+            short(other)
+        ))
+        .at(source.place())
+        .remedy("in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu")),
+    }
+}
+
+/// Which part of the mesh the arrays belong to that come next.
+#[derive(Clone, Copy)]
+enum Owner {
+    Mesh,
+    Points,
+    Cells,
+}
+
+struct Reader<'a> {
+    source: Source<'a>,
+    notes: &'a Notes,
+    mesh: Mesh,
+    /// Cells by section of polygonal data; in a grid all in the first.
+    lists: [Csr<VertexId>; 4],
+    kinds: Option<Vec<CellKind>>,
+}
+
+impl Reader<'_> {
+    fn read_sections(&mut self, grid: bool) -> Result<()> {
+        let mut owner = Owner::Mesh;
+        let mut cells_done = false;
+        while !self.source.peek().is_empty() {
+            let word = self.source.text("a section")?.to_ascii_uppercase();
+            match word.as_str() {
+                "POINTS" => self.read_points()?,
+                "CELLS" if grid => self.lists[0] = self.read_lists()?,
+                "CELL_TYPES" if grid => self.read_kinds()?,
+                "VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" if !grid => {
+                    let section = SECTIONS.iter().position(|(_, legacy)| *legacy == word).unwrap_or_default();
+                    self.lists[section] = self.read_lists()?;
+                }
+                "POINT_DATA" | "CELL_DATA" => {
+                    if !std::mem::replace(&mut cells_done, true) {
+                        self.build_cells(grid)?;
+                    }
+                    owner = if word == "POINT_DATA" { Owner::Points } else { Owner::Cells };
+                    self.check_count(&word, owner)?;
+                }
+                _ => self.read_attribute(&word, owner)?,
+            }
+        }
+        if cells_done { Ok(()) } else { self.build_cells(grid) }
+    }
+
+    fn read_points(&mut self) -> Result<()> {
+        let n = self.source.count("the number of points")?;
+        let kind = self.read_type()?;
+        if n > VertexId::MAX_COUNT {
+            return Err(self.source.fault(format!("{n} points are more than a mesh can hold")));
+        }
+        let values = values(&mut self.source, kind, 3 * n)?;
+        self.mesh.points =
+            to_points(values).ok_or_else(|| self.source.fault("points are texts, not numbers"))?;
+        self.skip_metadata(3);
+        Ok(())
+    }
+
+    fn read_type(&mut self) -> Result<Type> {
+        let word = self.source.text("a type of values")?;
+        Type::parse(&self.source, word)
+    }
+
+    fn skip_metadata(&mut self, components: usize) {
+        if skip_metadata(&mut self.source, components) {
+            self.notes.add(NAMES);
+        }
+    }
+
+    /// Lists of ids, in either layout.
+    fn read_lists(&mut self) -> Result<Csr<VertexId>> {
+        let n = self.source.count("the number of cells")?;
+        let size = self.source.count("the size of the list of cells")?;
+        if self.source.peek().eq_ignore_ascii_case(b"OFFSETS") {
+            let offsets = self.read_named_ids("OFFSETS", n)?;
+            let ids = self.read_named_ids("CONNECTIVITY", size)?;
+            return Csr::new(offsets, bytemuck::allocation::cast_vec(ids)).ok_or_else(|| {
+                self.source
+                    .fault(format!("the offsets do not rise from 0 to the {size} ids of the connectivity"))
+            });
+        }
+        let numbers = self.source.numbers(Scalar::I32, size)?;
+        let numbers = self.to_ids(&numbers)?;
+        split_counted(&numbers, n)
+            .ok_or_else(|| self.source.fault(format!("{size} numbers do not make the lists of {n} cells")))
+    }
+
+    fn read_named_ids(&mut self, name: &str, n: usize) -> Result<Vec<u32>> {
+        let word = self.source.text(name)?;
+        if !word.eq_ignore_ascii_case(name) {
+            return Err(self.source.fault(format!("{name} should stand here, not `{}`", short(word))));
+        }
+        let kind = self.read_type()?;
+        let numbers = values(&mut self.source, kind, n)?;
+        self.to_ids(&numbers)
+    }
+
+    fn to_ids(&self, numbers: &Values) -> Result<Vec<u32>> {
+        to_ids(numbers).map_err(|bad| self.source.fault(format!("{bad} is no id")))
+    }
+
+    fn read_kinds(&mut self) -> Result<()> {
+        let n = self.source.count("the number of cell types")?;
+        let numbers = self.source.numbers(Scalar::I32, n)?;
+        let kinds = self.to_ids(&numbers)?.into_iter().map(|k| u8::try_from(k).map(CellKind));
+        self.kinds = Some(
+            kinds.collect::<Result<_, _>>().map_err(|_| self.source.fault("a cell type is beyond 255"))?,
+        );
+        Ok(())
+    }
+
+    fn build_cells(&mut self, grid: bool) -> Result<()> {
+        let lists = std::mem::take(&mut self.lists);
+        self.mesh.cells = if grid {
+            let [lists, ..] = lists;
+            let kinds = self.kinds.take().unwrap_or_default();
+            grid_cells(kinds, lists)
+                .map_err(|e| e.at("CELLS").remedy("the file is damaged: write it again"))?
+        } else {
+            polygonal_cells(&lists)
+                .ok_or_else(|| self.source.fault("more vertex ids than a mesh can hold"))?
+        };
+        Ok(())
+    }
+
+    fn check_count(&mut self, word: &str, owner: Owner) -> Result<()> {
+        let n = self.source.count(word)?;
+        let expected = self.n_rows(owner);
+        if n == expected {
+            return Ok(());
+        }
+        Err(self.source.fault(format!("{word} is for {n}, but there are {expected}")))
+    }
+
+    fn n_rows(&self, owner: Owner) -> usize {
+        match owner {
+            Owner::Mesh => 0,
+            Owner::Points => self.mesh.points.len(),
+            Owner::Cells => self.mesh.cells.len(),
+        }
+    }
+
+    fn read_attribute(&mut self, word: &str, owner: Owner) -> Result<()> {
+        let n = self.n_rows(owner);
+        match (word, owner) {
+            ("FIELD", _) => return self.read_field(owner),
+            ("METADATA", _) => {
+                while self.source.line().is_some_and(|line| !line.trim_ascii().is_empty()) {}
+                return Ok(());
+            }
+            ("LOOKUP_TABLE", _) => return self.skip_table(),
+            (_, Owner::Mesh) => {
+                return Err(self.source.fault(format!("the section `{}` is not known", short(word))));
+            }
+            _ => {}
+        }
+        let name = decode(self.source.text("the name of an array")?.as_bytes());
+        let field = match word {
+            "SCALARS" => self.read_scalars(name, n)?,
+            "COLOR_SCALARS" => self.read_colours(name, n)?,
+            "VECTORS" | "NORMALS" => self.read_array(name, 3, n)?,
+            "TENSORS" => self.read_array(name, 9, n)?,
+            "TENSORS6" => self.read_array(name, 6, n)?,
+            "GLOBAL_IDS" | "PEDIGREE_IDS" | "EDGE_FLAGS" => self.read_array(name, 1, n)?,
+            "TEXTURE_COORDINATES" => {
+                let components = self.source.count("the number of texture coordinates")?;
+                self.read_array(name, components, n)?
+            }
+            _ => return Err(self.source.fault(format!("the section `{}` is not known", short(word)))),
+        };
+        self.add(owner, field);
+        Ok(())
+    }
+
+    fn add(&mut self, owner: Owner, field: Field) {
+        self.skip_metadata(field.components);
+        match owner {
+            Owner::Mesh => self.mesh.field_data.push(field),
+            Owner::Points => self.mesh.point_data.push(field),
+            Owner::Cells => self.mesh.cell_data.push(field),
+        }
+    }
+
+    fn read_array(&mut self, name: String, components: usize, n_rows: usize) -> Result<Field> {
+        let kind = self.read_type()?;
+        self.read_values(name, components, n_rows, kind)
+    }
+
+    fn read_values(&mut self, name: String, components: usize, n_rows: usize, kind: Type) -> Result<Field> {
+        let n = n_rows.checked_mul(components).filter(|_| components > 0);
+        let n = n.ok_or_else(|| self.source.fault(format!("{n_rows} rows of {components} components")))?;
+        let values = values(&mut self.source, kind, n).map_err(|e| e.at(format!("array {name}")))?;
+        Ok(Field { name, components, values })
+    }
+
+    fn read_scalars(&mut self, name: String, n: usize) -> Result<Field> {
+        let kind = self.read_type()?;
+        let components = self.source.count_on_line().unwrap_or(1);
+        if self.source.peek().eq_ignore_ascii_case(b"LOOKUP_TABLE") {
+            self.source.word();
+            self.source.text("the name of a lookup table")?;
+        }
+        self.read_values(name, components, n, kind)
+    }
+
+    /// Colours: bytes in binary files, numbers from 0 to 1 in text.
+    fn read_colours(&mut self, name: String, n: usize) -> Result<Field> {
+        let components = self.source.count("the number of colours")?;
+        if self.source.binary {
+            return self.read_values(name, components, n, Type::Number(Scalar::U8));
+        }
+        let mut field = self.read_values(name, components, n, Type::Number(Scalar::F32))?;
+        if let Values::F32(shares) = &field.values {
+            field.values = Values::U8(shares.iter().map(|share| (share * 255.0 + 0.5) as u8).collect());
+        }
+        Ok(field)
+    }
+
+    fn skip_table(&mut self) -> Result<()> {
+        self.source.text("the name of a lookup table")?;
+        let n = self.source.count("the size of a lookup table")?.saturating_mul(4);
+        let kind = if self.source.binary { Scalar::U8 } else { Scalar::F32 };
+        self.source.numbers(kind, n)?;
+        self.notes.add(TABLES);
+        Ok(())
+    }
+
+    fn read_field(&mut self, owner: Owner) -> Result<()> {
+        self.source.text("the name of a field")?;
+        let n_arrays = self.source.count("the number of arrays")?;
+        for _ in 0..n_arrays {
+            let name = decode(self.source.text("the name of an array")?.as_bytes());
+            if name == "NULL_ARRAY" {
+                continue;
+            }
+            let components = self.source.count("the number of components")?;
+            let n_rows = self.source.count("the number of rows")?;
+            let expected = self.n_rows(owner);
+            if !matches!(owner, Owner::Mesh) && n_rows != expected {
+                return Err(self
+                    .source
+                    .fault(format!("the array {name} has {n_rows} rows, {expected} are needed")));
+            }
+            let field = self.read_array(name, components, n_rows)?;
+            self.add(owner, field);
+        }
+        Ok(())
+    }
+}
+
+/// Lists from the layout before 5.0: `n id id ...`, list after list.
+fn split_counted(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
+    let mut lists = Csr::default();
+    for _ in 0..n_lists {
+        let (&n, rest) = numbers.split_first()?;
+        let (list, rest) = rest.split_at_checked(n as usize)?;
+        lists.push(list.iter().map(|&v| VertexId(v)));
+        numbers = rest;
+    }
+    numbers.is_empty().then_some(lists)
+}
+
+/// In these files a polyhedron's list of vertices is the stream of its faces.
+fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>) -> Result<Cells> {
+    if !kinds.contains(&CellKind::POLYHEDRON) {
+        return Cells::from_parts(kinds, lists.offsets().to_vec(), lists.items().to_vec());
+    }
+    if kinds.len() != lists.len() {
+        return Err(Error::input(format!("{} cell types for {} cells", kinds.len(), lists.len())));
+    }
+    let mut cells = Cells::new();
+    for (i, (kind, list)) in kinds.into_iter().zip(lists.iter()).enumerate() {
+        if kind != CellKind::POLYHEDRON {
+            if kind.n_vertices().is_some_and(|n| n != list.len()) {
+                return Err(Error::input(format!("a {} with {} vertices", kind.label(), list.len()))
+                    .at(format!("cell {i}")));
+            }
+            cells.push(kind, list.iter().copied());
+            continue;
+        }
+        let mut stream: &[u32] = bytemuck::cast_slice(list);
+        let faces = next_polyhedron(&mut stream).filter(|_| stream.is_empty());
+        let faces = faces.ok_or_else(|| {
+            Error::input("the faces of this polyhedron do not fit into its list").at(format!("cell {i}"))
+        })?;
+        let mut vertices = faces.items().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        cells.push_polyhedron(vertices, faces);
+    }
+    Ok(cells)
+}
+
+/// `None` when there are more ids than a mesh holds.
+fn polygonal_cells(lists: &[Csr<VertexId>; 4]) -> Option<Cells> {
+    let n_ids: usize = lists.iter().map(|l| l.items().len()).sum();
+    if n_ids > VertexId::MAX_COUNT {
+        return None;
+    }
+    let mut cells = Cells::new();
+    for (section, lists) in lists.iter().enumerate() {
+        lists.iter().for_each(|list| cells.push(kind_in_section(section, list.len()), list.iter().copied()));
+    }
+    Some(cells)
+}

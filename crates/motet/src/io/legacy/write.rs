@@ -1,0 +1,150 @@
+//! A mesh as an unstructured grid in a legacy VTK file.
+
+use std::io::Write as _;
+
+use crate::base::{Error, Result};
+use crate::io::labels::label_fields;
+use crate::io::legacy::arrays::{encode, encode_length};
+use crate::io::polyhedra::face_stream;
+use crate::io::scalar::{big_bytes, write_text};
+use crate::io::{Encoding, WriteOptions, Written};
+use crate::mesh::{CellKind, Field, Mesh, Values};
+
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let offsets = match options.version.as_deref() {
+        None | Some("5.1") => true,
+        Some("4.2") => false,
+        Some(other) => {
+            return Err(Error::options(format!("legacy VTK files of version {other} are not written"))
+                .remedy("choose 5.1 or 4.2"));
+        }
+    };
+    let mut writer = Writer { out: Vec::new(), ascii: options.encoding == Encoding::Ascii, lost: Vec::new() };
+    let version = if offsets { "5.1" } else { "4.2" };
+    let encoding = if writer.ascii { "ASCII" } else { "BINARY" };
+    writer.line(&format!(
+        "# vtk DataFile Version {version}\nwritten by motet\n{encoding}\nDATASET UNSTRUCTURED_GRID"
+    ));
+    let (label_cells, label_names) = label_fields(mesh);
+    writer.fields(&mesh.field_data.iter().chain(&label_names).collect::<Vec<_>>());
+    writer.line(&format!("POINTS {} double", mesh.points.len()));
+    writer.numbers(&Values::F64(mesh.points.as_flattened().to_vec()));
+    if !mesh.cells.is_empty() {
+        writer.cells(mesh, offsets)?;
+    }
+    writer.data(
+        "CELL_DATA",
+        mesh.cells.len(),
+        &mesh.cell_data.iter().chain(&label_cells).collect::<Vec<_>>(),
+    );
+    writer.data("POINT_DATA", mesh.points.len(), &mesh.point_data.iter().collect::<Vec<_>>());
+    Ok(Written { lost: writer.lost, ..Written::one(writer.out) })
+}
+
+struct Writer {
+    out: Vec<u8>,
+    ascii: bool,
+    lost: Vec<String>,
+}
+
+impl Writer {
+    fn line(&mut self, text: &str) {
+        self.out.extend(text.as_bytes());
+        self.out.push(b'\n');
+    }
+
+    fn numbers(&mut self, values: &Values) {
+        match (values, self.ascii) {
+            (Values::Text(texts), _) => texts.iter().for_each(|text| self.text(text)),
+            (_, true) => write_text(&mut self.out, values),
+            (_, false) => self.out.extend(&*big_bytes(values)),
+        }
+        self.out.push(b'\n');
+    }
+
+    fn text(&mut self, text: &str) {
+        if self.ascii {
+            self.line(&encode(text));
+        } else {
+            self.out.extend(encode_length(text.len()));
+            self.out.extend(text.as_bytes());
+        }
+    }
+
+    fn cells(&mut self, mesh: &Mesh, offsets: bool) -> Result<()> {
+        let lists = lists(mesh);
+        let n_ids: usize = lists.iter().map(Vec::len).sum();
+        if offsets {
+            let mut ends = vec![0i64];
+            ends.extend(lists.iter().scan(0, |end, list| {
+                *end += list.len() as i64;
+                Some(*end)
+            }));
+            self.line(&format!("CELLS {} {n_ids}\nOFFSETS vtktypeint64", ends.len()));
+            self.numbers(&Values::I64(ends));
+            self.line("CONNECTIVITY vtktypeint64");
+            self.numbers(&Values::I64(lists.concat().into_iter().map(i64::from).collect()));
+        } else {
+            self.line(&format!("CELLS {} {}", lists.len(), n_ids + lists.len()));
+            let counted =
+                lists.iter().flat_map(|list| std::iter::once(list.len() as u32).chain(list.iter().copied()));
+            let counted = counted.map(i32::try_from).collect::<Result<_, _>>();
+            self.numbers(&Values::I32(counted.map_err(|_| {
+                Error::options("ids beyond 2^31 do not fit into a file of version 4.2").remedy("choose 5.1")
+            })?));
+        }
+        self.line(&format!("CELL_TYPES {}", lists.len()));
+        self.numbers(&Values::I32(mesh.cells.kinds().iter().map(|k| i32::from(k.0)).collect()));
+        Ok(())
+    }
+
+    fn data(&mut self, section: &str, n: usize, fields: &[&Field]) {
+        if !fields.is_empty() {
+            self.line(&format!("{section} {n}"));
+            self.fields(fields);
+        }
+    }
+
+    fn fields(&mut self, fields: &[&Field]) {
+        if fields.is_empty() {
+            return;
+        }
+        self.line(&format!("FIELD FieldData {}", fields.len()));
+        for field in fields {
+            let kind = type_name(&field.values);
+            let (mut name, components) = (encode(&field.name), field.components);
+            if name.is_empty() {
+                name += "unnamed";
+                self.lost.push("an array without a name: it is called `unnamed`".into());
+            }
+            writeln!(self.out, "{name} {components} {} {kind}", field.n_rows()).expect("memory takes all");
+            self.numbers(&field.values);
+        }
+    }
+}
+
+/// The list of each cell: its vertices, or the stream of faces of a polyhedron.
+fn lists(mesh: &Mesh) -> Vec<Vec<u32>> {
+    let mut polyhedra = mesh.cells.polyhedron_faces().iter();
+    let list = |(_, kind, vertices): (_, CellKind, &[crate::base::VertexId])| match kind {
+        CellKind::POLYHEDRON => polyhedra.next().map(face_stream).unwrap_or_default(),
+        _ => vertices.iter().map(|v| v.0).collect(),
+    };
+    mesh.cells.iter().map(list).collect()
+}
+
+fn type_name(values: &Values) -> &'static str {
+    match values {
+        Values::I8(_) => "char",
+        Values::U8(_) => "unsigned_char",
+        Values::I16(_) => "short",
+        Values::U16(_) => "unsigned_short",
+        Values::I32(_) => "int",
+        Values::U32(_) => "unsigned_int",
+        Values::I64(_) => "vtktypeint64",
+        Values::U64(_) => "vtktypeuint64",
+        Values::F32(_) => "float",
+        Values::F64(_) => "double",
+        Values::Text(_) => "string",
+    }
+}

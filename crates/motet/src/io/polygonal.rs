@@ -1,0 +1,34 @@
+//! The four sections of VTK's polygonal data.
+
+use crate::mesh::CellKind;
+
+/// The sections, by their names in XML and in legacy files, in the order in
+/// which VTK counts the cells.
+pub(super) const SECTIONS: [(&str, &str); 4] =
+    [("Verts", "VERTICES"), ("Lines", "LINES"), ("Polys", "POLYGONS"), ("Strips", "TRIANGLE_STRIPS")];
+
+/// The kind of a cell of a section, as VTK tells it.
+pub(super) fn kind_in_section(section: usize, n_vertices: usize) -> CellKind {
+    match (section, n_vertices) {
+        (_, 0) => CellKind::EMPTY,
+        (0, 1) => CellKind::VERTEX,
+        (0, _) => CellKind::POLY_VERTEX,
+        (1, 2) => CellKind::LINE,
+        (1, _) => CellKind::POLY_LINE,
+        (2, 3) => CellKind::TRIANGLE,
+        (2, 4) => CellKind::QUAD,
+        (2, _) => CellKind::POLYGON,
+        _ => CellKind::TRIANGLE_STRIP,
+    }
+}
+
+/// The section that holds cells of this kind; `None` where none does.
+pub(super) fn section_of(kind: CellKind) -> Option<usize> {
+    match kind {
+        CellKind::VERTEX | CellKind::POLY_VERTEX => Some(0),
+        CellKind::LINE | CellKind::POLY_LINE => Some(1),
+        CellKind::TRIANGLE | CellKind::POLYGON | CellKind::PIXEL | CellKind::QUAD => Some(2),
+        CellKind::TRIANGLE_STRIP => Some(3),
+        _ => None,
+    }
+}
