@@ -4,11 +4,13 @@ pub mod adjacency;
 mod boundary;
 mod cell_kind;
 mod cells;
+pub mod check;
 mod exchange;
 pub mod facets;
 mod field;
 mod labels;
 pub mod shapes;
+mod summary;
 mod surface;
 mod triangulate;
 mod volume;
@@ -19,6 +21,10 @@ pub use cells::Cells;
 pub use exchange::{Mesh, bounds};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels};
+pub use summary::{
+    BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
+    Summary,
+};
 pub use surface::Surface;
 pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

@@ -1,0 +1,85 @@
+//! Cells that are inverted, flat, or name a vertex twice.
+
+use std::cmp::Ordering;
+
+use crate::base::{CellId, Point, VertexId};
+use crate::geometry::triangle;
+use crate::mesh::adjacency::Facets;
+use crate::mesh::boundary::n_corners;
+use crate::mesh::check::defect::{Defect, DefectKind, Example};
+use crate::mesh::check::points::is_finite;
+use crate::mesh::facets::facet_shapes;
+use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
+
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Vec<Defect> {
+    let facets = Facets::of(&mesh.cells);
+    let mut repeated = Defect::none(DefectKind::RepeatedVertex);
+    let mut inverted = Defect::none(DefectKind::InvertedCell);
+    let mut flat = Defect::none(DefectKind::FlatCell);
+    let mut zero_area = Defect::none(DefectKind::ZeroAreaCell);
+    let mut unknown = Defect::none(DefectKind::UnknownKind);
+    for (cell, kind, vertices) in mesh.cells.iter() {
+        let example = || Example::new(&[cell], vertices, &mesh.points);
+        if kind.dim() >= Some(2) && names_one_twice(vertices) {
+            repeated.add(example);
+        }
+        if boundary.n_unknown > 0 && is_unknown(kind) {
+            unknown.add(example);
+        }
+        match measure(&facets, cell, kind, vertices, &mesh.points) {
+            Some((3, Ordering::Less)) => inverted.add(example),
+            Some((3, Ordering::Equal)) => flat.add(example),
+            Some((2, Ordering::Equal)) => zero_area.add(example),
+            _ => {}
+        }
+    }
+    vec![unknown, repeated, inverted, flat, zero_area]
+}
+
+fn names_one_twice(vertices: &[VertexId]) -> bool {
+    if vertices.len() > 32 {
+        let mut sorted = vertices.to_vec();
+        sorted.sort_unstable();
+        return sorted.windows(2).any(|w| w[0] == w[1]);
+    }
+    (1..vertices.len()).any(|i| vertices[..i].contains(&vertices[i]))
+}
+
+fn is_unknown(kind: CellKind) -> bool {
+    kind.dim() == Some(3) && kind != CellKind::POLYHEDRON && facet_shapes(kind).is_none()
+}
+
+/// The dimension of a cell and the sign of its measure; `None` where it has
+/// none, or a point that is not finite. Exact for tets.
+fn measure(
+    facets: &Facets,
+    cell: CellId,
+    kind: CellKind,
+    vertices: &[VertexId],
+    points: &[Point],
+) -> Option<(usize, Ordering)> {
+    let dim = kind.dim().filter(|dim| *dim >= 2 && !is_unknown(kind))?;
+    if !vertices.iter().all(|v| is_finite(points[v.index()])) {
+        return None;
+    }
+    let sign = |x: f64| x.total_cmp(&0.0).then(Ordering::Equal);
+    match (kind, vertices) {
+        (CellKind::TETRA, &[a, b, c, d]) => Some((3, orientation([a, b, c, d].map(|v| points[v.index()])))),
+        _ if dim == 3 => Some((3, sign(cell_volume(facets, cell, points) + 0.0))),
+        (CellKind::TRIANGLE_STRIP, _) => None,
+        _ => Some((2, sign(area(&vertices[..n_corners(kind, vertices.len())], points)))),
+    }
+}
+
+/// The exact sign of the volume of a tet.
+pub(crate) fn orientation(tet: [Point; 4]) -> Ordering {
+    let [a, b, c, d] = tet.map(|[x, y, z]| robust::Coord3D { x, y, z });
+    // Shewchuk's sign is the other way around.
+    0.0.partial_cmp(&robust::orient3d(a, b, c, d)).unwrap_or(Ordering::Equal)
+}
+
+/// The sum of the areas of the fan around the first corner: zero only if the ring is a line.
+fn area(ring: &[VertexId], points: &[Point]) -> f64 {
+    let Some(&first) = ring.first() else { return 0.0 };
+    ring.windows(2).map(|w| triangle::area([first, w[0], w[1]].map(|v| points[v.index()]))).sum()
+}

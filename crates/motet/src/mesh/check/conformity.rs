@@ -1,0 +1,80 @@
+//! Cells that do not fit together facet to facet.
+
+use std::collections::BTreeSet;
+
+use crate::base::{CellId, VertexId};
+use crate::mesh::adjacency::Facets;
+use crate::mesh::boundary::n_corners;
+use crate::mesh::check::defect::{Defect, DefectKind, Example};
+use crate::mesh::check::hanging;
+use crate::mesh::check::points::Canonical;
+use crate::mesh::{Boundary, Mesh};
+
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Vec<Defect> {
+    let mut overshared = Defect::none(DefectKind::OversharedFacet);
+    let mut twins: BTreeSet<(CellId, CellId)> = BTreeSet::new();
+    let facets = Facets::of(&mesh.cells);
+    facets.for_each_shared(|uses| {
+        if uses.len() > 2 {
+            let cells: Vec<_> = uses.iter().map(|u| u.cell).collect();
+            overshared
+                .add(|| Example::new(&cells, &facets.corners(uses[0]).collect::<Vec<_>>(), &mesh.points));
+        }
+        // Cells of the same vertices share every facet, so their pairs show here.
+        match uses {
+            [_] => {}
+            [x, y] if !may_be_twins(mesh, x.cell, y.cell) => {}
+            _ => twins.extend(pairs(uses.iter().map(|u| by_vertices(mesh, u.cell)).collect())),
+        }
+    });
+    let mut duplicate = Defect::none(DefectKind::DuplicateCell);
+    twins.extend(surface_twins(mesh));
+    for (x, y) in twins {
+        duplicate.add(|| Example::new(&[x, y], mesh.cells.vertices(x), &mesh.points));
+    }
+    vec![duplicate, overshared, unmerged(mesh, boundary, canonical), hanging::defects(mesh, boundary)]
+}
+
+/// A quick look before the sorting: nearly all neighbours fail it.
+fn may_be_twins(mesh: &Mesh, x: CellId, y: CellId) -> bool {
+    let [x, y] = [x, y].map(|cell| mesh.cells.vertices(cell));
+    x.len() == y.len() && x.iter().take(8).all(|v| y.contains(v))
+}
+
+/// A cell behind its sorted vertices.
+fn by_vertices(mesh: &Mesh, cell: CellId) -> (Vec<VertexId>, CellId) {
+    (sorted(mesh.cells.vertices(cell).to_vec()), cell)
+}
+
+/// Surface cells of the same vertices as another.
+fn surface_twins(mesh: &Mesh) -> Vec<(CellId, CellId)> {
+    let surface = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
+    pairs(surface.map(|(cell, ..)| by_vertices(mesh, cell)).collect())
+}
+
+fn sorted(mut vertices: Vec<VertexId>) -> Vec<VertexId> {
+    vertices.sort_unstable();
+    vertices
+}
+
+/// Pairs that follow one another, of equal key, after sorting.
+fn pairs<T: Ord + Copy>(mut keyed: Vec<(Vec<VertexId>, T)>) -> Vec<(T, T)> {
+    keyed.sort_unstable();
+    keyed.dedup();
+    keyed.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| (w[0].1, w[1].1)).collect()
+}
+
+/// Boundary facets whose corners lie where those of another do: a crack.
+fn unmerged(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Defect {
+    let mut defect = Defect::none(DefectKind::UnmergedFacet);
+    let corners =
+        |i: usize| &boundary.facets.list(i)[..n_corners(boundary.kinds[i], boundary.facets.list(i).len())];
+    let on_a_double = |i: &usize| corners(*i).iter().any(|&v| canonical.is_doubled(v));
+    let candidates = (0..boundary.len()).filter(on_a_double);
+    let keyed =
+        candidates.map(|i| (sorted(corners(i).iter().map(|&v| canonical.first(v)).collect()), i)).collect();
+    for (i, j) in pairs(keyed) {
+        defect.add(|| Example::new(&[boundary.cells[i], boundary.cells[j]], corners(i), &mesh.points));
+    }
+    defect
+}

@@ -1,0 +1,131 @@
+//! What can be wrong with a mesh: a name, how often, and where.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::base::{CellId, Point, VertexId};
+
+macro_rules! defect_kinds {
+    ($($variant:ident = $name:literal, $meaning:literal;)*) => {
+        /// A kind of defect.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+        pub enum DefectKind {
+            $(#[doc = $meaning] #[serde(rename = $name)] $variant,)*
+        }
+
+        impl DefectKind {
+            /// The name that scripts see.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// What it means, in words.
+            pub fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => $meaning,)* }
+            }
+        }
+    };
+}
+
+defect_kinds! {
+    NonFinitePoint = "non_finite_point", "a coordinate is infinite or no number";
+    OrphanPoint = "orphan_point", "no cell uses the point";
+    DuplicatePoint = "duplicate_point", "points at exactly the same place";
+    UnknownKind = "unknown_kind", "volume cells of a kind that motet cannot look into";
+    RepeatedVertex = "repeated_vertex", "the cell names a vertex twice";
+    InvertedCell = "inverted_cell", "the volume is negative";
+    FlatCell = "flat_cell", "the volume is exactly zero";
+    ZeroAreaCell = "zero_area_cell", "the surface cell has no area";
+    DuplicateCell = "duplicate_cell", "cells of the same vertices";
+    OversharedFacet = "overshared_facet", "more than two volume cells use the facet";
+    UnmergedFacet = "unmerged_facet", "boundary facets at exactly the same place, their vertices not shared";
+    HangingVertex = "hanging_vertex", "the vertex lies on a boundary facet of which it is no corner";
+    NonManifoldEdge = "non_manifold_edge", "more than two surface facets meet at the edge";
+    NonManifoldVertex = "non_manifold_vertex", "the surface touches itself at the vertex";
+    OpenEdge = "open_edge", "the surface ends at the edge";
+    MisorientedEdge = "misoriented_edge", "the two facets at the edge face opposite sides";
+    SeparatePart = "separate_part", "cells that hang together with no others";
+}
+
+/// How many examples of a defect are kept.
+const MAX_EXAMPLES: usize = 5;
+
+/// Where a defect is.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Example {
+    /// The cells concerned.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cells: Vec<CellId>,
+    /// The vertices concerned.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub vertices: Vec<VertexId>,
+    /// The place in space; `None` where it is not finite.
+    pub at: Option<Point>,
+}
+
+/// A defect of one kind: how often it occurs, and the first few places.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Defect {
+    /// What kind.
+    #[serde(rename = "name")]
+    pub kind: DefectKind,
+    /// How many there are.
+    pub count: usize,
+    /// The first of them, five at most.
+    pub examples: Vec<Example>,
+}
+
+impl Defect {
+    /// None of this kind yet.
+    pub(super) fn none(kind: DefectKind) -> Self {
+        Self { kind, count: 0, examples: Vec::new() }
+    }
+
+    /// Counts one more, and keeps it as an example while few are known.
+    pub(super) fn add(&mut self, example: impl FnOnce() -> Example) {
+        self.count += 1;
+        if self.examples.len() < MAX_EXAMPLES {
+            self.examples.push(example());
+        }
+    }
+}
+
+impl Example {
+    /// An example at the mean of its vertices.
+    pub(super) fn new(cells: &[CellId], vertices: &[VertexId], points: &[Point]) -> Self {
+        let mut at = [0.0; 3];
+        for v in vertices {
+            (0..3).for_each(|k| at[k] += points[v.index()][k] / vertices.len() as f64);
+        }
+        let finite = at.iter().all(|x| x.is_finite()) && !vertices.is_empty();
+        Self { cells: cells.to_vec(), vertices: vertices.to_vec(), at: finite.then_some(at) }
+    }
+}
+
+impl fmt::Display for Example {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |ids: Vec<String>| ids.join(", ");
+        let cells = list(self.cells.iter().map(ToString::to_string).collect());
+        let vertices = list(self.vertices.iter().map(ToString::to_string).collect());
+        match (self.cells.is_empty(), self.vertices.is_empty()) {
+            (false, _) => write!(f, "cell {cells}")?,
+            (true, false) => write!(f, "point {vertices}")?,
+            (true, true) => {}
+        }
+        match self.at {
+            Some([x, y, z]) => write!(f, " at ({x:.6}, {y:.6}, {z:.6})"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl fmt::Display for Defect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} ({})", self.count, self.kind.name(), self.kind.meaning())?;
+        for (i, example) in self.examples.iter().enumerate() {
+            write!(f, "{} {example}", if i == 0 { ":" } else { ";" })?;
+        }
+        if self.count > self.examples.len() { f.write_str("; ...") } else { Ok(()) }
+    }
+}

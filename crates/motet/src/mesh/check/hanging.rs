@@ -1,0 +1,102 @@
+//! Boundary vertices that lie on a boundary facet of which they are no corner.
+//!
+//! Where one side of a wall is divided and the other is not, both sides are
+//! boundary, and vertices of one hang on the other.
+
+use crate::base::{Csr, Point, VertexId};
+use crate::geometry::triangle;
+use crate::geometry::vector::distance;
+use crate::mesh::check::defect::{Defect, DefectKind, Example};
+use crate::mesh::check::points::is_finite;
+use crate::mesh::{Boundary, Mesh, bounds, triangulate};
+
+/// A vertex this close to a facet, as a part of its longest edge, lies on it:
+/// rounding of coordinates of double precision, and nothing coarser.
+const TOLERANCE: f64 = 1e-12;
+
+/// Looks at this many pairs and grid cells in all, and so many more a facet, then
+/// stops: only a tangle of facets each as large as the mesh needs more, and
+/// that has other defects to show.
+const BUDGET: usize = 20_000_000;
+const BUDGET_A_FACET: usize = 200;
+
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
+    let mut defect = Defect::none(DefectKind::HangingVertex);
+    let Some(grid) = Grid::of(&boundary.vertices, &mesh.points) else { return defect };
+    let mut found = Vec::new();
+    let mut budget = BUDGET + BUDGET_A_FACET * boundary.len();
+    for (i, facet) in boundary.facets.iter().enumerate() {
+        triangulate(boundary.kinds[i], facet, &mesh.points, &mut |corners| {
+            let at = corners.map(|v| mesh.points[v.index()]);
+            if at.iter().all(|p| is_finite(*p)) && budget > 0 {
+                grid.for_each_near(at, &mut budget, |v| {
+                    if !facet.contains(&v) && lies_on(at, mesh.points[v.index()]) {
+                        found.push((v, i));
+                    }
+                });
+            }
+        });
+    }
+    found.sort_unstable();
+    found.dedup_by_key(|(v, _)| *v);
+    for (v, facet) in found {
+        defect.add(|| Example::new(&[boundary.cells[facet]], &[v], &mesh.points));
+    }
+    defect
+}
+
+/// On the triangle, but at none of its corners: two vertices at one place are another defect.
+fn lies_on(corners: [Point; 3], p: Point) -> bool {
+    let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
+    let near = |q: Point| distance(p, q) <= TOLERANCE * longest;
+    !corners.iter().any(|&corner| near(corner)) && near(triangle::at(corners, triangle::closest(corners, p)))
+}
+
+/// Vertices in the cells of a regular grid, about one to a cell.
+struct Grid {
+    low: Point,
+    cell: Point,
+    n: [usize; 3],
+    vertices: Csr<VertexId>,
+}
+
+impl Grid {
+    fn of(vertices: &[VertexId], points: &[Point]) -> Option<Self> {
+        let places: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+        let [low, high] = bounds(&places)?;
+        let n = ((vertices.len() as f64).cbrt().ceil() as usize).clamp(1, 256);
+        let cell = [0, 1, 2].map(|k| (high[k] - low[k]) / n as f64);
+        let mut grid = Self { low, cell, n: [n; 3], vertices: Csr::default() };
+        let index = |p: Point| grid.index(grid.place(p));
+        let finite = || vertices.iter().zip(&places).filter(|(_, p)| is_finite(**p));
+        grid.vertices = Csr::from_pairs(n * n * n, || finite().map(|(&v, &p)| (index(p), v)));
+        Some(grid)
+    }
+
+    fn place(&self, p: Point) -> [usize; 3] {
+        [0, 1, 2].map(|k| {
+            let steps = (p[k] - self.low[k]) / self.cell[k];
+            // A grid without extent, and what lies outside, fall into the end cells.
+            if steps > 0.0 { (steps as usize).min(self.n[k] - 1) } else { 0 }
+        })
+    }
+
+    fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        i + self.n[0] * (j + self.n[1] * k)
+    }
+
+    fn for_each_near(&self, corners: [Point; 3], budget: &mut usize, mut see: impl FnMut(VertexId)) {
+        let Some([low, high]) = bounds(&corners) else { return };
+        let margin = TOLERANCE * distance(low, high);
+        let [from, to] = [(low, -margin), (high, margin)].map(|(p, m)| self.place(p.map(|x| x + m)));
+        for k in from[2]..=to[2] {
+            for j in from[1]..=to[1] {
+                for i in from[0]..=to[0] {
+                    let here = self.vertices.list(self.index([i, j, k]));
+                    *budget = budget.saturating_sub(1 + here.len());
+                    here.iter().for_each(|&v| see(v));
+                }
+            }
+        }
+    }
+}

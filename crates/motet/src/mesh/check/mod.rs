@@ -1,0 +1,105 @@
+//! What is wrong with a mesh: every defect by name, with ids and coordinates.
+//!
+//! | looked at | defects |
+//! |---|---|
+//! | points | not finite, used by no cell, two at one place |
+//! | cells | of unknown kind, a vertex named twice, inverted, flat, without area, twice there |
+//! | facets | more than two cells, unmerged, with hanging vertices |
+//! | surface | open, misoriented and non-manifold edges, pinched vertices |
+//! | the whole | separate parts |
+//!
+//! The surface is the boundary of the volume cells; in a mesh without volume
+//! cells it is made of the surface cells. Nothing here has a tolerance except
+//! the search for hanging vertices.
+
+mod cells;
+mod conformity;
+mod defect;
+mod edges;
+mod hanging;
+mod parts;
+mod points;
+
+use crate::base::{CellId, Csr, VertexId};
+use crate::mesh::boundary::n_corners;
+use crate::mesh::{Boundary, CellKind, Mesh};
+
+pub use defect::{Defect, DefectKind, Example};
+pub use edges::is_closed;
+
+/// Every defect of a mesh, each kind once, with its count and a few examples.
+///
+/// Ids have been checked by [`Mesh::validate`]. A million tets take about a second.
+pub fn check(mesh: &Mesh) -> Vec<Defect> {
+    check_with(mesh, &Boundary::of(&mesh.cells))
+}
+
+/// The same, for a caller who has the boundary.
+pub fn check_with(mesh: &Mesh, boundary: &Boundary) -> Vec<Defect> {
+    let canonical = points::Canonical::of(mesh);
+    let mut defects = points::defects(mesh, &canonical);
+    defects.extend(cells::defects(mesh, boundary));
+    defects.extend(conformity::defects(mesh, boundary, &canonical));
+    defects.extend(edges::defects(mesh, &SurfaceFacets::of(mesh, boundary)));
+    defects.extend(parts::defects(mesh));
+    defects.retain(|defect| defect.count > 0);
+    defects
+}
+
+/// Whether the cells fit together facet to facet, by the defects that [`check`] found.
+pub fn is_conforming(defects: &[Defect]) -> bool {
+    let breaks = |kind| {
+        matches!(
+            kind,
+            DefectKind::OversharedFacet
+                | DefectKind::UnmergedFacet
+                | DefectKind::HangingVertex
+                | DefectKind::DuplicateCell
+        )
+    };
+    !defects.iter().any(|defect| breaks(defect.kind))
+}
+
+/// The facets that bound the mesh, by their corners.
+pub(crate) struct SurfaceFacets {
+    /// The corners of each as a ring.
+    pub(crate) rings: Csr<VertexId>,
+    /// The cell of each.
+    pub(crate) cells: Vec<CellId>,
+    /// Whether they come from volume cells, whose own numbering turns them.
+    pub(crate) of_volume: bool,
+}
+
+impl SurfaceFacets {
+    /// The boundary of the volume cells; where there are none, the surface cells.
+    fn of(mesh: &Mesh, boundary: &Boundary) -> Self {
+        if mesh.cells.dim() == Some(3) {
+            let facets = boundary.facets.iter().zip(&boundary.kinds).zip(&boundary.cells);
+            let facets = Self::from_cells(facets.map(|((ring, &kind), &cell)| (cell, kind, ring)));
+            return Self { of_volume: true, ..facets };
+        }
+        Self::from_cells(mesh.cells.iter())
+    }
+
+    /// The surface cells among `cells`, strips as their triangles.
+    pub(crate) fn from_cells<'a>(cells: impl Iterator<Item = (CellId, CellKind, &'a [VertexId])>) -> Self {
+        let mut facets = Self { rings: Csr::default(), cells: Vec::new(), of_volume: false };
+        for (cell, kind, vertices) in cells.filter(|(_, kind, _)| kind.dim() == Some(2)) {
+            let mut ring = vertices[..n_corners(kind, vertices.len())].to_vec();
+            match kind {
+                CellKind::PIXEL => ring.swap(2, 3),
+                CellKind::TRIANGLE_STRIP => {
+                    for (i, w) in vertices.windows(3).enumerate() {
+                        facets.rings.push(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] });
+                        facets.cells.push(cell);
+                    }
+                    continue;
+                }
+                _ => {}
+            }
+            facets.rings.push(ring);
+            facets.cells.push(cell);
+        }
+        facets
+    }
+}

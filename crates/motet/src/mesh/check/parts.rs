@@ -1,0 +1,53 @@
+//! Parts of a mesh that do not hang together.
+
+use crate::mesh::Mesh;
+use crate::mesh::check::defect::{Defect, DefectKind, Example};
+
+/// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each
+/// known by its smallest.
+pub(super) struct Sets {
+    parents: Vec<u32>,
+}
+
+impl Sets {
+    pub(super) fn new(n: usize) -> Self {
+        Self { parents: (0..n as u32).collect() }
+    }
+
+    pub(super) fn root(&mut self, mut i: u32) -> u32 {
+        while self.parents[i as usize] != i {
+            let above = self.parents[self.parents[i as usize] as usize];
+            self.parents[i as usize] = above;
+            i = above;
+        }
+        i
+    }
+
+    pub(super) fn join(&mut self, i: u32, j: u32) {
+        let (i, j) = (self.root(i), self.root(j));
+        self.parents[i.max(j) as usize] = i.min(j);
+    }
+}
+
+/// One entry a part, when there is more than one: its first cell. Cells hang
+/// together that share a vertex; those of the highest dimension count.
+pub(super) fn defects(mesh: &Mesh) -> Vec<Defect> {
+    let mut defect = Defect::none(DefectKind::SeparatePart);
+    let Some(dim) = mesh.cells.dim() else { return vec![defect] };
+    let cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(dim));
+    let mut vertices = Sets::new(mesh.points.len());
+    for (_, _, cell) in cells() {
+        cell.iter().skip(1).for_each(|v| vertices.join(cell[0].0, v.0));
+    }
+    let mut seen = vec![false; mesh.points.len()];
+    for (id, _, cell) in cells() {
+        let Some(first) = cell.first() else { continue };
+        if !std::mem::replace(&mut seen[vertices.root(first.0) as usize], true) {
+            defect.add(|| Example::new(&[id], cell, &mesh.points));
+        }
+    }
+    if defect.count == 1 {
+        return Vec::new();
+    }
+    vec![defect]
+}

@@ -1,0 +1,260 @@
+//! What a mesh is, in numbers: what `motet info` prints.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::base::{CellId, Point, VertexId};
+use crate::geometry::{quality, triangle};
+use crate::mesh::adjacency::Facets;
+use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
+use crate::mesh::{Boundary, CellKind, Labels, Mesh, cell_volume, triangulate};
+
+/// A tet below this EAS is bad.
+pub const BAD_EAS: f64 = 0.2;
+
+/// What a mesh is, in numbers. Names of the fields are those of `motet info --json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// How many points.
+    pub points: usize,
+    /// How many cells of each type, by meshio's names.
+    pub cells: BTreeMap<String, usize>,
+    /// Corners of the box around all finite points.
+    pub bounds: Option<[Point; 2]>,
+    /// The sum of the signed volumes of all volume cells, their edges taken as straight.
+    pub volume: f64,
+    /// Volume cells by label; empty where the mesh has no labels for them.
+    pub regions: BTreeMap<String, RegionSummary>,
+    /// Surface cells by label; empty where the mesh has no labels for them.
+    pub patches: BTreeMap<String, PatchSummary>,
+    /// All surface cells together; `None` where there is none.
+    pub surface: Option<PatchSummary>,
+    /// The boundary of the volume cells; `None` where there is no volume cell.
+    pub boundary: Option<BoundarySummary>,
+    /// Shape of the tets (of quadratic ones the corners); `None` where there is no tet.
+    pub quality: Option<QualitySummary>,
+    /// How many volume cells have negative volume.
+    pub inverted: usize,
+    /// Whether cells meet facet to facet.
+    pub conforming: bool,
+    /// Every defect: see [`crate::mesh::check`].
+    pub defects: Vec<Defect>,
+}
+
+/// The volume cells of one label.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RegionSummary {
+    /// How many of them are tets.
+    pub tets: usize,
+    /// How many there are, of any kind.
+    pub cells: usize,
+    /// The sum of their signed volumes.
+    pub volume: f64,
+}
+
+/// The surface cells of one label.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct PatchSummary {
+    /// How many triangles they make.
+    pub triangles: usize,
+    /// How many there are, of any kind.
+    pub cells: usize,
+    /// The sum of their areas.
+    pub area: f64,
+    /// Whether exactly two of them meet at each of their edges.
+    pub closed: bool,
+}
+
+/// The boundary of the volume cells.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct BoundarySummary {
+    /// How many facets.
+    pub facets: usize,
+    /// How many vertices.
+    pub vertices: usize,
+}
+
+/// Shape of the tets.
+#[derive(Clone, Debug, Serialize)]
+pub struct QualitySummary {
+    /// Equi-angle quality.
+    pub eas: EasSummary,
+    /// Dihedral angles in degrees.
+    pub dihedral_deg: Range,
+    /// `12 (3V)^(2/3) / sum of squared edge lengths`.
+    pub mean_ratio: MinMean,
+}
+
+/// Equi-angle quality of the tets.
+#[derive(Clone, Debug, Serialize)]
+pub struct EasSummary {
+    /// The worst.
+    pub min: f64,
+    /// The mean.
+    pub mean: f64,
+    /// How many are below [`BAD_EAS`].
+    pub bad: usize,
+    /// The cell that has the worst.
+    pub worst_cell: CellId,
+    /// The centre of that cell.
+    pub worst_at: Point,
+    /// How many lie below 0, in [0, 0.1), [0.1, 0.2), ... and [0.9, 1].
+    pub histogram: [usize; 11],
+}
+
+/// The smallest and the largest.
+#[derive(Clone, Debug, Serialize)]
+pub struct Range {
+    /// The smallest.
+    pub min: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// The smallest and the mean.
+#[derive(Clone, Debug, Serialize)]
+pub struct MinMean {
+    /// The smallest.
+    pub min: f64,
+    /// The mean.
+    pub mean: f64,
+}
+
+impl Summary {
+    /// Looks at everything: about two seconds for a million tets.
+    pub fn of(mesh: &Mesh) -> Self {
+        let boundary = Boundary::of(&mesh.cells);
+        let defects = check_with(mesh, &boundary);
+        let volumes = finite_volumes(mesh);
+        let count = |kind| defects.iter().find(|d| d.kind == kind).map_or(0, |d| d.count);
+        let surface_cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
+        let has_volume = mesh.cells.dim() == Some(3);
+        Self {
+            points: mesh.points.len(),
+            cells: mesh.cells.counts().into_iter().map(|(kind, n)| (kind.label(), n)).collect(),
+            bounds: mesh.bounds(),
+            volume: volumes.iter().sum(),
+            regions: mesh.regions().map(|labels| regions(mesh, &labels, &volumes)).unwrap_or_default(),
+            patches: mesh.patches().map(|labels| patches(mesh, &labels)).unwrap_or_default(),
+            surface: surface_cells().next().map(|_| patch(mesh, &surface_cells().collect::<Vec<_>>())),
+            boundary: has_volume
+                .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
+            quality: tet_quality(mesh),
+            inverted: count(DefectKind::InvertedCell),
+            conforming: is_conforming(&defects),
+            defects,
+        }
+    }
+}
+
+/// The volume of each cell, 0 where a point is not finite.
+fn finite_volumes(mesh: &Mesh) -> Vec<f64> {
+    let facets = Facets::of(&mesh.cells);
+    let volume = |i| cell_volume(&facets, CellId::new(i), &mesh.points);
+    (0..mesh.cells.len()).map(|i| Some(volume(i)).filter(|v| v.is_finite()).unwrap_or(0.0)).collect()
+}
+
+/// The name of each label, with its number where two share a name.
+fn keys(labels: &Labels) -> BTreeMap<i32, String> {
+    let used = labels.used();
+    let name = |id: &i32| labels.name(*id);
+    let shared = |id: &i32| used.iter().filter(|other| name(other) == name(id)).count() > 1;
+    used.iter().map(|id| (*id, if shared(id) { format!("{} ({id})", name(id)) } else { name(id) })).collect()
+}
+
+fn regions(mesh: &Mesh, labels: &Labels, volumes: &[f64]) -> BTreeMap<String, RegionSummary> {
+    let mut by_id: BTreeMap<i32, RegionSummary> = BTreeMap::new();
+    for (cell, kind, _) in mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
+        let region = by_id.entry(labels.ids[cell.index()]).or_default();
+        region.tets += usize::from(matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA));
+        region.cells += 1;
+        region.volume += volumes[cell.index()];
+    }
+    named(labels, by_id)
+}
+
+fn patches(mesh: &Mesh, labels: &Labels) -> BTreeMap<String, PatchSummary> {
+    let mut by_id: BTreeMap<i32, Vec<SurfaceCell>> = BTreeMap::new();
+    for cell in mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2)) {
+        by_id.entry(labels.ids[cell.0.index()]).or_default().push(cell);
+    }
+    named(labels, by_id.into_iter().map(|(id, cells)| (id, patch(mesh, &cells))).collect())
+}
+
+/// By name; cells without a label are left to the totals.
+fn named<T>(labels: &Labels, by_id: BTreeMap<i32, T>) -> BTreeMap<String, T> {
+    let keys = keys(labels);
+    by_id.into_iter().filter_map(|(id, summary)| Some((keys.get(&id)?.clone(), summary))).collect()
+}
+
+type SurfaceCell<'a> = (CellId, CellKind, &'a [VertexId]);
+
+fn patch(mesh: &Mesh, cells: &[SurfaceCell]) -> PatchSummary {
+    let mut summary = PatchSummary { cells: cells.len(), ..PatchSummary::default() };
+    for (_, kind, vertices) in cells {
+        triangulate(*kind, vertices, &mesh.points, &mut |corners| {
+            let area = triangle::area(corners.map(|v| mesh.points[v.index()]));
+            summary.triangles += 1;
+            summary.area += if area.is_finite() { area } else { 0.0 };
+        });
+    }
+    summary.closed = is_closed(SurfaceFacets::from_cells(cells.iter().copied()).rings.iter());
+    summary
+}
+
+/// Shape of the tets whose points are finite.
+fn tet_quality(mesh: &Mesh) -> Option<QualitySummary> {
+    let is_tet = |kind| matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA);
+    let mut total: Option<QualitySummary> = None;
+    let mut n = 0usize;
+    for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
+        let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
+        if tet.as_flattened().iter().all(|x| x.is_finite()) {
+            n += 1;
+            total.get_or_insert_with(QualitySummary::empty).add(cell, tet);
+        }
+    }
+    total.map(|quality| quality.finished(n))
+}
+
+impl QualitySummary {
+    fn empty() -> Self {
+        let eas = EasSummary {
+            min: f64::INFINITY,
+            mean: 0.0,
+            bad: 0,
+            worst_cell: CellId(0),
+            worst_at: [0.0; 3],
+            histogram: [0; 11],
+        };
+        let dihedral_deg = Range { min: f64::INFINITY, max: f64::NEG_INFINITY };
+        Self { eas, dihedral_deg, mean_ratio: MinMean { min: f64::INFINITY, mean: 0.0 } }
+    }
+
+    /// Means are sums until [`Self::finished`], angles radians.
+    fn add(&mut self, cell: CellId, tet: [Point; 4]) {
+        let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
+        if eas < self.eas.min {
+            self.eas.min = eas;
+            self.eas.worst_cell = cell;
+            self.eas.worst_at = crate::geometry::tet::centroid(tet);
+        }
+        self.eas.mean += eas;
+        self.eas.bad += usize::from(eas < BAD_EAS);
+        self.eas.histogram[if eas < 0.0 { 0 } else { 1 + ((eas * 10.0) as usize).min(9) }] += 1;
+        let [low, high] = quality::dihedral::min_max(tet);
+        self.dihedral_deg.min = self.dihedral_deg.min.min(low);
+        self.dihedral_deg.max = self.dihedral_deg.max.max(high);
+        self.mean_ratio.min = self.mean_ratio.min.min(mean_ratio);
+        self.mean_ratio.mean += mean_ratio;
+    }
+
+    fn finished(mut self, n: usize) -> Self {
+        self.eas.mean /= n as f64;
+        self.mean_ratio.mean /= n as f64;
+        self.dihedral_deg =
+            Range { min: self.dihedral_deg.min.to_degrees(), max: self.dihedral_deg.max.to_degrees() };
+        self
+    }
+}

@@ -1,0 +1,266 @@
+//! Defects: none in the built-in shapes, each found by name and place where it was put in.
+
+use motet::Mesh;
+use motet::base::{CellId, Point, VertexId};
+use motet::mesh::check::{DefectKind, check, is_conforming};
+use motet::mesh::shapes::{TubeOptions, WallCells, ball, box_grid, mixed, quadratic, sphere_in_box, tube};
+use motet::mesh::{CellKind, Cells, Summary};
+
+const CUBE: [Point; 8] = [
+    [0., 0., 0.],
+    [1., 0., 0.],
+    [1., 1., 0.],
+    [0., 1., 0.],
+    [0., 0., 1.],
+    [1., 0., 1.],
+    [1., 1., 1.],
+    [0., 1., 1.],
+];
+
+fn mesh(points: &[Point], cells: &[(CellKind, &[u32])]) -> Mesh {
+    let mut list = Cells::new();
+    for (kind, ids) in cells {
+        list.push(*kind, ids.iter().map(|&i| VertexId(i)));
+    }
+    Mesh::new(points.to_vec(), list)
+}
+
+/// Kinds and counts of all defects.
+fn found(mesh: &Mesh) -> Vec<(DefectKind, usize)> {
+    check(mesh).iter().map(|defect| (defect.kind, defect.count)).collect()
+}
+
+#[test]
+fn built_in_shapes_have_no_defect() {
+    let wedges = TubeOptions { wall_layers: 3, wall_cells: WallCells::Wedges, ..TubeOptions::default() };
+    let shapes = [
+        box_grid([3, 2, 4], [[0.0; 3], [1.0, 1.0, 3.0]]),
+        ball(4, 2),
+        sphere_in_box(8, 4),
+        tube(&TubeOptions::default()),
+        tube(&wedges),
+        mixed(2),
+        quadratic(&ball(3, 1)),
+    ];
+    for shape in shapes {
+        assert_eq!(found(&shape), []);
+        let summary = Summary::of(&shape);
+        assert!(summary.conforming && summary.inverted == 0);
+        assert!(summary.surface.is_some_and(|s| s.closed));
+    }
+}
+
+#[test]
+fn points_that_are_no_place_that_none_uses_or_that_coincide() {
+    let points = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [f64::NAN, 0., 0.],
+        [5., 6., 7.],
+        [0.0, -0.0, 1.0],
+    ];
+    let mesh = mesh(&points, &[(CellKind::TETRA, &[0, 1, 2, 3]), (CellKind::TETRA, &[0, 1, 2, 4])]);
+    let defects = check(&mesh);
+    let of = |kind| defects.iter().find(|d| d.kind == kind).unwrap();
+    assert_eq!(of(DefectKind::NonFinitePoint).examples[0].vertices, [VertexId(4)]);
+    assert_eq!(of(DefectKind::NonFinitePoint).examples[0].at, None);
+    assert_eq!(of(DefectKind::OrphanPoint).count, 2);
+    assert_eq!(of(DefectKind::OrphanPoint).examples[0].at, Some([5., 6., 7.]));
+    assert_eq!(of(DefectKind::DuplicatePoint).examples[0].vertices, [VertexId(3), VertexId(6)]);
+    let summary = Summary::of(&mesh);
+    assert!((summary.volume - 1.0 / 6.0).abs() < 1e-15);
+    assert_eq!(summary.bounds, Some([[0.0; 3], [5., 6., 7.]]));
+    assert!((summary.quality.unwrap().eas.min - 0.75).abs() < 1e-15);
+}
+
+#[test]
+fn inverted_flat_and_repeating_cells() {
+    let tet: (CellKind, &[u32]) = (CellKind::TETRA, &[0, 1, 3, 4]);
+    assert_eq!(found(&mesh(&CUBE[..5], &[tet]))[..], [(DefectKind::OrphanPoint, 1)]);
+    let turned =
+        mesh(&CUBE, &[(CellKind::TETRA, &[1, 0, 3, 4]), (CellKind::HEXAHEDRON, &[4, 5, 6, 7, 0, 1, 2, 3])]);
+    let defects = check(&turned);
+    let inverted = defects.iter().find(|d| d.kind == DefectKind::InvertedCell).unwrap();
+    assert_eq!(inverted.count, 2);
+    assert_eq!(inverted.examples[0].cells, [CellId(0)]);
+    assert_eq!(inverted.examples[0].at, Some([0.25; 3]));
+    assert_eq!(Summary::of(&turned).inverted, 2);
+
+    let flat = found(&mesh(&CUBE, &[(CellKind::TETRA, &[0, 1, 2, 3]), (CellKind::TETRA, &[0, 1, 3, 3])]));
+    assert!(flat.contains(&(DefectKind::FlatCell, 2)) && flat.contains(&(DefectKind::RepeatedVertex, 1)));
+    let line = [[0., 0., 0.], [1., 1., 1.], [3., 3., 3.]];
+    assert!(
+        found(&mesh(&line, &[(CellKind::TRIANGLE, &[0, 1, 2])])).contains(&(DefectKind::ZeroAreaCell, 1))
+    );
+}
+
+#[test]
+fn flatness_is_decided_exactly() {
+    // Near the plane x + y + z = 1: as binary fractions 0.1, 0.2 and 0.7 do not sum to 1
+    // (they miss by 2^-55, which the sum in double precision does not show).
+    let is_flat = |last: Point| {
+        let points = [[1., 0., 0.], [0., 1., 0.], [0., 0., 1.], last];
+        let kinds = found(&mesh(&points, &[(CellKind::TETRA, &[0, 1, 2, 3])]));
+        kinds.contains(&(DefectKind::FlatCell, 1))
+    };
+    assert!(!is_flat([0.1, 0.2, 0.7]));
+    assert!(is_flat([0.125, 0.25, 0.625]));
+}
+
+#[test]
+fn cells_that_do_not_fit_together() {
+    let above: Vec<Point> =
+        CUBE.iter().copied().chain([[0.5, 0.5, 2.0], [0.5, 0.5, 3.0], [0.5, 0.5, 4.0]]).collect();
+    let tet = |apex| vec![4, 5, 6, apex];
+    let (a, b, c) = (tet(8), tet(9), tet(10));
+    let three = mesh(&above, &[(CellKind::TETRA, &a), (CellKind::TETRA, &b), (CellKind::TETRA, &c)]);
+    let defects = check(&three);
+    let overshared = defects.iter().find(|d| d.kind == DefectKind::OversharedFacet).unwrap();
+    assert_eq!(overshared.examples[0].cells, [0, 1, 2].map(CellId));
+    assert!(!is_conforming(&defects));
+
+    let twice = found(&mesh(
+        &CUBE,
+        &[
+            (CellKind::TETRA, &[0, 1, 3, 4]),
+            (CellKind::TETRA, &[4, 3, 1, 0]),
+            (CellKind::QUAD, &[0, 1, 2, 3]),
+            (CellKind::QUAD, &[3, 0, 1, 2]),
+        ],
+    ));
+    assert!(twice.contains(&(DefectKind::DuplicateCell, 2)), "{twice:?}");
+
+    let doubled: Vec<Point> =
+        CUBE.iter().chain(&[CUBE[4], CUBE[5], CUBE[6], CUBE[7]]).copied().chain([[0.5, 0.5, 2.0]]).collect();
+    let cracked = mesh(
+        &doubled,
+        &[(CellKind::HEXAHEDRON, &[0, 1, 2, 3, 4, 5, 6, 7]), (CellKind::PYRAMID, &[8, 9, 10, 11, 12])],
+    );
+    let expected =
+        [(DefectKind::DuplicatePoint, 4), (DefectKind::UnmergedFacet, 1), (DefectKind::SeparatePart, 2)];
+    assert_eq!(found(&cracked), expected);
+    assert!(!Summary::of(&cracked).conforming);
+}
+
+#[test]
+fn a_crack_whose_rim_is_shared_is_still_a_crack() {
+    // Two tets on one triangle of which they share two corners and have a third each.
+    let points = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.2, 0.2, -1.]];
+    let tets = mesh(&points, &[(CellKind::TETRA, &[0, 1, 2, 4]), (CellKind::TETRA, &[1, 0, 3, 5])]);
+    assert!(found(&tets).contains(&(DefectKind::UnmergedFacet, 1)));
+}
+
+#[test]
+fn a_wall_divided_on_one_side_only() {
+    // A cube with a quarter cube on its top: three of its upper corners hang.
+    let mut points = CUBE.to_vec();
+    points.extend([[0.5, 0., 1.], [0.5, 0.5, 1.], [0., 0.5, 1.]]);
+    points.extend([[0., 0., 1.5], [0.5, 0., 1.5], [0.5, 0.5, 1.5], [0., 0.5, 1.5]]);
+    let small: &[u32] = &[4, 8, 9, 10, 11, 12, 13, 14];
+    let cubes =
+        mesh(&points, &[(CellKind::HEXAHEDRON, &[0, 1, 2, 3, 4, 5, 6, 7]), (CellKind::HEXAHEDRON, small)]);
+    let defects = check(&cubes);
+    assert_eq!(
+        defects.iter().map(|d| (d.kind, d.count)).collect::<Vec<_>>()[0],
+        (DefectKind::HangingVertex, 3)
+    );
+    assert_eq!(defects[0].examples[1].at, Some([0.5, 0.5, 1.0]));
+    assert!(!is_conforming(&defects));
+    // The same far from the origin, in another unit.
+    for (scale, shift) in [(1e-3, 0.0), (1e3, 0.0), (1.0, 1000.0)] {
+        let mut moved = cubes.clone();
+        moved.points.iter_mut().for_each(|p| *p = p.map(|x| x * scale + shift));
+        assert!(found(&moved).contains(&(DefectKind::HangingVertex, 3)), "{scale} {shift}");
+    }
+}
+
+#[test]
+fn boundaries_that_touch_themselves() {
+    let edge = [[0., 0., 0.], [0., 0., 1.], [1., 0., 0.], [0., 1., 0.], [-1., 0., 0.], [0., -1., 0.]];
+    let on_an_edge = mesh(&edge, &[(CellKind::TETRA, &[0, 2, 3, 1]), (CellKind::TETRA, &[0, 4, 5, 1])]);
+    assert_eq!(found(&on_an_edge), [(DefectKind::NonManifoldEdge, 1)]);
+    let corner =
+        [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 0., 1.], [-1., 0., 0.], [0., -1., 0.], [0., 0., -1.]];
+    let at_a_corner = mesh(&corner, &[(CellKind::TETRA, &[0, 1, 2, 3]), (CellKind::TETRA, &[0, 5, 4, 6])]);
+    let defects = check(&at_a_corner);
+    assert_eq!(found(&at_a_corner), [(DefectKind::NonManifoldVertex, 1)]);
+    assert_eq!(defects[0].examples[0].vertices, [VertexId(0)]);
+    assert!(is_conforming(&defects), "pinched, but every facet fits");
+}
+
+#[test]
+fn surfaces_that_are_open_turned_over_or_non_manifold() {
+    let triangle = |a: &'static [u32]| (CellKind::TRIANGLE, a);
+    let open = mesh(&CUBE[..4], &[triangle(&[0, 1, 2]), triangle(&[0, 2, 3])]);
+    assert_eq!(found(&open), [(DefectKind::OpenEdge, 4)]);
+    assert!(!Summary::of(&open).surface.unwrap().closed);
+    let turned = mesh(&CUBE[..4], &[triangle(&[0, 1, 2]), triangle(&[0, 3, 2])]);
+    assert_eq!(found(&turned), [(DefectKind::OpenEdge, 4), (DefectKind::MisorientedEdge, 1)]);
+    let book = mesh(&CUBE[..5], &[triangle(&[0, 1, 2]), triangle(&[0, 1, 3]), triangle(&[0, 1, 4])]);
+    assert_eq!(found(&book), [(DefectKind::OpenEdge, 6), (DefectKind::NonManifoldEdge, 1)]);
+}
+
+#[test]
+fn parts_are_counted_and_the_display_names_places() {
+    let mut points = CUBE.to_vec();
+    points.extend(CUBE.map(|p| p.map(|x| x + 10.0)));
+    let hexahedron: Vec<u32> = (0..8).collect();
+    let far: Vec<u32> = (8..16).collect();
+    let two = mesh(&points, &[(CellKind::HEXAHEDRON, &hexahedron), (CellKind::HEXAHEDRON, &far)]);
+    let defects = check(&two);
+    assert_eq!(found(&two), [(DefectKind::SeparatePart, 2)]);
+    assert_eq!(
+        defects[0].to_string(),
+        "2 separate_part (cells that hang together with no others): cell 0 at (0.500000, 0.500000, 0.500000); \
+         cell 1 at (10.500000, 10.500000, 10.500000)"
+    );
+}
+
+#[test]
+fn the_summary_has_the_keys_that_scripts_rely_on() {
+    let json = serde_json::to_value(Summary::of(&sphere_in_box(4, 2))).unwrap();
+    assert_eq!(json["points"], 98 * 3);
+    assert_eq!(json["cells"]["tetra"], 6 * 96 * 2);
+    assert_eq!(json["cells"]["triangle"], 2 * 2 * 96);
+    assert_eq!(json["bounds"], serde_json::json!([[-5.0, -5.0, -5.0], [5.0, 5.0, 5.0]]));
+    assert_eq!(json["regions"]["fluid"]["tets"], 6 * 96 * 2);
+    assert_eq!(json["regions"]["fluid"]["volume"], json["volume"]);
+    assert_eq!(json["patches"]["box"]["triangles"], 2 * 96);
+    assert!((json["patches"]["box"]["area"].as_f64().unwrap() - 600.0).abs() < 1e-11);
+    assert_eq!(json["patches"]["sphere"]["closed"], true);
+    for key in ["min", "mean", "bad"] {
+        assert!(json["quality"]["eas"][key].is_number());
+    }
+    assert!(json["quality"]["dihedral_deg"]["min"].as_f64().unwrap() > 1.0);
+    assert!(json["quality"]["dihedral_deg"]["max"].as_f64().unwrap() < 180.0);
+    assert!(
+        json["quality"]["mean_ratio"]["min"].is_number() && json["quality"]["mean_ratio"]["mean"].is_number()
+    );
+    assert_eq!((&json["inverted"], &json["conforming"]), (&0.into(), &true.into()));
+    assert_eq!(json["defects"], serde_json::json!([]));
+    let counted: u64 =
+        json["quality"]["eas"]["histogram"].as_array().unwrap().iter().filter_map(|n| n.as_u64()).sum();
+    assert_eq!(counted, 6 * 96 * 2);
+}
+
+#[test]
+fn hopeless_meshes_are_told_about_in_bounded_time() {
+    // Every tet spans the whole mesh, and one facet has thousands of cells.
+    let n = 3000u32;
+    let points: Vec<Point> = (0..n)
+        .map(|i| {
+            [17, 31, 47]
+                .map(|k| f64::from(i.wrapping_mul(2_654_435_761).rotate_left(k)) / f64::from(u32::MAX))
+        })
+        .collect();
+    let mut cells = Cells::new();
+    for i in 0..20_000 {
+        cells.push(CellKind::TETRA, [i, i * 7 + 1, i * 13 + 2, i * 29 + 3].map(|v| VertexId(v % n)));
+        cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
+    }
+    let defects = check(&Mesh::new(points, cells));
+    let duplicates = defects.iter().find(|d| d.kind == DefectKind::DuplicateCell).unwrap();
+    assert!(duplicates.count >= 19_999 && duplicates.examples.len() == 5);
+}
