@@ -12,6 +12,9 @@
 //! with a note. Points keep the order of the file, whatever their numbers. Elements
 //! up to the second order are read; see `kinds` for their orders of nodes.
 //!
+//! Version 4.1 is written unless 2.2 is asked for, or some cells have a label and
+//! others none: meshio (5.3) cannot read that in 4.1.
+//!
 //! `mshio` (0.4, 2020) was tried: it reads 4.1 ascii, but not the binary files of
 //! meshio, not 2.2, no names and no data, and writes nothing.
 

@@ -14,6 +14,12 @@ use crate::mesh::{CellKind, Field, Mesh, Values};
 /// Entity of each node, as meshio names it.
 const NODE_ENTITIES: &str = "gmsh:dim_tags";
 
+#[derive(Clone, Copy, PartialEq)]
+enum Version {
+    V2,
+    V4,
+}
+
 /// Where numbers go, as text or as bytes.
 struct Sink {
     out: Vec<u8>,
@@ -73,12 +79,14 @@ struct Tagged {
     partitions: Option<Vec<i32>>,
 }
 
-/// Writes an MSH file: 4.1 unless 2.2 is asked for.
+/// Writes an MSH file: the version asked for, else 4.1, or 2.2 where some cells
+/// have a label and others have none, which meshio (5.3) cannot read in 4.1.
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let types = element_types();
-    let version2 = match options.version.as_deref() {
-        None | Some("4.1" | "4") => false,
-        Some("2.2" | "2") => true,
+    let asked = match options.version.as_deref() {
+        None => None,
+        Some("4.1" | "4") => Some(Version::V4),
+        Some("2.2" | "2") => Some(Version::V2),
         Some(other) => {
             return Err(
                 Error::options(format!("MSH version {other} is not written")).remedy("ask for 4.1 or 2.2")
@@ -87,6 +95,9 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     };
     let (mesh, mut lost) = keep_cells(mesh, "MSH", |kind| types.iter().any(|t| t.kind == kind));
     let tagged = Tagged::of(&mesh, &mut lost)?;
+    let labelled = tagged.physical.iter().filter(|&&label| label != 0).count();
+    let partly = labelled > 0 && labelled < tagged.physical.len();
+    let version2 = asked.unwrap_or(if partly { Version::V2 } else { Version::V4 }) == Version::V2;
     let mut sink = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
     header(&mut sink, if version2 { "2.2" } else { "4.1" });
     physical_names(&mut sink, &mesh);

@@ -1,0 +1,579 @@
+"""MSH, STL, OBJ, Medit, TetGen, DOLFIN XML and SimVascular folders against Gmsh, meshio and VTK."""
+import gzip
+import itertools
+import os
+from pathlib import Path
+
+import gmsh
+import meshio
+import numpy as np
+import pytest
+import vtk
+from conftest import data_folder
+from meshes import assert_same_array, assert_same_mesh, cells_of, tet_set, volumes
+from vtk.util.numpy_support import vtk_to_numpy
+
+MSH_FORMS = list(itertools.product(["2.2", "4.1"], ["ascii", "binary"]))
+# Gmsh's numbers of the elements that motet reads, with VTK's.
+TYPES = {1: 3, 2: 5, 3: 9, 4: 10, 5: 12, 6: 13, 7: 14, 8: 21, 9: 22, 16: 23, 10: 28, 11: 24, 17: 25, 12: 29, 18: 26,
+         13: 32, 19: 27}
+
+
+@pytest.fixture
+def gmsh_session():
+    """Gmsh, quiet and empty."""
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    yield gmsh
+    gmsh.finalize()
+
+
+def gmsh_write(path, version, encoding):
+    gmsh.option.setNumber("Mesh.MshFileVersion", float(version))
+    gmsh.option.setNumber("Mesh.Binary", int(encoding == "binary"))
+    gmsh.write(str(path))
+
+
+def tet_box(order):
+    """A box cut in two regions, its faces in named patches, one curve and one point named."""
+    gmsh.model.add("box")
+    a = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+    b = gmsh.model.occ.addBox(1, 0, 0, 1, 1, 1)
+    gmsh.model.occ.fragment([(3, a)], [(3, b)])
+    gmsh.model.occ.synchronize()
+    volumes_ = [tag for _, tag in gmsh.model.getEntities(3)]
+    faces = [tag for _, tag in gmsh.model.getEntities(2)]
+    gmsh.model.addPhysicalGroup(3, volumes_[:1], 7, "left half")
+    gmsh.model.addPhysicalGroup(3, volumes_[1:], 9, "right half")
+    gmsh.model.addPhysicalGroup(2, faces[:3], 3, "wall")
+    gmsh.model.addPhysicalGroup(2, faces[3:], 12, "rest")
+    gmsh.model.addPhysicalGroup(1, [1], 5, "edge")
+    gmsh.model.addPhysicalGroup(0, [1], 6, "corner")
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
+
+
+def layered_box(kind, order):
+    """A box of hexahedra or of prisms, in two groups."""
+    gmsh.model.add(kind)
+    base = gmsh.model.occ.addRectangle(0, 0, 0, 1, 1)
+    gmsh.model.occ.extrude([(2, base)], 0, 0, 1, numElements=[2], recombine=True)
+    gmsh.model.occ.synchronize()
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+    if kind == "hexahedra":
+        gmsh.model.mesh.setTransfiniteSurface(base)
+        gmsh.model.mesh.setRecombine(2, base)
+    gmsh.model.addPhysicalGroup(3, [1], 1, "body")
+    gmsh.model.addPhysicalGroup(2, [base], 2, "floor")
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(order)
+
+
+def one_element(element_type):
+    """One element of a type, its nodes where Gmsh says that they lie."""
+    _, dim, _, n, local, _ = gmsh.model.mesh.getElementProperties(element_type)
+    local = np.reshape(local, (n, -1))
+    points = np.zeros((n, 3))
+    points[:, : local.shape[1]] = local
+    points = points @ np.array([[2, 0.125, 0], [0.25, 3, 0.125], [0, 0.375, 4]]) + [1.0, 2.0, 3.0]
+    gmsh.model.add("one")
+    tag = gmsh.model.addDiscreteEntity(dim)
+    gmsh.model.mesh.addNodes(dim, tag, range(1, n + 1), points.ravel())
+    gmsh.model.mesh.addElements(dim, tag, [element_type], [[1]], [list(range(1, n + 1))])
+    return points
+
+
+def vtk_grid(path):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    assert reader.GetErrorCode() == 0
+    return reader.GetOutput()
+
+
+def gmsh_content():
+    """What Gmsh has open: nodes, elements of each type by their numbers, groups, each element's group and entity."""
+    tags, points, _ = gmsh.model.mesh.getNodes()
+    order = np.argsort(tags)
+    points = points.reshape(-1, 3)[order]
+    renumber = np.empty(int(tags.max()) + 1, int)
+    renumber[tags[order]] = np.arange(len(tags))
+    elements = {}
+    for dim, entity in gmsh.model.getEntities():
+        groups = sorted(map(int, gmsh.model.getPhysicalGroupsForEntity(dim, entity)))
+        for kind, _, nodes in zip(*gmsh.model.mesh.getElements(dim, entity)):
+            n = gmsh.model.mesh.getElementProperties(kind)[3]
+            rows = renumber[nodes.reshape(-1, n)]
+            elements.setdefault(int(kind), []).extend((tuple(map(int, row)), entity, tuple(groups)) for row in rows)
+    names = {(dim, tag): gmsh.model.getPhysicalName(dim, tag) for dim, tag in gmsh.model.getPhysicalGroups()}
+    return points, {kind: sorted(rows) for kind, rows in elements.items()}, names
+
+
+def opened(path):
+    gmsh.clear()
+    gmsh.open(str(path))
+    return gmsh_content()
+
+
+BUILDS = {
+    "tets": lambda: tet_box(1),
+    "tets of second order": lambda: tet_box(2),
+    "hexahedra": lambda: layered_box("hexahedra", 1),
+    "hexahedra of second order": lambda: layered_box("hexahedra", 2),
+    "prisms": lambda: layered_box("prisms", 1),
+    "prisms of second order": lambda: layered_box("prisms", 2),
+}
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+@pytest.mark.parametrize("build", BUILDS)
+def test_gmsh_finds_its_own_mesh_in_what_motet_writes(motet, gmsh_session, tmp_path, build, version, encoding):
+    BUILDS[build]()
+    source = tmp_path / "source.msh"
+    gmsh_write(source, version, encoding)
+    points, elements, names = opened(source)
+    for out_version, out_encoding in MSH_FORMS:
+        copy = tmp_path / f"{out_version}-{out_encoding}.msh"
+        motet("convert", source, copy, "--version", out_version, "--encoding", out_encoding)
+        copy_points, copy_elements, copy_names = opened(copy)
+        # In the order of the file here, by number in the original: compare as sets of located elements.
+        assert_same_located(copy_points, copy_elements, points, elements)
+        assert copy_names == names
+
+
+def assert_same_located(points, elements, other_points, other_elements):
+    """Equal elements, nodes told by where they lie and in which order, with entity and group."""
+    assert len(points) == len(other_points)
+    assert set(elements) == set(other_elements)
+
+    def located(points, rows):
+        return sorted((tuple(map(tuple, points[list(nodes)])), entity, groups) for nodes, entity, groups in rows)
+
+    for kind in elements:
+        assert located(points, elements[kind]) == located(other_points, other_elements[kind]), kind
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+@pytest.mark.parametrize("build", BUILDS)
+def test_meshio_reads_the_same_from_the_copy(motet, gmsh_session, tmp_path, build, version, encoding):
+    BUILDS[build]()
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.msh"
+    gmsh_write(source, version, encoding)
+    motet("convert", source, copy, "--version", version, "--encoding", encoding)
+    ours, theirs = meshio.read(copy), meshio.read(source)
+    assert_same_mesh(ours, theirs)
+    for name, value in theirs.field_data.items():
+        assert list(ours.field_data[name]) == list(value), name
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+@pytest.mark.parametrize("element_type", TYPES)
+def test_nodes_of_every_element_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type, version, encoding):
+    points = one_element(element_type)
+    source, target, back = tmp_path / "one.msh", tmp_path / "one.vtu", tmp_path / "back.msh"
+    gmsh_write(source, version, encoding)
+    motet("convert", source, target)
+    grid = vtk_grid(target)
+    assert grid.GetCellType(0) == TYPES[element_type]
+    cell = grid.GetCell(0)
+    found = vtk_to_numpy(cell.GetPoints().GetData())
+    # The same points in another order...
+    assert sorted(map(tuple, found)) == sorted(map(tuple, points))
+    # ...so that a node between corners lies between them, on each edge and each face, and the volume is positive.
+    for part, n_corners in parts_of(cell):
+        middle = vtk_to_numpy(part.GetPoints().GetData())
+        corners, further = middle[:n_corners], middle[n_corners:]
+        if n_corners == 2 and len(further):
+            np.testing.assert_allclose(further[0], corners.mean(axis=0), atol=1e-14)
+        if len(further) > n_corners:
+            np.testing.assert_allclose(further[-1], corners.mean(axis=0), atol=1e-14)
+    if cell.GetCellDimension() == 3:
+        size = vtk.vtkCellSizeFilter()
+        size.SetInputData(grid)
+        size.Update()
+        assert size.GetOutput().GetCellData().GetArray("Volume").GetValue(0) > 0
+    motet("convert", target, back, "--version", version, "--encoding", encoding)
+    again, elements, _ = opened(back)
+    (nodes, *_), = elements[element_type]
+    assert_same_array(again[list(nodes)], points, "nodes in Gmsh's order")
+
+
+def parts_of(cell):
+    """The edges and faces of a cell, with their number of corners."""
+    result = [(deep(cell.GetEdge(i)), 2) for i in range(cell.GetNumberOfEdges())]
+    for i in range(cell.GetNumberOfFaces()):
+        face = cell.GetFace(i)
+        result.append((deep(face), face.GetNumberOfEdges()))
+    return result
+
+
+def deep(cell):
+    """A copy: VTK gives out the same object for the next edge."""
+    copy = cell.NewInstance()
+    copy.DeepCopy(cell)
+    return copy
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+def test_a_pyramid_of_fourteen_nodes_comes_back(motet, gmsh_session, tmp_path, version, encoding):
+    points = one_element(14)
+    source, copy = tmp_path / "one.msh", tmp_path / "copy.msh"
+    gmsh_write(source, version, encoding)
+    motet("convert", source, copy)
+    again, elements, _ = opened(copy)
+    (nodes, *_), = elements[14]
+    assert_same_array(again[list(nodes)], points, "nodes in Gmsh's order")
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+def test_gmsh_reads_our_arrays(motet, gmsh_session, tmp_path, version, encoding):
+    tet_box(1)
+    source, with_data, copy = (tmp_path / name for name in ("source.msh", "data.vtu", "copy.msh"))
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, with_data)
+    mesh = meshio.read(with_data)
+    rng = np.random.default_rng(1)
+    mesh.point_data = {"p": rng.normal(size=len(mesh.points)), "u": rng.normal(size=(len(mesh.points), 3))}
+    mesh.cell_data = {"stress": [rng.normal(size=(len(block.data), 9)) for block in mesh.cells]}
+    mesh.write(with_data)
+    motet("convert", with_data, copy, "--version", version, "--encoding", encoding)
+    opened(copy)
+    found = {}
+    for view in gmsh.view.getTags():
+        name = gmsh.view.option.getString(view, "Name")
+        kind, tags, values, _, n = gmsh.view.getHomogeneousModelData(view, 0)
+        found[name] = (kind, np.reshape(values, (-1, n))[np.argsort(tags)].squeeze())
+    assert found["p"][0] == found["u"][0] == "NodeData" and found["stress"][0] == "ElementData"
+    assert_same_array(found["p"][1], mesh.point_data["p"], "p")
+    assert_same_array(found["u"][1], mesh.point_data["u"], "u")
+    assert_same_array(found["stress"][1], np.vstack(mesh.cell_data["stress"]), "stress")
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+def test_sparse_numbers_parameters_and_unknown_sections(motet, gmsh_session, tmp_path, version, encoding):
+    gmsh.model.add("periodic")
+    gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+    gmsh.model.occ.synchronize()
+    gmsh.model.mesh.setPeriodic(2, [2], [1], [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+    gmsh.model.mesh.generate(3)
+    tags, _, _ = gmsh.model.mesh.getNodes()
+    gmsh.model.mesh.renumberNodes(tags, [int(t) * 1000 + 17 for t in tags])
+    gmsh.option.setNumber("Mesh.SaveParametric", 1)
+    source, copy = tmp_path / "source.msh", tmp_path / "copy.msh"
+    gmsh_write(source, version, encoding)
+    expected = opened(source)
+    motet("convert", source, copy)
+    found = opened(copy)
+    assert_same_located(found[0], found[1], expected[0], expected[1])
+
+
+@pytest.mark.parametrize("version, encoding", MSH_FORMS)
+def test_a_partitioned_mesh(motet, gmsh_session, tmp_path, version, encoding):
+    tet_box(1)
+    n_tets = len(gmsh.model.mesh.getElementsByType(4)[0])
+    gmsh.model.mesh.partition(3)
+    source, target = tmp_path / "source.msh", tmp_path / "target.vtu"
+    gmsh_write(source, version, encoding)
+    motet("convert", source, target)
+    mesh = meshio.read(target)
+    assert len(cells_of(mesh)["tetra"]) == n_tets
+    partitions = np.concatenate(mesh.cell_data["gmsh:partition"])
+    assert set(partitions[np.concatenate([np.full(len(b.data), b.type == "tetra") for b in mesh.cells])]) == {1, 2, 3}
+
+
+def swap_bytes(path):
+    """Turns a binary MSH 4.1 file of Gmsh's around, as a machine of the other byte order would have written it."""
+    data = path.read_bytes()
+
+    def section(name):
+        start = data.index(b"$" + name + b"\n") + len(name) + 2
+        return start, data.index(b"\n$End" + name, start)
+
+    out = bytearray(data)
+
+    def turn(at, kinds):
+        for size in kinds:
+            out[at : at + size] = data[at : at + size][::-1]
+            at += size
+        return at
+
+    def number(at, size):
+        return int.from_bytes(data[at : at + size], "little")
+
+    start, _ = section(b"MeshFormat")
+    turn(data.index(b"\n", start) + 1, [4])
+    at, end = section(b"Entities")
+    counts = [number(at + 8 * i, 8) for i in range(4)]
+    at = turn(at, [8] * 4)
+    for dim, n in enumerate(counts):
+        for _ in range(n):
+            at = turn(at, [4] + [8] * (3 if dim == 0 else 6))
+            for _ in range(1 if dim == 0 else 2):
+                at = turn(at, [8] + [4] * number(at, 8))
+    assert at == end
+    at, end = section(b"Nodes")
+    n_blocks = number(at, 8)
+    at = turn(at, [8] * 4)
+    for _ in range(n_blocks):
+        n = number(at + 12, 8)
+        at = turn(at, [4, 4, 4, 8] + [8] * (4 * n))
+    assert at == end
+    at, end = section(b"Elements")
+    n_blocks = number(at, 8)
+    at = turn(at, [8] * 4)
+    for _ in range(n_blocks):
+        n = number(at + 12, 8)
+        n_nodes = gmsh.model.mesh.getElementProperties(number(at + 8, 4))[3]
+        at = turn(at, [4, 4, 4, 8] + [8] * (n * (1 + n_nodes)))
+    assert at == end
+    path.write_bytes(bytes(out))
+
+
+def test_the_other_byte_order_of_msh(motet, gmsh_session, tmp_path):
+    tet_box(1)
+    source, straight, turned = (tmp_path / name for name in ("source.msh", "straight.msh", "turned.msh"))
+    gmsh_write(source, "4.1", "binary")
+    motet("convert", source, straight)
+    swap_bytes(source)
+    motet("convert", source, turned)
+    assert straight.read_bytes() == turned.read_bytes()
+
+
+# ---- meshio
+
+
+def mixed_mesh(kinds, seed=0):
+    """Random points and ids: files do not care about shapes. Arrays on points and cells."""
+    rng = np.random.default_rng(seed)
+    counts = meshio._mesh.num_nodes_per_cell
+    points = rng.normal(size=(60, 3)) * 10.0 ** rng.integers(-9, 9, size=(60, 1))
+    cells = [(kind, np.array([rng.choice(60, counts[kind], replace=False) for _ in range(4)])) for kind in kinds]
+    return meshio.Mesh(points, cells)
+
+
+@pytest.mark.parametrize("form", ["gmsh22", "gmsh"])
+@pytest.mark.parametrize("binary", [False, True])
+def test_msh_of_meshio(motet, tmp_path, form, binary):
+    mesh = mixed_mesh(["vertex", "line", "triangle", "quad", "tetra", "hexahedron", "wedge", "pyramid", "tetra10",
+                       "hexahedron20", "triangle6", "quad8", "line3", "hexahedron27", "quad9"])
+    rng = np.random.default_rng(2)
+    mesh.point_data = {"u": rng.normal(size=(60, 3)), "p": rng.normal(size=60)}
+    mesh.cell_data = {"gmsh:physical": [np.full(4, 1 + i) for i in range(len(mesh.cells))],
+                      "gmsh:geometrical": [np.full(4, 1 + i) for i in range(len(mesh.cells))],
+                      "q": [rng.normal(size=4) for _ in mesh.cells]}
+    mesh.field_data = {"a wall": np.array([3, 2]), "blood": np.array([5, 3])}
+    if form == "gmsh":
+        # meshio writes entities of version 4.1 for nodes only; physical groups need these.
+        del mesh.cell_data["gmsh:physical"], mesh.cell_data["gmsh:geometrical"]
+    source = tmp_path / "source.msh"
+    meshio.write(source, mesh, file_format=form, binary=binary)
+    expected = meshio.read(source)
+    for version, encoding in MSH_FORMS:
+        copy = tmp_path / "copy.msh"
+        motet("convert", source, copy, "--version", version, "--encoding", encoding)
+        found = meshio.read(copy)
+        names = ["q"] + [n for n in ("gmsh:physical", "gmsh:geometrical") if n in expected.cell_data and form == "gmsh22"]
+        assert_same_mesh(found, expected, ["u", "p"], names)
+        for name, value in mesh.field_data.items():
+            assert list(found.field_data[name]) == list(value)
+
+
+def test_medit_of_meshio(motet, tmp_path):
+    mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "pyramid"])
+    mesh.point_data = {"medit:ref": np.arange(60)}
+    mesh.cell_data = {"medit:ref": [np.arange(4) + 10 * i for i in range(len(mesh.cells))]}
+    source, copy = tmp_path / "source.mesh", tmp_path / "copy.mesh"
+    mesh.write(source)
+    motet("convert", source, copy)
+    assert_same_mesh(meshio.read(copy), meshio.read(source))
+
+
+def test_tetgen_of_meshio(motet, tmp_path):
+    mesh = mixed_mesh(["tetra"])
+    mesh.point_data = {"tetgen:attr1": np.random.default_rng(3).normal(size=60), "tetgen:ref": np.arange(60)}
+    mesh.cell_data = {"tetgen:ref": [np.arange(1, 5)]}
+    source = tmp_path / "source.node"
+    mesh.write(source)
+    for name in ("node.node", "ele.ele"):
+        copy = tmp_path / name
+        motet("convert", source.with_suffix(copy.suffix), copy)
+        found, expected = meshio.read(copy), meshio.read(source)
+        assert_same_mesh(found, expected, cell_data=["tetgen:ref"])
+
+
+@pytest.mark.parametrize("ending", ["stl", "obj"])
+@pytest.mark.parametrize("binary", [False, True])
+def test_surfaces_of_meshio(motet, tmp_path, ending, binary):
+    mesh = mixed_mesh(["triangle"])
+    mesh.points = mesh.points.astype(np.float32).astype(float)
+    source, copy = tmp_path / f"source.{ending}", tmp_path / f"copy.{ending}"
+    mesh.write(source, **({"binary": binary} if ending == "stl" else {}))
+    motet("convert", source, copy, "--encoding", "binary" if binary else "ascii")
+    ours, theirs = meshio.read(copy), meshio.read(source)
+    assert_same_array(corners(ours), corners(theirs), "corners of triangles")
+
+
+def corners(mesh):
+    return np.asarray(mesh.points, float)[cells_of(mesh)["triangle"]]
+
+
+# ---- VTK
+
+
+def test_vtk_reads_our_stl_and_obj(motet, gmsh_session, tmp_path):
+    tet_box(1)
+    source = tmp_path / "source.msh"
+    gmsh_write(source, "4.1", "binary")
+    expected = meshio.read(source)
+    triangles = np.asarray(expected.points)[cells_of(expected)["triangle"]]
+    for name, reader, options in [("a.stl", vtk.vtkSTLReader(), ["--ascii"]), ("b.stl", vtk.vtkSTLReader(), []),
+                                  ("c.obj", vtk.vtkOBJReader(), [])]:
+        motet("convert", source, tmp_path / name, *options)
+        reader.SetFileName(str(tmp_path / name))
+        reader.Update()
+        output = reader.GetOutput()
+        points = vtk_to_numpy(output.GetPoints().GetData())
+        found = points[vtk_to_numpy(output.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+        assert_same_array(found.astype(np.float32), triangles.astype(np.float32), name)
+
+
+# ---- real meshes
+
+
+def real_files():
+    folder = data_folder()
+    if folder is None:
+        return []
+    endings = (".msh", ".stl", ".obj", ".mesh", ".node", ".ele", ".xml.gz")
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.name.lower().endswith(endings))
+
+
+REFUSED = {"trimesh_empty.stl", "trimesh_stl_empty_bin.stl", "nvidia_aneurysm_closed_lfs_pointer.stl"}
+
+
+@pytest.mark.parametrize("name", real_files())
+def test_real_files(motet, data, tmp_path, name):
+    source = data / name
+    if source.name in REFUSED:
+        done = motet("convert", source, tmp_path / "out.vtu", code=3)
+        assert str(source) in done.stderr
+        return
+    expected = meshio.read(for_meshio(source, tmp_path))
+    kinds = set(cells_of(expected))
+    endings = [".msh", ".vtu", ".mesh", ".node"] if "tetra" in kinds else [".msh", ".vtu", ".mesh", ".obj", ".stl", ".vtp"]
+    for ending in endings:
+        out = tmp_path / f"out{ending}"
+        motet("convert", source, out, *(["--ascii"] if ending == ".stl" else []))
+        found = meshio.read(out) if ending != ".vtp" else None
+        if found is not None:
+            compare(found, expected, source, ending)
+
+
+def for_meshio(source, folder):
+    """The file, or a copy that meshio reads in full: it unpacks nothing, takes Medit's version 1 in single
+    precision, and wants as many normals as vertices."""
+    text = source.read_bytes() if source.suffix in (".gz", ".mesh", ".obj") else None
+    if source.suffix == ".gz":
+        text = gzip.decompress(text)
+    elif source.suffix == ".mesh":
+        text = text.replace(b"MeshVersionFormatted 1", b"MeshVersionFormatted 2", 1)
+    elif source.suffix == ".obj":
+        text = b"\n".join(line for line in text.splitlines() if not line.startswith(b"vn "))
+    else:
+        return source
+    copy = folder / source.with_suffix("").name if source.suffix == ".gz" else folder / source.name
+    copy.write_bytes(text)
+    return copy
+
+
+def compare(found, expected, source, ending):
+    """Equal points, cells and labels; STL files have no vertices of their own, DOLFIN's no sense of cells."""
+    if source.suffix.lower() == ".stl" or ending == ".stl":
+        # meshio merges no points of text files.
+        assert_same_array(corners(found), corners(expected).astype(float), "corners of triangles")
+        return
+    assert_same_array(np.asarray(found.points), np.asarray(expected.points, float), "points")
+    if source.name.endswith(".xml.gz"):
+        assert np.array_equal(tet_set(cells_of(found)["tetra"]), tet_set(cells_of(expected)["tetra"]))
+        assert (volumes(found.points, cells_of(found)["tetra"]) > 0).all()
+        return
+    for kind, cells in cells_of(expected).items():
+        if ending != ".node" or kind == "tetra":
+            assert_same_array(cells_of(found)[kind], cells, kind)
+    ours = {".mesh": "medit:ref", ".node": "tetgen:ref", ".msh": "gmsh:physical"}.get(ending)
+    for name in ("gmsh:physical", "medit:ref"):
+        if name in expected.cell_data:
+            target = name if ending == ".vtu" else ours
+            for block, values in zip(expected.cells, expected.cell_data[name]):
+                if target in found.cell_data and (ending != ".node" or block.type == "tetra"):
+                    got = np.concatenate([v for b, v in zip(found.cells, found.cell_data[target]) if b.type == block.type])
+                    assert_same_array(got, values, f"labels of {block.type}")
+
+
+def test_dolfin_markers_are_the_triangles_opposite_a_vertex(motet, data, tmp_path):
+    """The definition itself, with numpy: facet i of a cell has its sorted vertices but the i-th."""
+    source = data / "copyleft" / "dolfin_aneurysm.xml.gz"
+    import xml.etree.ElementTree as tree
+    root = tree.fromstring(gzip.decompress(source.read_bytes()))
+    cells = np.array([[int(c.get(f"v{k}")) for k in range(4)] for c in root.iter("tetrahedron")])
+    collection = next(c for c in root.iter("mesh_value_collection") if c.get("dim") == "2")
+    expected = {}
+    for value in collection:
+        cell = np.sort(cells[int(value.get("cell_index"))])
+        facet = np.delete(cell, int(value.get("local_entity")))
+        expected[tuple(map(int, facet))] = int(value.get("value"))
+    out = tmp_path / "out.vtu"
+    motet("convert", source, out)
+    mesh = meshio.read(out)
+    triangles = cells_of(mesh)["triangle"]
+    labels = np.concatenate([v for b, v in zip(mesh.cells, mesh.cell_data["patch"]) if b.type == "triangle"])
+    found = {tuple(map(int, np.sort(t))): int(label) - 1 for t, label in zip(triangles, labels)}
+    assert found == expected
+    # Each looks outward: the tet behind it lies on the other side.
+    center = {}
+    for tet in cells:
+        for facet in itertools.combinations(sorted(map(int, tet)), 3):
+            if facet in found:
+                center.setdefault(facet, mesh.points[tet].mean(axis=0))
+    for triangle in triangles:
+        a, b, c = mesh.points[triangle]
+        behind = center[tuple(sorted(map(int, triangle)))]
+        assert np.dot(np.cross(b - a, c - a), behind - a) < 0
+
+
+def test_a_simvascular_folder(motet, data, tmp_path):
+    """Each face's triangles by their coordinates, against what VTK reads from its file."""
+    pipe = data / "tetmeshes" / "sv_ale_pipe"
+    folder = tmp_path / "mesh-complete"
+    (folder / "mesh-surfaces").mkdir(parents=True)
+    os.symlink(pipe / "lumen.vtu", folder / "mesh-complete.mesh.vtu")
+    for face in ("inlet", "outlet", "wall"):
+        os.symlink(pipe / f"lumen_{face}.vtp", folder / "mesh-surfaces" / f"{face}.vtp")
+    out = tmp_path / "out.msh"
+    motet("convert", folder, out)
+    mesh = meshio.read(out)
+    volume = meshio.read(pipe / "lumen.vtu")
+    assert_same_array(cells_of(mesh)["tetra"], cells_of(volume)["tetra"], "tets")
+    triangles = cells_of(mesh)["triangle"]
+    labels = np.concatenate([v for b, v in zip(mesh.cells, mesh.cell_data["gmsh:physical"]) if b.type == "triangle"])
+    for face in ("inlet", "outlet", "wall"):
+        reader = vtk.vtkXMLPolyDataReader()
+        reader.SetFileName(str(pipe / f"lumen_{face}.vtp"))
+        reader.Update()
+        output = reader.GetOutput()
+        points = vtk_to_numpy(output.GetPoints().GetData()).astype(float)
+        expected = points[vtk_to_numpy(output.GetPolys().GetConnectivityArray()).reshape(-1, 3)]
+        label, dim = mesh.field_data[face]
+        assert dim == 2
+        assert_same_array(np.asarray(mesh.points, float)[triangles[labels == label]], expected, face)
+
+
+def test_the_face_files_of_a_pipe_beside_its_volume(motet, data, tmp_path):
+    out = tmp_path / "out.msh"
+    motet("convert", data / "tetmeshes" / "sv_boundary_layer_pipe", out)
+    mesh = meshio.read(out)
+    assert {"inlet", "outlet", "wall"} <= set(mesh.field_data)
+    done = motet("convert", data / "tetmeshes" / "sv_ale_pipe", Path(out), code=3)
+    assert "holds 2 volumes: lumen, wall" in done.stderr
