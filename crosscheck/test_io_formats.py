@@ -365,17 +365,24 @@ def test_msh_of_meshio(motet, tmp_path, form, binary):
                       "q": [rng.normal(size=4) for _ in mesh.cells]}
     mesh.field_data = {"a wall": np.array([3, 2]), "blood": np.array([5, 3])}
     if form == "gmsh":
-        # meshio writes entities of version 4.1 for nodes only; physical groups need these.
-        del mesh.cell_data["gmsh:physical"], mesh.cell_data["gmsh:geometrical"]
+        entities = [(meshio._mesh.topological_dimension[block.type], 1 + i) for i, block in enumerate(mesh.cells)]
+        # In rising order: meshio writes nodes by entity, and reads arrays as if they still stood in their order.
+        mesh.point_data["gmsh:dim_tags"] = np.array(sorted(map(tuple, np.resize(entities, (60, 2)))))
+    else:
+        # meshio cannot read arrays on cells of several kinds in version 2.2.
+        del mesh.cell_data["q"]
+    if not binary:
+        # meshio writes them as text that it cannot read (numpy 2 puts its type around each number).
+        mesh.point_data = {name: values for name, values in mesh.point_data.items() if name not in ("u", "p")}
+        mesh.cell_data.pop("q", None)
     source = tmp_path / "source.msh"
     meshio.write(source, mesh, file_format=form, binary=binary)
     expected = meshio.read(source)
-    for version, encoding in MSH_FORMS:
+    for version, encoding in MSH_FORMS[2:] if form == "gmsh" else MSH_FORMS:
         copy = tmp_path / "copy.msh"
         motet("convert", source, copy, "--version", version, "--encoding", encoding)
         found = meshio.read(copy)
-        names = ["q"] + [n for n in ("gmsh:physical", "gmsh:geometrical") if n in expected.cell_data and form == "gmsh22"]
-        assert_same_mesh(found, expected, ["u", "p"], names)
+        assert_same_mesh(found, expected, [name for name in ("u", "p") if name in mesh.point_data], mesh.cell_data)
         for name, value in mesh.field_data.items():
             assert list(found.field_data[name]) == list(value)
 

@@ -1,18 +1,19 @@
 //! One label for each cell, for formats that have labels of their own.
 
 use crate::io::select::lost_arrays;
-use crate::mesh::{Field, Mesh};
+use crate::mesh::{CellKind, Field, Labels, Mesh};
 
 /// Arrays in which labels of curves and points may be.
 const LOW_ARRAYS: &[&str] = &["gmsh:physical", "medit:ref", "tetgen:ref"];
 
 /// The label of each cell: its region or its patch, or what `gmsh:physical` and
-/// its kin say of curves and points; 0 where there is none.
-pub(super) fn cell_labels(mesh: &Mesh) -> Vec<i32> {
+/// its kin say of curves and points; 0 where there is none, and where labels could
+/// only come from the array `but_not`.
+pub(super) fn cell_labels(mesh: &Mesh, but_not: Option<&str>) -> Vec<i32> {
     let mut labels = vec![0; mesh.cells.len()];
     let low = LOW_ARRAYS.iter().find_map(|name| int_column(mesh, name));
-    let sources =
-        [(mesh.regions().map(|l| l.ids), &[3][..]), (mesh.patches().map(|l| l.ids), &[2]), (low, &[0, 1])];
+    let ids = |labels: Option<Labels>| labels.filter(|l| but_not != Some(l.array.as_str())).map(|l| l.ids);
+    let sources = [(ids(mesh.regions()), &[3][..]), (ids(mesh.patches()), &[2]), (low, &[0, 1])];
     for (ids, dims) in sources {
         for ((label, kind), id) in labels.iter_mut().zip(mesh.cells.kinds()).zip(ids.into_iter().flatten()) {
             if dims.contains(&kind.dim().unwrap_or(0)) {
@@ -37,7 +38,7 @@ pub(super) fn say_all(labels: &[i32], mesh: &Mesh, field: &Field) -> bool {
         name if LOW_ARRAYS.contains(&name) => None,
         _ => return false,
     };
-    let said = |(&label, kind): (&i32, &crate::mesh::CellKind)| {
+    let said = |(&label, kind): (&i32, &CellKind)| {
         if dim.is_none() || kind.dim() == dim { label } else { 0 }
     };
     int_column(mesh, &field.name)

@@ -229,7 +229,7 @@ fn vertex_id(id: i64, n_points: Option<usize>, text: &Text<'_>) -> Result<Vertex
 fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let section_of = |kind: CellKind| SECTIONS.iter().position(|(_, k, _)| *k == kind);
     let (mesh, mut lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
-    let labels = cell_labels(&mesh);
+    let labels = cell_labels(&mesh, None);
     if !mesh.cells.kinds().is_sorted_by_key(|&kind| section_of(kind)) {
         lost.push(
             "Medit keeps cells by their kinds: their order in the file differs from that in the mesh".into(),

@@ -221,7 +221,7 @@ impl Reader {
 
 fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let (mesh, mut lost) = keep_cells(mesh, "OBJ", |kind| statement(kind).is_some());
-    let labels = cell_labels(&mesh);
+    let labels = cell_labels(&mesh, None);
     let names = mesh.patches().map(|p| p.names).unwrap_or_default();
     lost.extend(lost_arrays("OBJ", "point", &mesh.point_data));
     lost.extend(lost_cell_arrays("OBJ", &mesh, &labels));

@@ -7,6 +7,8 @@
 //! with the array `patch`: `ModelFaceID` where each face has its own, else running
 //! numbers in the order of the file names. Names of patches are those of the files.
 //!
+//! A volume without regions is one, labelled 1.
+//!
 //! Arrays on cells go on over the triangles where the face has them under the same
 //! name (`GlobalElementID`: the element behind the triangle); elsewhere there is 0,
 //! or NaN for real numbers.
@@ -45,6 +47,11 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
     let by_id = node_ids(&mesh).map(|ids| Tags::new(&ids, NODE_ID)).transpose();
     let by_id = by_id.map_err(|e| e.in_file(&layout.volume))?;
     let by_point = ByPoint::new(&mesh);
+    if mesh.regions().is_none() {
+        let region =
+            mesh.cells.kinds().iter().map(|kind| i32::from(kind.dim() == Some(3))).collect::<Vec<_>>();
+        mesh.set_cell_field(Field::scalars("region", region));
+    }
     let mut labels = vec![0; mesh.cells.len()];
     let mut faces = Vec::new();
     for (name, path) in &layout.faces {

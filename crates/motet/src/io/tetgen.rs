@@ -281,7 +281,7 @@ fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     let (mesh, mut lost) = keep_cells(mesh, "TetGen", |kind| {
         kind == tetra || kind == CellKind::TRIANGLE || kind == CellKind::LINE
     });
-    let labels = cell_labels(&mesh);
+    let labels = cell_labels(&mesh, None);
     lost.extend(lost_names("TetGen", &mesh));
     lost.extend(lost_arrays("TetGen", "field", &mesh.field_data));
     let rank = |kind: &CellKind| [tetra, CellKind::TRIANGLE, CellKind::LINE].iter().position(|k| k == kind);

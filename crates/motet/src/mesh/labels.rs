@@ -21,6 +21,8 @@ pub struct Labels {
     pub ids: Vec<i32>,
     /// Names, where there are any.
     pub names: BTreeMap<i32, String>,
+    /// The cell array that they come from.
+    pub array: String,
 }
 
 impl Labels {
@@ -82,7 +84,7 @@ impl Mesh {
         let on_dim: Vec<bool> = self.cells.kinds().iter().map(|k| k.dim() == Some(dim)).collect();
         arrays.iter().find_map(|array| {
             let ids = label_ids(self.cell_field(array)?, &on_dim)?;
-            Some(Labels { ids, names: names.clone() })
+            Some(Labels { ids, names: names.clone(), array: (*array).to_owned() })
         })
     }
 }

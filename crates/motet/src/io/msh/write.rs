@@ -80,7 +80,8 @@ struct Tagged {
 }
 
 /// Writes an MSH file: the version asked for, else 4.1, or 2.2 where some cells
-/// have a label and others have none, which meshio (5.3) cannot read in 4.1.
+/// have a label and others have none, which meshio (5.3) cannot read in 4.1 (nor
+/// arrays on cells of several kinds in 2.2).
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let types = element_types();
     let asked = match options.version.as_deref() {
@@ -97,7 +98,9 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let tagged = Tagged::of(&mesh, &mut lost)?;
     let labelled = tagged.physical.iter().filter(|&&label| label != 0).count();
     let partly = labelled > 0 && labelled < tagged.physical.len();
-    let version2 = asked.unwrap_or(if partly { Version::V2 } else { Version::V4 }) == Version::V2;
+    let has_data = mesh.cell_data.iter().any(|f| !tagged.holds(&mesh, f, true));
+    let default = if partly && !has_data { Version::V2 } else { Version::V4 };
+    let version2 = asked.unwrap_or(default) == Version::V2;
     let mut sink = Sink { out: Vec::new(), binary: options.encoding != Encoding::Ascii };
     header(&mut sink, if version2 { "2.2" } else { "4.1" });
     physical_names(&mut sink, &mesh);
@@ -117,7 +120,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
 impl Tagged {
     fn of(mesh: &Mesh, lost: &mut Vec<String>) -> Result<Self> {
         let dims: Vec<i32> = mesh.cells.kinds().iter().map(|k| k.dim().unwrap_or(0) as i32).collect();
-        let physical = cell_labels(mesh);
+        let physical = cell_labels(mesh, Some("gmsh:geometrical"));
         let wanted = int_column(mesh, "gmsh:geometrical").unwrap_or_else(|| physical.clone());
         let entities = entities_of(&dims, &wanted, &physical)?;
         let given = mesh.cell_field("gmsh:geometrical").is_some();
