@@ -8,6 +8,7 @@ use crate::verbs::{convert, info};
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
 #[command(name = "motet", version, subcommand_required = true, arg_required_else_help = true)]
+#[command(max_term_width = 100)]
 #[command(after_help = "\
 File formats are told by their endings: .vtu .vtp .pvd .vtk .msh .mesh .stl .obj .node .xml ...
 Exit status: 0 done; 2 the words of the call are off; 3 an input cannot be read or is not what

@@ -56,7 +56,6 @@ impl Console {
         let _ = writeln!(std::io::stderr(), "error: {text}");
     }
 
-    #[expect(dead_code, reason = "the verbs that take time come next")]
     /// A bar of `steps` steps on standard error; invisible where that is no terminal.
     pub(crate) fn bar(&self, steps: u64, what: &'static str) -> ProgressBar {
         if self.quiet {

@@ -12,7 +12,6 @@ use crate::console::Console;
 pub(crate) enum Outcome {
     /// All that was asked.
     Done,
-    #[expect(dead_code, reason = "the verbs that can fall short come next")]
     /// Less than was asked; what was reached is written and reported.
     NotReached,
 }
@@ -61,9 +60,9 @@ pub(crate) fn misread(misread: &clap::Error, json: bool) -> ExitCode {
     let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
     if json && code != DONE {
         let what = misread.to_string();
-        let what = what.trim_end();
+        let what = what.trim_start_matches("error: ").trim_end();
         println!("{:#}", json!({ "error": { "exit": code, "what": what, "message": what } }));
-        eprintln!("{what}");
+        eprintln!("error: {what}");
     } else {
         let _ = misread.print();
     }

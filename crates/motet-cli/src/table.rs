@@ -50,6 +50,12 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
+/// A time as it was given, but for rounding.
+pub(crate) fn time(t: f64) -> String {
+    let rounded = (t * 1e9).round() / 1e9;
+    if rounded == 0.0 { short(t) } else { rounded.to_string() }
+}
+
 /// A count with its thousands apart.
 pub(crate) fn count(n: usize) -> String {
     let digits = n.to_string();
@@ -92,5 +98,6 @@ mod tests {
         assert_eq!(short(1e-9), "1.000e-9");
         assert_eq!(count(1234567), "1 234 567");
         assert_eq!(count(123), "123");
+        assert_eq!([time(0.1 + 0.2), time(10.0), time(0.0)], ["0.3", "10", "0"]);
     }
 }

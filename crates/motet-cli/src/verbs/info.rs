@@ -1,34 +1,261 @@
-//! `motet info`: what a mesh is, and what is wrong with it.
+//! `motet info`: what a mesh is, how good it is, and what is wrong with it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
+use motet::io::{self, WriteOptions};
+use motet::mesh::Summary;
+use motet::{Error, Mesh};
+use serde::Serialize;
+use serde_json::json;
 
-use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
-use crate::table::{Table, count, short};
+use crate::table::{Table, count, short, time as time_of};
 
 /// Tell what a mesh holds, how good it is, and what is wrong with it
+///
+/// Volumes, surfaces, curves, whatever the file holds. Defects are told with counts, ids
+/// and places; a mesh that has some is no failure (exit status 0). A .pvd is told as its
+/// list of times and files.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
+an inverted one, bad below 0.2. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
+Lengths are in units of the mesh, angles in degrees.
+
+Examples:
+  motet info vessel.vtu
+  motet info vessel.vtu --json | jq .quality.eas.min
+  motet info vessel.msh -o quality.vtu        colour by eas in ParaView to see where it is bad")]
 pub(crate) struct InfoArgs {
-    /// The mesh file (or folder)
+    /// The mesh file (or folder, or .pvd series)
+    #[arg(value_name = "MESH")]
     mesh: PathBuf,
+    /// Write the mesh with a cell array for each measure: eas, mean_ratio, min_dihedral_deg,
+    /// max_dihedral_deg, edge_ratio, volume (of tets; other cells have none)
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
 }
 
-pub(crate) fn run(args: &InfoArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
-    let _threads = common.threads()?;
-    let mesh = motet::io::read(&args.mesh)?;
-    let mut table = Table::new(["", "low", "high"]);
-    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
-        if let Some([low, high]) = mesh.bounds() {
-            table.row([name.to_string(), short(low[axis]), short(high[axis])]);
+pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> {
+    if is_series(&args.mesh) {
+        return series(&args.mesh, console);
+    }
+    if let Some(output) = &args.output {
+        io::can_write(output)?;
+    }
+    let (mesh, notes) = io::read_noted(&args.mesh)?;
+    notes.iter().for_each(|note| console.warn(note));
+    let summary = Summary::of(&mesh);
+    let report =
+        Report { file: &args.mesh, summary: &summary, arrays: Arrays::of(&mesh), passed_over: &notes };
+    console.report(&report);
+    report.tell(console);
+    if let Some(output) = &args.output {
+        let lost = io::write(output, &measured(mesh), &WriteOptions::default())?;
+        lost.iter().for_each(|what| console.warn(what));
+        console.say(format_args!("\nwrote {}", output.display()));
+    }
+    Ok(Outcome::Done)
+}
+
+/// The mesh with an array for each measure.
+fn measured(mut mesh: Mesh) -> Mesh {
+    let fields = [
+        mesh.tet_field("eas", eas),
+        mesh.tet_field("mean_ratio", mean_ratio),
+        mesh.tet_field("min_dihedral_deg", |tet| dihedral::min(tet).to_degrees()),
+        mesh.tet_field("max_dihedral_deg", |tet| dihedral::max(tet).to_degrees()),
+        mesh.tet_field("edge_ratio", edge_ratio),
+        mesh.tet_field("volume", volume),
+    ];
+    fields.into_iter().for_each(|field| mesh.set_cell_field(field));
+    mesh
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    file: &'a Path,
+    #[serde(flatten)]
+    summary: &'a Summary,
+    arrays: Arrays<'a>,
+    passed_over: &'a [String],
+}
+
+/// Names of the arrays, and how many components each has.
+#[derive(Serialize)]
+struct Arrays<'a> {
+    point: Vec<(&'a str, usize)>,
+    cell: Vec<(&'a str, usize)>,
+}
+
+impl<'a> Arrays<'a> {
+    fn of(mesh: &'a Mesh) -> Self {
+        let names = |fields: &'a [motet::mesh::Field]| {
+            fields.iter().map(|f| (f.name.as_str(), f.components)).collect()
+        };
+        Self { point: names(&mesh.point_data), cell: names(&mesh.cell_data) }
+    }
+}
+
+impl Report<'_> {
+    fn tell(&self, console: &Console) {
+        let summary = self.summary;
+        console.say(format_args!("{}: {} points", self.file.display(), count(summary.points)));
+        let kinds: Vec<String> =
+            summary.cells.iter().map(|(kind, n)| format!("{} {kind}", count(*n))).collect();
+        console.say(format_args!(
+            "  cells     {}",
+            if kinds.is_empty() { "none".into() } else { kinds.join(", ") }
+        ));
+        self.tell_size(console);
+        self.tell_arrays(console);
+        self.tell_labels(console);
+        self.tell_quality(console);
+        self.tell_defects(console);
+    }
+
+    fn tell_size(&self, console: &Console) {
+        let summary = self.summary;
+        if let Some([low, high]) = summary.bounds {
+            let side = |i: usize| format!("{} to {}", short(low[i]), short(high[i]));
+            console.say(format_args!("  bounds    x {}, y {}, z {}", side(0), side(1), side(2)));
+        }
+        if let Some(boundary) = &summary.boundary {
+            console.say(format_args!("  volume    {}", short(summary.volume)));
+            console.say(format_args!(
+                "  boundary  {} facets, {} vertices; cells meet facet to facet: {}",
+                count(boundary.facets),
+                count(boundary.vertices),
+                yes_or_no(summary.conforming)
+            ));
+        }
+        if let Some(surface) = &summary.surface {
+            console.say(format_args!(
+                "  surface   {} triangles, area {}, closed: {}",
+                count(surface.triangles),
+                short(surface.area),
+                yes_or_no(surface.closed)
+            ));
         }
     }
-    console.say(format_args!(
-        "{} points, {} cells\n{table}",
-        count(mesh.points.len()),
-        count(mesh.cells.len())
-    ));
+
+    fn tell_arrays(&self, console: &Console) {
+        for (place, arrays) in [("on points", &self.arrays.point), ("on cells", &self.arrays.cell)] {
+            let one = |(name, components): &(&str, usize)| match components {
+                1 => (*name).to_string(),
+                n => format!("{name} ({n})"),
+            };
+            if !arrays.is_empty() {
+                console.say(format_args!(
+                    "  {place:<9} {}",
+                    arrays.iter().map(one).collect::<Vec<_>>().join(", ")
+                ));
+            }
+        }
+    }
+
+    fn tell_labels(&self, console: &Console) {
+        if !self.summary.regions.is_empty() {
+            let mut table = Table::new(["region", "cells", "tets", "volume"]);
+            for (name, region) in &self.summary.regions {
+                table.row([name.clone(), count(region.cells), count(region.tets), short(region.volume)]);
+            }
+            console.say(format_args!("\n{table}"));
+        }
+        if !self.summary.patches.is_empty() {
+            let mut table = Table::new(["patch", "cells", "triangles", "area", "closed"]);
+            for (name, patch) in &self.summary.patches {
+                let closed = yes_or_no(patch.closed).to_string();
+                table.row([
+                    name.clone(),
+                    count(patch.cells),
+                    count(patch.triangles),
+                    short(patch.area),
+                    closed,
+                ]);
+            }
+            console.say(format_args!("\n{table}"));
+        }
+    }
+
+    fn tell_quality(&self, console: &Console) {
+        let Some(quality) = &self.summary.quality else { return };
+        let eas = &quality.eas;
+        let [x, y, z] = eas.worst_at.map(short);
+        let mut table = Table::new(["quality of tets", "min", "mean", "max"]);
+        table.row(["EAS".into(), short(eas.min), short(eas.mean), String::new()]);
+        table.row([
+            "mean ratio".into(),
+            short(quality.mean_ratio.min),
+            short(quality.mean_ratio.mean),
+            String::new(),
+        ]);
+        table.row([
+            "dihedral angle".into(),
+            short(quality.dihedral_deg.min),
+            String::new(),
+            short(quality.dihedral_deg.max),
+        ]);
+        console.say(format_args!("\n{table}"));
+        console.say(format_args!(
+            "  {} bad (EAS < 0.2), {} inverted; worst: cell {} at ({x}, {y}, {z})\n",
+            count(eas.bad),
+            count(self.summary.inverted),
+            eas.worst_cell
+        ));
+        console.say(histogram(&eas.histogram));
+    }
+
+    fn tell_defects(&self, console: &Console) {
+        match self.summary.defects.as_slice() {
+            [] => console.say("\n  no defects"),
+            defects => {
+                console.say("\n  defects");
+                defects.iter().for_each(|defect| console.say(format_args!("  - {defect}")));
+            }
+        }
+    }
+}
+
+/// A bar for each tenth of EAS, the longest as long as the line allows.
+fn histogram(counts: &[usize; 11]) -> String {
+    const LONGEST: usize = 50;
+    let most = counts.iter().copied().max().unwrap_or(0).max(1);
+    let line = |(i, n): (usize, &usize)| {
+        let range = if i == 0 {
+            "below 0".into()
+        } else {
+            format!("{:.1} - {:.1}", (i - 1) as f64 / 10.0, i as f64 / 10.0)
+        };
+        // What is there shows, be it ever so few.
+        let bar = "#".repeat((n * LONGEST).div_ceil(most));
+        format!("  {range:<9} {:>11} {bar}", count(*n)).trim_end().to_string()
+    };
+    let first = usize::from(counts[0] == 0);
+    counts.iter().enumerate().skip(first).map(line).collect::<Vec<_>>().join("\n")
+}
+
+fn yes_or_no(is: bool) -> &'static str {
+    if is { "yes" } else { "no" }
+}
+
+fn is_series(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+}
+
+/// Times and files, and whether each file is there.
+fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
+    let frames = io::read_series(path)?;
+    if let Some((_, file)) = frames.iter().find(|(_, file)| !file.exists()) {
+        return Err(Error::input(format!("names {}, which is not there", file.display())).in_file(path));
+    }
+    let mut table = Table::new(["file", "time"]);
+    frames.iter().for_each(|(time, file)| table.row([file.display().to_string(), time_of(*time)]));
+    console.say(format_args!("{}: a series of {} files\n{table}", path.display(), frames.len()));
+    let frames: Vec<_> = frames.iter().map(|(time, file)| json!({ "time": time, "file": file })).collect();
+    console.report(&json!({ "file": path, "series": frames }));
     Ok(Outcome::Done)
 }

@@ -57,6 +57,7 @@ fn parse(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
         ))
         .at(format!("entry {}", i + 1))
         .remedy("join the parts of each time into one file")),
+        None if frames.is_empty() => Err(Error::input("a series that names no file")),
         None => Ok(frames),
     }
 }
@@ -108,16 +109,17 @@ impl SeriesWriter {
 
     /// Adds a frame: its file first, then the series that names it.
     ///
-    /// Returns what the format could not hold.
+    /// Returns the frame's file, and what the format could not hold.
     ///
     /// # Errors
     /// As [`write()`].
-    pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<Vec<String>> {
+    pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         let k = self.frames.len();
-        let lost = write(self.frame_path(k), mesh, &self.options)?;
+        let file = self.frame_path(k);
+        let lost = write(&file, mesh, &self.options)?;
         self.frames.push((time, self.frame_name(k)));
         replace(&self.path, self.text().as_bytes())?;
-        Ok(lost)
+        Ok((file, lost))
     }
 
     fn text(&self) -> String {
@@ -147,6 +149,7 @@ mod tests {
     fn what_is_no_series_is_told() {
         let refused = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
         assert!(refused("").contains("no series"));
+        assert!(refused("<VTKFile type=\"Collection\"/>").contains("names no file"));
         assert!(refused("<VTKFile type=\"PolyData\"/>").contains("no series"));
         assert!(
             refused("<VTKFile type=\"Collection\"><DataSet/></VTKFile>")

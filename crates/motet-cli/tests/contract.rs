@@ -1,0 +1,99 @@
+//! What scripts rely on: exit statuses, clean standard output, JSON, files that appear whole or not at all.
+
+mod common;
+
+use common::{Folder, stderr, stdout};
+
+#[test]
+fn a_call_without_a_verb_shows_the_usage_and_exits_2() {
+    let folder = Folder::new();
+    for words in [&[][..], &["fly"], &["convert", "only-one.vtu"], &["info", "a.vtu", "--threads", "many"]] {
+        let call = folder.motet(words).assert().code(2);
+        assert_eq!(stdout(&call), "", "{words:?}");
+        assert!(stderr(&call).contains("Usage: motet"), "{words:?}: {}", stderr(&call));
+    }
+}
+
+#[test]
+fn a_wrong_call_with_json_is_told_as_an_object() {
+    let call = Folder::new().motet(["fly", "--json"]).assert().code(2);
+    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(told["error"]["exit"], 2);
+    assert!(told["error"]["what"].as_str().is_some_and(|t| t.contains("fly")), "{told}");
+}
+
+#[test]
+fn help_is_no_failure() {
+    let folder = Folder::new();
+    for words in [&["help"][..], &["--help"], &["--version"], &["help", "convert"]] {
+        let call = folder.motet(words).assert().code(0);
+        assert_eq!(stderr(&call), "", "{words:?}");
+    }
+}
+
+#[test]
+fn an_ending_that_no_format_has_is_a_wrong_word() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    let call = folder.motet(["convert", &mesh, "cube.docx"]).assert().code(2);
+    assert!(stderr(&call).starts_with("error: cube.docx: "), "{}", stderr(&call));
+    assert!(stderr(&call).contains(".vtu"), "{}", stderr(&call));
+}
+
+#[test]
+fn a_file_that_is_not_there_is_an_unreadable_input() {
+    let folder = Folder::new();
+    let call = folder.motet(["info", "nowhere.vtu", "--json"]).assert().code(3);
+    assert!(stderr(&call).starts_with("error: nowhere.vtu: "), "{}", stderr(&call));
+    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    assert_eq!(told["error"]["file"], "nowhere.vtu");
+    assert_eq!(told["error"]["exit"], 3);
+}
+
+#[test]
+fn a_folder_that_is_not_there_is_told_before_work_begins() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    let call = folder.motet(["convert", &mesh, "no/such/folder/out.vtu"]).assert().code(3);
+    assert!(stderr(&call).contains("folder"), "{}", stderr(&call));
+}
+
+#[test]
+fn a_failed_conversion_leaves_nothing_and_keeps_what_was_there() {
+    let folder = Folder::new();
+    folder.write("broken.vtu", b"<VTKFile type=\"UnstructuredGrid\">");
+    folder.write("out.vtu", b"precious");
+    folder.motet(["convert", "broken.vtu", "out.vtu"]).assert().code(3);
+    assert_eq!(folder.read("out.vtu"), b"precious");
+    assert_eq!(folder.names(), ["broken.vtu", "out.vtu"]);
+}
+
+#[test]
+fn json_is_one_object_on_standard_output_and_nothing_else() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    let call = folder.motet(["convert", &mesh, "out.vtu", "--json"]).assert().code(0);
+    let told: serde_json::Value = serde_json::from_str(&stdout(&call)).expect("one object");
+    for key in ["input", "output", "points", "cells", "lost", "seconds"] {
+        assert!(!told[key].is_null(), "{key}");
+    }
+    assert_eq!(folder.names(), ["cube.vtu", "out.vtu"]);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    let call = folder.motet(["convert", &mesh, "out.vtu", "-q"]).assert().code(0);
+    assert_eq!((stdout(&call), stderr(&call)), (String::new(), String::new()));
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_threads() {
+    let folder = Folder::new();
+    let mesh = folder.cube("cube.vtu");
+    for (threads, out) in [("1", "one.vtu"), ("2", "two.vtu")] {
+        folder.motet(["convert", &mesh, out, "--threads", threads]).assert().code(0);
+    }
+    assert_eq!(folder.read("one.vtu"), folder.read("two.vtu"));
+}

@@ -1,0 +1,36 @@
+//! A measure of every tet as a cell array, to be looked at in ParaView.
+
+use crate::base::Point;
+use crate::mesh::{Field, Mesh};
+
+impl Mesh {
+    /// The cell array `name` with `measure` of each tet, such as
+    /// [`eas`](fn@crate::geometry::quality::eas); cells of other kinds get no number (NaN).
+    pub fn tet_field(&self, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
+        let mut values = vec![f64::NAN; self.cells.len()];
+        for (cell, tet) in self.cells.tets() {
+            values[cell.index()] = measure(tet.map(|v| self.points[v.index()]));
+        }
+        Field::scalars(name, values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::VertexId;
+    use crate::geometry::quality::volume;
+    use crate::mesh::{CellKind, Cells, Values};
+
+    #[test]
+    fn each_tet_has_its_measure_and_other_cells_none() {
+        let mut cells = Cells::new();
+        cells.push(CellKind::TRIANGLE, [0, 1, 2].map(VertexId));
+        cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
+        let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let field = Mesh::new(points, cells).tet_field("volume", volume);
+        let Values::F64(values) = field.values else { panic!("double precision") };
+        assert!(values[0].is_nan());
+        assert!((values[1] - 1.0 / 6.0).abs() < 1e-15);
+    }
+}
