@@ -18,6 +18,7 @@ mod select;
 mod series;
 mod simvascular;
 mod stl;
+mod surplus;
 mod tags;
 mod tetgen;
 mod text;

@@ -8,6 +8,7 @@ use crate::io::polygonal::{SECTIONS, kind_in_section};
 use crate::io::polyhedra::next_polyhedron;
 use crate::io::registry::{Input, Notes};
 use crate::io::scalar::{Scalar, to_ids, to_points};
+use crate::io::surplus::trim;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 const TABLES: &str = "lookup tables were left out: colours are no part of a mesh";
@@ -176,7 +177,7 @@ impl Reader<'_> {
         self.mesh.cells = if grid {
             let [lists, ..] = lists;
             let kinds = self.kinds.take().unwrap_or_default();
-            grid_cells(kinds, lists)
+            grid_cells(kinds, lists, self.notes)
                 .map_err(|e| e.at("CELLS").remedy("the file is damaged: write it again"))?
         } else {
             polygonal_cells(&lists)
@@ -323,10 +324,13 @@ fn split_counted(mut numbers: &[u32], n_lists: usize) -> Option<Csr<VertexId>> {
 }
 
 /// In these files a polyhedron's list of vertices is the stream of its faces.
-fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>) -> Result<Cells> {
+fn grid_cells(kinds: Vec<CellKind>, lists: Csr<VertexId>, notes: &Notes) -> Result<Cells> {
+    let (mut offsets, mut vertices) = (lists.offsets().to_vec(), lists.items().to_vec());
+    trim(&kinds, &mut offsets, &mut vertices, notes);
     if !kinds.contains(&CellKind::POLYHEDRON) {
-        return Cells::from_parts(kinds, lists.offsets().to_vec(), lists.items().to_vec());
+        return Cells::from_parts(kinds, offsets, vertices);
     }
+    let lists = Csr::new(offsets, vertices).unwrap_or_default();
     if kinds.len() != lists.len() {
         return Err(Error::input(format!("{} cell types for {} cells", kinds.len(), lists.len())));
     }

@@ -19,7 +19,8 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
                 .remedy("choose 5.1 or 4.2"));
         }
     };
-    let mut writer = Writer { out: Vec::new(), ascii: options.encoding == Encoding::Ascii, lost: Vec::new() };
+    let mut writer =
+        Writer { out: Vec::new(), ascii: options.encoding == Encoding::Ascii, offsets, lost: Vec::new() };
     let version = if offsets { "5.1" } else { "4.2" };
     let encoding = if writer.ascii { "ASCII" } else { "BINARY" };
     writer.line(&format!(
@@ -30,7 +31,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     writer.line(&format!("POINTS {} double", mesh.points.len()));
     writer.numbers(&Values::F64(mesh.points.as_flattened().to_vec()));
     if !mesh.cells.is_empty() {
-        writer.cells(mesh, offsets)?;
+        writer.cells(mesh)?;
     }
     writer.data(
         "CELL_DATA",
@@ -44,6 +45,8 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
 struct Writer {
     out: Vec<u8>,
     ascii: bool,
+    /// Whether cells are laid down as since 5.0.
+    offsets: bool,
     lost: Vec<String>,
 }
 
@@ -71,10 +74,10 @@ impl Writer {
         }
     }
 
-    fn cells(&mut self, mesh: &Mesh, offsets: bool) -> Result<()> {
+    fn cells(&mut self, mesh: &Mesh) -> Result<()> {
         let lists = lists(mesh);
         let n_ids: usize = lists.iter().map(Vec::len).sum();
-        if offsets {
+        if self.offsets {
             let mut ends = vec![0i64];
             ends.extend(lists.iter().scan(0, |end, list| {
                 *end += list.len() as i64;
@@ -111,7 +114,7 @@ impl Writer {
         }
         self.line(&format!("FIELD FieldData {}", fields.len()));
         for field in fields {
-            let kind = type_name(&field.values);
+            let kind = type_name(&field.values, self.offsets);
             let (mut name, components) = (encode(&field.name), field.components);
             if name.is_empty() {
                 name += "unnamed";
@@ -133,8 +136,12 @@ fn lists(mesh: &Mesh) -> Vec<Vec<u32>> {
     mesh.cells.iter().map(list).collect()
 }
 
-fn type_name(values: &Values) -> &'static str {
+/// VTK's word for a type. meshio knows `long` in files before 5.0 only, and
+/// `vtktypeint64` in those since only; VTK knows both.
+fn type_name(values: &Values, offsets: bool) -> &'static str {
     match values {
+        Values::I64(_) if !offsets => "long",
+        Values::U64(_) if !offsets => "unsigned_long",
         Values::I8(_) => "char",
         Values::U8(_) => "unsigned_char",
         Values::I16(_) => "short",

@@ -3,6 +3,8 @@
 //! Raw appended bytes are no XML, so that reading stops at `<AppendedData>`; what
 //! follows it is kept as bytes.
 
+use std::borrow::Cow;
+
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
@@ -156,8 +158,9 @@ impl<'a> Parser<'a> {
         let mut attributes = Vec::new();
         for attribute in tag.attributes() {
             let attribute = attribute.map_err(|e| self.fault(format!("in <{name}>: {e}")))?;
-            let value = quick_xml::escape::unescape(&attribute.value)
-                .map_err(|e| self.fault(format!("in <{name}>: {e}")))?;
+            // VTK writes names as they are, so that an ampersand may stand for itself.
+            let value =
+                quick_xml::escape::unescape(&attribute.value).unwrap_or(Cow::Borrowed(&attribute.value));
             attributes.push((attribute.key.as_ref().to_owned(), value.into_owned()));
         }
         Ok(Element { name, attributes, line, ..Element::default() })

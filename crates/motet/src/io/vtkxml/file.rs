@@ -3,25 +3,26 @@
 use std::borrow::Cow;
 
 use crate::base::{Error, Point, Result};
-use crate::io::Compression;
 use crate::io::latin::latin_or_utf8;
 use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
 use crate::io::vtkxml::payload::{Layout, Payload};
+use crate::io::{Compression, Notes};
 use crate::mesh::{Field, Values};
 
 /// An opened file.
 #[derive(Debug)]
 pub(super) struct File<'a> {
     document: Document<'a>,
+    pub(super) notes: &'a Notes,
     layout: Layout,
     /// Where arrays start in the appended data, in rising order.
     starts: Vec<usize>,
 }
 
 impl<'a> File<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
+    pub(super) fn open(bytes: &'a [u8], notes: &'a Notes) -> Result<Self> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
         if root.name != "VTKFile" {
@@ -33,7 +34,7 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         collect_starts(root, &mut starts);
         starts.sort_unstable();
-        Ok(Self { document, layout, starts })
+        Ok(Self { document, notes, layout, starts })
     }
 
     /// What the file holds: `UnstructuredGrid`, `PolyData`, `Collection`, ...

@@ -52,7 +52,7 @@ pub(super) const OTHERS: Format = Format {
 
 /// Reads whichever kind of mesh the file says it holds.
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let file = file::File::open(input.bytes)?;
+    let file = file::File::open(input.bytes, input.notes)?;
     match file.kind() {
         "UnstructuredGrid" => vtu::read(&file),
         "PolyData" => vtp::read(&file),

@@ -2,6 +2,7 @@
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::labels::label_fields;
+use crate::io::surplus::trim;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
 use crate::io::vtkxml::pieces::read_pieces;
@@ -53,9 +54,10 @@ fn read_cells(file: &File<'_>, piece: &Element<'_>, n: usize) -> Result<Cells> {
             .remedy("the file is damaged: write it again"));
     };
     let kinds = read_kinds(file, element, n)?;
-    let offsets = file.needed_array(element, "offsets")?.offsets(n)?;
+    let mut offsets = file.needed_array(element, "offsets")?.offsets(n)?;
     let ids = file.needed_array(element, "connectivity")?.ids(None)?;
-    let vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
+    let mut vertices = bytemuck::allocation::cast_vec::<u32, VertexId>(ids);
+    trim(&kinds, &mut offsets, &mut vertices, file.notes);
     if !kinds.contains(&CellKind::POLYHEDRON) {
         return Cells::from_parts(kinds, offsets, vertices).map_err(|e| e.at(element.place()));
     }
