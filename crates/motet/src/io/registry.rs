@@ -211,8 +211,10 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     if !format.endings.contains(&"/") {
         refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
     }
-    let mesh = read(input).map_err(|e| e.in_file(input.path))?;
-    mesh.validate().map_err(|e| e.in_file(input.path))?;
+    let told =
+        |e: Error| e.in_file(input.path).remedy("the file is damaged, or was written wrong: write it again");
+    let mesh = read(input).map_err(told)?;
+    mesh.validate().map_err(told)?;
     Ok(mesh)
 }
 

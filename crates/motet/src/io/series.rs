@@ -21,7 +21,8 @@ use crate::mesh::Mesh;
 pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
-    let frames = parse(&bytes).map_err(|e| e.in_file(path))?;
+    let told = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
+    let frames = parse(&bytes).map_err(told)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
 }

@@ -117,6 +117,17 @@ impl<'a> Grid<'a> {
     }
 }
 
+/// How the points of a surface are found among those of the mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Matching {
+    /// By the ids that the surface carries; by position where it carries none.
+    #[default]
+    Id,
+    /// By position, whatever the surface carries: for one whose ids are those of
+    /// another mesh, such as the solid around a fluid.
+    Position,
+}
+
 /// Reads the displacements of a mesh's vertices off surfaces, one after the
 /// other: of one displaced surface, or of a series of them.
 ///
@@ -127,14 +138,15 @@ impl<'a> Grid<'a> {
 #[derive(Debug)]
 pub struct SurfaceMotion<'a> {
     mesh: &'a Mesh,
+    matching: Matching,
     /// Of the surface before: which vertex each of its points is.
     vertices: Option<Vec<VertexId>>,
 }
 
 impl<'a> SurfaceMotion<'a> {
     /// Nothing is read yet.
-    pub fn new(mesh: &'a Mesh) -> Self {
-        Self { mesh, vertices: None }
+    pub fn new(mesh: &'a Mesh, matching: Matching) -> Self {
+        Self { mesh, matching, vertices: None }
     }
 
     /// The vertices that the next surface holds, each once, and their displacements
@@ -155,7 +167,9 @@ impl<'a> SurfaceMotion<'a> {
     }
 
     fn vertices_of(&self, surface: &Mesh) -> Result<Vec<VertexId>> {
-        if let Some(vertices) = match_by_id(self.mesh, surface)? {
+        if self.matching == Matching::Id
+            && let Some(vertices) = match_by_id(self.mesh, surface)?
+        {
             return Ok(vertices);
         }
         match &self.vertices {
@@ -265,7 +279,7 @@ mod tests {
     #[test]
     fn a_series_without_ids_keeps_the_order_of_its_first_surface() {
         let mesh = mesh();
-        let mut motion = SurfaceMotion::new(&mesh);
+        let mut motion = SurfaceMotion::new(&mesh, Matching::Id);
         assert!(motion.next(&surface([0.0; 3]).0).unwrap().iter().all(|(_, d)| *d == [0.0; 3]));
         let second = motion.next(&surface([0.5, 0.0, 0.0]).0).unwrap();
         assert_eq!(second.len(), 14);
@@ -276,11 +290,24 @@ mod tests {
     }
 
     #[test]
+    fn ids_of_another_mesh_can_be_passed_over() {
+        let mesh = mesh();
+        let (mut s, vertices) = surface([0.0; 3]);
+        s.set_point_field(Field::scalars("GlobalNodeID", (1..=14i64).collect::<Vec<_>>()));
+        let mut motion = SurfaceMotion::new(&mesh, Matching::Position);
+        let mut found: Vec<_> = motion.next(&s).unwrap().into_iter().map(|(v, _)| v).collect();
+        found.reverse();
+        assert_eq!(found, vertices);
+        s.points.iter_mut().for_each(|p| p[0] += 0.5);
+        assert!(motion.next(&s).unwrap().iter().all(|(_, d)| *d == [0.5, 0.0, 0.0]));
+    }
+
+    #[test]
     fn an_array_tells_the_displacement_of_a_surface_in_its_first_place() {
         let mesh = mesh();
         let (mut s, _) = surface([0.0; 3]);
         s.set_point_field(Field::vectors("displacement", &[[0.0, 0.1, 0.0]; 14]));
-        let moved = SurfaceMotion::new(&mesh).next(&s).unwrap();
+        let moved = SurfaceMotion::new(&mesh, Matching::Id).next(&s).unwrap();
         assert!(moved.iter().all(|(_, d)| *d == [0.0, 0.1, 0.0]));
     }
 
@@ -291,7 +318,7 @@ mod tests {
         let mut ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0)).collect();
         ids[5] = ids[2];
         s.set_point_field(Field::scalars("vtkOriginalPointIds", ids));
-        let error = SurfaceMotion::new(&mesh).next(&s).unwrap_err().to_string();
+        let error = SurfaceMotion::new(&mesh, Matching::Id).next(&s).unwrap_err().to_string();
         assert!(error.contains("apart"), "{error}");
     }
 
@@ -302,6 +329,12 @@ mod tests {
         let ids: Vec<i64> = vertices.iter().map(|v| i64::from(v.0) + 1).collect();
         s.set_point_field(Field::scalars("GlobalNodeID", ids));
         s.points[4] = [f64::NAN, 0.0, 0.0];
-        assert!(SurfaceMotion::new(&mesh).next(&s).unwrap_err().to_string().starts_with("point 4: "));
+        assert!(
+            SurfaceMotion::new(&mesh, Matching::Id)
+                .next(&s)
+                .unwrap_err()
+                .to_string()
+                .starts_with("point 4: ")
+        );
     }
 }

@@ -5,5 +5,5 @@ mod matching;
 mod prescribed;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
-pub use matching::{SurfaceMotion, match_patch};
+pub use matching::{Matching, SurfaceMotion, match_patch};
 pub use prescribed::Prescribed;
