@@ -12,7 +12,7 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
-use crate::io::select::{keep_cells, lost_arrays};
+use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
 use crate::io::{Format, Input, WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
@@ -220,7 +220,9 @@ impl Reader {
 }
 
 fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
-    let (mesh, mut lost) = keep_cells(mesh, "OBJ", |kind| statement(kind).is_some());
+    let (surface, boundary_only) = surface_of(mesh, "OBJ");
+    let (mesh, mut lost) = keep_cells(&surface, "OBJ", |kind| statement(kind).is_some());
+    lost.extend(boundary_only);
     let labels = cell_labels(&mesh, None);
     let names = mesh.patches().map(|p| p.names).unwrap_or_default();
     lost.extend(lost_arrays("OBJ", "point", &mesh.point_data));

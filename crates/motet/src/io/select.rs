@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
+use crate::base::VertexId;
+use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, Values};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
 pub(super) fn keep_cells<'m>(
@@ -36,6 +37,44 @@ pub(super) fn keep_cells<'m>(
         label_names: mesh.label_names.clone(),
     };
     (Cow::Owned(kept), lost)
+}
+
+/// For a format of surfaces alone: the mesh itself where it has cells of
+/// dimension 2, else the boundary of its volume cells, and what is left out by that.
+pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Vec<String>) {
+    let has = |dim| mesh.cells.kinds().iter().any(|kind| kind.dim() == Some(dim));
+    if has(2) || !has(3) {
+        return (Cow::Borrowed(mesh), Vec::new());
+    }
+    let mut boundary = Boundary::of(&mesh.cells);
+    boundary.turn_outward(&mesh.cells, &mesh.points);
+    let used = &boundary.vertices;
+    let place = |v: &VertexId| VertexId::new(used.partition_point(|u| u < v));
+    let mut cells = Cells::new();
+    for (kind, vertices) in boundary.kinds.iter().zip(boundary.facets.iter()) {
+        let (kind, n_corners) = match *kind {
+            CellKind::POLYGON => (CellKind::POLYGON, vertices.len()),
+            CellKind::TRIANGLE | CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE => {
+                (CellKind::TRIANGLE, 3)
+            }
+            _ => (CellKind::QUAD, 4),
+        };
+        cells.push(kind, vertices[..n_corners].iter().map(place));
+    }
+    let vertex_rows: Vec<usize> = used.iter().map(|v| v.index()).collect();
+    let cell_rows: Vec<usize> = boundary.cells.iter().map(|c| c.index()).collect();
+    let surface = Mesh {
+        points: used.iter().map(|v| mesh.points[v.index()]).collect(),
+        cells,
+        point_data: mesh.point_data.iter().map(|f| rows(f, &vertex_rows)).collect(),
+        cell_data: mesh.cell_data.iter().map(|f| rows(f, &cell_rows)).collect(),
+        field_data: mesh.field_data.clone(),
+        label_names: mesh.label_names.clone(),
+    };
+    let note = format!(
+        "{format} has surfaces only: the boundary of the volume cells is written, their inside is left out"
+    );
+    (Cow::Owned(surface), vec![note])
 }
 
 /// The rows of `field` named in `rows`, in that order.

@@ -14,7 +14,7 @@ use std::io::Write as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
-use crate::io::select::{keep_cells, lost_arrays};
+use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, push_floats, quoted};
 use crate::io::{Encoding, Format, Input, WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
@@ -181,7 +181,9 @@ fn words(text: &mut Text<'_>, expected: &[&str]) -> Result<()> {
 }
 
 fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
-    let (mesh, mut lost) = keep_cells(mesh, "STL", |kind| fan(kind).is_some());
+    let (surface, boundary_only) = surface_of(mesh, "STL");
+    let (mesh, mut lost) = keep_cells(&surface, "STL", |kind| fan(kind).is_some());
+    lost.extend(boundary_only);
     let triangles = triangles(&mesh, &mut lost);
     lost.extend(lost_arrays("STL", "point", &mesh.point_data));
     let binary = options.encoding != Encoding::Ascii;

@@ -19,8 +19,10 @@
 //! meshio, not 2.2, no names and no data, and writes nothing.
 
 mod data;
+mod entities;
 mod kinds;
 mod read;
+mod sink;
 mod source;
 mod write;
 

@@ -1,8 +1,7 @@
 //! Reading MSH files, both versions in both forms.
 
-use std::collections::HashMap;
-
 use super::data::{Data, Place};
+use super::entities::{Entities, Entity};
 use super::kinds::{ElementType, element_types};
 use super::source::{Form, Source};
 use crate::base::{Point, Result, VertexId};
@@ -10,18 +9,6 @@ use crate::io::tags::Tags;
 use crate::io::text::quoted;
 use crate::io::{Input, Notes};
 use crate::mesh::{Cells, Field, LabelNames, Mesh, Values};
-
-/// Dimension and number of a geometrical entity.
-type EntityKey = (i32, i32);
-
-/// What a geometrical entity gives to its elements.
-#[derive(Clone, Copy, Default)]
-struct Entity {
-    physical: i32,
-    /// The entity that this one is a part of; itself where it is none.
-    geometrical: i32,
-    partition: i32,
-}
 
 /// What has been read so far.
 #[derive(Default)]
@@ -31,7 +18,7 @@ struct Reader {
     nodes: Option<Tags>,
     points: Vec<Point>,
     node_entities: Vec<i32>,
-    entities: HashMap<EntityKey, Entity>,
+    entities: Entities,
     cells: Cells,
     element_tags: Vec<u64>,
     labels: Vec<Entity>,
@@ -81,8 +68,8 @@ impl Reader {
             ("Nodes", Version::V2) => self.nodes2(source, false)?,
             ("ParametricNodes", Version::V2) => self.nodes2(source, true)?,
             ("Nodes", _) => self.nodes4(source)?,
-            ("Entities", Version::V4) => self.entities4(source, notes)?,
-            ("PartitionedEntities", Version::V4) => self.partitioned4(source, notes)?,
+            ("Entities", Version::V4) => self.entities.read(source, notes)?,
+            ("PartitionedEntities", Version::V4) => self.entities.read_partitioned(source, notes)?,
             ("Elements", Version::V2) => self.elements2(source, notes)?,
             ("Elements", _) => self.elements4(source)?,
             ("NodeData", _) => self.data.push(Data::read(source, Place::Node)?),
@@ -145,73 +132,6 @@ impl Reader {
                 _ => return Err(text.error(format!("{dim} is no dimension of a physical group"))),
             }
         }
-        Ok(())
-    }
-
-    fn entities4(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
-        let counts = entity_counts(source)?;
-        for (dim, n) in (0..).zip(counts) {
-            for _ in 0..n {
-                let tag = source.int("number of an entity")?;
-                let entity = Entity { geometrical: tag, ..Entity::default() };
-                self.entity_body(source, (dim, tag), entity, notes)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn partitioned4(&mut self, source: &mut Source<'_>, notes: &Notes) -> Result<()> {
-        source.size("the number of partitions")?;
-        for _ in 0..source.count("ghost entities", 2)? {
-            source.int("number of a ghost entity")?;
-            source.int("partition of a ghost entity")?;
-            notes.add("ghost entities are passed over: a mesh here has no place for them");
-        }
-        let counts = entity_counts(source)?;
-        for (dim, n) in (0..).zip(counts) {
-            for _ in 0..n {
-                let tag = source.int("number of a partitioned entity")?;
-                let parent_dim = source.int("dimension of the parent entity")?;
-                let parent = source.int("number of the parent entity")?;
-                let mut partition = 0;
-                for i in 0..source.count("partitions of an entity", 1)? {
-                    let number = source.int("number of a partition")?;
-                    partition = if i == 0 { number } else { partition };
-                }
-                let geometrical = if parent_dim == dim { parent } else { tag };
-                let entity = Entity { geometrical, partition, physical: 0 };
-                self.entity_body(source, (dim, tag), entity, notes)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The box, the physical groups and the boundary of an entity.
-    fn entity_body(
-        &mut self,
-        source: &mut Source<'_>,
-        key: EntityKey,
-        mut entity: Entity,
-        notes: &Notes,
-    ) -> Result<()> {
-        for _ in 0..if key.0 == 0 { 3 } else { 6 } {
-            source.double("box of an entity")?;
-        }
-        let n_physical = source.count("physical groups of an entity", 1)?;
-        for i in 0..n_physical {
-            // The sign tells whether the group turns the entity round, which its elements already are.
-            let tag = source.int("number of a physical group")?.saturating_abs();
-            entity.physical = if i == 0 { tag } else { entity.physical };
-        }
-        if n_physical > 1 {
-            notes.add("some entities are in several physical groups: their cells keep the first of them");
-        }
-        if key.0 > 0 {
-            for _ in 0..source.count("bounding entities", 1)? {
-                source.int("number of a bounding entity")?;
-            }
-        }
-        self.entities.insert(key, entity);
         Ok(())
     }
 
@@ -325,8 +245,7 @@ impl Reader {
             let number = source.int("type of elements")?;
             let element_type = find_type(&types, number, source)?;
             let n = source.count("elements of a block", 1 + element_type.vtk_to_gmsh.len())?;
-            let unnamed = Entity { geometrical: entity, ..Entity::default() };
-            let labels = self.entities.get(&(dim, entity)).copied().unwrap_or(unnamed);
+            let labels = self.entities.get(dim, entity);
             for _ in 0..n {
                 let tag = source.size("number of an element")?;
                 self.element(source, element_type, tag, labels)?;
@@ -420,14 +339,6 @@ fn tags2(source: &mut Source<'_>, n_tags: usize, notes: &Notes) -> Result<Entity
         }
     }
     Ok(labels)
-}
-
-fn entity_counts(source: &mut Source<'_>) -> Result<[usize; 4]> {
-    let mut counts = [0; 4];
-    for n in &mut counts {
-        *n = source.count("entities", 4)?;
-    }
-    Ok(counts)
 }
 
 fn find_type<'t>(types: &'t [ElementType], number: i32, source: &Source<'_>) -> Result<&'t ElementType> {

@@ -1,13 +1,12 @@
 //! Writing MSH files, both versions in both forms.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
 
 use super::kinds::{ElementType, element_types};
+use super::sink::Sink;
 use crate::base::{Error, Result};
 use crate::io::cell_labels::{cell_labels, int_column, say_all};
 use crate::io::select::{keep_cells, lost_arrays};
-use crate::io::text::push_floats;
 use crate::io::{Encoding, WriteOptions, Written};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
@@ -18,55 +17,6 @@ const NODE_ENTITIES: &str = "gmsh:dim_tags";
 enum Version {
     V2,
     V4,
-}
-
-/// Where numbers go, as text or as bytes.
-struct Sink {
-    out: Vec<u8>,
-    binary: bool,
-}
-
-impl Sink {
-    fn int(&mut self, n: i32) {
-        if self.binary { self.out.extend(n.to_ne_bytes()) } else { self.word(n) }
-    }
-
-    fn size(&mut self, n: usize) {
-        if self.binary { self.out.extend((n as u64).to_ne_bytes()) } else { self.word(n) }
-    }
-
-    fn doubles(&mut self, numbers: &[f64]) {
-        if self.binary {
-            numbers.iter().for_each(|x| self.out.extend(x.to_ne_bytes()));
-        } else {
-            push_floats(&mut self.out, numbers);
-            self.out.push(b' ');
-        }
-    }
-
-    fn word(&mut self, n: impl std::fmt::Display) {
-        write!(self.out, "{n} ").expect("writing into memory does not fail");
-    }
-
-    /// Ends a line of text; nothing in binary.
-    fn end_line(&mut self) {
-        if !self.binary {
-            self.out.pop_if(|b| *b == b' ');
-            self.out.push(b'\n');
-        }
-    }
-
-    /// A line that is text in binary files as well.
-    fn line(&mut self, line: impl std::fmt::Display) {
-        writeln!(self.out, "{line}").expect("writing into memory does not fail");
-    }
-
-    fn end_section(&mut self, name: &str) {
-        if self.binary {
-            self.out.push(b'\n');
-        }
-        self.line(format_args!("$End{name}"));
-    }
 }
 
 /// The labels of each cell in Gmsh's terms.

@@ -1,0 +1,54 @@
+//! Where the numbers of an MSH file go, as text or as bytes.
+
+use std::io::Write as _;
+
+use crate::io::text::push_floats;
+
+/// Where numbers go, as text or as bytes.
+pub(super) struct Sink {
+    pub(super) out: Vec<u8>,
+    pub(super) binary: bool,
+}
+
+impl Sink {
+    pub(super) fn int(&mut self, n: i32) {
+        if self.binary { self.out.extend(n.to_ne_bytes()) } else { self.word(n) }
+    }
+
+    pub(super) fn size(&mut self, n: usize) {
+        if self.binary { self.out.extend((n as u64).to_ne_bytes()) } else { self.word(n) }
+    }
+
+    pub(super) fn doubles(&mut self, numbers: &[f64]) {
+        if self.binary {
+            numbers.iter().for_each(|x| self.out.extend(x.to_ne_bytes()));
+        } else {
+            push_floats(&mut self.out, numbers);
+            self.out.push(b' ');
+        }
+    }
+
+    fn word(&mut self, n: impl std::fmt::Display) {
+        write!(self.out, "{n} ").expect("writing into memory does not fail");
+    }
+
+    /// Ends a line of text; nothing in binary.
+    pub(super) fn end_line(&mut self) {
+        if !self.binary {
+            self.out.pop_if(|b| *b == b' ');
+            self.out.push(b'\n');
+        }
+    }
+
+    /// A line that is text in binary files as well.
+    pub(super) fn line(&mut self, line: impl std::fmt::Display) {
+        writeln!(self.out, "{line}").expect("writing into memory does not fail");
+    }
+
+    pub(super) fn end_section(&mut self, name: &str) {
+        if self.binary {
+            self.out.push(b'\n');
+        }
+        self.line(format_args!("$End{name}"));
+    }
+}

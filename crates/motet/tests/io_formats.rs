@@ -1,0 +1,668 @@
+//! MSH, STL, OBJ, Medit, TetGen and DOLFIN files: what is written comes back, what
+//! is damaged is told.
+
+use std::fs;
+use std::path::Path;
+
+use motet::Mesh;
+use motet::base::{Point, VertexId};
+use motet::io::{Encoding, Format, Input, Notes, WriteOptions, formats, read, read_as, read_noted, write};
+use motet::mesh::{CellKind, Cells, Field, Values};
+use proptest::prelude::*;
+
+fn format(ending: &str) -> &'static Format {
+    formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
+}
+
+/// Reads bytes as a file with this ending, without a file.
+fn parse(ending: &str, bytes: &[u8]) -> motet::Result<Mesh> {
+    let path = format!("in{ending}");
+    read_as(format(ending), &Input { path: Path::new(&path), bytes, notes: &Notes::default() })
+}
+
+fn notes_of(ending: &str, bytes: &[u8]) -> Vec<String> {
+    let (path, notes) = (format!("in{ending}"), Notes::default());
+    read_as(format(ending), &Input { path: Path::new(&path), bytes, notes: &notes }).expect("it is read");
+    notes.into_vec()
+}
+
+/// Writes into memory: the first file, and what was lost.
+fn print(ending: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
+    let writer = format(ending).write.expect("the format is written");
+    let mut written = writer(mesh, options).expect("the mesh is written");
+    (written.files.swap_remove(0).1, written.lost)
+}
+
+fn options(version: &str, encoding: Encoding) -> WriteOptions {
+    WriteOptions { version: Some(version.to_owned()), encoding, ..WriteOptions::default() }
+}
+
+fn bits(points: &[Point]) -> Vec<[u64; 3]> {
+    points.iter().map(|p| p.map(f64::to_bits)).collect()
+}
+
+const MSH_KINDS: &[CellKind] = &[
+    CellKind::VERTEX,
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::BIQUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::TRIQUADRATIC_HEXAHEDRON,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::BIQUADRATIC_QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_PYRAMID,
+];
+const MEDIT_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_TETRA,
+];
+
+fn coordinate() -> impl Strategy<Value = f64> {
+    use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
+    NORMAL | SUBNORMAL | ZERO | POSITIVE | NEGATIVE
+}
+
+/// A mesh of up to 20 points and 12 cells of the given kinds, in their order where `sorted`,
+/// and a label for each cell.
+fn meshes(kinds: &'static [CellKind], sorted: bool) -> impl Strategy<Value = (Mesh, Vec<i32>)> {
+    let points = prop::collection::vec(prop::array::uniform3(coordinate()), 1..20);
+    let cells =
+        prop::collection::vec((0..kinds.len(), prop::collection::vec(0u32..1000, 27), 0i32..4), 0..12);
+    (points, cells).prop_map(move |(points, mut rows)| {
+        if sorted {
+            rows.sort_by_key(|(kind, ..)| *kind);
+        }
+        let mut cells = Cells::new();
+        for (kind, ids, _) in &rows {
+            let n = kinds[*kind].n_vertices().expect("kinds here have a number of vertices");
+            cells.push(kinds[*kind], ids[..n].iter().map(|id| VertexId(id % points.len() as u32)));
+        }
+        (Mesh::new(points, cells), rows.into_iter().map(|(.., label)| label).collect())
+    })
+}
+
+proptest! {
+    #[test]
+    fn msh_comes_back((mut mesh, labels) in meshes(MSH_KINDS, false), seed in any::<u32>()) {
+        let values = |n: usize| (0..n).map(|i| f64::from(seed) / (i as f64 + 3.0)).collect::<Vec<_>>();
+        mesh.set_point_field(Field { name: "u v".into(), components: 3, values: values(3 * mesh.points.len()).into() });
+        mesh.set_cell_field(Field::scalars("q", values(mesh.cells.len())));
+        mesh.set_cell_field(Field::scalars("gmsh:physical", labels.clone()));
+        mesh.label_names.regions.insert(1, "the blood".into());
+        mesh.label_names.patches.insert(2, "a wall".into());
+        for version in ["2.2", "4.1"] {
+            for encoding in [Encoding::Ascii, Encoding::Binary] {
+                let (bytes, lost) = print(".msh", &mesh, &options(version, encoding));
+                prop_assert!(lost.is_empty(), "{lost:?}");
+                let back = parse(".msh", &bytes).unwrap();
+                prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+                prop_assert_eq!(&back.cells, &mesh.cells);
+                prop_assert_eq!(&back.label_names, &mesh.label_names);
+                prop_assert_eq!(back.point_field("u v"), mesh.point_field("u v"));
+                if !mesh.cells.is_empty() {
+                    prop_assert_eq!(back.cell_field("q"), mesh.cell_field("q"));
+                }
+                let found = back.cell_field("gmsh:physical").and_then(|f| f.values.to_i64());
+                let found = found.unwrap_or_else(|| vec![0; mesh.cells.len()]);
+                prop_assert_eq!(found, labels.iter().map(|&l| i64::from(l)).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn msh_keeps_entities_that_have_one_label((mut mesh, labels) in meshes(MSH_KINDS, false)) {
+        mesh.set_cell_field(Field::scalars("gmsh:physical", labels.clone()));
+        let entities: Vec<i32> = labels.iter().map(|l| 10 + l).collect();
+        mesh.set_cell_field(Field::scalars("gmsh:geometrical", entities.clone()));
+        for version in ["2.2", "4.1"] {
+            let (bytes, lost) = print(".msh", &mesh, &options(version, Encoding::Binary));
+            prop_assert!(lost.is_empty(), "{lost:?}");
+            let back = parse(".msh", &bytes).unwrap();
+            if !entities.is_empty() {
+                prop_assert_eq!(back.cell_field("gmsh:geometrical"), mesh.cell_field("gmsh:geometrical"));
+            }
+        }
+    }
+
+    #[test]
+    fn medit_comes_back((mut mesh, labels) in meshes(MEDIT_KINDS, true)) {
+        let refs: Vec<i32> = (0..mesh.points.len() as i32).map(|i| i - 3).collect();
+        mesh.set_point_field(Field::scalars("medit:ref", refs));
+        mesh.set_cell_field(Field::scalars("medit:ref", labels));
+        let (bytes, lost) = print(".mesh", &mesh, &WriteOptions::default());
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        let back = parse(".mesh", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(back.point_field("medit:ref"), mesh.point_field("medit:ref"));
+        let marked = mesh.cell_field("medit:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
+        prop_assert_eq!(back.cell_field("medit:ref"), marked);
+    }
+
+    #[test]
+    fn tetgen_comes_back(
+        (mut mesh, labels) in meshes(&[CellKind::TETRA, CellKind::TRIANGLE, CellKind::LINE], true),
+        quadratic in any::<bool>(),
+    ) {
+        if quadratic {
+            let ids: Vec<_> = (0..20).map(|i| VertexId(i % mesh.points.len() as u32)).collect();
+            mesh.cells = Cells::uniform(CellKind::QUADRATIC_TETRA, ids).unwrap();
+        } else {
+            mesh.set_cell_field(Field::scalars("tetgen:ref", labels));
+        }
+        let markers: Vec<i32> = (0..mesh.points.len() as i32).collect();
+        let heights: Vec<f64> = mesh.points.iter().map(|p| p[2]).collect();
+        mesh.set_point_field(Field::scalars("tetgen:attr1", heights));
+        mesh.set_point_field(Field::scalars("tetgen:ref", markers));
+        let folder = tempfile::tempdir().unwrap();
+        let lost = write(folder.path().join("out.ele"), &mesh, &WriteOptions::default()).unwrap();
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        for name in ["out.node", "out.ele"] {
+            let back = read(folder.path().join(name)).unwrap();
+            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+            prop_assert_eq!(&back.cells, &mesh.cells);
+            prop_assert_eq!(&back.point_data, &mesh.point_data);
+            let marked = mesh.cell_field("tetgen:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
+            prop_assert_eq!(back.cell_field("tetgen:ref"), marked);
+        }
+    }
+
+    #[test]
+    fn obj_comes_back((mut mesh, labels) in meshes(&[CellKind::TRIANGLE, CellKind::QUAD], false)) {
+        mesh.set_cell_field(Field::scalars("patch", labels.iter().map(|l| l + 1).collect::<Vec<_>>()));
+        for label in 1..6 {
+            mesh.label_names.patches.insert(label, format!("part {label}"));
+        }
+        let (bytes, lost) = print(".obj", &mesh, &WriteOptions::default());
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        let back = parse(".obj", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(patch_names(&back), if labels.iter().any(|l| *l != labels[0]) { patch_names(&mesh) } else { vec![] });
+    }
+
+    #[test]
+    fn stl_keeps_corners_and_patches((mut mesh, labels) in meshes(&[CellKind::TRIANGLE], false)) {
+        prop_assume!(!mesh.cells.is_empty());
+        mesh.set_cell_field(Field::scalars("patch", labels.iter().map(|l| l + 1).collect::<Vec<_>>()));
+        for label in 1..6 {
+            mesh.label_names.patches.insert(label, format!("part {label}"));
+        }
+        let text = WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() };
+        let back = parse(".stl", &print(".stl", &mesh, &text).0).unwrap();
+        prop_assert_eq!(corners(&back), corners(&mesh));
+        prop_assert_eq!(patch_names(&back), if labels.iter().any(|l| *l != labels[0]) { patch_names(&mesh) } else { vec![] });
+
+        // In binary after rounding to single precision, which the first writing does.
+        mesh.set_cell_field(Field::scalars("attribute", labels.iter().map(|&l| l as u16).collect::<Vec<_>>()));
+        let once = parse(".stl", &print(".stl", &mesh, &WriteOptions::default()).0).unwrap();
+        let rounded = corners(&mesh).iter().map(|t| t.map(|p| p.map(|x| f64::from(x as f32)))).collect::<Vec<_>>();
+        prop_assert_eq!(corners(&once), rounded);
+        let marked = mesh.cell_field("attribute").filter(|_| labels.iter().any(|&l| l != 0));
+        prop_assert_eq!(once.cell_field("attribute"), marked);
+    }
+
+    /// Whatever is cut off or overwritten: a mesh or an error, never a panic.
+    #[test]
+    fn damage_is_survived(
+        (mut mesh, labels) in meshes(MSH_KINDS, false),
+        cut in 0.0..1.0f64,
+        flips in prop::collection::vec((0.0..1.0f64, any::<u8>()), 0..4),
+    ) {
+        mesh.set_cell_field(Field::scalars("gmsh:physical", labels));
+        let files = [
+            (".msh", options("2.2", Encoding::Ascii)),
+            (".msh", options("2.2", Encoding::Binary)),
+            (".msh", options("4.1", Encoding::Ascii)),
+            (".msh", options("4.1", Encoding::Binary)),
+            (".mesh", WriteOptions::default()),
+            (".obj", WriteOptions::default()),
+            (".stl", WriteOptions::default()),
+            (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),
+        ];
+        for (ending, options) in files {
+            let (mut bytes, _) = print(ending, &mesh, &options);
+            let n = bytes.len();
+            // A surface of no cells has no bytes.
+            for (place, value) in flips.iter().filter(|_| n > 0) {
+                bytes[(place * n as f64) as usize] ^= value;
+            }
+            let _ = parse(ending, &bytes);
+            let _ = parse(ending, &bytes[..(cut * n as f64) as usize]);
+        }
+    }
+}
+
+/// The name of each cell's patch.
+fn patch_names(mesh: &Mesh) -> Vec<String> {
+    mesh.patches().map_or(vec![], |p| p.ids.iter().map(|&id| p.name(id)).collect())
+}
+
+fn corners(mesh: &Mesh) -> Vec<[Point; 3]> {
+    mesh.cells.iter().map(|(.., v)| [v[0], v[1], v[2]].map(|v| mesh.points[v.index()])).collect()
+}
+
+/// Every message names the place; most say what to do.
+#[test]
+fn damaged_files_are_told() {
+    let msh2 = |body: &str| format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{body}");
+    let msh4 = |body: &str| format!("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n{body}");
+    let medit = |body: &str| format!("MeshVersionFormatted 2\nDimension 3\n{body}");
+    let xml = |body: &str| {
+        format!(
+            "<dolfin><mesh celltype=\"tetrahedron\" dim=\"3\"><vertices size=\"1\">\n<vertex index=\"0\" x=\"0\" y=\"0\" z=\"0\"/></vertices>{body}"
+        )
+    };
+    let cases: Vec<(&str, String, &str)> = vec![
+        (".msh", String::new(), "is empty (0 bytes); get the file again"),
+        (".msh", "hello\n".into(), "line 1: expected the beginning of a section ($...), found `hello`"),
+        (
+            ".msh",
+            "$NOD\n1\n".into(),
+            "this is MSH version 1; versions 2.2 and 4.1 are read; turn it into another version",
+        ),
+        (".msh", "$Nodes\n0\n".into(), "line 2: expected $MeshFormat at the head of the file, found $Nodes"),
+        (".msh", "$MeshFormat\n4 0 8\n".into(), "line 2: this is MSH version `4`"),
+        (".msh", "$MeshFormat\n2.2 0 16\n".into(), "line 2: numbers of 16 bytes"),
+        (
+            ".msh",
+            "$MeshFormat\n4.1 1 8\n\x01\x02\x03\x04".into(),
+            "byte 24: expected the number 1 in either order of bytes",
+        ),
+        (".msh", "$MeshFormat\n2.2 0 8\n".into(), "the file ends where $EndMeshFormat should follow"),
+        (".msh", msh2(""), "there is no section $Nodes"),
+        (
+            ".msh",
+            msh2("$Nodes\n1152921504606846976\n"),
+            "line 5: 1152921504606846976 nodes are announced, but what is left of the file holds at most 0",
+        ),
+        (".msh", msh2("$Nodes\n-1\n"), "line 5: -1 is no number of nodes"),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0\n$EndNodes\n"),
+            "coordinate z: expected a number in double precision, found `$EndNodes`",
+        ),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0 1e999\n$EndNodes\n"),
+            "line 6: coordinate z: expected a number in double precision, found `1e999`",
+        ),
+        (".msh", msh2("$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n"), "$Nodes: node 1 occurs twice"),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n"),
+            "line 7: expected $EndNodes, found `2`; the number at the head of the section is wrong",
+        ),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 15 2 0 0 7\n$EndElements\n"),
+            "line 10: element 1 names node 7, which is not among the nodes",
+        ),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 99 2 0 0 7\n$EndElements\n"),
+            "line 10: elements of type 99 are not read",
+        ),
+        (
+            ".msh",
+            msh2("$Nodes\n1\n1 0 0 0\n$EndNodes\n$NodeData\n1\n\"p\"\n0\n3\n0\n1\n1\n5 2.0\n$EndNodeData\n"),
+            "array p: gives a value to node 5, which is not in the mesh",
+        ),
+        (".msh", msh2("$Foo\n1 2 3\n"), "the file ends where $EndFoo should follow"),
+        (
+            ".msh",
+            msh4("$Nodes\n1 2 1 2\n3 1 0 1\n1\n0 0 0\n$EndNodes\n"),
+            "2 nodes are announced, but the blocks hold 1",
+        ),
+        (
+            ".msh",
+            msh4("$Elements\n1 1 1 1\n0 1 15 1\n1 1\n$EndElements\n"),
+            "line 7: elements come before the nodes",
+        ),
+        (
+            ".stl",
+            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n".into(),
+            "line 5: the file ends where coordinate z should follow; the file is cut off",
+        ),
+        (
+            ".stl",
+            "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n".into(),
+            "line 4: coordinate z: expected a number in double precision, found `x`",
+        ),
+        (".stl", "solid a\nendsolid a\n".into(), "a surface without a triangle"),
+        (
+            ".stl",
+            format!("{}\x02\0\0\0", " ".repeat(80)),
+            "byte 80: a binary STL with 2 triangles has 184 bytes, this file 84",
+        ),
+        (
+            ".stl",
+            "\x7fELF".into(),
+            "byte 0: neither a text that begins with `solid` nor the 84 bytes of a binary head",
+        ),
+        (
+            ".stl",
+            "version https://git-lfs.github.com/spec/v1\noid sha256:0\n".into(),
+            "is a pointer of Git LFS, not the file itself; fetch the file: git lfs pull",
+        ),
+        (".obj", "# nothing\n".into(), "a file without a vertex"),
+        (".obj", "v 0 0\n".into(), "line 1: a vertex has three coordinates"),
+        (".obj", "v 0 0 zero\n".into(), "line 1: coordinate: expected a number, found `zero`"),
+        (".obj", "v 0 0 0\nf 1 1\n".into(), "line 2: 2 vertices are too few for this element"),
+        (".obj", "v 0 0 0\nf 1 1 0\n".into(), "line 2: vertex 0 is named, but 1 vertices come before"),
+        (".obj", "v 0 0 0\nf 1 1 -2\n".into(), "line 2: vertex -2 is named, but 1 vertices come before"),
+        (
+            ".obj",
+            "v 0 0 0\n\nf 1/1 1//1 9/1/1\nv 0 0 0\n".into(),
+            "line 3: vertex 9 is named, but the file has 2",
+        ),
+        (".obj", "version 2\n".into(), "line 1: a statement: expected one of Wavefront OBJ's"),
+        (".mesh", "MeshVersion 2\n".into(), "line 1: the first word: expected `MeshVersionFormatted`"),
+        (".mesh", "MeshVersionFormatted 7\n".into(), "line 1: version 7 of the format"),
+        (
+            ".mesh",
+            "MeshVersionFormatted 2\nVertices 1\n0 0 0 0\n".into(),
+            "line 2: vertices come before the dimension",
+        ),
+        (".mesh", medit("End\n"), "there is no section Vertices"),
+        (".mesh", medit("Vertices 4294967296\n0 0 0 0\n"), "line 3: 4294967296 vertices are announced"),
+        (
+            ".mesh",
+            medit("Vertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 2 0\nEnd\n"),
+            "line 6: a cell names vertex 2, but there are 1 (1 to 1)",
+        ),
+        (
+            ".mesh",
+            medit("Vertices 1\n0 0 0 0\nTetrahedra 1\n1 1 1 0 0\nEnd\n"),
+            "line 6: a cell names vertex 0",
+        ),
+        (
+            ".mesh",
+            medit("Vertices 1\n0 0 0 0\nRidges 1\n4\nEnd\n"),
+            "4 of 0 Edges is marked, which does not exist",
+        ),
+        (".mesh", medit("Vertices 1\n0 0 0 0\n1 2 3 4\n"), "line 5: a section: expected its name, found `1`"),
+        (".xml", "<VTKFile/>".into(), "line 1: the root element is `VTKFile`, expected `dolfin`"),
+        (".xml", "<dolfin>".into(), "line 1: the file ends before its last element is closed"),
+        (
+            ".xml",
+            "<dolfin><mesh_function dim=\"2\" size=\"0\"/></dolfin>".into(),
+            "there is no mesh in this file; it holds marks of a mesh",
+        ),
+        (".xml", xml("<cells size=\"99999999\">"), "line 2: 99999999 cells are announced"),
+        (
+            ".xml",
+            xml(
+                "<cells size=\"1\"><tetrahedron index=\"0\" v0=\"0\" v1=\"0\" v2=\"0\" v3=\"5\"/></cells></mesh></dolfin>",
+            ),
+            "line 2: cell 0 names vertex 5, but there are 1 (from 0)",
+        ),
+        (
+            ".xml",
+            xml("<cells size=\"1\"></cells></mesh></dolfin>"),
+            "line 2: 1 elements are announced, 0 are there",
+        ),
+        (".xml", "<dolfin>\n<mesh celltype=".into(), "line 2: not well-formed XML"),
+    ];
+    for (ending, text, expected) in cases {
+        let error = match parse(ending, text.as_bytes()) {
+            Err(error) => error.to_string(),
+            Ok(_) => panic!("{ending} file was read: {text}"),
+        };
+        assert!(error.contains(expected), "{ending}: {text}\n  said: {error}\n  expected: {expected}");
+        assert!(error.starts_with(&format!("in{ending}: ")), "{error}");
+    }
+}
+
+#[test]
+fn a_packed_file_cut_off_is_told() {
+    let error = parse(".xml.gz", b"\x1f\x8b\x08\0\0\0\0\0\0\0").unwrap_err().to_string();
+    assert!(error.contains("cannot be unpacked"), "{error}");
+}
+
+#[test]
+fn tetgen_files_that_do_not_fit_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let message = |name: &str| read(folder.path().join(name)).unwrap_err().to_string();
+    file("a.ele", "1 4 0\n1 1 2 3 4\n");
+    assert!(message("a.ele").contains("a.node: there is no such file"), "{}", message("a.ele"));
+    file("a.node", "2 3 0 0\n1 0 0 0\n3 0 0 0\n");
+    assert!(message("a.ele").contains("line 3: node 3 stands where number 2 should"), "{}", message("a.ele"));
+    file("a.node", "2 3 0 0\n1 0 0 0\n2 0 0\n");
+    assert!(message("a.ele").contains("line 3: coordinate of a node is missing"), "{}", message("a.ele"));
+    file("a.node", "2 3 0 0\n1 0 0 0\n2 0 0 0\n");
+    assert!(
+        message("a.node").contains("a.ele: line 2: an element names node 3, but there are 1 to 2"),
+        "{}",
+        message("a.node")
+    );
+    file("a.ele", "1 5 0\n");
+    assert!(message("a.node").contains("line 1: elements of 5 nodes"), "{}", message("a.node"));
+    file("a.ele", "9999999999 4 0\n");
+    assert!(message("a.node").contains("9999999999 elements are announced"), "{}", message("a.node"));
+    file("a.node", "5000 3 99999 0\n");
+    assert!(message("a.node").contains("5000 nodes are announced"), "{}", message("a.node"));
+}
+
+#[test]
+fn tetgen_counts_from_what_the_file_begins_with() {
+    let folder = tempfile::tempdir().unwrap();
+    for base in [0, 1, 17] {
+        let row = |i: i32, rest: &str| format!("{} {rest} # remark\n", base + i);
+        let nodes: String = (0..4).map(|i| row(i, &format!("{i} 0 0 0.5 7"))).collect();
+        fs::write(folder.path().join("a.node"), format!("# made by hand\n\n4 3 1 1\n{nodes}")).unwrap();
+        fs::write(
+            folder.path().join("a.ele"),
+            format!("1 4 1\n{base} {} {} {} {base} -3\n", base + 3, base + 2, base + 1),
+        )
+        .unwrap();
+        fs::write(folder.path().join("a.face"), format!("1 1\n0 {base} {} {} 5\n", base + 1, base + 2))
+            .unwrap();
+        let mesh = read(folder.path().join("a.node")).unwrap();
+        assert_eq!(mesh.cells.connectivity().items(), [3, 2, 1, 0, 0, 1, 2].map(VertexId));
+        assert_eq!(mesh.cell_field("tetgen:ref").unwrap().values, Values::I32(vec![-3, 5]));
+        assert_eq!(mesh.point_field("tetgen:ref").unwrap().values, Values::I32(vec![7; 4]));
+        assert_eq!(mesh.point_field("tetgen:attr1").unwrap().values, Values::F64(vec![0.5; 4]));
+    }
+}
+
+#[test]
+fn a_binary_stl_may_begin_with_solid() {
+    let mut bytes = b"solid as binary files should not".to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend(1u32.to_le_bytes());
+    for x in [0.0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -0.0] {
+        bytes.extend(x.to_le_bytes());
+    }
+    bytes.extend(0u16.to_le_bytes());
+    let mesh = parse(".stl", &bytes).unwrap();
+    assert_eq!(mesh.points, [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    assert!(mesh.cell_data.is_empty());
+}
+
+#[test]
+fn solids_become_patches_with_their_names() {
+    let facet =
+        "facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1 0 0\n vertex 0 1 0\n endloop\nendfacet\n";
+    let text = format!(
+        "solid wall\n{facet}endsolid wall\nsolid inlet of 3\n{facet}{facet}endsolid\nsolid wall\n{facet}endsolid wall\n"
+    );
+    let mesh = parse(".stl", text.as_bytes()).unwrap();
+    assert_eq!(mesh.points.len(), 3);
+    assert_eq!(patch_names(&mesh), ["wall", "inlet of 3", "inlet of 3", "wall"]);
+}
+
+#[test]
+fn all_statements_of_an_obj_are_kept_or_noted() {
+    let text = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0 \\\n 0.5\nv 0 1 0\nv 1 1 0\nvt 0 0\ng left\nf 1/1/1 2//1 3/1\nusemtl red\n\
+        g right\nf -4 -3 -2 -1\nl 1 2 3\np 4\nf 1 2 3 4 1\n";
+    let mesh = parse(".obj", text).unwrap();
+    let kinds =
+        [CellKind::TRIANGLE, CellKind::QUAD, CellKind::POLY_LINE, CellKind::VERTEX, CellKind::POLYGON];
+    assert_eq!(mesh.cells.kinds(), kinds);
+    assert_eq!(mesh.cells.vertices(motet::base::CellId(1)), [0, 1, 2, 3].map(VertexId));
+    assert_eq!(mesh.cell_field("patch").unwrap().values, Values::I32(vec![1, 2, 2, 2, 2]));
+    let notes = notes_of(".obj", text);
+    for word in ["`mtllib`", "`vt`", "`usemtl`", "weights or colours"] {
+        assert!(notes.iter().any(|note| note.contains(word)), "{word}: {notes:?}");
+    }
+}
+
+#[test]
+fn marks_of_medit_come_back() {
+    let text = b"MeshVersionFormatted\n2\nDimension\n3\n# a remark\nVertices\n3\n0 0 0 1\n1 0 0 2\n0 1 0 3\n\
+        Triangles 1\n1 2 3 9\nEdges 2\n1 2 4\n2 3 5\nCorners 1\n2\nRidges\n1 2\nRequiredTriangles 1\n1\n\
+        Normals 1\n0 0 1\nNormalAtVertices 1\n1 1\nEnd\n";
+    let mesh = parse(".mesh", text).unwrap();
+    assert_eq!(mesh.point_field("medit:corner").unwrap().values, Values::U8(vec![0, 1, 0]));
+    assert_eq!(mesh.cell_field("medit:ridge").unwrap().values, Values::U8(vec![0, 0, 1]));
+    assert_eq!(mesh.cell_field("medit:required").unwrap().values, Values::U8(vec![1, 0, 0]));
+    assert_eq!(notes_of(".mesh", text).len(), 2, "the two sections of normals");
+    let (bytes, lost) = print(".mesh", &mesh, &WriteOptions::default());
+    assert!(lost.iter().all(|l| l.contains("order")), "{lost:?}");
+    let back = parse(".mesh", &bytes).unwrap();
+    assert_eq!(back.point_data, mesh.point_data);
+    // Edges come first now.
+    assert_eq!(back.cell_field("medit:ridge").unwrap().values, Values::U8(vec![0, 1, 0]));
+    assert_eq!(back.cell_field("medit:required").unwrap().values, Values::U8(vec![0, 0, 1]));
+    assert_eq!(back.cell_field("medit:ref").unwrap().values, Values::I32(vec![4, 5, 9]));
+}
+
+#[test]
+fn what_a_format_cannot_hold_is_told() {
+    let mut mesh =
+        Mesh::new(vec![[0.1, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], Cells::new());
+    mesh.cells.push(CellKind::TETRA, [0, 1, 2, 3].map(VertexId));
+    mesh.cells.push(CellKind::QUAD, [0, 1, 2, 3].map(VertexId));
+    mesh.cells.push(CellKind::POLYGON, [0, 1, 2, 3, 0].map(VertexId));
+    mesh.set_point_field(Field::scalars("pressure", vec![0.0; 4]));
+    mesh.set_cell_field(Field::scalars("title", Values::Text(vec![String::new(); 3])));
+    mesh.set_cell_field(Field::scalars("patch", vec![0, 1, 1]));
+    mesh.label_names.patches.insert(1, "wall".into());
+    for (ending, sentences) in [
+        (".msh", vec!["1 cells of kind polygon", "text arrays are left out, MSH has none: title"]),
+        (
+            ".stl",
+            vec![
+                "1 cells of kind tetra",
+                "cut into triangles",
+                "pressure",
+                "title",
+                "single precision",
+                "names of patches",
+            ],
+        ),
+        (".obj", vec!["1 cells of kind tetra", "pressure", "title"]),
+        (".mesh", vec!["1 cells of kind polygon", "pressure", "title", "no names of labels: wall", "order"]),
+        (".node", vec!["1 cells of kind polygon", "1 cells of kind quad", "attributes", "title", "wall"]),
+    ] {
+        let (_, lost) = print(ending, &mesh, &WriteOptions::default());
+        for sentence in sentences {
+            assert!(
+                lost.iter().any(|l| l.contains(sentence)),
+                "{ending} does not say `{sentence}`: {lost:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_volume_becomes_its_boundary_in_formats_of_surfaces() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
+    let tets = [0, 1, 2, 3, 1, 3, 2, 4].map(VertexId).to_vec();
+    let mesh = Mesh::new(corners.to_vec(), Cells::uniform(CellKind::TETRA, tets).unwrap());
+    for ending in [".stl", ".obj"] {
+        let (bytes, lost) = print(ending, &mesh, &WriteOptions::default());
+        assert!(lost.iter().any(|l| l.contains("boundary")), "{lost:?}");
+        let surface = parse(ending, &bytes).unwrap();
+        assert_eq!(surface.cells.counts(), [(CellKind::TRIANGLE, 6)]);
+        // Facing outward, a closed surface holds its volume: 1/6 and 1/3 of the unit cube.
+        let volume: f64 = self::corners(&surface)
+            .iter()
+            .map(|[a, b, c]| {
+                a[0] * (b[1] * c[2] - b[2] * c[1])
+                    + a[1] * (b[2] * c[0] - b[0] * c[2])
+                    + a[2] * (b[0] * c[1] - b[1] * c[0])
+            })
+            .sum();
+        assert!((volume / 6.0 - 0.5).abs() < 1e-15, "{ending}: {}", volume / 6.0);
+    }
+}
+
+#[test]
+fn dolfin_tets_are_turned_and_marks_become_patches() {
+    let text = br#"<?xml version="1.0"?><dolfin><mesh celltype="tetrahedron" dim="3"><vertices size="5">
+        <vertex index="0" x="0" y="0" z="0"/><vertex index="1" x="1" y="0" z="0"/><vertex index="2" x="0" y="1" z="0"/>
+        <vertex index="3" x="0" y="0" z="1"/><vertex index="4" x="0" y="0" z="-1"/></vertices>
+        <cells size="2"><tetrahedron index="0" v0="0" v1="1" v2="2" v3="3"/>
+        <tetrahedron index="1" v0="0" v1="1" v2="2" v3="4"/></cells>
+        <domains><mesh_value_collection type="uint" dim="2" size="3">
+        <value cell_index="0" local_entity="3" value="0"/><value cell_index="1" local_entity="3" value="0"/>
+        <value cell_index="1" local_entity="0" value="6"/></mesh_value_collection>
+        <mesh_value_collection type="uint" dim="3" size="2"><value cell_index="0" local_entity="0" value="4"/>
+        <value cell_index="1" local_entity="0" value="5"/></mesh_value_collection></domains></mesh></dolfin>"#;
+    let mesh = parse(".xml", text).unwrap();
+    // The second tet lies below its base, so that its sorted vertices make it negative.
+    let ids: Vec<u32> = mesh.cells.connectivity().items().iter().map(|v| v.0).collect();
+    assert_eq!(ids, [0, 1, 2, 3, 0, 1, 4, 2, 0, 2, 1, 1, 4, 2]);
+    assert_eq!(patch_names(&mesh), ["0", "0", "0", "6"], "the first two are cells without a patch");
+    assert_eq!(mesh.patches().unwrap().ids, [0, 0, 1, 7]);
+    assert_eq!(mesh.regions().unwrap().ids, [4, 5, 0, 0]);
+}
+
+#[test]
+fn every_real_file_is_read_or_refused_with_a_remedy() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("MOTET_DATA").map_or(root, Into::into);
+    if !folder.is_dir() {
+        println!("skipped: no real meshes in {}", folder.display());
+        return;
+    }
+    let mut folders = vec![folder];
+    let mut n_read = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path.file_name().unwrap().to_string_lossy().to_lowercase();
+            if ![".msh", ".stl", ".obj", ".mesh", ".node", ".ele", ".xml.gz"]
+                .iter()
+                .any(|e| name.ends_with(e))
+            {
+                continue;
+            }
+            match read_noted(&path) {
+                Ok((mesh, _)) => {
+                    assert!(!mesh.cells.is_empty() && !mesh.points.is_empty(), "{}", path.display());
+                    n_read += 1;
+                }
+                Err(error) => {
+                    assert!(["empty", "lfs_pointer"].iter().any(|word| name.contains(word)), "{error}");
+                    assert!(error.remedy_text().is_some(), "{error}");
+                }
+            }
+        }
+    }
+    assert!(n_read > 0);
+}

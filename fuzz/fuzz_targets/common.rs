@@ -1,0 +1,39 @@
+//! What the targets share: bytes in, a mesh or an error out.
+#![allow(dead_code, reason = "each target uses its part")]
+
+use std::path::Path;
+
+use motet::Mesh;
+use motet::io::{Format, Input, Notes, WriteOptions, formats, read_as};
+
+fn format(ending: &str) -> &'static Format {
+    formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
+}
+
+/// Reads `bytes` as a file with this ending. A mesh that comes out holds together.
+pub fn read(ending: &str, bytes: &[u8]) -> Option<Mesh> {
+    let path = format!("in{ending}");
+    let input = Input { path: Path::new(&path), bytes, notes: &Notes::default() };
+    let mesh = read_as(format(ending), &input).ok()?;
+    mesh.validate().expect("a reader returns a mesh that holds together");
+    Some(mesh)
+}
+
+/// The first file written, and whether nothing was lost.
+pub fn write(ending: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
+    let write = format(ending).write.expect("the format is written");
+    let mut written = write(mesh, &WriteOptions::default()).expect("what is read can be written");
+    (written.files.swap_remove(0).1, written.lost.is_empty())
+}
+
+/// What can be read can be written, and is read again: as many points, and where
+/// nothing was lost the same cells.
+pub fn there_and_back(ending: &str, bytes: &[u8]) {
+    let Some(mesh) = read(ending, bytes) else { return };
+    let (again, complete) = write(ending, &mesh);
+    let again = read(ending, &again).expect("what is written is read");
+    assert_eq!(again.points.len(), mesh.points.len());
+    if complete {
+        assert_eq!(again.cells, mesh.cells);
+    }
+}

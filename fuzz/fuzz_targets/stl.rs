@@ -1,0 +1,14 @@
+#![no_main]
+//! Reads any bytes as an STL file; its triangles are written and read again.
+
+mod common;
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    // Points that no triangle uses, and the numbers of points, are not kept by the format.
+    if let Some(mesh) = common::read(".stl", bytes) {
+        let again = common::read(".stl", &common::write(".stl", &mesh).0).expect("what is written is read");
+        assert_eq!(again.cells.len(), mesh.cells.len());
+    }
+});

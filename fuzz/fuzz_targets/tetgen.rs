@@ -1,0 +1,24 @@
+#![no_main]
+//! Takes any bytes apart at zero bytes into .node, .ele and .face files, and reads them.
+
+use std::cell::LazyCell;
+use std::fs;
+
+use libfuzzer_sys::fuzz_target;
+
+thread_local! {
+    static FOLDER: LazyCell<tempfile::TempDir> = LazyCell::new(|| tempfile::tempdir().expect("a folder in memory"));
+}
+
+fuzz_target!(|bytes: &[u8]| {
+    FOLDER.with(|folder| {
+        let path = folder.path().join("in.node");
+        let mut parts = bytes.split(|&b| b == 0);
+        for ending in ["node", "ele", "face"] {
+            fs::write(path.with_extension(ending), parts.next().unwrap_or(b"0 0 0 0")).expect("it is written");
+        }
+        if let Ok(mesh) = motet::io::read(&path) {
+            mesh.validate().expect("a reader returns a mesh that holds together");
+        }
+    });
+});
