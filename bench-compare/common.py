@@ -1,7 +1,8 @@
 """What the benches share: the machine, contenders run in turn, medians, tables.
 
 A contender is a command that prints one JSON object on its last line, with at least
-`seconds`: a list, one per repeat, clocked inside the program (no start-up, no file reading).
+`seconds`: one number per repeat (or the median of many repeats), clocked inside the program
+(no start-up, no file reading).
 """
 import json
 import os
@@ -106,9 +107,9 @@ def in_turn(contenders, rounds, limit=300.0):
     """Runs the contenders one after the other, `rounds` times round, so that a disturbance meets all of them.
 
     `contenders`: {name: command}. Gives {name: result}: the program's own JSON of the last round with
-    `seconds` replaced by the median over all repeats of all rounds, `best`, `runs`, `peak_mib`, and
-    `other_cpu` (cores kept busy by other programs meanwhile). A contender that fails is not called again and
-    gives {"error": why}.
+    `seconds` replaced by the median over all repeats of all rounds, other `..._seconds` by their medians over
+    the rounds, and with `best`, `runs`, `peak_mib`, and `other_cpu` (cores kept busy by other programs
+    meanwhile). A contender that fails is not called again and gives {"error": why}.
     """
     results = {name: [] for name in contenders}
     for _ in range(rounds):
@@ -123,8 +124,10 @@ def combine(parts):
     failed = next((p for p in parts if "error" in p), None)
     if failed:
         return failed
-    seconds = [s for p in parts for s in p["seconds"]]
-    whole = dict(parts[-1])
+    listed = lambda value: value if isinstance(value, list) else [value]
+    seconds = [s for p in parts for s in listed(p["seconds"])]
+    whole = {key: statistics.median(p[key] for p in parts) if key.endswith("_seconds") else value
+             for key, value in parts[-1].items()}
     del whole["wall"], whole["others"]
     whole.update(seconds=statistics.median(seconds), best=min(seconds), runs=len(seconds),
                  peak_mib=min(p["peak_mib"] for p in parts),

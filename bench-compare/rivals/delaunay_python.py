@@ -40,7 +40,7 @@ def gmsh(points, runs):
 
 
 def tetgen(points, runs):
-    """The command line program tells its own "Delaunay seconds"."""
+    """The command line program tells its own "Delaunay seconds", of processor time."""
     seconds, tets = [], 0
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "points.node"

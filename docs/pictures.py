@@ -1,0 +1,119 @@
+"""Draws the pictures of the README from the demo's series.
+
+    ./test --setup                                        (once: the Python packages)
+    cargo run --release -- demo motet-demo
+    target/venv/bin/python docs/pictures.py motet-demo    (writes docs/demo.png)
+
+A cut through the box at the first and at the last step: the cells behind the plane y = 0, coloured by their
+equi-angle quality.
+"""
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pyvista as pv
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.font_manager import findfont as find_font
+from PIL import Image, ImageDraw, ImageFont
+from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
+
+HERE = Path(__file__).resolve().parent
+PANEL = (580, 580)
+INK = "#22303c"
+RANGE = (0.0, 0.6)
+# Red is bad (below 0.2), sand is fair, blue-green is good; pale enough that the edges stay visible.
+QUALITY = LinearSegmentedColormap.from_list("quality", [
+    (0.0, "#7d0a2a"), (0.2 / 0.6, "#e0583f"), (0.3 / 0.6, "#f6d58e"), (0.4 / 0.6, "#b9dfc0"), (0.5 / 0.6, "#5fb3b3"), (1.0, "#17607a")])
+
+
+def series(folder):
+    """The files of the folder's .pvd, in order."""
+    index = next(folder.glob("*.pvd"), None)
+    if index is None:
+        sys.exit(f"{folder} holds no .pvd: cargo run --release -- demo {folder}")
+    return [folder / entry.get("file") for entry in ElementTree.parse(index).iter("DataSet")]
+
+
+def tets(path):
+    """The volume cells with their equi-angle quality, negative where inverted."""
+    mesh = pv.read(path)
+    mesh = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
+    verdict = vtkMeshQuality()
+    verdict.SetInputData(mesh)
+    verdict.SetTetQualityMeasureToEquiangleSkew()
+    verdict.Update()
+    skew = pv.wrap(verdict.GetOutput())["Quality"]
+    a, b, c, d = mesh.points[mesh.cells_dict[pv.CellType.TETRA]].astype(float).transpose(1, 0, 2)
+    mesh.cell_data["EAS"] = np.sign(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)) * (1.0 - skew)
+    return mesh
+
+
+def ball(mesh):
+    """The part of the surface away from the box's walls."""
+    surface = mesh.extract_surface(algorithm="dataset_surface")
+    low, high = np.array(surface.bounds).reshape(3, 2).T
+    reach = 1e-6 * (high - low).max()
+    on_wall = (np.abs(surface.cell_centers().points[:, None] - np.array([low, high])).min(axis=1) < reach).any(axis=1)
+    return surface.extract_cells(~on_wall).extract_surface(algorithm="dataset_surface")
+
+
+def panel(mesh):
+    """One cut, seen from the front."""
+    plotter = pv.Plotter(off_screen=True, window_size=PANEL, lighting="none")
+    plotter.set_background("white")
+    behind = mesh.extract_cells(mesh.cell_centers().points[:, 1] > 0.0)
+    plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_edges=True, edge_color=INK, line_width=1.0,
+                     edge_opacity=0.35, ambient=0.6, diffuse=0.45, specular=0.0, show_scalar_bar=False)
+    plotter.add_mesh(ball(mesh), color="#e8ecf0", smooth_shading=True, ambient=0.3, diffuse=0.75, specular=0.12,
+                     specular_power=8)
+    centre, size = np.array(mesh.center), mesh.length / np.sqrt(3.0)
+    for place, strength in (((-0.8, -1.6, 1.4), 0.8), ((1.2, -1.0, 0.1), 0.3)):
+        plotter.add_light(pv.Light(position=centre + 3 * size * np.array(place), focal_point=centre, intensity=strength))
+    plotter.camera_position = [centre + size * np.array([-0.5, -2.2, 0.62]), centre + size * np.array([0.01, 0.1, -0.02]),
+                               (0.0, 0.0, 1.0)]
+    plotter.camera.view_angle = 27.5
+    plotter.enable_anti_aliasing("ssaa")
+    image = Image.fromarray(plotter.screenshot(return_img=True))
+    plotter.close()
+    return image
+
+
+def font(size):
+    return ImageFont.truetype(find_font("DejaVu Sans"), size)
+
+
+def colour_bar(draw, left, top, width):
+    """The scale, with the threshold of bad tets."""
+    low, high = RANGE
+    for x in range(width):
+        colour = tuple(int(255 * c) for c in QUALITY(x / (width - 1))[:3])
+        draw.line([(left + x, top), (left + x, top + 12)], fill=colour)
+    for value in (0.0, 0.2, 0.4, 0.6):
+        x = left + int((value - low) / (high - low) * (width - 1))
+        draw.text((x, top + 18), f"{value:g}", fill=INK, font=font(15), anchor="ma")
+    draw.text((left - 14, top + 6), "EAS", fill=INK, font=font(16), anchor="rm")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    files = series(Path(sys.argv[1]))
+    chosen = [0, len(files) - 1]
+    width, height = PANEL
+    sheet = Image.new("RGB", (2 * width, height + 96), "white")
+    draw = ImageDraw.Draw(sheet)
+    for column, i in enumerate(chosen):
+        mesh = tets(files[i])
+        sheet.paste(panel(mesh), (column * width, 0))
+        bad = np.count_nonzero(mesh["EAS"] < 0.2)
+        draw.text((column * width + width // 2, height + 6), f"step {i}: worst {mesh['EAS'].min():.2f}, {bad:,} of {mesh.n_cells:,} below 0.2",
+                  fill=INK, font=font(17), anchor="ma")
+    colour_bar(draw, width - 180, height + 44, 360)
+    path = HERE / "demo.png"
+    sheet.quantize(256, kmeans=2, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"{path}: {path.stat().st_size // 1024} kB")
+
+
+if __name__ == "__main__":
+    main()
