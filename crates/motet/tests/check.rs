@@ -264,3 +264,48 @@ fn hopeless_meshes_are_told_about_in_bounded_time() {
     let duplicates = defects.iter().find(|d| d.kind == DefectKind::DuplicateCell).unwrap();
     assert!(duplicates.count >= 19_999 && duplicates.examples.len() == 5);
 }
+
+/// Real meshes and what others measured on them (angles in degrees): file, tets, inverted,
+/// smallest and largest dihedral angle, smallest and mean mean-ratio.
+type Measured = (&'static str, usize, usize, [f64; 2], [f64; 2]);
+const MEASURED: &[Measured] = &[
+    ("tetmeshes/pescio_AbdominalAorticAneurysm.msh", 8404, 0, [0.155, 179.6], [0.0108, 0.501]),
+    ("tetmeshes/sv_ale_pipe/lumen.vtu", 204_705, 0, [13.8, 156.2], [0.413, 0.86]),
+    ("tetmeshes/sv_ale_pipe/wall.vtu", 85_220, 0, [16.4, 154.6], [0.425, 0.875]),
+    ("tetmeshes/sv_boundary_layer_pipe/lumen.vtu", 170_694, 0, [7.67, 165.0], [0.285, 0.634]),
+    ("tetmeshes/ambit_pipe_fsi/pipe_fsi_domain.vtu", 4953, 0, [4.95, 172.0], [0.201, 0.808]),
+    ("moving_wall/ambit_la_lv/lalv_domain_with_aledisp.vtu", 8225, 0, [11.6, 154.4], [0.311, 0.806]),
+    ("bad_tets/polyfem_microstructure_P1.msh", 6414, 8, [0.0362, 179.4], [-0.147, 0.387]),
+    ("bad_tets/polyfem_screw.msh", 6059, 0, [0.0127, 180.0], [0.00143, 0.5]),
+];
+
+/// Whether `x` is `expected` to the half of its third digit.
+fn to_three_digits(x: f64, expected: f64) -> bool {
+    (x - expected).abs() <= expected.abs() * 5.1e-3
+}
+
+#[test]
+fn real_meshes_are_as_others_measured_them() {
+    let folder = std::env::var("MOTET_DATA")
+        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
+    let folder = std::path::Path::new(&folder);
+    if !folder.is_dir() {
+        println!("skipped: no real meshes in {}; set MOTET_DATA", folder.display());
+        return;
+    }
+    for (file, tets, inverted, dihedral, ratio) in MEASURED {
+        let summary = Summary::of(&motet::io::read(&folder.join(file)).unwrap());
+        assert_eq!((summary.cells["tetra"], summary.inverted), (*tets, *inverted), "{file}");
+        let quality = summary.quality.unwrap();
+        let found = [
+            quality.dihedral_deg.min,
+            quality.dihedral_deg.max,
+            quality.mean_ratio.min,
+            quality.mean_ratio.mean,
+        ];
+        for (found, expected) in found.into_iter().zip(dihedral.iter().chain(ratio)) {
+            assert!(to_three_digits(found, *expected), "{file}: {found} {expected}");
+        }
+        assert!(summary.conforming, "{file}: {:?}", summary.defects);
+    }
+}

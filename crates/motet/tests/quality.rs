@@ -105,7 +105,7 @@ proptest! {
     #[test]
     fn size_by_a_power_of_two_matters_to_the_volume_alone(
         tet in prop::array::uniform4(prop::array::uniform3(-1.0f64..1.0)),
-        exponent in -100i32..100,
+        exponent in -90i32..90,
     ) {
         let factor = 2f64.powi(exponent);
         let [expected, other] = [all(tet), all(tet.map(|p| p.map(|x| x * factor)))];

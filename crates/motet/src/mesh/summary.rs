@@ -134,7 +134,8 @@ impl Summary {
             points: mesh.points.len(),
             cells: mesh.cells.counts().into_iter().map(|(kind, n)| (kind.label(), n)).collect(),
             bounds: mesh.bounds(),
-            volume: volumes.iter().sum(),
+            // A sum of nothing is -0 in Rust.
+            volume: volumes.iter().sum::<f64>() + 0.0,
             regions: mesh.regions().map(|labels| regions(mesh, &labels, &volumes)).unwrap_or_default(),
             patches: mesh.patches().map(|labels| patches(mesh, &labels)).unwrap_or_default(),
             surface: surface_cells().next().map(|_| patch(mesh, &surface_cells().collect::<Vec<_>>())),

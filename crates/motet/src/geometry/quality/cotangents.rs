@@ -3,61 +3,161 @@
 
 use crate::base::Point;
 use crate::geometry::quality::scaled::Scaled;
-use crate::geometry::tet::{EDGES, FACETS};
-use crate::geometry::vector::{cross, dot, norm, sub};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{cross, dot, sub};
 
 /// The angle in [0, pi] with this cotangent.
+#[inline]
 pub(super) fn angle(cotangent: f64) -> f64 {
     1f64.atan2(cotangent)
 }
 
+/// The smallest and the largest of some cotangents.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extremes {
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+impl Extremes {
+    const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
+
+    /// `x` is a number: comparisons spare the care that `f64::min` takes of others.
+    #[inline(always)]
+    fn add(&mut self, x: f64) {
+        self.low = if x < self.low { x } else { self.low };
+        self.high = if x > self.high { x } else { self.high };
+    }
+}
+
 /// Cosine by sine, both up to one positive factor. 0/0, an angle between things
 /// without extent, counts as angle 0.
+#[inline(always)]
 fn ratio(cosine: f64, sine: f64) -> f64 {
     let cotangent = cosine / sine;
     if cotangent.is_nan() { f64::INFINITY } else { cotangent }
 }
 
-/// Twice the area vector of each facet, outward for a positive tet.
-fn normals(points: &[Point; 4]) -> [Point; 4] {
-    FACETS.map(|facet| {
-        let [a, b, c] = facet.map(|v| points[v]);
-        cross(sub(b, a), sub(c, a))
-    })
+/// `x |x|`: sorts as x does, and spares roots until the extremes are known.
+#[inline(always)]
+fn signed_square(x: f64) -> f64 {
+    x * x.abs()
 }
 
-/// Cotangents of the dihedral angles at the six edges. An inverted tet has
-/// those of its mirror image.
+#[inline(always)]
+fn signed_root(x: f64) -> f64 {
+    x.abs().sqrt().copysign(x)
+}
+
+/// The measured parts of a tet: its edges, twice the area vector of each facet
+/// (outward for a positive tet), and six volumes without their sign.
 ///
-/// At the edge e between facets with normals m and n: `cot = -m.n / |m x n|`,
-/// and `m x n` is e times six volumes, which is accurate where m and n are
-/// nearly parallel and the cosine says nothing.
-pub(super) fn dihedral(tet: &Scaled) -> [f64; 6] {
-    let normals = normals(&tet.points);
-    let volume_6 = tet.volume_6().abs();
-    let lengths_squared = tet.lengths_squared();
-    [0, 1, 2, 3, 4, 5].map(|e| {
+/// Loops rather than closures over arrays, and always inlined: half the
+/// instructions of the plainer form.
+pub(super) struct Parts {
+    /// Edges in the order of [`EDGES`].
+    edges: [Point; 6],
+    lengths_squared: [f64; 6],
+    normals: [Point; 4],
+    volume_6: f64,
+}
+
+/// The edges at each corner of each facet, and the sign of their product as
+/// they leave the corner: +1 when both point away from it or both towards it.
+const CORNERS: [[(usize, usize, f64); 3]; 4] = [
+    // Facet 1 2 3: corners 1, 2, 3.
+    [(3, 4, 1.0), (3, 5, -1.0), (4, 5, 1.0)],
+    // Facet 0 2 3: corners 0, 2, 3.
+    [(1, 2, 1.0), (1, 5, -1.0), (2, 5, 1.0)],
+    // Facet 0 1 3: corners 0, 1, 3.
+    [(0, 2, 1.0), (0, 4, -1.0), (2, 4, 1.0)],
+    // Facet 0 1 2: corners 0, 1, 2.
+    [(0, 1, 1.0), (0, 3, -1.0), (1, 3, 1.0)],
+];
+
+impl Parts {
+    #[inline(always)]
+    pub(super) fn of(tet: &Scaled) -> Self {
+        let [a, b, c, d] = tet.points;
+        let edges = [sub(b, a), sub(c, a), sub(d, a), sub(c, b), sub(d, b), sub(d, c)];
+        let mut lengths_squared = [0.0; 6];
+        for e in 0..6 {
+            lengths_squared[e] = dot(edges[e], edges[e]);
+        }
+        // Facet i as in `FACETS`: (b, c, d), (a, d, c), (a, b, d), (a, c, b).
+        let normals = [
+            cross(edges[3], edges[4]),
+            cross(edges[2], edges[1]),
+            cross(edges[0], edges[2]),
+            cross(edges[1], edges[0]),
+        ];
+        Self { edges, lengths_squared, normals, volume_6: tet.volume_6().abs() }
+    }
+
+    /// At the edge e between facets with normals m and n, `-m.n`, to which the
+    /// cosine of the dihedral angle is proportional. The sine is so to
+    /// `|m x n|`, and `m x n` is e times six volumes: accurate where m and n are
+    /// nearly parallel and the cosine says nothing.
+    #[inline(always)]
+    fn dihedral_cosine(&self, e: usize) -> f64 {
         let [i, j] = EDGES[5 - e];
-        ratio(-dot(normals[i], normals[j]), volume_6 * lengths_squared[e].sqrt())
-    })
+        -dot(self.normals[i], self.normals[j])
+    }
+
+    /// Cotangents of the dihedral angles at the six edges. An inverted tet has
+    /// those of its mirror image.
+    pub(super) fn dihedral(&self) -> [f64; 6] {
+        [0, 1, 2, 3, 4, 5]
+            .map(|e| ratio(self.dihedral_cosine(e), self.volume_6 * self.lengths_squared[e].sqrt()))
+    }
+
+    /// The extremes of [`Self::dihedral`].
+    #[inline(always)]
+    pub(super) fn dihedral_extremes(&self) -> Extremes {
+        let mut extremes = Extremes::NONE;
+        if self.volume_6 == 0.0 {
+            self.dihedral().into_iter().for_each(|cotangent| extremes.add(cotangent));
+            return extremes;
+        }
+        for e in 0..6 {
+            extremes.add(ratio(signed_square(self.dihedral_cosine(e)), self.lengths_squared[e]));
+        }
+        Extremes {
+            low: signed_root(extremes.low) / self.volume_6,
+            high: signed_root(extremes.high) / self.volume_6,
+        }
+    }
+
+    /// The extremes of the cotangents of the twelve angles of the four facets.
+    #[inline(always)]
+    pub(super) fn facet_extremes(&self) -> Extremes {
+        let mut extremes = Extremes::NONE;
+        for (normal, corners) in self.normals.into_iter().zip(CORNERS) {
+            let sine_squared = dot(normal, normal);
+            let mut cosines = Extremes::NONE;
+            for (i, j, sign) in corners {
+                cosines.add(sign * dot(self.edges[i], self.edges[j]));
+            }
+            extremes.add(ratio(signed_square(cosines.low), sine_squared));
+            extremes.add(ratio(signed_square(cosines.high), sine_squared));
+        }
+        Extremes { low: signed_root(extremes.low), high: signed_root(extremes.high) }
+    }
 }
 
-/// Cotangents of the twelve angles of the four facets.
-pub(super) fn facets(tet: &Scaled) -> [[f64; 3]; 4] {
-    let normals = normals(&tet.points);
-    [0, 1, 2, 3].map(|f| {
-        let corners = FACETS[f].map(|v| tet.points[v]);
-        let sine = norm(normals[f]);
-        [0, 1, 2].map(|i| {
-            let [at, next, last] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];
-            ratio(dot(sub(next, at), sub(last, at)), sine)
-        })
-    })
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The smallest and the largest.
-pub(super) fn extremes(cotangents: &[f64]) -> [f64; 2] {
-    cotangents
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &cot| [low.min(cot), high.max(cot)])
+    #[test]
+    fn corners_of_facets_are_where_their_edges_meet() {
+        for (f, corners) in CORNERS.iter().enumerate() {
+            let others: Vec<usize> = (0..4).filter(|&v| v != f).collect();
+            for (&v, &(i, j, sign)) in others.iter().zip(corners) {
+                let leaves = |e: usize| if EDGES[e][0] == v { 1.0 } else { -1.0 };
+                assert!([i, j].iter().all(|&e| EDGES[e].contains(&v) && !EDGES[e].contains(&f)));
+                assert!(i != j && leaves(i) * leaves(j) == sign);
+            }
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Dihedral angles: between the two facets at each edge, in radians.
 
 use crate::base::Point;
-use crate::geometry::quality::cotangents::{self, angle, extremes};
+use crate::geometry::quality::cotangents::{Parts, angle};
 use crate::geometry::quality::scaled::Scaled;
 
 /// The dihedral angle of the regular tet, acos(1/3), in radians.
@@ -11,7 +11,7 @@ pub const REGULAR: f64 = 1.230_959_417_340_774_7;
 /// in [0, pi]. An inverted tet has those of its mirror image; where a facet has no
 /// area its angles count as 0.
 pub fn angles(tet: [Point; 4]) -> [f64; 6] {
-    cotangents::dihedral(&Scaled::new(tet)).map(angle)
+    Parts::of(&Scaled::new(tet)).dihedral().map(angle)
 }
 
 /// The smallest dihedral angle.
@@ -26,6 +26,6 @@ pub fn max(tet: [Point; 4]) -> f64 {
 
 /// The smallest and the largest dihedral angle: half the work of asking for each.
 pub fn min_max(tet: [Point; 4]) -> [f64; 2] {
-    let [low, high] = extremes(&cotangents::dihedral(&Scaled::new(tet)));
-    [angle(high), angle(low)]
+    let cotangents = Parts::of(&Scaled::new(tet)).dihedral_extremes();
+    [angle(cotangents.high), angle(cotangents.low)]
 }

@@ -4,9 +4,9 @@ use crate::base::Point;
 use crate::geometry::tet::{EDGES, volume_6};
 use crate::geometry::vector::{dot, scale, sub};
 
-/// Above and below these coordinate differences a tet is scaled. The sixth power of
+/// Above and below these coordinate differences a tet is scaled. The eighth power of
 /// either, the largest power that a measure takes, is well within `f64`.
-const SIZES: std::ops::Range<f64> = 1e-40..1e40;
+const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 
 /// A tet whose size is within [`SIZES`], or zero.
 #[derive(Clone, Copy, Debug)]
@@ -18,11 +18,17 @@ pub(super) struct Scaled {
 }
 
 impl Scaled {
+    #[inline(always)]
     pub(super) fn new(points: [Point; 4]) -> Self {
         let size = size(points);
         if SIZES.contains(&size) || size == 0.0 {
             return Self { points, exponent: 0 };
         }
+        Self::resized(points, size)
+    }
+
+    #[cold]
+    fn resized(points: [Point; 4], size: f64) -> Self {
         // Two steps, since the difference of huge coordinates need not be a number.
         let coarse = if size > 1.0 { -2 } else { 0 };
         let points = points.map(|p| scale(p, power_of_two(coarse)));
@@ -32,22 +38,34 @@ impl Scaled {
     }
 
     /// Six times the signed volume of the scaled tet.
+    #[inline(always)]
     pub(super) fn volume_6(&self) -> f64 {
         volume_6(self.points)
     }
 
     /// The squared length of each edge of the scaled tet.
+    #[inline(always)]
     pub(super) fn lengths_squared(&self) -> [f64; 6] {
-        EDGES.map(|[i, j]| {
+        let mut squares = [0.0; 6];
+        for (e, [i, j]) in EDGES.into_iter().enumerate() {
             let edge = sub(self.points[j], self.points[i]);
-            dot(edge, edge)
-        })
+            squares[e] = dot(edge, edge);
+        }
+        squares
     }
 }
 
 /// The largest coordinate difference to the first point.
+#[inline(always)]
 fn size([a, others @ ..]: [Point; 4]) -> f64 {
-    others.iter().flat_map(|p| sub(*p, a)).fold(0.0, |size: f64, x| size.max(x.abs()))
+    let mut size = 0.0f64;
+    for p in others {
+        let edge = sub(p, a);
+        for x in edge {
+            size = if x.abs() > size { x.abs() } else { size };
+        }
+    }
+    size
 }
 
 fn size_exponent(points: [Point; 4]) -> i32 {

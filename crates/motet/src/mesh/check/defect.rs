@@ -99,7 +99,10 @@ impl Example {
             (0..3).for_each(|k| at[k] += points[v.index()][k] / vertices.len() as f64);
         }
         let finite = at.iter().all(|x| x.is_finite()) && !vertices.is_empty();
-        Self { cells: cells.to_vec(), vertices: vertices.to_vec(), at: finite.then_some(at) }
+        let mut cells = cells.to_vec();
+        // A cell may meet itself.
+        cells.dedup();
+        Self { cells, vertices: vertices.to_vec(), at: finite.then_some(at) }
     }
 }
 
