@@ -294,7 +294,7 @@ fn real_meshes_are_as_others_measured_them() {
         return;
     }
     for (file, tets, inverted, dihedral, ratio) in MEASURED {
-        let summary = Summary::of(&motet::io::read(&folder.join(file)).unwrap());
+        let summary = Summary::of(&motet::io::read(folder.join(file)).unwrap());
         assert_eq!((summary.cells["tetra"], summary.inverted), (*tets, *inverted), "{file}");
         let quality = summary.quality.unwrap();
         let found = [
