@@ -170,6 +170,17 @@ fn a_polyhedron_and_a_hexahedron_share_their_quad() {
 }
 
 #[test]
+fn a_polyhedron_may_name_vertices_in_its_faces_alone() {
+    let mut faces = Csr::default();
+    for face in [&[0, 1, 2][..], &[0, 1, 9], &[1, 2, 9], &[2, 0, 9], &[3, 4], &[]] {
+        faces.push(ids(face.iter().copied()));
+    }
+    let mut cells = Cells::new();
+    cells.push_polyhedron(ids(0..3), faces);
+    assert_eq!(Boundary::of(&cells).vertices, ids([0, 1, 2, 9]));
+}
+
+#[test]
 fn quads_that_agree_in_three_sorted_corners_are_still_told_apart() {
     let mut cells = Cells::new();
     cells.push(CellKind::PYRAMID, ids([0, 1, 2, 9, 10]));

@@ -124,7 +124,10 @@ impl<'a> Facets<'a> {
             *kind != CellKind::POLYHEDRON
                 && facet_shapes(*kind).is_none_or(|shapes| shapes.iter().all(|s| s.n_corners == 3))
         });
-        let n_vertices = self.cells.connectivity().items().iter().map(|v| v.index() + 1).max().unwrap_or(0);
+        // Faces of a polyhedron may name vertices that its own list does not.
+        let faces = self.cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
+        let all_ids = self.cells.connectivity().items().iter().chain(faces);
+        let n_vertices = all_ids.map(|v| v.index() + 1).max().unwrap_or(0);
         let buckets = Buckets::fill(n_vertices, |put| self.put_all(put));
         buckets.for_each_run(|run| {
             uses.clear();
