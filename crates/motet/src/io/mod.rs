@@ -29,4 +29,4 @@ pub use registry::{
     read, read_as, read_noted, write,
 };
 pub use replace::{replace, replace_all};
-pub use series::{SeriesWriter, read_series};
+pub use series::{SeriesWriter, parse_series, read_series};

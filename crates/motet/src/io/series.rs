@@ -22,12 +22,16 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
-    let frames = parse(&bytes).map_err(told)?;
+    let frames = parse_series(&bytes).map_err(told)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     Ok(frames.into_iter().map(|(time, file)| (time, folder.join(file))).collect())
 }
 
-fn parse(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
+/// As [`read_series`], from the content of the file; names as they stand there.
+///
+/// # Errors
+/// As [`read_series`].
+pub fn parse_series(bytes: &[u8]) -> Result<Vec<(f64, String)>> {
     let mut reader = Reader::from_reader(bytes);
     let mut is_series = false;
     let mut frames: Vec<(f64, String)> = Vec::new();
@@ -142,13 +146,13 @@ mod tests {
     fn what_is_written_is_read_back() {
         let mut writer = SeriesWriter::new("a <b>.pvd", WriteOptions::default());
         writer.frames = (0..3).map(|k| (0.1 * f64::from(k), writer.frame_name(k as usize))).collect();
-        assert_eq!(parse(writer.text().as_bytes()).unwrap(), writer.frames);
+        assert_eq!(parse_series(writer.text().as_bytes()).unwrap(), writer.frames);
         assert_eq!(writer.frames[2], (0.2, "a <b>_0002.vtu".to_string()));
     }
 
     #[test]
     fn what_is_no_series_is_told() {
-        let refused = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
+        let refused = |text: &str| parse_series(text.as_bytes()).unwrap_err().to_string();
         assert!(refused("").contains("no series"));
         assert!(refused("<VTKFile type=\"Collection\"/>").contains("names no file"));
         assert!(refused("<VTKFile type=\"PolyData\"/>").contains("no series"));
@@ -167,6 +171,9 @@ mod tests {
     #[test]
     fn times_that_are_missing_are_counted() {
         let text = "<VTKFile type='Collection'><Collection><DataSet file='a.vtp'/><DataSet file='b.vtp'></DataSet></Collection></VTKFile>";
-        assert_eq!(parse(text.as_bytes()).unwrap(), [(0.0, "a.vtp".to_string()), (1.0, "b.vtp".to_string())]);
+        assert_eq!(
+            parse_series(text.as_bytes()).unwrap(),
+            [(0.0, "a.vtp".to_string()), (1.0, "b.vtp".to_string())]
+        );
     }
 }

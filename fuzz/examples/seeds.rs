@@ -1,0 +1,91 @@
+//! Fills `corpus/TARGET/` with small files of every format that can be written:
+//! `cargo run --release --example seeds`, then
+//! `cargo +nightly fuzz run vtu -- -max_total_time=600 -dict=dictionaries/xml.dict`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use motet::Mesh;
+use motet::base::{Csr, VertexId};
+use motet::io::{self, Compression, Encoding, WriteOptions};
+use motet::mesh::{Cells, Field, Values, shapes};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus");
+    let mut n_files = BTreeMap::new();
+    for format in io::formats() {
+        let (Some(write), Some(ending)) = (format.write, format.endings.first()) else { continue };
+        let target = ending.trim_start_matches('.').replace('.', "_");
+        let folder = corpus.join(&target);
+        fs::create_dir_all(&folder)?;
+        for (name, mesh) in meshes() {
+            for (k, options) in options().enumerate() {
+                let Ok(written) = write(&mesh, &options) else { continue };
+                fs::write(folder.join(format!("{name}_{k}")), &written.files[0].1)?;
+                *n_files.entry(target.clone()).or_insert(0) += 1;
+            }
+        }
+    }
+    let folder = corpus.join("pvd");
+    fs::create_dir_all(&folder)?;
+    fs::write(folder.join("two"), PVD)?;
+    n_files.insert("pvd".into(), 1);
+    n_files.iter().for_each(|(target, n)| println!("{target}: {n} files"));
+    Ok(())
+}
+
+const PVD: &str = r#"<?xml version="1.0"?>
+<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">
+  <Collection>
+    <DataSet timestep="0.5" part="0" file="a_0000.vtu"/>
+    <DataSet timestep="1e-3" group="" part="0" file="b &lt;1&gt;.vtu"/>
+  </Collection>
+</VTKFile>
+"#;
+
+/// Small meshes with all that a file may hold.
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    let mut tets = shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
+    let (n_points, n_cells) = (tets.points.len(), tets.cells.len());
+    tets.set_point_field(Field::vectors("velocity", &vec![[0.5, -0.0, 1e-300]; n_points]));
+    tets.set_point_field(Field::scalars("f32", vec![1.5f32; n_points]));
+    tets.set_cell_field(Field::scalars("i8", vec![-1i8; n_cells]));
+    tets.set_cell_field(Field::scalars("u64", vec![u64::MAX; n_cells]));
+    tets.set_cell_field(Field::scalars("text", Values::Text(vec!["a \u{e9}".into(); n_cells])));
+    tets.field_data.push(Field::scalars("TimeValue", vec![0.25]));
+    vec![
+        ("tets", tets),
+        ("mixed", shapes::mixed(1)),
+        ("polyhedron", polyhedron()),
+        ("empty", Mesh::default()),
+    ]
+}
+
+/// A tet as a polyhedron.
+fn polyhedron() -> Mesh {
+    let ids = |list: &[u32]| list.iter().map(|&v| VertexId(v)).collect::<Vec<_>>();
+    let mut faces = Csr::default();
+    [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].iter().for_each(|face| faces.push(ids(face)));
+    let mut cells = Cells::new();
+    cells.push_polyhedron(ids(&[0, 1, 2, 3]), faces);
+    let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    Mesh::new(points, cells)
+}
+
+/// Every way of writing; formats that do not know a version refuse it.
+fn options() -> impl Iterator<Item = WriteOptions> {
+    let compressions = [Compression::None, Compression::Zlib, Compression::Lz4, Compression::Lzma];
+    let encodings = [Encoding::Ascii, Encoding::Base64, Encoding::Binary];
+    let versions = [None, Some("2.2"), Some("4.1"), Some("4.2")];
+    versions.into_iter().flat_map(move |version| {
+        encodings.into_iter().flat_map(move |encoding| {
+            let compressions = if version.is_none() { &compressions[..] } else { &compressions[..1] };
+            compressions.to_vec().into_iter().map(move |compression| WriteOptions {
+                encoding,
+                compression,
+                version: version.map(str::to_owned),
+            })
+        })
+    })
+}
