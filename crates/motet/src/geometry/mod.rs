@@ -6,3 +6,6 @@ pub mod segment;
 pub mod tet;
 pub mod triangle;
 pub mod vector;
+mod weights;
+
+pub use weights::weights;

@@ -1,0 +1,122 @@
+//! Whether a newcomer lies inside the sphere of a tet, or beyond the hull facet of a ghost.
+
+use super::gauge::evaluate;
+use super::store::Store;
+use crate::base::Point;
+use crate::geometry::predicates::insphere::{UNDERFLOW, beyond_filter};
+use crate::geometry::predicates::{break_tie, orient};
+use crate::geometry::vector::sub;
+use pulp::{Simd, WithSimd};
+
+/// States in a tet's mark, added to `4 * newcomer`.
+pub(super) const PENDING: u32 = 0;
+/// Tested: no conflict.
+pub(super) const OUT: u32 = 1;
+/// Tested: in conflict, a tet of the cavity.
+pub(super) const IN: u32 = 2;
+
+/// The point that is being inserted.
+#[derive(Clone, Copy)]
+pub(super) struct Newcomer {
+    pub(super) vertex: u32,
+    pub(super) point: Point,
+}
+
+impl Newcomer {
+    /// Marks from here on belong to this newcomer.
+    #[inline(always)]
+    pub(super) fn mark(self) -> u32 {
+        4 * self.vertex
+    }
+}
+
+/// Whether `tet` has to go when the newcomer comes. Ties count as no conflict while the newcomer has
+/// the highest number: it is lifted by the largest infinitesimal.
+#[inline(always)]
+pub(super) fn in_conflict<S: Simd>(
+    simd: S,
+    store: &Store,
+    points: &[Point],
+    tet: u32,
+    new: Newcomer,
+) -> bool {
+    let record = &store.tets[tet as usize];
+    let x = sub(new.point, points[record.vertices[0] as usize]);
+    let (determinant, bound) = evaluate(&record.minors, &store.gauges[tet as usize], x);
+    let sure = bound + UNDERFLOW;
+    if determinant > sure {
+        true
+    } else if determinant < -sure {
+        false
+    } else {
+        simd.vectorize(Doubtful { store, points, tet, new, bound })
+    }
+}
+
+/// A test that `f64` could not decide; out of line, but with the instructions of `S`.
+struct Doubtful<'a> {
+    store: &'a Store,
+    points: &'a [Point],
+    tet: u32,
+    new: Newcomer,
+    bound: f64,
+}
+
+impl WithSimd for Doubtful<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        if self.store.tets[self.tet as usize].is_ghost() { self.ghost(simd) } else { self.tet::<S>() }
+    }
+}
+
+impl Doubtful<'_> {
+    #[inline(always)]
+    fn tet<S: Simd>(&self) -> bool {
+        let [a, b, c, d] = self.store.corners(self.points, self.tet);
+        match beyond_filter::<S>(a, b, c, d, self.new.point, self.bound) {
+            0 => self.tie([a, b, c, d]),
+            sign => sign > 0,
+        }
+    }
+
+    /// Five cospherical points: some 7 a newcomer on a grid, hardly any elsewhere.
+    fn tie(&self, [a, b, c, d]: [Point; 4]) -> bool {
+        let [i, j, k, l] = self.store.tets[self.tet as usize].vertices;
+        let new = self.new;
+        if new.vertex > i.max(j).max(k).max(l) {
+            return false;
+        }
+        break_tie([a, b, c, d, new.point], [i, j, k, l, new.vertex]) > 0
+    }
+
+    /// Beyond the hull facet; or in its plane and inside its circle, which is to say inside the sphere of the tet behind it.
+    fn ghost<S: Simd>(&self, simd: S) -> bool {
+        let ghost = &self.store.tets[self.tet as usize];
+        let [a, b, c] = [0, 1, 2].map(|i| self.points[ghost.vertices[i] as usize]);
+        let side = orient::beyond_filter(a, b, c, self.new.point);
+        if side != 0 {
+            return side > 0;
+        }
+        let behind = ghost.links[3] >> 2;
+        match self.store.gauges[behind as usize].mark.wrapping_sub(self.new.mark()) {
+            IN => true,
+            OUT => false,
+            _ => in_conflict_flat(simd, self.store, self.points, behind, self.new),
+        }
+    }
+}
+
+/// [`in_conflict`] for a tet that is no ghost, without which the two would call each other for ever
+/// in the compiler's eyes.
+#[inline(always)]
+fn in_conflict_flat<S: Simd>(_: S, store: &Store, points: &[Point], tet: u32, new: Newcomer) -> bool {
+    let record = &store.tets[tet as usize];
+    let x = sub(new.point, points[record.vertices[0] as usize]);
+    let (determinant, bound) = evaluate(&record.minors, &store.gauges[tet as usize], x);
+    if determinant.abs() > bound + UNDERFLOW {
+        return determinant > 0.0;
+    }
+    Doubtful { store, points, tet, new, bound }.tet::<S>()
+}

@@ -1,0 +1,73 @@
+//! Which new tet lies at a directed edge of the cavity's surface: a small matrix, or a hash table.
+
+/// A map from directed edges (pairs of local vertex numbers) to the facet of a new tet on their left. An entry is
+/// read only after it was written for the same cavity, so nothing needs clearing in between.
+pub(super) trait Edges {
+    fn put(&mut self, from: u32, to: u32, link: u32);
+    fn get(&self, from: u32, to: u32) -> u32;
+}
+
+/// Cavities with more vertices are fewer than 7 in 10,000 on ordinary points; this many rows of the
+/// matrix (16 kB) still lie in the nearest cache.
+pub(super) const SMALL: usize = 64;
+
+/// All pairs of up to [`SMALL`] vertices.
+#[derive(Debug)]
+pub(super) struct Matrix(Box<[u32; SMALL * SMALL]>);
+
+impl Default for Matrix {
+    fn default() -> Self {
+        Self(Box::new([0; SMALL * SMALL]))
+    }
+}
+
+impl Edges for Matrix {
+    #[inline(always)]
+    fn put(&mut self, from: u32, to: u32, link: u32) {
+        self.0[(from as usize * SMALL + to as usize) % (SMALL * SMALL)] = link;
+    }
+
+    #[inline(always)]
+    fn get(&self, from: u32, to: u32) -> u32 {
+        self.0[(from as usize * SMALL + to as usize) % (SMALL * SMALL)]
+    }
+}
+
+/// Any number of vertices, in memory linear in the number of edges: points on two skew lines make cavities
+/// with as many vertices as there are points, where a matrix would be quadratic.
+#[derive(Debug, Default)]
+pub(super) struct Table {
+    slots: Vec<(u32, u32, u32)>,
+}
+
+const EMPTY: (u32, u32, u32) = (u32::MAX, u32::MAX, 0);
+
+impl Table {
+    /// Empties the table and makes room for `n` edges.
+    pub(super) fn clear(&mut self, n: usize) {
+        self.slots.clear();
+        self.slots.resize((2 * n).next_power_of_two(), EMPTY);
+    }
+
+    /// Where the edge is, or the empty place where it belongs.
+    fn find(&self, from: u32, to: u32) -> usize {
+        let mask = self.slots.len() - 1;
+        let key = u64::from(from) << 32 | u64::from(to);
+        let mut place = (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize & mask;
+        while self.slots[place].0 != u32::MAX && (self.slots[place].0, self.slots[place].1) != (from, to) {
+            place = (place + 1) & mask;
+        }
+        place
+    }
+}
+
+impl Edges for Table {
+    fn put(&mut self, from: u32, to: u32, link: u32) {
+        let place = self.find(from, to);
+        self.slots[place] = (from, to, link);
+    }
+
+    fn get(&self, from: u32, to: u32) -> u32 {
+        self.slots[self.find(from, to)].2
+    }
+}

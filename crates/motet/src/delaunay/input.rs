@@ -1,0 +1,117 @@
+//! Points as the builder wants them: finite, and scaled by a power of two into the range where its filters hold.
+
+use crate::base::{Error, Point, Result, VertexId};
+
+/// The longest side of the box is scaled to 2^24 .. 2^25: then the error bounds fit into `f32`
+/// and no stage of the filters can overflow.
+const EXPONENT: i32 = 24;
+
+/// More points than this do not fit into the marks (`4 * newcomer + state`).
+const MAX_POINTS: usize = (1 << 30) - 16;
+
+/// Scaled points.
+pub(super) struct Scaled {
+    pub(super) points: Vec<Point>,
+    /// Whether scaling kept every digit. Where it could not (coordinates of 1e200 beside 1e-200), the
+    /// points stay as they came and only exact arithmetic may be trusted.
+    pub(super) filtered: bool,
+}
+
+/// Refuses what is not a number and more points than can be counted.
+pub(super) fn check(points: &[Point]) -> Result<()> {
+    if points.len() > MAX_POINTS {
+        let what = format!("{} points, expected at most {MAX_POINTS}", points.len());
+        return Err(Error::input(what).remedy("divide the set"));
+    }
+    // The sum of anything with NaN or infinity is neither finite: a test that needs no branch.
+    let finite = points.iter().all(|p| (p[0] * 0.0 + p[1] * 0.0 + p[2] * 0.0) == 0.0);
+    if finite {
+        return Ok(());
+    }
+    let bad = points.iter().position(|p| p.iter().any(|x| !x.is_finite())).unwrap_or(0);
+    let [x, y, z] = points[bad];
+    Err(Error::input(format!("the coordinates ({x}, {y}, {z}) are not finite numbers"))
+        .at(format!("point {}", VertexId::new(bad)))
+        .remedy("remove the point or mend the step that made it"))
+}
+
+/// Scales so that the longest side of the box is about 2^24.
+pub(super) fn scaled(points: Vec<Point>) -> Scaled {
+    let extent = longest_side(&points);
+    if !(extent > 0.0 && extent.is_finite()) {
+        return Scaled { points, filtered: false };
+    }
+    let shift = EXPONENT - exponent(extent);
+    let (half, rest) = (power_of_two(shift / 2), power_of_two(shift - shift / 2));
+    let (back, back_rest) = (power_of_two(-(shift / 2)), power_of_two(shift / 2 - shift));
+    let scale = |x: f64| x * half * rest;
+    let keeps = |x: f64| scale(x).is_finite() && scale(x) * back * back_rest == x;
+    if !points.iter().flatten().all(|&x| keeps(x)) {
+        return Scaled { points, filtered: false };
+    }
+    Scaled { points: points.into_iter().map(|p| p.map(scale)).collect(), filtered: true }
+}
+
+/// Longest side of the box around the points.
+pub(super) fn longest_side(points: &[Point]) -> f64 {
+    sides(points).into_iter().fold(0.0, f64::max)
+}
+
+/// The sides of the box around the points.
+pub(super) fn sides(points: &[Point]) -> Point {
+    let mut low = [f64::INFINITY; 3];
+    let mut high = [f64::NEG_INFINITY; 3];
+    for p in points {
+        for i in 0..3 {
+            low[i] = low[i].min(p[i]);
+            high[i] = high[i].max(p[i]);
+        }
+    }
+    std::array::from_fn(|i| high[i] - low[i])
+}
+
+/// `e` with `2^e <= |x| < 2^(e+1)`, for `x` not 0.
+fn exponent(x: f64) -> i32 {
+    let biased = ((x.to_bits() >> 52) & 0x7ff) as i32;
+    if biased == 0 { exponent(x * 2f64.powi(100)) - 100 } else { biased - 1023 }
+}
+
+/// `2^e`; 2^-1022 and 2^1023 at the ends. Exponents here are below 600 in size.
+fn power_of_two(e: i32) -> f64 {
+    f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check, longest_side, scaled};
+
+    #[test]
+    fn scaling_is_exact_or_not_done() {
+        for size in [1e-300, 1e-3, 1.0, 7.0, 1e10, 1e300, f64::MIN_POSITIVE / 1024.0] {
+            let points = vec![[0.0, size, -size], [size, 0.1 * size, size]];
+            let ours = scaled(points.clone());
+            assert!(ours.filtered, "{size}");
+            assert!((2f64.powi(24)..2f64.powi(26)).contains(&longest_side(&ours.points)), "{size}");
+            let ratio = ours.points[1][0] / size;
+            assert!(
+                points
+                    .iter()
+                    .zip(&ours.points)
+                    .all(|(p, q)| (0..3).all(|i| p[i] * ratio == q[i] || size < 1e-290))
+            );
+        }
+        let mixed = vec![[1e200, 0.0, 0.0], [1.3e-200, 0.0, 0.0]];
+        let kept = scaled(mixed.clone());
+        assert!(!kept.filtered);
+        assert_eq!(kept.points, mixed);
+    }
+
+    #[test]
+    fn what_is_not_finite_is_named() {
+        let points = [[0.0; 3], [1.0, f64::NAN, 0.0]];
+        let error = check(&points).expect_err("NaN");
+        assert_eq!(error.place(), Some("point 1"));
+        assert!(check(&[[f64::INFINITY, 0.0, 0.0]]).is_err());
+        assert!(check(&[[f64::MAX; 3]]).is_ok());
+    }
+}

@@ -1,0 +1,63 @@
+//! The first tet: four points in general position, and the four ghosts around them.
+
+use super::gauge::{Arm, of_ghost, of_tet};
+use super::store::{FACETS, INFINITY, Store, Tet};
+use crate::base::{Error, Point, Result};
+use crate::geometry::predicates::{collinear, orient3d};
+use crate::geometry::vector::sub;
+
+/// Brings four points that span a tet to the front of `ids` (distinct points in the order of insertion).
+pub(super) fn bring_tet_to_front(ids: &mut [u32], points: &[Point]) -> Result<()> {
+    let point = |id: u32| points[id as usize];
+    let all = format!("{} distinct points", ids.len());
+    let remedy = "give at least four points that span a volume";
+    if ids.len() < 4 {
+        return Err(Error::input(format!("{all}, expected at least 4")).remedy(remedy));
+    }
+    let (a, b) = (point(ids[0]), point(ids[1]));
+    let third = ids[2..].iter().position(|&id| !collinear(a, b, point(id)));
+    let third = third.ok_or_else(|| Error::input(format!("all {all} lie on one line")).remedy(remedy))?;
+    ids.swap(2, 2 + third);
+    let c = point(ids[2]);
+    let fourth = ids[3..].iter().position(|&id| orient3d(a, b, c, point(id)) != 0);
+    let fourth = fourth.ok_or_else(|| Error::input(format!("all {all} lie in one plane")).remedy(remedy))?;
+    ids.swap(3, 3 + fourth);
+    Ok(())
+}
+
+/// The tet of vertices 1 to 4, in slot 0, and its ghosts, in slots 1 to 4.
+pub(super) fn first_tet(store: &mut Store, points: &[Point], least: f32) {
+    let [a, b, c, d] = [1, 2, 3, 4].map(|v| points[v]);
+    let tet = if orient3d(a, b, c, d) > 0 { [1, 2, 3, 4] } else { [1, 3, 2, 4] };
+    push(store, points, tet, least);
+    for facet in FACETS {
+        let [i, j, k] = facet.map(|v| tet[v]);
+        push(store, points, [i, j, k, INFINITY], least);
+    }
+    link_all(store);
+}
+
+fn push(store: &mut Store, points: &[Point], vertices: [u32; 4], least: f32) {
+    let [origin, i, j, k] = vertices.map(|v| points[v as usize]);
+    let [b, c, d] = [i, j, k].map(|p| Arm::new(sub(p, origin)));
+    let ghost = vertices[3] == INFINITY;
+    let (minors, gauge) = if ghost { of_ghost([&b, &c], 0, least) } else { of_tet([&b, &c, &d], 0, least) };
+    store.tets.push(Tet { vertices, links: [0; 4], minors });
+    store.gauges.push(gauge);
+}
+
+/// Links facets of equal vertices: five tets, so by comparing all.
+fn link_all(store: &mut Store) {
+    let sides: Vec<(u32, [u32; 3])> = (0..20u32)
+        .map(|side| {
+            let vertices = store.tets[side as usize / 4].vertices;
+            let mut facet = FACETS[side as usize % 4].map(|i| vertices[i]);
+            facet.sort_unstable();
+            (side, facet)
+        })
+        .collect();
+    for &(side, facet) in &sides {
+        let twin = sides.iter().find(|&&(other, same)| other != side && same == facet);
+        store.tets[side as usize / 4].links[side as usize % 4] = twin.map_or(0, |t| t.0);
+    }
+}

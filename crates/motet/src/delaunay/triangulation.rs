@@ -1,0 +1,89 @@
+//! The Delaunay triangulation as the caller sees it: arrays under the caller's ids.
+
+use super::finish::{Finished, finish};
+use super::input;
+use super::insert::triangulate;
+use super::order::order;
+use super::start::bring_tet_to_front;
+use crate::base::{Point, Result, TetId, Threads, VertexId};
+use crate::spatial::{Located, Locator};
+
+/// A facet of the convex hull.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HullFacet {
+    /// Counter-clockwise seen from outside.
+    pub vertices: [VertexId; 3],
+    /// The tet behind it.
+    pub tet: TetId,
+    /// Which of its facets: the one opposite this vertex.
+    pub facet: u8,
+}
+
+/// The Delaunay triangulation of a set of points: tets that fill its convex hull, and no point lies
+/// inside the sphere through any of them. Where more than four points lie on one sphere, the choice
+/// depends on the set of points only.
+#[derive(Clone, Debug)]
+pub struct Triangulation {
+    points: Vec<Point>,
+    tets: Vec<[VertexId; 4]>,
+    neighbors: Vec<[TetId; 4]>,
+    hull: Vec<HullFacet>,
+    duplicates: Vec<(VertexId, VertexId)>,
+}
+
+impl Triangulation {
+    /// Triangulates any set of finite points. The result is the same for any number of threads, and, ids apart, for any order
+    /// of the points.
+    ///
+    /// # Errors
+    /// When a coordinate is not finite, when the points do not span a volume (fewer than four
+    /// distinct ones, all on a line, all in a plane), when there are more than 2^30.
+    pub fn new(points: &[Point], threads: &Threads) -> Result<Self> {
+        input::check(points)?;
+        let scaled = input::scaled(points.to_vec());
+        let mut order = order(&scaled.points, threads);
+        bring_tet_to_front(&mut order.ids, &scaled.points)?;
+        // Vertex 0 is the one at infinity; its point is never used but may be read.
+        let vertex_to_id: Vec<u32> = std::iter::once(0).chain(order.ids.iter().copied()).collect();
+        let sorted: Vec<Point> = vertex_to_id.iter().map(|&id| scaled.points[id as usize]).collect();
+        let store = triangulate(&sorted, scaled.filtered)?;
+        let Finished { tets, neighbors, hull } = finish(&store, &vertex_to_id);
+        let duplicates = order.duplicates.iter().map(|&(d, kept)| (VertexId(d), VertexId(kept))).collect();
+        Ok(Self { points: points.to_vec(), tets, neighbors, hull, duplicates })
+    }
+
+    /// The points as they were given.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The tets, positively oriented.
+    pub fn tets(&self) -> &[[VertexId; 4]] {
+        &self.tets
+    }
+
+    /// For each tet the tet across the facet opposite each vertex, or [`crate::spatial::OUTSIDE`].
+    pub fn neighbors(&self) -> &[[TetId; 4]] {
+        &self.neighbors
+    }
+
+    /// The facets of the convex hull.
+    pub fn hull(&self) -> &[HullFacet] {
+        &self.hull
+    }
+
+    /// Points that coincide with another: `(duplicate, kept)`, rising. The kept one, of smallest id, is the vertex of tets.
+    pub fn duplicates(&self) -> &[(VertexId, VertexId)] {
+        &self.duplicates
+    }
+
+    /// For looking up points.
+    pub fn locator(&self) -> Locator<'_> {
+        Locator::new(&self.points, &self.tets, &self.neighbors)
+    }
+
+    /// Where `q` lies; the walk starts at `hint`, any tet.
+    pub fn locate(&self, q: Point, hint: TetId) -> Located {
+        self.locator().locate(q, hint)
+    }
+}

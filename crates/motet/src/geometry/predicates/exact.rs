@@ -1,0 +1,153 @@
+//! The last stage: determinants of coordinates without any rounding, for every finite `f64`.
+//!
+//! Coordinates become whole multiples of the largest common power of two. Where all
+//! differences stay below 2^61 (points of a grid, also one of step 0.1), numbers of fixed
+//! width do: about 0.1 us for a tie of five grid points, where floating-point expansions
+//! (Shewchuk 1997) took 0.9 us. Anything else goes to numbers of any width, up to some
+//! 10,000 bits for points that span the whole range of `f64`.
+
+use super::integer::{Big, Fixed};
+use crate::base::Point;
+
+/// A row of a determinant: the difference of two points in units of the common power of two.
+type Row = [i64; 3];
+type BigRow = [Big; 3];
+
+/// Sign of `(b-a) x (c-a) . (d-a)`.
+#[cold]
+#[inline(never)]
+pub(crate) fn orient3d(a: Point, others: [Point; 3]) -> i8 {
+    match small_rows(a, others) {
+        Some([b, c, d]) => det3_small(b, c, d).sign(),
+        None => {
+            let [b, c, d] = big_rows(a, others);
+            det3(&b, &c, &d).sign()
+        }
+    }
+}
+
+/// Sign of the in-sphere determinant of `others` = b, c, d, e relative to `a`: positive when
+/// e lies inside the sphere of a positively oriented tet a, b, c, d.
+#[cold]
+#[inline(never)]
+pub(crate) fn insphere(a: Point, others: [Point; 4]) -> i8 {
+    match small_rows(a, others) {
+        Some(rows) => insphere_small(rows),
+        None => insphere_big(&big_rows(a, others)),
+    }
+}
+
+/// Determinants `(b-a) x (c-a) . (d-a)` of several tets as floats, each right to the last
+/// digits and all divided by one power of two, so that their ratios are right too.
+#[cold]
+#[inline(never)]
+pub(crate) fn orient3d_ratios<const N: usize>(tets: [[Point; 4]; N]) -> [f64; N] {
+    let all: Vec<Point> = tets.iter().flatten().copied().collect();
+    let unit = common_exponent(&all);
+    let determinants = tets.map(|[a, b, c, d]| {
+        let row = |p: Point| big_difference(p, a, unit);
+        det3(&row(b), &row(c), &row(d))
+    });
+    let bits = determinants.iter().map(Big::bits).max().unwrap_or(0);
+    determinants.map(|x| x.ratio_to_power(bits))
+}
+
+/// `x = mantissa * 2^exponent` with an odd mantissa; zero has the exponent `i32::MAX`.
+#[inline]
+fn decode(x: f64) -> (i64, i32) {
+    let bits = x.to_bits();
+    let biased = ((bits >> 52) & 0x7ff) as i32;
+    let fraction = (bits & ((1 << 52) - 1)) as i64;
+    let (mantissa, exponent) =
+        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
+    if mantissa == 0 {
+        return (0, i32::MAX);
+    }
+    let zeros = mantissa.trailing_zeros();
+    let odd = mantissa >> zeros;
+    (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
+}
+
+/// The largest power of two of which all coordinates are whole multiples.
+fn common_exponent(points: &[Point]) -> i32 {
+    points.iter().flatten().map(|&x| decode(x).1).min().unwrap_or(0)
+}
+
+/// `x` in units of `2^unit`, if that stays below 2^120.
+#[inline]
+fn in_units((mantissa, exponent): (i64, i32), unit: i32) -> Option<i128> {
+    let shift = if mantissa == 0 { 0 } else { exponent - unit };
+    (shift <= 66).then(|| i128::from(mantissa) << shift)
+}
+
+/// The differences to `a`, if all stay below 2^61.
+#[inline]
+fn small_rows<const N: usize>(a: Point, others: [Point; N]) -> Option<[Row; N]> {
+    let origin = a.map(decode);
+    let decoded = others.map(|p| p.map(decode));
+    let unit = decoded.iter().flatten().chain(&origin).map(|&(_, exponent)| exponent).min()?;
+    let mut rows = [[0; 3]; N];
+    for i in 0..3 {
+        let from = in_units(origin[i], unit)?;
+        for (row, point) in rows.iter_mut().zip(&decoded) {
+            let difference = in_units(point[i], unit)? - from;
+            row[i] = i64::try_from(difference).ok().filter(|d| d.unsigned_abs() < 1 << 61)?;
+        }
+    }
+    Some(rows)
+}
+
+/// `p_x q_y - p_y q_x`, below 2^123.
+#[inline]
+fn minor_small(p: Row, q: Row) -> i128 {
+    i128::from(p[0]) * i128::from(q[1]) - i128::from(p[1]) * i128::from(q[0])
+}
+
+#[inline]
+fn det3_small(p: Row, q: Row, r: Row) -> Fixed<3> {
+    det3_of_minors(p[2], minor_small(q, r), q[2], minor_small(r, p), r[2], minor_small(p, q))
+}
+
+/// `a x + b y + c z`: three products of 61 and 123 bits.
+#[inline]
+fn det3_of_minors(a: i64, x: i128, b: i64, y: i128, c: i64, z: i128) -> Fixed<3> {
+    let wide = |x: i128| Fixed::<2>::from(x).resized::<3>();
+    let product = |a: i64, x: i128| wide(a.into()).times(wide(x));
+    product(a, x).plus(product(b, y)).plus(product(c, z))
+}
+
+/// |b|^2 [c,d,x] - |c|^2 [b,d,x] + |d|^2 [b,c,x] - |x|^2 [b,c,d]: below 2^313.
+fn insphere_small([b, c, d, x]: [Row; 4]) -> i8 {
+    let squared = |p: Row| p.iter().map(|&v| i128::from(v) * i128::from(v)).sum::<i128>();
+    let lifted = |p: Row, det: Fixed<3>| Fixed::<2>::from(squared(p)).resized::<5>().times(det.resized());
+    let plus = lifted(b, det3_small(c, d, x)).plus(lifted(d, det3_small(b, c, x)));
+    let minus = lifted(c, det3_small(b, d, x)).plus(lifted(x, det3_small(b, c, d)));
+    plus.minus(minus).sign()
+}
+
+fn big_difference(p: Point, a: Point, unit: i32) -> BigRow {
+    let whole = |x: f64| {
+        let (mantissa, exponent) = decode(x);
+        Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
+    };
+    std::array::from_fn(|i| whole(p[i]).minus(&whole(a[i])))
+}
+
+fn big_rows<const N: usize>(a: Point, others: [Point; N]) -> [BigRow; N] {
+    let unit = common_exponent(&others).min(common_exponent(&[a]));
+    others.map(|p| big_difference(p, a, unit))
+}
+
+fn det3(p: &BigRow, q: &BigRow, r: &BigRow) -> Big {
+    let minor = |a: &BigRow, b: &BigRow| a[0].times(&b[1]).minus(&a[1].times(&b[0]));
+    let sum = p[2].times(&minor(q, r)).plus(&q[2].times(&minor(r, p)));
+    sum.plus(&r[2].times(&minor(p, q)))
+}
+
+fn insphere_big([b, c, d, x]: &[BigRow; 4]) -> i8 {
+    let squared = |p: &BigRow| p.iter().map(|v| v.times(v)).fold(Big::default(), |sum, v| sum.plus(&v));
+    let lifted = |p: &BigRow, det: Big| squared(p).times(&det);
+    let plus = lifted(b, det3(c, d, x)).plus(&lifted(d, det3(b, c, x)));
+    let minus = lifted(c, det3(b, d, x)).plus(&lifted(x, det3(b, c, d)));
+    plus.minus(&minus).sign()
+}

@@ -1,0 +1,116 @@
+//! On which side of a plane a point lies: exact, in three stages.
+
+use super::exact;
+use super::pair::{Pair, U, cross, difference, dot};
+use crate::base::Point;
+use pulp::{Scalar, Simd};
+
+/// Error of the `f64` determinant over its permanent: each of the six terms suffers three
+/// differences, two products, one subtraction and two sums, 8u; the rest covers the
+/// rounding of the permanent.
+const FILTER: f64 = 9.0 * U;
+/// The same in pairs, where differences are exact: 53 u^2 by the rules in `pair`.
+const PAIR_FILTER: f64 = 100.0 * U * U;
+/// Beyond this difference the stages before the exact one could overflow.
+const LARGEST: f64 = 1.6e60; // 2^200
+/// More than all underflow together can amount to: 2^-1074 times 2^200 and small factors.
+const UNDERFLOW: f64 = 1e-255; // 2^-847
+
+/// Sign of `(b - a) x (c - a) . (d - a)`: 1 when the tet a, b, c, d is positively oriented, -1 when
+/// negatively, 0 exactly when the four points lie in one plane. Exact for all finite
+/// coordinates (Shewchuk 1997 for the staging).
+#[inline]
+pub fn orient3d(a: Point, b: Point, c: Point, d: Point) -> i8 {
+    let (determinant, permanent, largest) = filtered(a, b, c, d);
+    // Comparisons with NaN and infinity fail, so overflow falls through.
+    if largest < LARGEST && determinant.abs() > FILTER * permanent + UNDERFLOW {
+        return if determinant > 0.0 { 1 } else { -1 };
+    }
+    beyond_filter(a, b, c, d)
+}
+
+/// Determinant and permanent of the differences to `a`, and the largest difference.
+#[inline(always)]
+fn filtered(a: Point, b: Point, c: Point, d: Point) -> (f64, f64, f64) {
+    let [bx, by, bz] = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+    let [cx, cy, cz] = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+    let [dx, dy, dz] = [d[0] - a[0], d[1] - a[1], d[2] - a[2]];
+    let (x1, x2) = (by * cz, bz * cy);
+    let (y1, y2) = (bz * cx, bx * cz);
+    let (z1, z2) = (bx * cy, by * cx);
+    let determinant = (x1 - x2) * dx + (y1 - y2) * dy + (z1 - z2) * dz;
+    let permanent = (x1.abs() + x2.abs()) * dx.abs()
+        + (y1.abs() + y2.abs()) * dy.abs()
+        + (z1.abs() + z2.abs()) * dz.abs();
+    let largest = [bx, by, bz, cx, cy, cz, dx, dy, dz].iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    (determinant, permanent, largest)
+}
+
+/// Stages two and three.
+#[cold]
+#[inline(never)]
+pub(crate) fn beyond_filter(a: Point, b: Point, c: Point, d: Point) -> i8 {
+    if vanishes_by_pattern(a, b, c, d) {
+        return 0;
+    }
+    let (_, permanent, largest) = filtered(a, b, c, d);
+    if largest < LARGEST {
+        let determinant = in_pairs::<Scalar>(a, b, c, d).value();
+        if determinant.abs() > PAIR_FILTER * permanent + UNDERFLOW {
+            return if determinant > 0.0 { 1 } else { -1 };
+        }
+    }
+    exact::orient3d(a, [b, c, d])
+}
+
+#[inline(always)]
+fn in_pairs<S: Simd>(a: Point, b: Point, c: Point, d: Point) -> Pair {
+    let [b, c, d] = [b, c, d].map(|p| difference(p, a));
+    dot::<S>(cross::<S>(b, c), d)
+}
+
+/// Whether each of the six terms has a factor that is exactly zero: so it is for four points
+/// of an axis-parallel wall, 99 of 100 calls that get here from the boundary of a box.
+#[inline(always)]
+fn vanishes_by_pattern(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let [b, c, d] = [b, c, d].map(|p| [p[0] != a[0], p[1] != a[1], p[2] != a[2]]);
+    let minor = |i: usize, j: usize| (b[i] & c[j]) | (b[j] & c[i]);
+    !((minor(1, 2) & d[0]) | (minor(2, 0) & d[1]) | (minor(0, 1) & d[2]))
+}
+
+/// Whether three points lie on one line; exact for all finite coordinates.
+pub fn collinear(a: Point, b: Point, c: Point) -> bool {
+    // On one line exactly when no point off the plane makes a tet with them; of the three
+    // axis directions at least one leads out of any plane.
+    let beside = |axis: usize| {
+        let mut p = a;
+        let lowered = p[axis] / 2.0 - 1.0;
+        p[axis] = if lowered == p[axis] { p[axis] + 1.0 } else { lowered };
+        p
+    };
+    (0..3).all(|axis| orient3d(a, b, c, beside(axis)) == 0)
+}
+
+/// Determinant in `f64` and a bound of its error (infinite where the filter does not hold).
+pub(crate) fn with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
+    let (determinant, permanent, largest) = filtered(a, b, c, d);
+    (determinant, if largest < LARGEST { FILTER * permanent + UNDERFLOW } else { f64::INFINITY })
+}
+
+/// Determinant in pairs and a bound of its error, that of its last rounding included.
+pub(crate) fn in_pairs_with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
+    let (_, permanent, largest) = filtered(a, b, c, d);
+    let determinant = in_pairs::<Scalar>(a, b, c, d).value();
+    let bound = PAIR_FILTER * permanent + UNDERFLOW + U * determinant.abs();
+    (determinant, if largest < LARGEST { bound } else { f64::INFINITY })
+}
+
+/// The parts that tests hold against rationals: value (as a pair) and bound of each stage.
+#[cfg(test)]
+pub(crate) fn stages(a: Point, b: Point, c: Point, d: Point) -> [(Pair, f64); 2] {
+    let (determinant, permanent, _) = filtered(a, b, c, d);
+    [
+        (Pair { high: determinant, low: 0.0 }, FILTER * permanent + UNDERFLOW),
+        (in_pairs::<Scalar>(a, b, c, d), PAIR_FILTER * permanent + UNDERFLOW),
+    ]
+}

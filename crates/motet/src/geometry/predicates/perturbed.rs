@@ -1,0 +1,42 @@
+//! Ties broken by a thought: every point is lifted by an infinitesimal of its own.
+//!
+//! The in-sphere test asks on which side of a plane a point lies after lifting all points
+//! onto a paraboloid in four dimensions. If the point of rank k is lifted by a further e^(1/k)-like
+//! infinitesimal, the greatest rank by the most, no five points are cospherical any more, and
+//! the answer stays consistent from call to call (Devillers and Teillaud 2011,
+//! *Perturbations for Delaunay and weighted Delaunay 3D triangulations*). No orientation
+//! changes, so no flat tet becomes solid, and none arises.
+
+use super::{insphere, orient3d};
+use crate::base::Point;
+
+/// [`insphere`] that never answers 0: whether point 4 lies inside (1) or outside (-1) the
+/// sphere through the *positively oriented* tet of points 0 to 3, ties broken by `ranks`.
+///
+/// Points must be distinct and ranks too; the answer depends on the order of the ranks only.
+pub fn insphere_perturbed(points: [Point; 5], ranks: [u32; 5]) -> i8 {
+    let [a, b, c, d, e] = points;
+    match insphere(a, b, c, d, e) {
+        0 => break_tie(points, ranks),
+        sign => sign,
+    }
+}
+
+/// The answer for five points known to be cospherical: raising the query puts it outside;
+/// raising vertex v puts the query inside when it lies on the same side of v's facet as v.
+pub(crate) fn break_tie(points: [Point; 5], ranks: [u32; 5]) -> i8 {
+    let mut by_rank = [0, 1, 2, 3, 4];
+    by_rank.sort_unstable_by_key(|&i| std::cmp::Reverse(ranks[i]));
+    for i in by_rank {
+        if i == 4 {
+            return -1;
+        }
+        let mut tet = [points[0], points[1], points[2], points[3]];
+        tet[i] = points[4];
+        let sign = orient3d(tet[0], tet[1], tet[2], tet[3]);
+        if sign != 0 {
+            return sign;
+        }
+    }
+    -1
+}
