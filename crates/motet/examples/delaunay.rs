@@ -1,40 +1,85 @@
 //! Triangulates points from a file and prints how long it took.
 //!
-//! Usage: `delaunay FILE [RUNS [THREADS]]`, where FILE holds x y z of each point as little-endian `f64`. Prints one line of
-//! JSON: `{"seconds": median of RUNS (default 1), "least": .., "tets": .., "threads": .., "version": ".."}`. Reading is not timed; sorting, building and
-//! making the output arrays are.
+//! Usage: `delaunay FILE [--threads N] [--runs N] [--tets OUT]`. FILE holds x y z of each point as little-endian
+//! `f64`; OUT gets the four vertex ids of each tet as little-endian `u32`. Prints one line of JSON:
+//! `{"seconds": [one for each run], "tets": .., "threads": .., "version": ".."}`. Reading and writing are not
+//! timed; sorting, building and making the output arrays are.
+
+use std::process::ExitCode;
+use std::time::Instant;
 
 use motet::base::{Point, Threads};
 use motet::delaunay::Triangulation;
-use std::time::Instant;
+use motet::{Error, Result};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let arguments: Vec<String> = std::env::args().collect();
-    let file = arguments.get(1).ok_or("usage: delaunay FILE [RUNS [THREADS]]")?;
-    let number = |i: usize| arguments.get(i).map_or(Ok(1), |a| a.parse::<usize>());
-    let (runs, threads) = (number(2)?.max(1), Threads::new(number(3)?)?);
-    let points = read(file)?;
-    let mut seconds = Vec::new();
-    let mut n_tets = 0;
-    for _ in 0..runs {
-        let start = Instant::now();
-        let triangulation = Triangulation::new(&points, &threads)?;
-        seconds.push(start.elapsed().as_secs_f64());
-        n_tets = triangulation.tets().len();
+const USAGE: &str = "usage: delaunay FILE [--threads N] [--runs N] [--tets OUT]";
+
+struct Call {
+    file: String,
+    threads: usize,
+    runs: usize,
+    tets: Option<String>,
+}
+
+fn main() -> ExitCode {
+    let Some(call) = words() else {
+        eprintln!("{USAGE}");
+        return ExitCode::from(2);
+    };
+    match run(&call) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(3)
+        }
     }
-    seconds.sort_by(f64::total_cmp);
+}
+
+fn words() -> Option<Call> {
+    let mut words = std::env::args().skip(1);
+    let mut call = Call { file: words.next()?, threads: 1, runs: 1, tets: None };
+    while let Some(word) = words.next() {
+        let value = words.next()?;
+        match word.as_str() {
+            "--threads" => call.threads = value.parse().ok()?,
+            "--runs" => call.runs = value.parse().ok()?,
+            "--tets" => call.tets = Some(value),
+            _ => return None,
+        }
+    }
+    (call.runs > 0).then_some(call)
+}
+
+fn run(call: &Call) -> Result<()> {
+    let points = read(&call.file)?;
+    let threads = Threads::new(call.threads)?;
+    let mut seconds = Vec::new();
+    let mut triangulation = None;
+    for _ in 0..call.runs {
+        drop(triangulation.take());
+        let start = Instant::now();
+        triangulation = Some(Triangulation::new(&points, &threads)?);
+        seconds.push(start.elapsed().as_secs_f64());
+    }
+    let tets = triangulation.as_ref().map_or(&[][..], |t| t.tets());
+    if let Some(out) = &call.tets {
+        let bytes: Vec<u8> = tets.iter().flatten().flat_map(|v| (v.index() as u32).to_le_bytes()).collect();
+        std::fs::write(out, bytes).map_err(|e| Error::io(out, &e))?;
+    }
     println!(
-        r#"{{"seconds": {:.6}, "least": {:.6}, "tets": {n_tets}, "threads": {}, "version": "{}"}}"#,
-        seconds[runs / 2],
-        seconds[0],
-        threads.count(),
-        env!("CARGO_PKG_VERSION"),
+        "{}",
+        serde_json::json!({
+            "seconds": seconds,
+            "tets": tets.len(),
+            "threads": threads.count(),
+            "version": env!("CARGO_PKG_VERSION"),
+        })
     );
     Ok(())
 }
 
-fn read(file: &str) -> Result<Vec<Point>, Box<dyn std::error::Error>> {
-    let bytes = std::fs::read(file)?;
-    let value = |chunk: &[u8]| f64::from_le_bytes(std::array::from_fn(|i| chunk[i]));
-    Ok(bytes.chunks_exact(24).map(|c| [value(&c[..8]), value(&c[8..16]), value(&c[16..])]).collect())
+fn read(file: &str) -> Result<Vec<Point>> {
+    let bytes = std::fs::read(file).map_err(|e| Error::io(file, &e))?;
+    let values: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+    Ok(values.as_chunks::<3>().0.to_vec())
 }
