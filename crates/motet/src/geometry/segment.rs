@@ -5,6 +5,7 @@ use crate::geometry::vector::{dot, sub};
 
 /// How far along from `a` (0) to `b` (1) the point of the segment lies that is
 /// closest to `p`; 0 when the segment has no length.
+#[inline]
 pub fn closest([a, b]: [Point; 2], p: Point) -> f64 {
     let along = sub(b, a);
     let t = dot(along, sub(p, a)) / dot(along, along);

@@ -24,9 +24,14 @@ pub fn centroid([a, b, c]: [Point; 3]) -> Point {
 }
 
 /// The point with these weights of the vertices.
+#[inline]
 pub fn at([a, b, c]: [Point; 3], weights: [f64; 3]) -> Point {
     add(add(scale(a, weights[0]), scale(b, weights[1])), scale(c, weights[2]))
 }
+
+/// Below this squared sine of the angle between its sides a triangle is a needle,
+/// whose normal rounding may turn. A fast path only: either side of it gives the closest point.
+const NEEDLE: f64 = 1e-8;
 
 /// Weights of the vertices, each in [0, 1] and 1 in sum, that give the point of
 /// the triangle closest to `p`.
@@ -35,30 +40,50 @@ pub fn at([a, b, c]: [Point; 3], weights: [f64; 3]) -> Point {
 /// inside, and the closest point of each edge. No tolerance, hence the same at
 /// any unit; where a needle spoils the foot, the edges are as close to it as the
 /// needle is thin; a triangle without area is its edges.
+#[inline]
 pub fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
-    let on_edges = [[0, 1], [1, 2], [2, 0]].map(|[i, j]| {
+    let [a, b, c] = triangle;
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let normal = cross(ab, ac);
+    let foot = foot(triangle, normal, p);
+    let is_needle = dot(normal, normal) < NEEDLE * dot(ab, ab) * dot(ac, ac);
+    match foot {
+        Some(weights) if !is_needle => weights,
+        _ => closest_of(triangle, foot, p),
+    }
+}
+
+/// Weights of the foot of the perpendicular from `p`; `None` when it lies outside.
+#[inline(always)]
+fn foot([a, b, c]: [Point; 3], normal: Point, p: Point) -> Option<[f64; 3]> {
+    let (pa, pb, pc) = (sub(a, p), sub(b, p), sub(c, p));
+    let parts = [dot(normal, cross(pb, pc)), dot(normal, cross(pc, pa)), dot(normal, cross(pa, pb))];
+    if parts[0] < 0.0 || parts[1] < 0.0 || parts[2] < 0.0 {
+        return None;
+    }
+    let scale = 1.0 / (parts[0] + parts[1] + parts[2]);
+    let weights = [parts[0] * scale, parts[1] * scale, parts[2] * scale];
+    weights.iter().all(|w| (0.0..=1.0).contains(w)).then_some(weights)
+}
+
+/// The nearest of the foot, if there is one, and the closest points of the edges.
+#[inline(always)]
+fn closest_of(triangle: [Point; 3], foot: Option<[f64; 3]>, p: Point) -> [f64; 3] {
+    let distance_squared = |weights: [f64; 3]| {
+        let offset = sub(at(triangle, weights), p);
+        dot(offset, offset)
+    };
+    let mut best = foot.unwrap_or([1.0, 0.0, 0.0]);
+    let mut least = distance_squared(best);
+    for (i, j) in [(0, 1), (1, 2), (2, 0)] {
         let t = segment::closest([triangle[i], triangle[j]], p);
         let mut weights = [0.0; 3];
         weights[i] = 1.0 - t;
         weights[j] = t;
-        weights
-    });
-    let distance_squared = |weights: &[f64; 3]| {
-        let offset = sub(at(triangle, *weights), p);
-        dot(offset, offset)
-    };
-    on_edges
-        .into_iter()
-        .chain(foot(triangle, p))
-        .map(|weights| (distance_squared(&weights), weights))
-        .min_by(|x, y| x.0.total_cmp(&y.0))
-        .map_or([1.0, 0.0, 0.0], |(_, weights)| weights)
-}
-
-/// Weights of the foot of the perpendicular from `p`; `None` when it lies outside.
-fn foot([a, b, c]: [Point; 3], p: Point) -> Option<[f64; 3]> {
-    let normal = cross(sub(b, a), sub(c, a));
-    let parts = [[b, c], [c, a], [a, b]].map(|[from, to]| dot(normal, cross(sub(to, from), sub(p, from))));
-    let weights = parts.map(|part| part / (parts[0] + parts[1] + parts[2]));
-    weights.iter().all(|w| (0.0..=1.0).contains(w)).then_some(weights)
+        let distance_squared = distance_squared(weights);
+        if distance_squared < least {
+            (best, least) = (weights, distance_squared);
+        }
+    }
+    best
 }

@@ -4,8 +4,9 @@ use crate::base::{Point, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{add, dot, scale, sub};
 
-/// Triangles in a leaf; 2 to 8 do about as well.
-const LEAF: usize = 4;
+/// Triangles in a leaf. A search near a surface takes 22 k instructions at 4, 17 k at 2,
+/// 15 k at 1, which needs twice the boxes.
+const LEAF: usize = 2;
 
 /// The answer to a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,18 +121,26 @@ impl NearestTriangle {
                 }
                 continue;
             }
-            let children =
-                [place + 1, node.start].map(|child| (child, self.nodes[child as usize].distance_squared(p)));
+            let (left, right) = (place + 1, node.start);
+            let to_left = self.nodes[left as usize].distance_squared(p);
+            let to_right = self.nodes[right as usize].distance_squared(p);
+            let (near, far) = if to_left <= to_right {
+                ((left, to_left), (right, to_right))
+            } else {
+                ((right, to_right), (left, to_left))
+            };
             // The nearer one goes on top.
-            let order = if children[0].1 <= children[1].1 { [1, 0] } else { [0, 1] };
-            for child in order.map(|i| children[i]).into_iter().filter(|child| child.1 <= reach) {
-                open[n_open] = child;
-                n_open += 1;
+            for child in [far, near] {
+                if child.1 <= reach {
+                    open[n_open] = child;
+                    n_open += 1;
+                }
             }
         }
         best.filter(|b| b.distance_squared.is_finite())
     }
 
+    #[inline(always)]
     fn closest_on(&self, i: usize, p: Point) -> Closest {
         let weights = triangle::closest(self.corners[i], p);
         let point = triangle::at(self.corners[i], weights);
@@ -142,8 +151,15 @@ impl NearestTriangle {
 
 impl Node {
     /// From `p` to the box; 0 within.
+    #[inline(always)]
     fn distance_squared(&self, p: Point) -> f64 {
-        (0..3).map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2)).sum()
+        let mut sum = 0.0;
+        for k in 0..3 {
+            let (below, above) = (self.low[k] - p[k], p[k] - self.high[k]);
+            let outside = if below > above { below } else { above };
+            sum += if outside > 0.0 { outside * outside } else { 0.0 };
+        }
+        sum
     }
 }
 
