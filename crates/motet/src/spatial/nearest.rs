@@ -154,8 +154,8 @@ impl Node {
     #[inline(always)]
     fn distance_squared(&self, p: Point) -> f64 {
         let mut sum = 0.0;
-        for k in 0..3 {
-            let (below, above) = (self.low[k] - p[k], p[k] - self.high[k]);
+        for ((x, low), high) in p.into_iter().zip(self.low).zip(self.high) {
+            let (below, above) = (low - x, x - high);
             let outside = if below > above { below } else { above };
             sum += if outside > 0.0 { outside * outside } else { 0.0 };
         }

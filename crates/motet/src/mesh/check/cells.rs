@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::base::{CellId, Point, VertexId};
-use crate::geometry::triangle;
+use crate::geometry::predicates::{collinear, orient3d};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::n_corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -50,7 +50,7 @@ fn is_unknown(kind: CellKind) -> bool {
 }
 
 /// The dimension of a cell and the sign of its measure; `None` where it has
-/// none, or a point that is not finite. Exact for tets.
+/// none, or a point that is not finite. Exact for tets and surface cells.
 fn measure(
     facets: &Facets,
     cell: CellId,
@@ -67,19 +67,21 @@ fn measure(
         (CellKind::TETRA, &[a, b, c, d]) => Some((3, orientation([a, b, c, d].map(|v| points[v.index()])))),
         _ if dim == 3 => Some((3, sign(cell_volume(facets, cell, points) + 0.0))),
         (CellKind::TRIANGLE_STRIP, _) => None,
-        _ => Some((2, sign(area(&vertices[..n_corners(kind, vertices.len())], points)))),
+        _ => {
+            let ring = &vertices[..n_corners(kind, vertices.len())];
+            Some((2, if is_line(ring, points) { Ordering::Equal } else { Ordering::Greater }))
+        }
     }
 }
 
 /// The exact sign of the volume of a tet.
-pub(crate) fn orientation(tet: [Point; 4]) -> Ordering {
-    let [a, b, c, d] = tet.map(|[x, y, z]| robust::Coord3D { x, y, z });
-    // Shewchuk's sign is the other way around.
-    0.0.partial_cmp(&robust::orient3d(a, b, c, d)).unwrap_or(Ordering::Equal)
+fn orientation([a, b, c, d]: [Point; 4]) -> Ordering {
+    orient3d(a, b, c, d).cmp(&0)
 }
 
-/// The sum of the areas of the fan around the first corner: zero only if the ring is a line.
-fn area(ring: &[VertexId], points: &[Point]) -> f64 {
-    let Some(&first) = ring.first() else { return 0.0 };
-    ring.windows(2).map(|w| triangle::area([first, w[0], w[1]].map(|v| points[v.index()]))).sum()
+/// Whether a ring has no area, exactly: every triangle of its fan is a line.
+fn is_line(ring: &[VertexId], points: &[Point]) -> bool {
+    let Some(&first) = ring.first() else { return true };
+    let at = |v: VertexId| points[v.index()];
+    ring.windows(2).all(|w| collinear(at(first), at(w[0]), at(w[1])))
 }
