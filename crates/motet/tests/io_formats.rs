@@ -666,3 +666,72 @@ fn every_real_file_is_read_or_refused_with_a_remedy() {
     }
     assert!(n_read > 0);
 }
+
+/// A folder as SimVascular lays it out: one tet, two of its facets as faces.
+fn mesh_complete(folder: &Path, with_ids: bool, face_ids: [i32; 2]) {
+    let mut volume = Mesh::new(
+        vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        Cells::uniform(CellKind::TETRA, [0, 1, 2, 3].map(VertexId).to_vec()).unwrap(),
+    );
+    volume.set_cell_field(Field::scalars("GlobalElementID", vec![1i32]));
+    volume.set_point_field(Field::scalars("GlobalNodeID", vec![10i32, 20, 30, 40]));
+    fs::create_dir_all(folder.join("mesh-surfaces")).unwrap();
+    write(folder.join("mesh-complete.mesh.vtu"), &volume, &WriteOptions::default()).unwrap();
+    for (name, ids, face_id) in [("wall", [0, 2, 1], face_ids[0]), ("inlet", [0, 1, 3], face_ids[1])] {
+        let points = ids.map(|i: usize| volume.points[i]).to_vec();
+        let mut face =
+            Mesh::new(points, Cells::uniform(CellKind::TRIANGLE, [0, 1, 2].map(VertexId).to_vec()).unwrap());
+        face.set_cell_field(Field::scalars("ModelFaceID", vec![face_id]));
+        face.set_cell_field(Field::scalars("GlobalElementID", vec![1i32]));
+        if with_ids {
+            face.set_point_field(Field::scalars("GlobalNodeID", ids.map(|i| 10 * (i as i64 + 1)).to_vec()));
+            // Ids count, not places.
+            face.points.iter_mut().for_each(|p| p[0] += 0.125);
+        }
+        write(folder.join("mesh-surfaces").join(name).with_extension("vtp"), &face, &WriteOptions::default())
+            .unwrap();
+    }
+}
+
+#[test]
+fn a_mesh_complete_folder_becomes_one_mesh() {
+    for (with_ids, face_ids, labels) in
+        [(true, [3, 7], [7, 3]), (false, [3, 7], [7, 3]), (true, [1, 1], [1, 2])]
+    {
+        let folder = tempfile::tempdir().unwrap();
+        mesh_complete(folder.path(), with_ids, face_ids);
+        let mesh = read(folder.path()).unwrap();
+        // Faces in the order of their names.
+        assert_eq!(mesh.cells.connectivity().items(), [0, 1, 2, 3, 0, 1, 3, 0, 2, 1].map(VertexId));
+        assert_eq!(mesh.patches().unwrap().ids, [0, labels[0], labels[1]]);
+        assert_eq!(patch_names(&mesh)[1..], ["inlet", "wall"]);
+        assert_eq!(mesh.regions().unwrap().ids, [1, 0, 0]);
+        assert_eq!(mesh.cell_field("GlobalElementID").unwrap().values, Values::I32(vec![1; 3]));
+        let face_id = &mesh.cell_field("ModelFaceID").unwrap().values;
+        assert_eq!(*face_id, Values::I32(vec![0, face_ids[1], face_ids[0]]));
+    }
+}
+
+#[test]
+fn a_face_of_another_volume_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    mesh_complete(folder.path(), true, [1, 2]);
+    let path = folder.path().join("mesh-surfaces/wall.vtp");
+    let mut face = read(&path).unwrap();
+    face.set_point_field(Field::scalars("GlobalNodeID", vec![10i64, 11, 20]));
+    write(&path, &face, &WriteOptions::default()).unwrap();
+    let error = read(folder.path()).unwrap_err().to_string();
+    assert!(
+        error.contains(
+            "wall.vtp: point 1: 1 of 3 points have a GlobalNodeID that the volume does not have, the first 11"
+        ),
+        "{error}"
+    );
+    face.point_data.clear();
+    write(&path, &face, &WriteOptions::default()).unwrap();
+    let error = read(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("3 of 3 points are not in the volume"), "{error}");
+    fs::remove_dir_all(folder.path().join("mesh-surfaces")).unwrap();
+    let error = read(folder.path()).unwrap_err().to_string();
+    assert!(error.contains("there is no face (*.vtp)"), "{error}");
+}
