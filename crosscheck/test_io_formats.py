@@ -8,6 +8,7 @@ import gmsh
 import meshio
 import numpy as np
 import pytest
+import pyvista
 import vtk
 from conftest import data_folder
 from meshes import assert_same_array, assert_same_mesh, cells_of, tet_set, volumes
@@ -517,6 +518,50 @@ def compare(found, expected, source, ending):
                 if target in found.cell_data and (ending != ".node" or block.type == "tetra"):
                     got = np.concatenate([v for b, v in zip(found.cells, found.cell_data[target]) if b.type == block.type])
                     assert_same_array(got, values, f"labels of {block.type}")
+
+
+def vtk_files():
+    folder = data_folder()
+    names = [] if folder is None else [p.relative_to(folder) for p in folder.rglob("*") if p.suffix in (".vtu", ".vtp", ".vtk")]
+    # Of the frames of one cycle, one.
+    return sorted(str(p) for p in names if "ENDOCARDIAL" not in p.name or "_000" in p.name)
+
+
+MSH_HOLDS = {1: "vertex", 3: "line", 5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
+
+
+@pytest.mark.parametrize("name", vtk_files())
+def test_real_vtk_files_in_other_formats(motet, data, tmp_path, name):
+    """Points, cells and numeric arrays as VTK reads them, in what meshio reads from our MSH, Medit and TetGen files."""
+    source = data / name
+    expected = pyvista.read(source).cast_to_unstructured_grid()
+    points = np.asarray(expected.points, float)
+    types = expected.celltypes
+    for ending in (".msh", ".mesh", ".node"):
+        out = tmp_path / f"out{ending}"
+        motet("convert", source, out)
+        found = meshio.read(out)
+        assert_same_array(np.asarray(found.points, float), points, "points")
+        cells = cells_of(found)
+        held = [t for t in set(types) if t in MSH_HOLDS and t != 1] if ending != ".node" else [10]
+        for kind in held:
+            at = expected.offset[:-1][types == kind]
+            if len(at):
+                # Some lines there name a third point, for the sense of a beam.
+                n = meshio._mesh.num_nodes_per_cell[MSH_HOLDS[kind]]
+                ids = expected.cell_connectivity[at[:, None] + np.arange(n)]
+                assert_same_array(cells[MSH_HOLDS[kind]], ids, f"{MSH_HOLDS[kind]} cells")
+        if ending != ".msh":
+            continue
+        for array in expected.point_data.keys():
+            if expected.point_data[array].dtype.kind in "iuf":
+                assert_same_array(found.point_data[array], np.asarray(expected.point_data[array], float), array)
+        for array in expected.cell_data.keys():
+            values = expected.cell_data[array]
+            for kind in held:
+                if values.dtype.kind in "iuf" and array in found.cell_data:
+                    got = np.concatenate([v for b, v in zip(found.cells, found.cell_data[array]) if b.type == MSH_HOLDS[kind]])
+                    assert_same_array(got, np.asarray(values[types == kind], float), array)
 
 
 def test_dolfin_markers_are_the_triangles_opposite_a_vertex(motet, data, tmp_path):

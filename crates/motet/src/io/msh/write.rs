@@ -339,7 +339,7 @@ fn data(sink: &mut Sink, mesh: &Mesh, tagged: &Tagged, version2: bool, lost: &mu
     let cell_data: Vec<_> = mesh.cell_data.iter().filter(|f| !tagged.holds(mesh, f, version2)).collect();
     for (section, fields) in [("NodeData", &point_data), ("ElementData", &cell_data)] {
         for field in fields {
-            if let Some(values) = field.values.to_f64().filter(|_| field.components > 0) {
+            if let Some(values) = field.values.to_f64().filter(|values| !values.is_empty()) {
                 data_section(sink, section, field, &values);
             }
         }
