@@ -1,9 +1,93 @@
 //! Floor 7: mesh motion. Boundary displacement in, volume mesh out.
+//!
+//! ```
+//! use motet::base::Threads;
+//! use motet::mesh::shapes;
+//! use motet::motion::{Mover, Options};
+//!
+//! # fn main() -> motet::Result<()> {
+//! let mesh = shapes::sphere_in_box(8, 4); // or motet::io::read("vessel.vtu")?
+//! let threads = Threads::single();
+//! let mut mover = Mover::new(&mesh, &Options::default(), &threads)?;
+//! let is_sphere = |p: &[f64; 3]| p.iter().map(|x| x * x).sum::<f64>() < 2.0;
+//! let displacement: Vec<_> = (mover.boundary().iter())
+//!     .map(|v| if is_sphere(&mesh.points[v.index()]) { [0.5, 0.0, 0.0] } else { [0.0; 3] })
+//!     .collect();
+//! let mut points = mesh.points.clone();
+//! let certificate = mover.advance(&displacement, &mut points, &threads)?;
+//! assert!(certificate.complete && certificate.inverted == 0);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # The method
+//!
+//! Delaunay graph mapping (Liu, Qin and Xia 2006). The vertices of the boundary, and
+//! they alone, are triangulated: the *graph*. Every other vertex lies in one tet of it
+//! and keeps that tet and its four weights there. When the boundary moves, the vertex
+//! moves by the weighted mean of the four displacements. No equation is solved; a step
+//! is a weighted sum for each vertex, at the speed of memory. Cells are not looked at,
+//! so they may be of any kind. A step depends on the displacement alone, not on the
+//! steps before it: a wall that comes back brings the mesh back, to the bit, and an
+//! affine motion of the boundary moves every vertex by the same affine map.
+//!
+//! The graph fills the convex hull of the boundary, so it holds every vertex of any
+//! domain, also of one that is not convex. It knows nothing of walls: a vertex in a
+//! narrow branch may hang on vertices of another one, and one beside a thin flap on
+//! the flap's far side, where the boundary is coarser than the gap is wide.
+//!
+//! # What limits it
+//!
+//! A shift of a body is good almost until it touches another. A *turn* is not: a tet
+//! of the graph with three nodes on a body of radius r and one at the distance D
+//! keeps its sign while the angle is below acos(r / D), never 90 degrees, and cells
+//! suffer from 30 degrees on. Turn in several calls of [`Mover::advance`], which
+//! builds the graph anew where a step from the first place will not do; large turns
+//! beyond that need another method. Between the tets of the graph the map has kinks:
+//! thin layers at a wall are better kept whole by a [`RigidLayer`].
+//!
+//! # What the checks mean
+//!
+//! [`Mover::step`] checks nothing. [`Mover::advance`] looks at the mesh's own cells, by
+//! exact signs: a tet is upright when its volume is positive, a cell of another kind
+//! when the tets at its corners are (those corners where three facets meet). It goes
+//! only where no cell turns over that was upright at first. Tets of the graph do turn
+//! over, flat ones at once, and it means nothing; the [`Certificate`] counts those that
+//! hold vertices. It tells the worst EAS and the worst mean ratio of the tets and the
+//! worst scaled Jacobian of other cells, with places.
+//!
+//! # Who is who
+//!
+//! * *driven* vertices are told by the caller where to go: those of the boundary
+//!   ([`Mover::boundary`]), and any others that [`Options::also_moved`] names, such as
+//!   those of an interface inside. They get there to the bit. Of two boundary vertices
+//!   in one place (the two sides of a slit) each goes its own way; vertices nearby
+//!   follow the one that comes first.
+//! * *sliding* vertices ([`Options::sliding`]) lie on flat patches and follow their rim.
+//! * the *rigid layer* ([`Options::rigid_layer`]) keeps its place relative to the wall.
+//! * all other vertices hang in the graph; those that lie outside of it and belong to
+//!   no volume cell stay where they are.
 
+mod advance;
 mod boundary_motion;
+mod certificate;
+mod check;
+mod corners;
+mod graph;
+mod layer;
 mod matching;
+mod mover;
+mod nodes;
+mod options;
 mod prescribed;
+mod rotation;
+mod slide;
+mod update;
+mod weights;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
+pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use matching::{Matching, SurfaceMotion, match_patch};
+pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
+pub use options::{Extent, FacetSet, Limits, Options, RigidLayer};
 pub use prescribed::Prescribed;

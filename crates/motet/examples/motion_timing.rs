@@ -1,0 +1,142 @@
+//! How long mesh motion takes: set-up by stage, the update on its own, a rebuild, and a copy beside it.
+//!
+//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X]` prints one JSON object.
+//! MESH is any mesh file; `15,7`, `22,10`, `30,13` and `38,17` are the four sizes of the built-in sphere in a box.
+//! `--rigid-layer` holds one layer of cells at the whole boundary. `--travel X` moves the sphere by X along x
+//! with `advance` and adds its certificate.
+
+use std::error::Error;
+use std::time::Instant;
+
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::vector::norm;
+use motet::mesh::{Mesh, shapes};
+use motet::motion::{Extent, Mover, Options, RigidLayer};
+
+struct Call {
+    mesh: String,
+    threads: usize,
+    seconds: f64,
+    rigid: bool,
+    travel: Option<f64>,
+}
+
+fn call() -> Result<Call, Box<dyn Error>> {
+    let mut call = Call { mesh: "22,10".into(), threads: 1, seconds: 0.5, rigid: false, travel: None };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or(format!("{word} needs a value"));
+        match word.as_str() {
+            "--threads" => call.threads = value()?.parse()?,
+            "--seconds" => call.seconds = value()?.parse()?,
+            "--travel" => call.travel = Some(value()?.parse()?),
+            "--rigid-layer" => call.rigid = true,
+            _ => call.mesh = word,
+        }
+    }
+    Ok(call)
+}
+
+fn load(name: &str) -> Result<Mesh, Box<dyn Error>> {
+    match name.split_once(',') {
+        Some((n, layers)) if !std::path::Path::new(name).exists() => {
+            Ok(shapes::sphere_in_box(n.parse()?, layers.parse()?))
+        }
+        _ => Ok(motet::io::read(name)?),
+    }
+}
+
+/// The shortest of many runs, and the median.
+fn repeat(budget: f64, mut work: impl FnMut()) -> (f64, f64) {
+    work();
+    let begin = Instant::now();
+    let mut all = Vec::new();
+    while all.len() < 5 || begin.elapsed().as_secs_f64() < budget {
+        let start = Instant::now();
+        work();
+        all.push(start.elapsed().as_secs_f64());
+    }
+    all.sort_by(f64::total_cmp);
+    (all[0], all[all.len() / 2])
+}
+
+/// Bytes per second, read and written, of a copy of `bytes` bytes by all threads.
+fn copy_speed(bytes: usize, threads: &Threads, budget: f64) -> f64 {
+    let n = (bytes / 16).max(1);
+    let from = vec![1.0f64; n];
+    let mut to = vec![0.0f64; n];
+    let part = n.div_ceil(threads.count());
+    let (best, _) = repeat(budget, || match threads.pool() {
+        None => to.copy_from_slice(&from),
+        Some(pool) => pool.scope(|scope| {
+            for (to, from) in to.chunks_mut(part).zip(from.chunks(part)) {
+                scope.spawn(move |_| to.copy_from_slice(from));
+            }
+        }),
+    });
+    std::hint::black_box(&to);
+    16.0 * n as f64 / best
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let call = call()?;
+    let mesh = load(&call.mesh)?;
+    let threads = Threads::new(call.threads)?;
+    let rigid_layer = call.rigid.then_some(RigidLayer { extent: Extent::Cells(1), wall: None });
+    let options = Options { rigid_layer, ..Options::default() };
+
+    let mut setups: Vec<_> = Vec::new();
+    let mut mover = Mover::new(&mesh, &options, &threads)?;
+    for _ in 0..5 {
+        mover = Mover::new(&mesh, &options, &threads)?;
+        setups.push(*mover.setup());
+    }
+    setups.sort_by(|a, b| a.seconds.total.total_cmp(&b.seconds.total));
+    let setup = setups[0];
+
+    let sphere = |v: &VertexId| norm(mesh.points[v.index()]) < 1.2;
+    let by = |x: f64| -> Vec<Point> {
+        let one = |v: &VertexId| [if sphere(v) { x } else { 0.0 }, 0.0, 0.0];
+        mover.boundary().iter().map(one).collect()
+    };
+    let driven = by(0.5);
+    let mut out = mesh.points.clone();
+    let (best, median) = repeat(call.seconds, || mover.step(&driven, &mut out, &threads).expect("it fits"));
+
+    // What a step reads and writes once: places before and after, nodes and weights of each vertex, and each node's
+    // displacement as it is given and as it is used.
+    let nodes = setup.driven + setup.layer;
+    let bytes = mesh.points.len() * (24 + 24 + 16 + 24) + setup.driven * 24 + nodes * 32;
+    let rebuild = (0..3).map(|_| {
+        let start = Instant::now();
+        mover.rebuild_and_step(&driven, &mut out, &threads).map(|()| start.elapsed().as_secs_f64())
+    });
+    let rebuild = rebuild.collect::<Result<Vec<_>, _>>()?.into_iter().fold(f64::INFINITY, f64::min);
+    let mut json = serde_json::json!({
+        "mesh": call.mesh,
+        "threads": threads.count(),
+        "vertices": mesh.points.len(),
+        "cells": mesh.cells.len(),
+        "boundary": setup.driven,
+        "graph_nodes": setup.graph_nodes,
+        "graph_tets": setup.graph_tets,
+        "setup": setup,
+        "setup_seconds": setup.seconds.total,
+        "seconds": median,
+        "best_seconds": best,
+        "ns_per_vertex": median / mesh.points.len() as f64 * 1e9,
+        "bytes": bytes,
+        "gigabytes_per_second": bytes as f64 / median / 1e9,
+        "copy_same_size_gigabytes_per_second": copy_speed(bytes, &threads, 0.2) / 1e9,
+        "copy_memory_gigabytes_per_second": copy_speed(1 << 30, &threads, 0.5) / 1e9,
+        "rebuild_seconds": rebuild,
+    });
+    if let Some(x) = call.travel {
+        let driven = by(x);
+        json["travel"] = x.into();
+        let mut mover = mover;
+        json["certificate"] = serde_json::to_value(mover.advance(&driven, &mut out, &threads)?)?;
+    }
+    println!("{json}");
+    Ok(())
+}

@@ -1,0 +1,243 @@
+//! Sub-stepping: on to where the caller wants the mesh, as far as its cells stay upright.
+//!
+//! A motion that one step from the reference can do is done in one step, and depends on
+//! nothing else. Where that would turn a cell over, the mesh goes on from where the last
+//! call left it: as far as is admissible, found by halving; there the graph is built
+//! anew, every vertex hung into it where it is now, and so on, until the boundary is
+//! where it should be or a sub-step gets nowhere. What the boundary does in between is
+//! the straight way; a wall that turns should come in steps of its own.
+
+use std::time::Instant;
+
+use crate::base::{Point, Result, Threads};
+use crate::geometry::vector::{add, scale, sub};
+use crate::motion::certificate::{Certificate, Seconds, measure};
+use crate::motion::check::Check;
+use crate::motion::mover::Mover;
+use crate::motion::update::{Padded, Update};
+
+/// Where a call of [`Mover::advance`] left the mesh.
+#[derive(Debug)]
+pub(crate) struct State {
+    points: Vec<Point>,
+    /// Displacements of the driven vertices there.
+    driven: Vec<Point>,
+    /// The graph of that place; `None` until it is needed.
+    update: Option<Update>,
+}
+
+/// Halvings of the part of the way that is still admissible: 1/4096 of it.
+const HALVINGS: usize = 12;
+
+impl Mover {
+    /// Moves the mesh to where `displacement`, counted from the first place, takes the
+    /// vertices of [`Self::boundary`], in sub-steps if need be, and certifies what it
+    /// reached; `out` gets the place of every vertex.
+    ///
+    /// No cell that was upright at first is inverted or flat in `out`, except where a
+    /// call could not move at all from a start that has such cells.
+    ///
+    /// # Errors
+    /// As [`Self::step`]. A motion that does not get all the way is no error: see
+    /// [`Certificate::complete`].
+    pub fn advance(
+        &mut self,
+        displacement: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<Certificate> {
+        let begin = Instant::now();
+        let mut seconds = Seconds::default();
+        timed(&mut seconds.update, || self.step(displacement, out, threads))?;
+        let turned = timed(&mut seconds.check, || self.check.turned_over(out, threads));
+        let mut certificate =
+            Certificate { complete: true, fraction: 1.0, admissible_fraction: 1.0, ..Default::default() };
+        if turned.is_empty() {
+            self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec(), update: None });
+        } else {
+            certificate.blocked_by = self.check.cells_of(&turned);
+            certificate.blocked_by.truncate(10);
+            certificate.admissible_fraction =
+                self.admissible_in_one_step(displacement, out, threads, &mut seconds);
+            let from_reference = self.state.is_none();
+            self.go_on(displacement, out, threads, &mut certificate, &mut seconds)?;
+            if from_reference && certificate.fraction < certificate.admissible_fraction {
+                certificate.fraction = certificate.admissible_fraction;
+                self.go_in_one_step(displacement, certificate.fraction, out, threads);
+            }
+        }
+        self.certify(out, &mut certificate, threads, &mut seconds);
+        seconds.total = begin.elapsed().as_secs_f64();
+        certificate.seconds = seconds;
+        Ok(certificate)
+    }
+
+    /// Forgets where [`Self::advance`] left the mesh: the next call begins in the first place.
+    pub fn restart(&mut self) {
+        self.state = None;
+    }
+
+    /// How good the mesh is with its vertices at `points`.
+    ///
+    /// # Panics
+    /// When there are fewer points than the mesh has.
+    pub fn quality(&self, points: &[Point], threads: &Threads) -> Certificate {
+        let mut certificate =
+            Certificate { complete: true, fraction: 1.0, admissible_fraction: 1.0, ..Default::default() };
+        let mut seconds = Seconds::default();
+        self.certify(points, &mut certificate, threads, &mut seconds);
+        certificate.seconds = Seconds { total: seconds.quality + seconds.check, ..seconds };
+        certificate
+    }
+
+    fn certify(
+        &self,
+        points: &[Point],
+        certificate: &mut Certificate,
+        threads: &Threads,
+        seconds: &mut Seconds,
+    ) {
+        let [now, before] = timed(&mut seconds.check, || self.check.count(points, threads));
+        certificate.inverted = now;
+        certificate.inverted_before = before;
+        certificate.quality = timed(&mut seconds.quality, || measure(&self.check, points, threads));
+        let place = |node: u32| points[self.nodes.vertices[node as usize].index()];
+        let tets = self.tets.iter();
+        certificate.graph_tets_inverted =
+            tets.filter(|t| crate::geometry::tet::volume_6(t.map(place)) <= 0.0).count();
+    }
+
+    /// The largest part of the displacement that a step from the reference can do.
+    fn admissible_in_one_step(
+        &self,
+        target: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+        seconds: &mut Seconds,
+    ) -> f64 {
+        largest(|fraction| {
+            let part: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
+            timed(&mut seconds.update, || {
+                let nodes = self.nodes.displacements(&part);
+                self.update.apply(&self.reference, &nodes, out, threads);
+            });
+            timed(&mut seconds.check, || self.check.holds(out, &self.reference, 0.0, threads))
+        })
+    }
+
+    fn go_on(
+        &mut self,
+        target: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+        certificate: &mut Certificate,
+        seconds: &mut Seconds,
+    ) -> Result<()> {
+        let mut state = self.state.take().unwrap_or_else(|| State {
+            points: self.reference.clone(),
+            driven: vec![[0.0; 3]; target.len()],
+            update: None,
+        });
+        let mut left = 1.0;
+        certificate.complete = false;
+        while certificate.substeps < self.limits.substeps {
+            if state.update.is_none() {
+                let update = timed(&mut seconds.graph, || self.rebuild(&state.points, threads))?;
+                state.update = Some(update);
+            }
+            let leg = Leg { mover: self, state: &state, target };
+            let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds);
+            if part * left < self.limits.smallest {
+                part = leg.longest(0.0, out, threads, seconds);
+            }
+            leg.place(part, out, threads);
+            certificate.substeps += 1;
+            left *= 1.0 - part;
+            state.driven = leg.driven(part);
+            state.points.copy_from_slice(out);
+            state.update = None;
+            certificate.complete = left == 0.0;
+            if certificate.complete || part * (left / (1.0 - part)) < self.limits.smallest {
+                break;
+            }
+        }
+        certificate.fraction = 1.0 - left;
+        out.copy_from_slice(&state.points);
+        self.state = Some(state);
+        Ok(())
+    }
+
+    /// Goes the admissible part of the displacement in one step from the reference.
+    fn go_in_one_step(&mut self, target: &[Point], fraction: f64, out: &mut [Point], threads: &Threads) {
+        let driven: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
+        self.update.apply(&self.reference, &self.nodes.displacements(&driven), out, threads);
+        self.state = Some(State { points: out.to_vec(), driven, update: None });
+    }
+}
+
+/// The way from one state to the target, over the graph of that state.
+struct Leg<'a> {
+    mover: &'a Mover,
+    state: &'a State,
+    target: &'a [Point],
+}
+
+impl Leg<'_> {
+    /// Displacements of the driven vertices when a part of the way is gone.
+    fn driven(&self, part: f64) -> Vec<Point> {
+        if part == 1.0 {
+            return self.target.to_vec();
+        }
+        let between = |(&from, &to): (&Point, &Point)| add(from, scale(sub(to, from), part));
+        self.state.driven.iter().zip(self.target).map(between).collect()
+    }
+
+    fn place(&self, part: f64, out: &mut [Point], threads: &Threads) {
+        let nodes = &self.mover.nodes;
+        let to = nodes.displacements(&self.driven(part));
+        let from = nodes.displacements(&self.state.driven);
+        let change: Vec<Padded> =
+            to.iter().zip(from).map(|(to, from)| [0, 1, 2, 3].map(|i| to[i] - from[i])).collect();
+        if let Some(update) = &self.state.update {
+            update.apply(&self.state.points, &change, out, threads);
+        }
+        nodes.place(&self.mover.reference, &to, out);
+    }
+
+    /// The largest part of the way on which every cell stays upright; all of it where
+    /// that is so, else no further than to where each has kept `share` of its volume.
+    fn longest(&self, share: f64, out: &mut [Point], threads: &Threads, seconds: &mut Seconds) -> f64 {
+        let check: &Check = &self.mover.check;
+        largest(|part| {
+            timed(&mut seconds.update, || self.place(part, out, threads));
+            let share = if part == 1.0 { 0.0 } else { share };
+            timed(&mut seconds.check, || check.holds(out, &self.state.points, share, threads))
+        })
+    }
+}
+
+/// The largest part of 1 for which `holds` is true, to within 2^-[`HALVINGS`], if it
+/// holds up to some part and not beyond; 0 where it never does.
+fn largest(mut holds: impl FnMut(f64) -> bool) -> f64 {
+    if holds(1.0) {
+        return 1.0;
+    }
+    let (mut good, mut bad) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (good + bad);
+        if holds(middle) {
+            good = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    good
+}
+
+/// Adds to `seconds` what `work` takes.
+fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
+    let begin = Instant::now();
+    let result = work();
+    *seconds += begin.elapsed().as_secs_f64();
+    result
+}

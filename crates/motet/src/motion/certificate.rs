@@ -1,0 +1,133 @@
+//! The certificate: how good the mesh is that a motion returned, and what it took.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::base::{CellId, Point, Threads, VertexId};
+use crate::geometry::quality::{eas, mean_ratio};
+use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::motion::check::Check;
+
+/// A tet is bad below this EAS.
+pub const BAD_EAS: f64 = 0.2;
+
+/// What a motion reached, and how good the mesh is there.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Certificate {
+    /// Whether the mesh is where it was asked to be.
+    pub complete: bool,
+    /// The part of the asked motion that was reached, from where the mesh was before: 1 when complete.
+    pub fraction: f64,
+    /// The largest part of it that one step from the reference could go, 1 when that was enough.
+    pub admissible_fraction: f64,
+    /// How often the motion went part of the way and the graph was built anew.
+    pub substeps: usize,
+    /// Volume cells that are inverted or flat.
+    pub inverted: usize,
+    /// Of the reference: volume cells that were inverted or flat before anything moved.
+    pub inverted_before: usize,
+    /// Cells that one step would have turned over, the first ten.
+    pub blocked_by: Vec<CellId>,
+    /// Tets of the graph that hold vertices and have turned over. Flat ones do at once;
+    /// it means nothing where no cell is inverted.
+    pub graph_tets_inverted: usize,
+    /// How good the cells are.
+    #[serde(flatten)]
+    pub quality: Quality,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// How good cells are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Quality {
+    /// Tets with an EAS below [`BAD_EAS`].
+    pub bad: usize,
+    /// The worst equi-angle quality of a tet.
+    pub worst_eas: Option<Worst>,
+    /// The worst mean ratio of a tet.
+    pub worst_mean_ratio: Option<Worst>,
+    /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
+    /// its three edges span over the product of their lengths (Knupp 2000).
+    pub worst_scaled_jacobian: Option<Worst>,
+}
+
+/// The worst cell by some measure.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Worst {
+    /// The measure.
+    pub value: f64,
+    /// The cell.
+    pub cell: CellId,
+    /// The mean of the corners that were measured.
+    pub place: Point,
+}
+
+/// Seconds by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Placing vertices.
+    pub update: f64,
+    /// Looking for inverted cells.
+    pub check: f64,
+    /// Building graphs anew.
+    pub graph: f64,
+    /// Measuring quality.
+    pub quality: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+const CHUNK: usize = 1 << 13;
+
+/// Measures every cell of a mesh whose vertices are at `points`.
+pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Quality {
+    let n = check.corners.len();
+    let chunk = |start: usize| measure_some(check, points, start..(start + CHUNK).min(n));
+    let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
+    let parts: Vec<Quality> = match threads.pool() {
+        None => starts.into_iter().map(chunk).collect(),
+        Some(pool) => pool.install(|| starts.into_par_iter().map(chunk).collect()),
+    };
+    parts.into_iter().fold(Quality::default(), |all, part| Quality {
+        bad: all.bad + part.bad,
+        worst_eas: worse(all.worst_eas, part.worst_eas),
+        worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
+        worst_scaled_jacobian: worse(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
+    })
+}
+
+fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Quality {
+    let mut quality = Quality::default();
+    for i in corners {
+        let tet: [VertexId; 4] = check.corners.tets[i];
+        let cell = check.corners.cells[i];
+        let tet = tet.map(|v| points[v.index()]);
+        let as_worst =
+            |value| Some(Worst { value, cell, place: scale(tet.into_iter().fold([0.0; 3], add), 0.25) });
+        if check.corners.is_cell[i] {
+            let value = eas(tet);
+            quality.bad += usize::from(value < BAD_EAS);
+            quality.worst_eas = worse(quality.worst_eas, as_worst(value));
+            quality.worst_mean_ratio = worse(quality.worst_mean_ratio, as_worst(mean_ratio(tet)));
+        } else {
+            quality.worst_scaled_jacobian =
+                worse(quality.worst_scaled_jacobian, as_worst(scaled_jacobian(tet)));
+        }
+    }
+    quality
+}
+
+/// The one with the smaller value; of equal ones the first.
+fn worse(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
+    match (a, b) {
+        (Some(a), Some(b)) if b.value < a.value => Some(b),
+        (a, b) => a.or(b),
+    }
+}
+
+fn scaled_jacobian([corner, a, b, c]: [Point; 4]) -> f64 {
+    let [a, b, c] = [a, b, c].map(|p| sub(p, corner));
+    let lengths = norm(a) * norm(b) * norm(c);
+    if lengths > 0.0 { dot(cross(a, b), c) / lengths } else { 0.0 }
+}

@@ -1,0 +1,163 @@
+//! The rigid layer: vertices near a wall that keep their place relative to it.
+//!
+//! ```text
+//!     x            A vertex x of the layer has its foot f on the nearest facet of
+//!     |  o         the wall, with weights b, and its offset o = x - f. The wall
+//!  ---f------      moves: the foot goes along with the facet, f' = f + sum b d,
+//!                  and the offset turns with the wall at the foot, x' = f' + R o.
+//! ```
+//!
+//! R is the blend of the rotations of the facet's vertices (see `rotation`), not the
+//! facet's own: that would jump where the foot passes from one facet to the next,
+//! and shear thin cells that stand across the edge. Turning keeps lengths, so every
+//! vertex keeps its distance from its foot. What is not kept is the distance between
+//! two vertices of the layer where the wall stretches or bends: there the cells of
+//! the layer stretch along with the wall.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::triangle;
+use crate::geometry::vector::{add, scale, sub};
+use crate::mesh::Cells;
+use crate::motion::options::{Extent, FacetSet};
+use crate::motion::rotation::{Wall, change, mean};
+use crate::spatial::NearestTriangle;
+
+/// One vertex of the layer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Member {
+    pub(crate) vertex: VertexId,
+    /// The wall's triangle nearest to it, and the weights of its foot there.
+    triangle: u32,
+    weights: [f64; 3],
+    offset: Point,
+}
+
+/// A wall and the vertices that move with it.
+#[derive(Debug)]
+pub(crate) struct Layer {
+    wall: Wall,
+    /// The node of each of the wall's vertices.
+    wall_nodes: Vec<u32>,
+    pub(crate) members: Vec<Member>,
+}
+
+impl Layer {
+    /// Collects the vertices of `candidates` that are within `extent` of the wall.
+    /// `node` tells the driven node of a vertex.
+    pub(crate) fn new(
+        points: &[Point],
+        cells: &Cells,
+        wall: &FacetSet,
+        extent: Extent,
+        candidates: &[VertexId],
+        node: impl Fn(VertexId) -> Option<u32>,
+    ) -> Result<Self> {
+        let mut vertices: Vec<VertexId> = wall.rings.items().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        if wall.triangles().next().is_none() {
+            return Err(Error::options(format!("the wall {} of the rigid layer has no facets", wall.name)));
+        }
+        let wall_nodes = vertices.iter().map(|&v| {
+            node(v).ok_or_else(|| {
+                Error::input("is on the wall of the rigid layer, but nothing moves it")
+                    .at(format!("vertex {v}"))
+            })
+        });
+        let wall_nodes = wall_nodes.collect::<Result<Vec<u32>>>()?;
+        let local = |v: VertexId| vertices.binary_search(&v).expect("collected from the same rings") as u32;
+        let triangles: Vec<[VertexId; 3]> = wall.triangles().collect();
+        let search = NearestTriangle::new(points, &triangles);
+        let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(local)).collect();
+        let wall_points: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+        let reach = match extent {
+            Extent::Distance(distance) => distance,
+            Extent::Cells(_) => f64::INFINITY,
+        };
+        let near = match extent {
+            Extent::Distance(_) => None,
+            Extent::Cells(n) => Some(within_cells(cells, points.len(), &vertices, n)),
+        };
+        let is_near = |v: VertexId| near.as_ref().is_none_or(|near| near[v.index()]);
+        let mut members = Vec::new();
+        for &vertex in candidates.iter().filter(|v| is_near(**v)) {
+            let p = points[vertex.index()];
+            if let Some(foot) = search.closest_within(p, reach) {
+                let (triangle, weights, offset) = (foot.triangle as u32, foot.weights, sub(p, foot.point));
+                members.push(Member { vertex, triangle, weights, offset });
+            }
+        }
+        Ok(Self { wall: Wall::new(&wall_points, triangles), wall_nodes, members })
+    }
+
+    /// Displacements of all members, when the driven nodes have these.
+    pub(crate) fn displacements<'a>(&'a self, driven: &'a [Point]) -> impl Iterator<Item = Moved> + 'a {
+        let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
+        let rotations = self.wall.rotations(of_wall);
+        self.members.iter().map(move |m| {
+            let corners = self.wall.triangle(m.triangle as usize);
+            let foot = triangle::at(corners.map(of_wall), m.weights);
+            let parts = corners.iter().zip(m.weights).map(|(&v, w)| (w, rotations[v as usize]));
+            Moved { foot, turn: change(mean(parts), m.offset) }
+        })
+    }
+
+    /// Which members share a cell with a vertex that is neither a member nor driven:
+    /// the layer's outer ones.
+    pub(crate) fn outer(
+        &self,
+        cells: &Cells,
+        is_driven: impl Fn(VertexId) -> bool,
+        n_points: usize,
+    ) -> Vec<bool> {
+        let mut is_member = vec![false; n_points];
+        self.members.iter().for_each(|m| is_member[m.vertex.index()] = true);
+        let mut is_outer = vec![false; n_points];
+        for (_, _, vertices) in cells.iter() {
+            if vertices.iter().any(|&v| !is_member[v.index()] && !is_driven(v)) {
+                vertices.iter().for_each(|v| is_outer[v.index()] = true);
+            }
+        }
+        self.members.iter().map(|m| is_outer[m.vertex.index()]).collect()
+    }
+}
+
+/// How a member of the layer has moved, in two parts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    /// With its foot.
+    pub(crate) foot: Point,
+    /// By the turn of its offset.
+    pub(crate) turn: Point,
+}
+
+impl Moved {
+    pub(crate) fn total(self) -> Point {
+        add(self.foot, self.turn)
+    }
+
+    /// Without the part of the turn that leads out of a plane with this unit normal.
+    pub(crate) fn in_plane(self, normal: Point) -> Point {
+        let out = crate::geometry::vector::dot(self.turn, normal);
+        sub(self.total(), scale(normal, out))
+    }
+}
+
+/// Which vertices are at most `n` cells away from any of `from`. Every ring is a pass over
+/// all cells: for the few rings that a layer has, cheaper than to list the cells of each vertex.
+fn within_cells(cells: &Cells, n_points: usize, from: &[VertexId], n: usize) -> Vec<bool> {
+    let mut near = vec![false; n_points];
+    from.iter().for_each(|v| near[v.index()] = true);
+    for _ in 0..n {
+        let before = near.clone();
+        for (_, kind, vertices) in cells.iter() {
+            if vertices.iter().any(|v| before[v.index()]) && kind.dim() == Some(3) {
+                vertices.iter().for_each(|v| near[v.index()] = true);
+            }
+        }
+        if near == before {
+            break;
+        }
+    }
+    near
+}

@@ -1,0 +1,316 @@
+//! The mover: set up once, then milliseconds a step.
+
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::sub;
+use crate::mesh::{Boundary, Mesh};
+use crate::motion::check::Check;
+use crate::motion::graph::{Hanging, hang, triangulate};
+use crate::motion::nodes::Nodes;
+use crate::motion::options::{Limits, Options};
+use crate::motion::update::Update;
+
+/// Moves the vertices of one mesh after its boundary.
+///
+/// It keeps the mesh's first place, the reference: a step depends on the displacement
+/// alone, never on the steps before it, so a wall that comes back brings every vertex
+/// back to the same bits.
+#[derive(Debug)]
+pub struct Mover {
+    pub(crate) reference: Vec<Point>,
+    pub(crate) nodes: Nodes,
+    /// Vertices that hang in the graph.
+    hanging: Vec<VertexId>,
+    /// How each vertex hangs in the graph of the reference.
+    pub(crate) update: Update,
+    /// Tets of that graph that hold a vertex, by the nodes at their corners.
+    pub(crate) tets: Vec<[u32; 4]>,
+    pub(crate) check: Check,
+    pub(crate) limits: Limits,
+    pub(crate) state: Option<crate::motion::advance::State>,
+    setup: Setup,
+}
+
+/// What setting up found, and how long it took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Setup {
+    /// Vertices that the caller moves: those of the boundary, and those asked for.
+    pub driven: usize,
+    /// Of these, vertices that slide in the plane of their patch.
+    pub sliding: usize,
+    /// Vertices of the rigid layer.
+    pub layer: usize,
+    /// Nodes of the graph: driven vertices, and the outer ones of the layer.
+    pub graph_nodes: usize,
+    /// Tets of the graph.
+    pub graph_tets: usize,
+    /// Tets of the graph that hold a vertex.
+    pub holding_tets: usize,
+    /// Vertices that hang in the graph.
+    pub hanging: usize,
+    /// Of these, vertices of cells that lie outside the graph (middle nodes of a curved
+    /// boundary, vertices of inverted cells): they follow the nearest place of it.
+    pub outside: usize,
+    /// Vertices of no volume cell that lie outside the graph, or nowhere: they stay.
+    pub left: usize,
+    /// Seconds, by stage.
+    pub seconds: SetupSeconds,
+}
+
+/// Seconds that the stages of setting up took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SetupSeconds {
+    /// Finding the boundary.
+    pub boundary: f64,
+    /// Rigid layer and sliding patches.
+    pub layer: f64,
+    /// Collecting the corners of the cells, and looking which are inverted at the start.
+    pub cells: f64,
+    /// The Delaunay triangulation of the graph's nodes.
+    pub triangulation: f64,
+    /// Finding the tet and the weights of every other vertex.
+    pub hanging: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+impl Mover {
+    /// Sets up the motion of `mesh`: finds its boundary, builds the graph and hangs every vertex in it.
+    ///
+    /// # Errors
+    /// When the mesh has no volume cells, vertices without a finite place, or a boundary
+    /// that spans no space; when options name what is not there.
+    pub fn new(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<Self> {
+        let begin = Instant::now();
+        let mut setup = Setup::default();
+        let boundary = Boundary::of(&mesh.cells);
+        check_input(mesh, &boundary, options)?;
+        let mut clock = Instant::now();
+        setup.seconds.boundary = (clock - begin).as_secs_f64();
+        let is_used = used_by_volume(mesh);
+        let nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
+        setup.seconds.layer = lap(&mut clock);
+        let check = Check::new(&mesh.cells, &mesh.points, threads);
+        setup.seconds.cells = lap(&mut clock);
+        let mut is_node = vec![false; mesh.points.len()];
+        nodes.vertices.iter().for_each(|v| is_node[v.index()] = true);
+        let is_finite = |v: usize| mesh.points[v].iter().all(|x| x.is_finite());
+        let hanging = (0..mesh.points.len()).filter(|&v| !is_node[v] && is_finite(v)).map(VertexId::new);
+        let mut mover = Self {
+            reference: mesh.points.clone(),
+            nodes,
+            hanging: hanging.collect(),
+            update: Update::default(),
+            tets: Vec::new(),
+            check,
+            limits: options.limits,
+            state: None,
+            setup,
+        };
+        mover.hang_reference(&is_used, threads)?;
+        mover.setup.seconds.total = begin.elapsed().as_secs_f64();
+        Ok(mover)
+    }
+
+    /// The vertices that the caller moves, in rising order: those of the boundary, and those asked for.
+    pub fn boundary(&self) -> &[VertexId] {
+        &self.nodes.vertices[..self.nodes.n_driven]
+    }
+
+    /// The points of the mesh in its first place.
+    pub fn reference(&self) -> &[Point] {
+        &self.reference
+    }
+
+    /// What setting up found, and how long it took.
+    pub fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// The vertices that vertex `v` follows and their weights, as far as it hangs in the graph.
+    ///
+    /// Panics when there is no such vertex.
+    pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
+        self.hanging.binary_search(&v).ok()?;
+        let (nodes, weights) = self.update.of(v.index());
+        let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
+        let [a, b, c, d] = nodes.map(vertex);
+        Some(([a?, b?, c?, d?], weights))
+    }
+
+    /// Moves the mesh from its first place: `displacement` has an entry for each vertex
+    /// of [`Self::boundary`], `out` gets the place of every vertex of the mesh.
+    ///
+    /// The driven vertices are where they are told to be, to the bit; nothing is checked.
+    ///
+    /// # Errors
+    /// When a length does not fit, or a displacement is not finite.
+    pub fn step(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<()> {
+        self.check_displacement(displacement)?;
+        if out.len() != self.reference.len() {
+            return Err(Error::input(format!(
+                "room for {} points is given, but the mesh has {}",
+                out.len(),
+                self.reference.len()
+            )));
+        }
+        let nodes = self.nodes.displacements(displacement);
+        self.update.apply(&self.reference, &nodes, out, threads);
+        Ok(())
+    }
+
+    /// Builds the graph anew and hangs every vertex into it, then does a [`Self::step`]: what
+    /// one sub-step costs beside the looking for inverted cells.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn rebuild_and_step(
+        &self,
+        displacement: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<()> {
+        self.check_displacement(displacement)?;
+        let update = self.rebuild(&self.reference, threads)?;
+        update.apply(&self.reference, &self.nodes.displacements(displacement), out, threads);
+        Ok(())
+    }
+
+    pub(crate) fn check_displacement(&self, displacement: &[Point]) -> Result<()> {
+        if displacement.len() != self.nodes.n_driven {
+            return Err(Error::input(format!(
+                "{} displacements are given, but {} vertices are to be moved",
+                displacement.len(),
+                self.nodes.n_driven
+            )));
+        }
+        match displacement.iter().position(|d| !d.iter().all(|x| x.is_finite())) {
+            None => Ok(()),
+            Some(i) => Err(Error::input("a displacement that is no finite number")
+                .at(format!("vertex {}", self.boundary()[i]))),
+        }
+    }
+
+    /// Hangs every vertex into the graph of the nodes where `points` has them.
+    pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Update> {
+        let (found, _) = self.find(points, threads)?;
+        Ok(self.tabulate(&found))
+    }
+
+    /// Where the vertices hang in the graph; seconds for building it, and for looking them up.
+    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Hanging, [f64; 2])> {
+        let mut clock = Instant::now();
+        let at = |v: &VertexId| points[v.index()];
+        let graph: Vec<Point> =
+            self.nodes.of_graph.iter().map(|&n| at(&self.nodes.vertices[n as usize])).collect();
+        let triangulation = triangulate(&graph, threads)?;
+        let built = lap(&mut clock);
+        let places: Vec<Point> = self.hanging.iter().map(at).collect();
+        let found = hang(&triangulation, &places, threads);
+        Ok((found, [built, lap(&mut clock)]))
+    }
+
+    /// Builds the graph of the reference. Vertices outside of it that no cell uses are not part of what moves.
+    fn hang_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
+        let (mut found, [triangulation, hanging]) = self.find(&self.reference, threads)?;
+        let stays = |i: u32| !is_used[self.hanging[i as usize].index()];
+        let staying: Vec<u32> = found.outside.iter().copied().filter(|&i| stays(i)).collect();
+        found.remove(&staying);
+        let mut i = 0u32..;
+        self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
+        self.update = self.tabulate(&found);
+        self.tets = found.tets.iter().map(|t| t.map(|i| self.nodes.of_graph[i as usize])).collect();
+        let nodes = &self.nodes;
+        self.setup.seconds.triangulation = triangulation;
+        self.setup.seconds.hanging = hanging;
+        self.setup = Setup {
+            driven: nodes.n_driven,
+            sliding: nodes.n_sliding(),
+            layer: nodes.vertices.len() - nodes.n_driven,
+            graph_nodes: self.nodes.of_graph.len(),
+            graph_tets: found.n_tets,
+            holding_tets: found.tets.len(),
+            hanging: self.hanging.len(),
+            outside: found.outside.len(),
+            left: self.reference.len() - nodes.vertices.len() - self.hanging.len(),
+            ..self.setup
+        };
+        Ok(())
+    }
+
+    /// The table for all vertices: nodes hang on themselves, what stays on the node that never moves.
+    fn tabulate(&self, found: &Hanging) -> Update {
+        let never = self.nodes.vertices.len() as u32;
+        let n = self.reference.len();
+        let mut update = Update { nodes: vec![[never; 4]; n], weights: vec![[0.0; 3]; n] };
+        for (node, vertex) in (0..).zip(&self.nodes.vertices) {
+            update.nodes[vertex.index()] = [node; 4];
+        }
+        for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
+            update.nodes[vertex.index()] = found.tets[tet as usize].map(|i| self.nodes.of_graph[i as usize]);
+            update.weights[vertex.index()] = [w[1], w[2], w[3]];
+        }
+        update
+    }
+}
+
+fn lap(clock: &mut Instant) -> f64 {
+    let now = Instant::now();
+    let seconds = (now - *clock).as_secs_f64();
+    *clock = now;
+    seconds
+}
+
+/// Which vertices a volume cell uses.
+fn used_by_volume(mesh: &Mesh) -> Vec<bool> {
+    let mut is_used = vec![false; mesh.points.len()];
+    let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
+    volumes.flat_map(|(_, _, vertices)| vertices).for_each(|v| is_used[v.index()] = true);
+    is_used
+}
+
+fn check_input(mesh: &Mesh, boundary: &Boundary, options: &Options) -> Result<()> {
+    if boundary.is_empty() {
+        let what = match mesh.cells.dim() {
+            Some(3) => "the volume cells have no boundary that could be moved".into(),
+            dim => format!("volume cells are needed, but the cells have dimension {}", dim.unwrap_or(0)),
+        };
+        return Err(
+            Error::input(what).remedy("give a volume mesh; `motet mesh` makes one from a closed surface")
+        );
+    }
+    let named = options.also_moved.iter().chain(options.sliding.iter().flat_map(|s| &s.vertices));
+    if let Some(v) = named.clone().find(|v| v.index() >= mesh.points.len()) {
+        return Err(Error::input(format!(
+            "vertex {v} is to be moved, but there are {} points",
+            mesh.points.len()
+        )));
+    }
+    let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
+    let needed = volumes.flat_map(|(_, _, vertices)| vertices).chain(named);
+    match needed.copied().find(|v| !mesh.points[v.index()].iter().all(|x| x.is_finite())) {
+        None => Ok(()),
+        Some(v) => Err(Error::input(format!("has no finite place: {:?}", mesh.points[v.index()]))
+            .at(format!("vertex {v}"))
+            .remedy("repair the coordinates in the file")),
+    }
+}
+
+/// `(to - from) / dt` for every vertex: the velocity of the mesh, by backward difference.
+///
+/// # Errors
+/// When the lengths differ, or `dt` is not a positive number.
+pub fn mesh_velocity(from: &[Point], to: &[Point], dt: f64) -> Result<Vec<Point>> {
+    if from.len() != to.len() {
+        return Err(Error::input(format!("{} points before, {} after", from.len(), to.len())));
+    }
+    if !(dt > 0.0 && dt.is_finite()) {
+        return Err(
+            Error::options(format!("a time step of {dt} gives no velocity")).remedy("give a positive one")
+        );
+    }
+    Ok(from.iter().zip(to).map(|(&a, &b)| sub(b, a).map(|x| x / dt)).collect())
+}

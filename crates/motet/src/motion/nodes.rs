@@ -1,0 +1,136 @@
+//! The nodes: vertices that something else than the graph moves. The caller, a wall, a rim.
+
+use std::collections::HashSet;
+
+use crate::base::{Point, Result, Threads, VertexId};
+use crate::geometry::vector::add;
+use crate::mesh::{Boundary, Mesh};
+use crate::motion::layer::Layer;
+use crate::motion::options::{FacetSet, Options, RigidLayer};
+use crate::motion::slide::{Slide, free_vertices, key};
+use crate::motion::update::{Padded, padded, unpadded};
+
+/// All nodes of a mesh, and what moves them.
+#[derive(Debug, Default)]
+pub(crate) struct Nodes {
+    /// The vertex of each node: driven ones first, then those of the layer.
+    pub(crate) vertices: Vec<VertexId>,
+    pub(crate) n_driven: usize,
+    /// Nodes that the graph is made of: driven ones, and the outer ones of the layer.
+    pub(crate) of_graph: Vec<u32>,
+    layer: Option<Layer>,
+    /// For each member of the layer its node.
+    member_nodes: Vec<u32>,
+    /// For members that slide, the patch.
+    member_slides: Vec<Option<u32>>,
+    slides: Vec<Slide>,
+}
+
+/// Says that a vertex is no node.
+const NONE: u32 = u32::MAX;
+
+impl Nodes {
+    pub(crate) fn new(
+        mesh: &Mesh,
+        boundary: &Boundary,
+        options: &Options,
+        is_used: &[bool],
+        threads: &Threads,
+    ) -> Result<Self> {
+        let mut vertices: Vec<VertexId> =
+            boundary.vertices.iter().chain(&options.also_moved).copied().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let n_driven = vertices.len();
+        let mut nodes =
+            Self { n_driven, vertices, of_graph: (0..n_driven as u32).collect(), ..Self::default() };
+        if options.rigid_layer.is_none() && options.sliding.is_empty() {
+            return Ok(nodes);
+        }
+        let mut node_of = vec![NONE; mesh.points.len()];
+        (0..).zip(&nodes.vertices).for_each(|(i, v)| node_of[v.index()] = i);
+        let free = free_vertices(&options.sliding, boundary, mesh.points.len());
+        let mut slide_of = vec![None; mesh.points.len()];
+        for (i, list) in (0..).zip(&free) {
+            list.iter().for_each(|v| slide_of[v.index()] = Some(i));
+        }
+        if let Some(rigid) = &options.rigid_layer {
+            let all = rigid.wall.is_none().then(|| not_sliding(boundary, &options.sliding));
+            let wall = rigid.wall.as_ref().or(all.as_ref()).expect("one of the two is there");
+            nodes.add_layer(mesh, rigid, wall, is_used, &node_of, &slide_of)?;
+        }
+        let mut in_layer = vec![false; mesh.points.len()];
+        nodes.layer.iter().flat_map(|l| &l.members).for_each(|m| in_layer[m.vertex.index()] = true);
+        for (set, free) in options.sliding.iter().zip(free) {
+            let follow: Vec<VertexId> = free.into_iter().filter(|v| !in_layer[v.index()]).collect();
+            nodes.slides.push(Slide::new(&mesh.points, set, &follow, |v| node_of[v.index()], threads)?);
+        }
+        Ok(nodes)
+    }
+
+    /// Makes nodes of the vertices near the wall, as far as they are not driven; those of them
+    /// that slide are driven in name only, and move with the wall, too.
+    fn add_layer(
+        &mut self,
+        mesh: &Mesh,
+        rigid: &RigidLayer,
+        wall: &FacetSet,
+        is_used: &[bool],
+        node_of: &[u32],
+        slide_of: &[Option<u32>],
+    ) -> Result<()> {
+        let is_driven = |v: VertexId| node_of[v.index()] != NONE;
+        let can_join = |v: &VertexId| slide_of[v.index()].is_some() || (is_used[v.index()] && !is_driven(*v));
+        let candidates: Vec<VertexId> = (0..mesh.points.len()).map(VertexId::new).filter(can_join).collect();
+        let node = |v: VertexId| Some(node_of[v.index()]).filter(|&n| n != NONE);
+        let layer = Layer::new(&mesh.points, &mesh.cells, wall, rigid.extent, &candidates, node)?;
+        let is_outer = layer.outer(&mesh.cells, is_driven, mesh.points.len());
+        for (member, is_outer) in layer.members.iter().zip(is_outer) {
+            let new = self.vertices.len() as u32;
+            self.member_slides.push(slide_of[member.vertex.index()]);
+            self.member_nodes.push(node(member.vertex).unwrap_or(new));
+            if !is_driven(member.vertex) {
+                self.vertices.push(member.vertex);
+                self.of_graph.extend(is_outer.then_some(new));
+            }
+        }
+        self.layer = Some(layer);
+        Ok(())
+    }
+
+    /// Displacements of all nodes, and of one more that never moves, from those of the driven ones.
+    pub(crate) fn displacements(&self, driven: &[Point]) -> Vec<Padded> {
+        let mut all = vec![[0.0; 4]; self.vertices.len() + 1];
+        all.iter_mut().zip(driven).for_each(|(all, &d)| *all = padded(d));
+        if let Some(layer) = &self.layer {
+            let kinds = self.member_nodes.iter().zip(&self.member_slides);
+            for (moved, (&node, slide)) in layer.displacements(driven).zip(kinds) {
+                all[node as usize] = padded(match slide {
+                    Some(slide) => moved.in_plane(self.slides[*slide as usize].normal),
+                    None => moved.total(),
+                });
+            }
+        }
+        self.slides.iter().for_each(|slide| slide.apply(&mut all));
+        all
+    }
+
+    pub(crate) fn n_sliding(&self) -> usize {
+        let members = self.member_slides.iter().filter(|s| s.is_some()).count();
+        members + self.slides.iter().map(Slide::n_sliding).sum::<usize>()
+    }
+
+    /// Puts every node to exactly where it belongs.
+    pub(crate) fn place(&self, reference: &[Point], displacement: &[Padded], out: &mut [Point]) {
+        for (v, &d) in self.vertices.iter().zip(displacement) {
+            out[v.index()] = add(reference[v.index()], unpadded(d));
+        }
+    }
+}
+
+/// The boundary without the facets of sliding patches.
+fn not_sliding(boundary: &Boundary, sliding: &[FacetSet]) -> FacetSet {
+    let keys: HashSet<_> = sliding.iter().flat_map(|s| s.rings.iter().map(key)).collect();
+    let rings = FacetSet::of_boundary(boundary, "", |_| true).rings;
+    FacetSet::of_boundary(boundary, "boundary", |i| !keys.contains(&key(rings.list(i))))
+}

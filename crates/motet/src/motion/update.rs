@@ -1,0 +1,181 @@
+//! The step itself: one weighted sum of four displacements for every vertex.
+//!
+//! It has to run at the speed of memory, so the layout is what counts. Every vertex
+//! of the mesh, in the caller's order, holds four nodes (16 bytes) and three weights
+//! (24): the first weight is what they leave of 1. With the place it starts from and
+//! the place it goes to that makes 88 bytes a vertex, in four streams; the nodes'
+//! displacements stay in the cache. Measured against it: nodes looked up through the
+//! number of a tet move 76 bytes but take a third longer (one more load that has to
+//! wait), vertices sorted by tet need their results scattered.
+//!
+//! A vertex that is a node itself holds that node four times, and so gets exactly its
+//! displacement: no branch, no second pass. Every vertex is for itself: results do not
+//! depend on the number of threads.
+
+use pulp::{NullaryFnOnce, f64x4};
+use rayon::prelude::*;
+
+use crate::base::{Point, Threads};
+
+/// A displacement and a fourth number that means nothing: four load at once.
+pub(crate) type Padded = [f64; 4];
+
+pub(crate) fn padded([x, y, z]: Point) -> Padded {
+    [x, y, z, 0.0]
+}
+
+pub(crate) fn unpadded([x, y, z, _]: Padded) -> Point {
+    [x, y, z]
+}
+
+/// On what each vertex hangs.
+#[derive(Debug, Default)]
+pub(crate) struct Update {
+    /// Four nodes for each vertex.
+    pub(crate) nodes: Vec<[u32; 4]>,
+    /// The weights of the last three of them.
+    pub(crate) weights: Vec<[f64; 3]>,
+}
+
+/// Below this a second thread takes longer to wake than to do its part.
+const SMALLEST: usize = 2048;
+
+impl Update {
+    /// `out = from + sum w_i d_i`, where `displacement` has an entry for each node.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacement: &[Padded],
+        out: &mut [Point],
+        threads: &Threads,
+    ) {
+        let displacement: &[f64x4] = bytemuck::cast_slice(displacement);
+        let some = |start: usize, out: &mut [Point]| {
+            let vertices = start..start + out.len();
+            let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
+            add_means(&from[vertices], nodes, weights, displacement, out);
+        };
+        // Two parts a thread: one that is held up can leave the second to another.
+        let part = out.len().div_ceil(2 * threads.count()).max(SMALLEST);
+        match threads.pool().filter(|_| part < out.len()) {
+            None => some(0, out),
+            Some(pool) => pool.install(|| {
+                out.par_chunks_mut(part).enumerate().for_each(|(i, out)| some(i * part, out));
+            }),
+        }
+    }
+
+    /// The nodes that vertex `v` follows, and their weights.
+    pub(crate) fn of(&self, v: usize) -> ([u32; 4], [f64; 4]) {
+        let [b, c, d] = self.weights[v];
+        (self.nodes[v], [1.0 - b - c - d, b, c, d])
+    }
+}
+
+/// The loop. With four numbers to an instruction it runs 1.5 times as fast as with two,
+/// and gives the same bits: products are not fused with sums.
+fn add_means(
+    from: &[Point],
+    nodes: &[[u32; 4]],
+    weights: &[[f64; 3]],
+    displacement: &[f64x4],
+    out: &mut [Point],
+) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = pulp::x86::V3::try_new() {
+        return simd.vectorize(Each { sum: Wide(simd), from, nodes, weights, displacement, out });
+    }
+    Each { sum: Plain, from, nodes, weights, displacement, out }.call();
+}
+
+/// How `sum w_i d_i` is computed. A trait, since a closure is not sure to be compiled
+/// into the loop for which the wide instructions are switched on (without it: 20 times
+/// slower).
+trait Sum: Copy {
+    fn sum(self, w: [f64; 4], d: [f64x4; 4]) -> f64x4;
+}
+
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy)]
+struct Wide(pulp::x86::V3);
+
+#[cfg(target_arch = "x86_64")]
+impl Sum for Wide {
+    #[inline(always)]
+    fn sum(self, w: [f64; 4], d: [f64x4; 4]) -> f64x4 {
+        let simd = self.0;
+        let left = simd.add_f64x4(
+            simd.mul_f64x4(simd.splat_f64x4(w[0]), d[0]),
+            simd.mul_f64x4(simd.splat_f64x4(w[1]), d[1]),
+        );
+        let right = simd.add_f64x4(
+            simd.mul_f64x4(simd.splat_f64x4(w[2]), d[2]),
+            simd.mul_f64x4(simd.splat_f64x4(w[3]), d[3]),
+        );
+        simd.add_f64x4(left, right)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Plain;
+
+impl Sum for Plain {
+    #[inline(always)]
+    fn sum(self, w: [f64; 4], d: [f64x4; 4]) -> f64x4 {
+        let [a, b, c, d] = d;
+        f64x4(
+            (w[0] * a.0 + w[1] * b.0) + (w[2] * c.0 + w[3] * d.0),
+            (w[0] * a.1 + w[1] * b.1) + (w[2] * c.1 + w[3] * d.1),
+            (w[0] * a.2 + w[1] * b.2) + (w[2] * c.2 + w[3] * d.2),
+            0.0,
+        )
+    }
+}
+
+/// The loop and what it runs over.
+struct Each<'a, S> {
+    sum: S,
+    from: &'a [Point],
+    nodes: &'a [[u32; 4]],
+    weights: &'a [[f64; 3]],
+    displacement: &'a [f64x4],
+    out: &'a mut [Point],
+}
+
+impl<S: Sum> NullaryFnOnce for Each<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let places = self.out.iter_mut().zip(self.from).zip(self.nodes).zip(self.weights);
+        for (((out, from), &[i, j, k, l]), &[b, c, d]) in places {
+            let of = self.displacement;
+            let four = [of[i as usize], of[j as usize], of[k as usize], of[l as usize]];
+            let f64x4(x, y, z, _) = self.sum.sum([1.0 - b - c - d, b, c, d], four);
+            *out = [from[0] + x, from[1] + y, from[2] + z];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_and_plain_instructions_give_the_same_bits() {
+        let number = |i: usize| ((i * 7919 + 13) % 1009) as f64 / 1009.0 - 0.5;
+        let point = |i: usize| [number(3 * i), number(3 * i + 1), number(3 * i + 2)];
+        let n = 1000;
+        let from: Vec<Point> = (0..n).map(point).collect();
+        let displacement: Vec<f64x4> =
+            (0..50).map(|i| f64x4(number(i), number(i + 7), 1e3 * number(i + 9), 0.0)).collect();
+        let nodes: Vec<[u32; 4]> = (0..n as u32).map(|i| [i % 50, (i * 3) % 50, (i * 7) % 50, 49]).collect();
+        let weights: Vec<[f64; 3]> = (0..n).map(|i| point(i).map(|x| (x + 0.5) / 3.0)).collect();
+        let mut wide = vec![[0.0; 3]; n];
+        let mut plain = wide.clone();
+        add_means(&from, &nodes, &weights, &displacement, &mut wide);
+        let (from, nodes, weights, displacement) = (&from[..], &nodes[..], &weights[..], &displacement[..]);
+        Each { sum: Plain, from, nodes, weights, displacement, out: &mut plain }.call();
+        assert_eq!(wide, plain);
+    }
+}
