@@ -49,7 +49,8 @@ def run(record, options):
                        *[memory(results.get(label), n) for label in ("motet 1t", "CGAL 1t", "TetGen")]])
         print(f"  {name}: done", file=sys.stderr, flush=True)
     print("\n## Delaunay tetrahedralisation of bare points\n")
-    print(f"Seconds, medians over {options.rounds} rounds in turn. CGAL/motet above 1: motet is faster.\n")
+    print(f"Seconds, medians over {options.rounds} rounds in turn; TetGen tells processor seconds. CGAL/motet above 1: motet"
+          " is faster.\n")
     print(table(["set", "points", *labels, "CGAL/motet 1t", "wanted", "CGAL/motet 2t", "motet 1t/2t"], times))
     print("\nTets, and peak memory of the whole program in bytes per point (input included):\n")
     print(table(["set", *[label.removesuffix(" 1t") + " tets" for label in labels if label != "motet 2t"],
