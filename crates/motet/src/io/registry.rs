@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use crate::base::{Error, ErrorKind, Result};
-use crate::io::replace::replace_all;
+use crate::io::replace::{replace_all, replace_with};
 use crate::io::{legacy, vtkxml};
 use crate::mesh::Mesh;
 
@@ -189,12 +189,16 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 /// As [`read`].
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
+    let notes = Notes::default();
+    if let Some(tail) = vtkxml::Tail::of(path) {
+        let mesh = vtkxml::read_tail(&tail, &notes);
+        return Ok((checked(mesh, path)?, notes.into_vec()));
+    }
     let (format, bytes) = if path.is_dir() {
         (folder_format(path)?, Vec::new())
     } else {
         (by_ending(path)?, std::fs::read(path).map_err(|e| Error::io(path, &e))?)
     };
-    let notes = Notes::default();
     let mesh = read_as(format, &Input { path, bytes: &bytes, notes: &notes })?;
     Ok((mesh, notes.into_vec()))
 }
@@ -211,9 +215,13 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     if !format.endings.contains(&"/") {
         refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
     }
-    let told =
-        |e: Error| e.in_file(input.path).remedy("the file is damaged, or was written wrong: write it again");
-    let mesh = read(input).map_err(told)?;
+    checked(read(input), input.path)
+}
+
+/// What a reader returned, found to hold together; errors with the file and a remedy.
+fn checked(mesh: Result<Mesh>, path: &Path) -> Result<Mesh> {
+    let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
+    let mesh = mesh.map_err(told)?;
     mesh.validate().map_err(told)?;
     Ok(mesh)
 }
@@ -244,6 +252,10 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
     };
     mesh.validate()?;
+    if format.endings == vtkxml::VTU.endings {
+        // Straight into the file: large meshes need no second place in memory.
+        return replace_with(path, |sink| vtkxml::write_to(mesh, options, sink));
+    }
     let written = write(mesh, options).map_err(|e| e.in_file(path))?;
     let files = written.files.iter().map(|(ending, bytes)| (with_ending(path, ending), bytes.as_slice()));
     replace_all(&files.collect::<Vec<_>>())?;

@@ -1,6 +1,6 @@
 //! Files that appear whole or not at all: written beside their place, then renamed into it.
 
-use std::io::Write as _;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -31,16 +31,28 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<()> {
     })
 }
 
+/// As [`replace`], with what `write` gives to the file.
+pub(super) fn replace_with<T>(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<T>) -> Result<T> {
+    let mut file = create_beside(path)?;
+    let result = write(&mut file).map_err(|e| e.in_file(path))?;
+    file.persist(path).map_err(|e| Error::io(path, &e.error))?;
+    Ok(result)
+}
+
 fn write_beside(path: &Path, bytes: &[u8]) -> Result<NamedTempFile> {
+    let mut file = create_beside(path)?;
+    file.write_all(bytes).map_err(|e| Error::io(path, &e))?;
+    Ok(file)
+}
+
+fn create_beside(path: &Path) -> Result<NamedTempFile> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".motet-");
     // As any program creates a file: readable for whom the user's umask says.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(|e| Error::io(path, &e))?;
-    file.write_all(bytes).map_err(|e| Error::io(path, &e))?;
-    Ok(file)
+    builder.tempfile_in(folder).map_err(|e| Error::io(path, &e))
 }
 
 #[cfg(test)]

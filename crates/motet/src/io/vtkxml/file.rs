@@ -8,6 +8,7 @@ use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
 use crate::io::vtkxml::payload::{Layout, Payload};
+use crate::io::vtkxml::tail::Tail;
 use crate::io::{Compression, Notes};
 use crate::mesh::{Field, Values};
 
@@ -16,6 +17,8 @@ use crate::mesh::{Field, Values};
 pub(super) struct File<'a> {
     document: Document<'a>,
     pub(super) notes: &'a Notes,
+    /// The appended data, where they are still in the file.
+    tail: Option<&'a Tail>,
     layout: Layout,
     /// Where arrays start in the appended data, in rising order.
     starts: Vec<usize>,
@@ -34,7 +37,12 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         collect_starts(root, &mut starts);
         starts.sort_unstable();
-        Ok(Self { document, notes, layout, starts })
+        Ok(Self { document, notes, tail: None, layout, starts })
+    }
+
+    /// Opens a file whose appended data is read array by array.
+    pub(super) fn open_tail(tail: &'a Tail, notes: &'a Notes) -> Result<Self> {
+        Ok(Self { tail: Some(tail), ..Self::open(&tail.head, notes)? })
     }
 
     /// What the file holds: `UnstructuredGrid`, `PolyData`, `Collection`, ...
@@ -284,19 +292,23 @@ impl<'s, 'a> Array<'s, 'a> {
         let Some(offset) = self.element.count("offset")? else {
             return Err(Error::input("its data are appended, but the offset is missing").remedy(WRITE_AGAIN));
         };
-        let Some(bytes) = appended.bytes.get(offset..) else {
+        let len = self.file.tail.map_or(appended.bytes.len(), |tail| tail.len);
+        if offset > len {
             return Err(Error::input(format!(
-                "its data start at byte {offset} of the appended data, which have {}",
-                appended.bytes.len()
+                "its data start at byte {offset} of the appended data, which have {len}"
             ))
             .remedy("the file is cut off or damaged: copy or write it again"));
-        };
+        }
+        let starts = &self.file.starts;
+        let next = starts.get(starts.partition_point(|&s| s <= offset)).map_or(len, |&s| s.min(len));
+        if let Some(tail) = self.file.tail {
+            return Payload::open_file(tail, offset, next, self.file.layout);
+        }
+        let bytes = &appended.bytes[offset..];
         if !appended.base64 {
             return Payload::open(Cow::Borrowed(bytes), self.file.layout);
         }
-        let starts = &self.file.starts;
-        let next = starts.get(starts.partition_point(|&s| s <= offset)).map(|&s| s - offset);
-        let text = bytes.get(..next.unwrap_or(usize::MAX)).unwrap_or(bytes);
+        let text = &bytes[..next - offset];
         let end = text.iter().position(|&b| b == b'<').unwrap_or(text.len());
         Payload::open_base64(&text[..end], self.file.layout)
     }

@@ -11,6 +11,7 @@
 //! | `document` | the XML as a tree, up to the appended data |
 //! | `payload` | one array's bytes: header and blocks |
 //! | `codec` | zlib, lz4, xz |
+//! | `tail` | large raw data, left in the file until an array is read |
 //! | `file` | the file's layout; arrays as values |
 //! | `polyhedra` | faces of polyhedra, in both layouts |
 //! | `vtu`, `vtp` | the two kinds of meshes |
@@ -22,13 +23,17 @@ mod file;
 mod payload;
 mod pieces;
 mod polyhedra;
+mod tail;
 mod vtp;
 mod vtu;
 mod writer;
 
 use crate::base::{Error, Result};
-use crate::io::registry::{Format, Input};
+use crate::io::registry::{Format, Input, Notes};
 use crate::mesh::Mesh;
+
+pub(super) use tail::Tail;
+pub(super) use vtu::write_to;
 
 /// Unstructured grids: cells of any kind.
 pub(super) const VTU: Format = Format {
@@ -52,10 +57,18 @@ pub(super) const OTHERS: Format = Format {
 
 /// Reads whichever kind of mesh the file says it holds.
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let file = file::File::open(input.bytes, input.notes)?;
+    read_file(&file::File::open(input.bytes, input.notes)?)
+}
+
+/// As [`read`], from a file whose appended data is read array by array.
+pub(super) fn read_tail(tail: &Tail, notes: &Notes) -> Result<Mesh> {
+    read_file(&file::File::open_tail(tail, notes)?)
+}
+
+fn read_file(file: &file::File<'_>) -> Result<Mesh> {
     match file.kind() {
-        "UnstructuredGrid" => vtu::read(&file),
-        "PolyData" => vtp::read(&file),
+        "UnstructuredGrid" => vtu::read(file),
+        "PolyData" => vtp::read(file),
         other => Err(Error::input(format!("the file holds {other}, not a mesh of points and cells"))
             .at("VTKFile")
             .remedy(remedy(other))),

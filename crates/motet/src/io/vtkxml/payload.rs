@@ -17,6 +17,7 @@ use crate::base::{Error, Result};
 use crate::io::Compression;
 use crate::io::scalar::ByteOrder;
 use crate::io::vtkxml::codec::{Unpacker, largest_output};
+use crate::io::vtkxml::tail::Tail;
 
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
@@ -24,6 +25,9 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_padding_mode(DecodePaddingMode::Indifferent)
         .with_decode_allow_trailing_bits(true),
 );
+
+/// Bytes of a file that are converted at a time: they stay in the cache.
+const CHUNK: usize = 256 << 10;
 
 /// How the file lays its binary data down, from the attributes of `VTKFile`.
 #[derive(Clone, Copy, Debug)]
@@ -34,10 +38,18 @@ pub(super) struct Layout {
     pub(super) compression: Compression,
 }
 
+/// Where the bytes of an array are, its header first.
+#[derive(Debug)]
+enum Source<'a> {
+    Memory(Cow<'a, [u8]>),
+    /// Still in the file, from this byte of the appended data on.
+    File(&'a Tail, usize),
+}
+
 /// One array's bytes, its header read and found to be possible.
 #[derive(Debug)]
 pub(super) struct Payload<'a> {
-    bytes: Cow<'a, [u8]>,
+    bytes: Source<'a>,
     compression: Compression,
     /// Where the data starts behind the header.
     start: usize,
@@ -62,9 +74,25 @@ impl<'a> Payload<'a> {
         Self::open(Cow::Owned(decode_base64(text)?), layout)
     }
 
+    /// The array that starts at byte `at` of the appended data, and ends before `end`.
+    pub(super) fn open_file(tail: &'a Tail, at: usize, end: usize, layout: Layout) -> Result<Self> {
+        let in_file = if layout.compression == Compression::None { layout.word } else { end - at };
+        let mut bytes = vec![0; in_file.min(tail.len - at)];
+        tail.read_at(at, &mut bytes)?;
+        if layout.compression != Compression::None {
+            return Self::open_blocks(Cow::Owned(bytes), layout);
+        }
+        let len = Words { bytes: &bytes, layout }.get(0)?;
+        Self::plain(Source::File(tail, at), len, tail.len - at - layout.word, layout)
+    }
+
     fn open_plain(bytes: Cow<'a, [u8]>, layout: Layout) -> Result<Self> {
         let len = Words { bytes: &bytes, layout }.get(0)?;
         let there = bytes.len() - layout.word;
+        Self::plain(Source::Memory(bytes), len, there, layout)
+    }
+
+    fn plain(bytes: Source<'a>, len: usize, there: usize, layout: Layout) -> Result<Self> {
         if len > there {
             return Err(cut_off(format!("its header promises {len} bytes, {there} are there")));
         }
@@ -83,7 +111,7 @@ impl<'a> Payload<'a> {
         let n_blocks = words.get(0)?;
         if n_blocks == 0 {
             return Ok(Self {
-                bytes,
+                bytes: Source::Memory(bytes),
                 compression: layout.compression,
                 start: 0,
                 packed: Vec::new(),
@@ -117,7 +145,7 @@ impl<'a> Payload<'a> {
         if last > block {
             return Err(damaged(format!("its last block has {last} bytes, the others {block}")));
         }
-        Ok(Self { bytes, compression: layout.compression, start, packed, block, len })
+        Ok(Self { bytes: Source::Memory(bytes), compression: layout.compression, start, packed, block, len })
     }
 
     /// How many bytes the array has, unpacked.
@@ -127,8 +155,14 @@ impl<'a> Payload<'a> {
 
     /// Puts the first `out.len()` bytes of the array into `out`; there are as many.
     pub(super) fn read_into(&self, out: &mut [u8]) -> Result<()> {
-        let data = &self.bytes[self.start..];
-        if self.compression == Compression::None || out.is_empty() {
+        if out.is_empty() {
+            return Ok(());
+        }
+        let data = match &self.bytes {
+            Source::File(tail, at) => return tail.read_at(at + self.start, out),
+            Source::Memory(bytes) => &bytes[self.start..],
+        };
+        if self.compression == Compression::None {
             out.copy_from_slice(&data[..out.len()]);
             return Ok(());
         }
@@ -148,8 +182,12 @@ impl<'a> Payload<'a> {
 
     /// Calls `each` with all bytes of the array, a block at a time.
     pub(super) fn for_each_block(&self, mut each: impl FnMut(&[u8])) -> Result<()> {
+        let bytes = match &self.bytes {
+            Source::File(tail, at) => return for_each_chunk(tail, at + self.start, self.len, each),
+            Source::Memory(bytes) => bytes,
+        };
         if self.compression == Compression::None {
-            each(&self.to_bytes()?);
+            each(&bytes[self.start..self.start + self.len]);
             return Ok(());
         }
         let mut unpacker = Unpacker::new(self.compression);
@@ -157,7 +195,7 @@ impl<'a> Payload<'a> {
         let (mut from, mut left) = (self.start, self.len);
         for (i, &size) in self.packed.iter().enumerate() {
             let out = &mut unpacked[..self.block.min(left)];
-            self.unpack(&mut unpacker, i, &self.bytes[from..from + size], out)?;
+            self.unpack(&mut unpacker, i, &bytes[from..from + size], out)?;
             each(out);
             from += size;
             left -= out.len();
@@ -172,13 +210,23 @@ impl<'a> Payload<'a> {
 
     /// All bytes of the array.
     pub(super) fn to_bytes(&self) -> Result<Cow<'_, [u8]>> {
-        if self.compression == Compression::None {
-            return Ok(Cow::Borrowed(&self.bytes[self.start..self.start + self.len]));
+        if let (Source::Memory(bytes), Compression::None) = (&self.bytes, self.compression) {
+            return Ok(Cow::Borrowed(&bytes[self.start..self.start + self.len]));
         }
         let mut out = vec![0; self.len];
         self.read_into(&mut out)?;
         Ok(Cow::Owned(out))
     }
+}
+
+fn for_each_chunk(tail: &Tail, start: usize, len: usize, mut each: impl FnMut(&[u8])) -> Result<()> {
+    let mut chunk = vec![0; CHUNK.min(len)];
+    for from in (0..len).step_by(CHUNK) {
+        let chunk = &mut chunk[..CHUNK.min(len - from)];
+        tail.read_at(start + from, chunk)?;
+        each(chunk);
+    }
+    Ok(())
 }
 
 /// The numbers of a header.

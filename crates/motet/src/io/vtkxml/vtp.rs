@@ -156,7 +156,8 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
         writer.close(name);
     }
     writer.close("Piece");
-    let (bytes, mut lost) = writer.finish(KIND)?;
+    let mut bytes = Vec::new();
+    let mut lost = writer.finish(KIND, &mut bytes)?;
     lost.extend(sections.lost.iter().cloned());
     Ok(Written { lost, ..Written::one(bytes) })
 }

@@ -1,5 +1,7 @@
 //! Unstructured grids (`.vtu`): cells of any kind.
 
+use std::io::Write;
+
 use crate::base::{Error, Result, VertexId};
 use crate::io::labels::label_fields;
 use crate::io::surplus::trim;
@@ -98,6 +100,17 @@ fn cells_with_polyhedra(
 }
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let mut bytes = Vec::new();
+    let lost = write_to(mesh, options, &mut bytes)?;
+    Ok(Written { lost, ..Written::one(bytes) })
+}
+
+/// Writes to `sink`; returns what was lost.
+pub(in crate::io) fn write_to(
+    mesh: &Mesh,
+    options: &WriteOptions,
+    sink: &mut dyn Write,
+) -> Result<Vec<String>> {
     let (label_cells, label_names) = label_fields(mesh);
     let mut writer = Writer::new(KIND, options);
     let field_data: Vec<&Field> = mesh.field_data.iter().chain(&label_names).collect();
@@ -125,6 +138,5 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     }
     writer.close("Cells");
     writer.close("Piece");
-    let (bytes, lost) = writer.finish(KIND)?;
-    Ok(Written { lost, ..Written::one(bytes) })
+    writer.finish(KIND, sink)
 }

@@ -1,11 +1,12 @@
 //! Elements and arrays of a VTK XML file, written out.
 
 use std::borrow::Cow;
+use std::io::Write;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use crate::base::{Csr, Point, Result, VertexId};
+use crate::base::{Csr, Error, ErrorKind, Point, Result, VertexId};
 use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Packer, vtk_name};
 use crate::io::{Compression, Encoding, WriteOptions};
@@ -74,6 +75,14 @@ impl Data<'_> {
         })
     }
 
+    /// All bytes, in as few pieces as may be.
+    fn give_to(&self, sink: &mut dyn Write) -> Result<()> {
+        match self.bytes() {
+            Some(bytes) => give(sink, &bytes),
+            None => self.blocks(|_, block| give(sink, block)),
+        }
+    }
+
     fn n_bytes(&self) -> usize {
         match self {
             Self::Ids(ids) => ids.len() * 8,
@@ -81,6 +90,10 @@ impl Data<'_> {
             other => other.bytes().map_or(0, |b| b.len()),
         }
     }
+}
+
+fn give(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
+    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Io, e.to_string()))
 }
 
 /// A file on its way out.
@@ -197,28 +210,46 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Closes everything, and adds the appended arrays.
-    pub(super) fn finish(mut self, kind: &str) -> Result<(Vec<u8>, Vec<String>)> {
+    /// Closes everything, adds the appended arrays, and gives it all to `sink`;
+    /// returns what could not be written as it was.
+    ///
+    /// Arrays that are not packed go to the sink as they are: a copy of a large mesh
+    /// in memory would cost as much time as the writing itself.
+    pub(super) fn finish(mut self, kind: &str, sink: &mut dyn Write) -> Result<Vec<String>> {
         self.close(kind);
-        if !self.appended.is_empty() {
+        let arrays = std::mem::take(&mut self.appended);
+        let any_appended = !arrays.is_empty();
+        let mut unpacked = Vec::new();
+        if any_appended {
             self.line("<AppendedData encoding=\"raw\">");
             self.out.push(b'_');
             let start = self.out.len();
-            if self.compression == Compression::None {
-                self.out.reserve_exact(
-                    self.appended.iter().map(|(_, data)| data.n_bytes() + 8).sum::<usize>() + 64,
-                );
-            }
-            for (offset_at, data) in std::mem::take(&mut self.appended) {
-                let offset = format!("{}\"", self.out.len() - start);
+            let mut end = start;
+            for (offset_at, data) in arrays {
+                let offset = format!("{}\"", end - start);
                 self.out[offset_at..offset_at + offset.len()].copy_from_slice(offset.as_bytes());
-                write_raw(&mut self.out, &data, self.compression, &mut self.packer)?;
+                if self.compression == Compression::None {
+                    end += 8 + data.n_bytes();
+                    unpacked.push(data);
+                } else {
+                    write_raw(&mut self.out, &data, self.compression, &mut self.packer)?;
+                    end = self.out.len();
+                }
             }
+        }
+        give(sink, &self.out)?;
+        for data in &unpacked {
+            give(sink, &(data.n_bytes() as u64).to_ne_bytes())?;
+            data.give_to(sink)?;
+        }
+        self.out.clear();
+        if any_appended {
             self.out.push(b'\n');
             self.line("</AppendedData>");
         }
         self.close("VTKFile");
-        Ok((self.out, self.lost))
+        give(sink, &self.out)?;
+        Ok(self.lost)
     }
 
     /// `text` as the value of an attribute.
