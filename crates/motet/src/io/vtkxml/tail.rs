@@ -66,7 +66,8 @@ mod tests {
 
     #[test]
     fn raw_data_starts_behind_the_underscore() {
-        assert_eq!(appended_start(b"<V><AppendedData encoding=\"raw\">\n _xyz"), Some(36));
+        let head = b"<V><AppendedData encoding=\"raw\">\n _xyz";
+        assert_eq!(appended_start(head).map(|start| &head[start..]), Some(b"xyz".as_slice()));
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\">\n _xyz"), None);
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"raw\">\n "), None);
         assert_eq!(appended_start(b"<V></V>"), None);
