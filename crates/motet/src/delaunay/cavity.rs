@@ -6,7 +6,7 @@
 //! and a third of the mispredictions.
 
 use super::conflict::{IN, Newcomer, OUT, PENDING, in_conflict};
-use super::store::{FACETS, Store};
+use super::store::Store;
 use crate::base::Point;
 use pulp::Simd;
 
@@ -59,11 +59,12 @@ impl Cavity {
             self.queue.resize(2 * room, 0);
         }
         let queue = &mut self.queue[..room];
+        let (tets, gauges) = (&store.tets[..], &mut store.gauges[..]);
         let mut queued = 0;
         for &tet in &self.tets[from..] {
-            for link in store.tets[tet as usize].links {
+            for link in tets[tet as usize].links {
                 let neighbor = link >> 2;
-                let seen = &mut store.gauges[neighbor as usize].mark;
+                let seen = &mut gauges[neighbor as usize].mark;
                 queue[queued] = neighbor;
                 queued += usize::from(*seen < mark);
                 *seen = (*seen).max(mark + PENDING);
@@ -93,12 +94,13 @@ impl Cavity {
         if self.facets.len() < room {
             self.facets.resize(room, Facet::default());
         }
+        let (tets, gauges, facets) = (&store.tets[..], &store.gauges[..], &mut self.facets[..]);
         let mut n = 0;
         for &tet in &self.tets {
-            let record = &store.tets[tet as usize];
-            for (corners, outer) in FACETS.iter().zip(record.links) {
-                self.facets[n] = Facet { vertices: corners.map(|j| record.vertices[j]), outer };
-                n += usize::from(store.gauges[(outer >> 2) as usize].mark == out);
+            let record = &tets[tet as usize];
+            for (vertices, outer) in record.facets().into_iter().zip(record.links) {
+                facets[n] = Facet { vertices, outer };
+                n += usize::from(gauges[(outer >> 2) as usize].mark == out);
             }
         }
         self.facets.truncate(n);

@@ -49,19 +49,18 @@ impl Fill {
         new: Newcomer,
     ) -> u32 {
         store.fit(&mut cavity.tets, cavity.facets.len());
-        self.number(&cavity.facets);
-        self.arms.clear();
-        self.arms.extend(self.vertices.iter().map(|&v| Arm::new(sub(points[v as usize], new.point))));
+        let n = self.number(&cavity.facets);
+        self.reach(points, n, new.point);
         let parts = Parts {
             store,
             slots: &cavity.tets,
             facets: &cavity.facets,
-            corners: &self.corners,
+            corners: &self.corners[..cavity.facets.len()],
             arms: &self.arms,
             new,
             least: self.least,
         };
-        if self.vertices.len() <= SMALL {
+        if n <= SMALL {
             parts.make(&mut self.matrix)
         } else {
             self.table.clear(3 * cavity.facets.len());
@@ -69,26 +68,37 @@ impl Fill {
         }
     }
 
-    /// Numbers the vertices of the cavity in the order in which they are met.
+    /// Numbers the vertices of the cavity in the order in which they are met; answers how many there are. Plain
+    /// loops over arrays that only grow: iterator chains here were not inlined, and cost a tenth of all instructions.
     #[inline(always)]
-    fn number(&mut self, facets: &[Facet]) {
-        let Self { vertices, place, corners, .. } = self;
-        vertices.clear();
-        vertices.resize(3 * facets.len(), 0);
-        corners.clear();
+    fn number(&mut self, facets: &[Facet]) -> usize {
+        if self.corners.len() < facets.len() {
+            self.corners.resize(2 * facets.len(), [0; 3]);
+            self.vertices.resize(6 * facets.len(), 0);
+            self.arms.resize(6 * facets.len(), Arm::new([0.0; 3]));
+        }
+        // Slices: their addresses stay in registers, a vector's would be read again after every write.
+        let (vertices, place) = (&mut self.vertices[..], &mut self.place[..]);
         let mut n = 0;
-        corners.extend(facets.iter().map(|facet| {
-            facet.vertices.map(|v| {
+        for (corner, facet) in self.corners.iter_mut().zip(facets) {
+            for (local, &v) in corner.iter_mut().zip(&facet.vertices) {
                 let known = place[v as usize];
                 let fresh = known as usize >= n || vertices[known as usize] != v;
-                let local = if fresh { n as u32 } else { known };
-                place[v as usize] = local;
-                vertices[local as usize] = v;
+                *local = if fresh { n as u32 } else { known };
+                place[v as usize] = *local;
+                vertices[*local as usize] = v;
                 n += usize::from(fresh);
-                local
-            })
-        }));
-        vertices.truncate(n);
+            }
+        }
+        n
+    }
+
+    /// The first `n` vertices relative to the newcomer at `origin`.
+    #[inline(always)]
+    fn reach(&mut self, points: &[Point], n: usize, origin: Point) {
+        for (arm, &v) in self.arms[..n].iter_mut().zip(&self.vertices[..n]) {
+            *arm = Arm::new(sub(points[v as usize], origin));
+        }
     }
 }
 
@@ -112,6 +122,7 @@ impl Parts<'_> {
             edges.put(c, a, 4 * slot + 2);
             edges.put(a, b, 4 * slot + 3);
         }
+        let (tets, gauges) = (&mut self.store.tets[..], &mut self.store.gauges[..]);
         let mut last = 0;
         for ((&slot, facet), &[a, b, c]) in self.slots.iter().zip(self.facets).zip(self.corners) {
             let [i, j, k] = facet.vertices;
@@ -123,9 +134,9 @@ impl Parts<'_> {
                 last = slot;
                 of_tet([a, b, c], self.new.mark(), self.least)
             };
-            self.store.tets[slot as usize] = Tet { vertices: [self.new.vertex, i, j, k], links, minors };
-            self.store.gauges[slot as usize] = gauge;
-            self.store.tets[(facet.outer >> 2) as usize].links[(facet.outer & 3) as usize] = 4 * slot;
+            tets[slot as usize] = Tet { vertices: [self.new.vertex, i, j, k], links, minors };
+            gauges[slot as usize] = gauge;
+            tets[(facet.outer >> 2) as usize].links[(facet.outer & 3) as usize] = 4 * slot;
         }
         last
     }

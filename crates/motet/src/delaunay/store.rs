@@ -32,6 +32,13 @@ pub(super) struct Tet {
 impl Tet {
     pub(super) const FREE: Self = Self { vertices: [INFINITY; 4], links: [0; 4], minors: Minors::ZERO };
 
+    /// The vertices of all facets, in the order of [`FACETS`].
+    #[inline(always)]
+    pub(super) fn facets(&self) -> [[u32; 3]; 4] {
+        let [a, b, c, d] = self.vertices;
+        [[b, c, d], [c, a, d], [a, b, d], [a, c, b]]
+    }
+
     #[inline(always)]
     pub(super) fn is_ghost(&self) -> bool {
         self.vertices[3] == INFINITY
