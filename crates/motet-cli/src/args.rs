@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{convert, info};
+use crate::verbs::{convert, demo, info, moving};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -25,6 +25,8 @@ pub(crate) struct Call {
 pub(crate) enum Verb {
     Info(info::InfoArgs),
     Convert(convert::ConvertArgs),
+    Move(Box<moving::MoveArgs>),
+    Demo(demo::DemoArgs),
 }
 
 /// The words that every verb knows.

@@ -4,8 +4,6 @@
 //! here: how the call is read (`args`), how the user is spoken to (`console`,
 //! `table`), how failures become exit statuses (`exit`).
 
-#![allow(dead_code, reason = "the verb that moves meshes comes next")]
-
 mod args;
 mod console;
 mod exit;
@@ -28,6 +26,8 @@ fn main() -> ExitCode {
     let outcome = match call.verb {
         Verb::Info(args) => verbs::info::run(&args, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &console),
+        Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
+        Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
     exit::status(outcome, &console)
 }

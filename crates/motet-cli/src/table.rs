@@ -52,7 +52,7 @@ pub(crate) fn short(x: f64) -> String {
 
 /// A time as it was given, but for rounding.
 pub(crate) fn time(t: f64) -> String {
-    let rounded = (t * 1e9).round() / 1e9;
+    let rounded = (t * 1e6).round() / 1e6;
     if rounded == 0.0 { short(t) } else { rounded.to_string() }
 }
 

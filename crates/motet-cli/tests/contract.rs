@@ -26,7 +26,7 @@ fn a_wrong_call_with_json_is_told_as_an_object() {
 #[test]
 fn help_is_no_failure() {
     let folder = Folder::new();
-    for words in [&["help"][..], &["--help"], &["--version"], &["help", "convert"]] {
+    for words in [&["help"][..], &["--help"], &["--version"], &["help", "convert"], &["move", "--help"]] {
         let call = folder.motet(words).assert().code(0);
         assert_eq!(stderr(&call), "", "{words:?}");
     }

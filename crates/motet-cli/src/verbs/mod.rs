@@ -1,4 +1,6 @@
 //! One file a verb.
 
 pub(crate) mod convert;
+pub(crate) mod demo;
 pub(crate) mod info;
+pub(crate) mod moving;

@@ -1,0 +1,118 @@
+//! The words of `motet move`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args, ValueEnum};
+
+use super::words::{self, LayerWord, PatchFile, Rotate, Translate};
+use crate::verbs::convert::WritingArgs;
+
+/// Move the boundary of a mesh, and let the volume follow
+///
+/// The boundary goes where it is told; every vertex inside follows at the cost of
+/// a weighted sum (Delaunay graph mapping). Boundary vertices that nothing moves stay.
+/// Where the motion would turn a cell inside out, it is done in smaller parts. The
+/// result is certified step by step: worst quality and where, bad and inverted cells.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("motion").required(true).multiple(true)
+    .args(["displacement", "translate", "rotate", "affine"]))]
+#[command(override_usage = "\
+motet move MESH -o OUT --displacement ARRAY|FILE.vtp|FILE.pvd [OPTIONS]
+       motet move MESH -o OUT --translate PATCH=dx,dy,dz --rotate PATCH=ax,ay,az,deg ... [OPTIONS]
+       motet move MESH -o OUT --affine A11,A12,..,A34 [OPTIONS]")]
+#[command(after_help = "\
+PATCH is the name or number of a patch of the mesh (`motet info MESH` lists them), or a NAME that
+--patch gives to a surface file. Lengths are in units of the mesh, angles in degrees.
+
+Examples:
+  A sphere in a box, 0.5 along x in 10 steps, for ParaView:
+    motet move box.vtu -o out/box.pvd --translate sphere=0.5,0,0
+  A vessel wall that follows a series of displaced surfaces, inlet and outlet sliding:
+    motet move lumen.vtu -o out/lumen.pvd --displacement wall.pvd \\
+          --patch inlet=inlet.vtp --patch outlet=outlet.vtp --slide inlet --slide outlet
+  The same, with the thin cells at the wall kept as they are, and velocities for a flow solver:
+    motet move lumen.vtu -o out/lumen.pvd --displacement wall.pvd --rigid-layer 3layers --dt 0.01
+  The displacement array of a solid, boundary values only, in 4 steps, last state:
+    motet move mesh.vtu -o moved.vtu --displacement u --steps 4
+
+Exit status 4: the motion was not reached; what was reached is written.")]
+pub(crate) struct MoveArgs {
+    /// The mesh file (or folder)
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+    /// Where the result goes: a .pvd for a series (OUT_0000.vtu and so on beside it), any mesh
+    /// format for the last state
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// A vector point array of MESH (its values inside are ignored), or a displaced surface, or a
+    /// .pvd series of them (points matched by GlobalNodeID, else by position)
+    #[arg(long, value_name = "ARRAY|FILE", help_heading = "Motion",
+        conflicts_with_all = ["translate", "rotate", "affine"])]
+    pub(crate) displacement: Option<String>,
+    /// How the points of displaced surfaces are found in MESH
+    #[arg(long = "match", value_name = "HOW", default_value = "id", help_heading = "Motion")]
+    pub(crate) matching: Match,
+    /// Shift a patch. Repeatable
+    #[arg(long, value_name = "PATCH=dx,dy,dz", value_parser = words::translate, help_heading = "Motion",
+        conflicts_with = "affine")]
+    pub(crate) translate: Vec<Translate>,
+    /// Turn a patch about an axis; without a centre about the middle of its bounding box. A patch
+    /// that is also shifted is turned first. Beyond some 60 degrees cells become flat. Repeatable
+    #[arg(long, value_name = "PATCH=ax,ay,az,deg[,cx,cy,cz]", value_parser = words::rotate, help_heading = "Motion",
+        conflicts_with = "affine")]
+    pub(crate) rotate: Vec<Rotate>,
+    /// Map the whole boundary by the 3x4 matrix [A|b], row after row: x' = A x + b
+    #[arg(long, value_name = "A11,A12,..,A34", value_parser = words::affine, allow_hyphen_values = true, help_heading = "Motion")]
+    pub(crate) affine: Option<[[f64; 4]; 3]>,
+    /// Parts of equal size in which the motion is done and written [default: 10 for a .pvd, else 1;
+    /// for a series of surfaces one each]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), help_heading = "Motion")]
+    pub(crate) steps: Option<u32>,
+    /// Seconds from one step to the next: adds the point array `velocity`, and times to the series.
+    /// For a series of surfaces its own times count
+    #[arg(long, value_name = "SECONDS", value_parser = words::positive, help_heading = "Motion")]
+    pub(crate) dt: Option<f64>,
+
+    /// Add the cell array `eas` (equi-angle quality of tets: 1 regular, 0 flat, bad below 0.2)
+    #[arg(long, help_heading = "Motion")]
+    pub(crate) quality: bool,
+
+    /// Give a name to the part of the boundary that a surface file holds. Repeatable
+    #[arg(long, value_name = "NAME=FILE", value_parser = words::patch_file, help_heading = "Boundary")]
+    pub(crate) patch: Vec<PatchFile>,
+    /// Keep a patch in place, also where it meets one that moves. Repeatable
+    #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
+    pub(crate) fixed: Vec<String>,
+    /// Let a flat patch slide in its plane, following its rim. Repeatable
+    #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
+    pub(crate) slide: Vec<String>,
+
+    /// How the volume follows
+    #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
+    pub(crate) method: Method,
+    /// Move all within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
+    /// for layers of cells
+    #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]
+    pub(crate) rigid_layer: Option<LayerWord>,
+    /// Patches that have the rigid layer [default: those that move]. Repeatable
+    #[arg(long, value_name = "PATCH", requires = "rigid_layer", help_heading = "Volume")]
+    pub(crate) rigid_layer_at: Vec<String>,
+
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006)
+    Delaunay,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Match {
+    /// By their GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), by position where they have none
+    Id,
+    /// By position: for surfaces whose ids are those of another mesh. The first must lie undisplaced
+    Position,
+}

@@ -1,0 +1,245 @@
+//! `motet move`: boundary displacement in, volume mesh or series out.
+
+mod args;
+mod patches;
+mod plan;
+mod report;
+mod words;
+
+use std::path::Path;
+use std::time::Instant;
+
+use motet::base::{Point, Threads};
+use motet::geometry::quality::eas;
+use motet::io::{self, SeriesWriter, WriteOptions};
+use motet::mesh::{Boundary, Field};
+use motet::motion::{Certificate, Extent, FacetSet, Mover, Options, RigidLayer, mesh_velocity};
+use motet::{Error, Mesh};
+
+pub(crate) use args::MoveArgs;
+
+use self::args::Method;
+use self::patches::Patches;
+use self::plan::{Plan, is_series};
+use self::report::{Report, Step};
+use self::words::LayerWord;
+use crate::args::Common;
+use crate::console::Console;
+use crate::exit::Outcome;
+
+pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+    let begin = Instant::now();
+    check_output(args)?;
+    let Method::Delaunay = args.method;
+    let threads = common.threads()?;
+    let (mesh, notes) = io::read_noted(&args.mesh)?;
+    notes.iter().for_each(|note| console.warn(note));
+    let mut report = Report::new(args, &mesh);
+    report.seconds.read = begin.elapsed().as_secs_f64();
+
+    let boundary = Boundary::of(&mesh.cells);
+    if boundary.is_empty() {
+        return Err(Error::input("has no volume cells, and `move` moves the inside of a volume")
+            .in_file(&args.mesh)
+            .remedy("give a mesh of tetrahedra or other volume cells"));
+    }
+    let patches = Patches::new(&mesh, &args.patch)?;
+    let mut plan = Plan::new(&mesh, &boundary.vertices, &patches, args, console)?;
+    let options = options(args, &boundary, &patches, &plan)?;
+    let setup = Instant::now();
+    let mut mover = Mover::new(&mesh, &options, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    report.seconds.setup = setup.elapsed().as_secs_f64();
+    report.begin(&mover, &threads);
+    report.warn(console);
+
+    let mut sink = Sink::new(args, &mesh);
+    let all_done = frames(&mut plan, &mut mover, &mut sink, &mut report, &threads, console)?;
+    report.end(sink.moved(), begin.elapsed().as_secs_f64());
+    report.tell(console);
+    Ok(if all_done { Outcome::Done } else { Outcome::NotReached })
+}
+
+/// Refuses, before any work, an output that cannot be written or that would overwrite the motion.
+fn check_output(args: &MoveArgs) -> motet::Result<()> {
+    let frame = args.output.with_extension("vtu");
+    io::can_write(if is_series(&args.output) { &frame } else { &args.output })?;
+    let same =
+        |a: &Path| a.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b));
+    match args.displacement.as_ref().is_some_and(|word| same(Path::new(word))) {
+        true => Err(Error::options("the result would overwrite the motion it is made from")
+            .in_file(&args.output)
+            .remedy("give --output another name")),
+        false => Ok(()),
+    }
+}
+
+fn options(
+    args: &MoveArgs,
+    boundary: &Boundary,
+    patches: &Patches<'_>,
+    plan: &Plan<'_>,
+) -> motet::Result<Options> {
+    let sliding = args.slide.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
+    let inside = plan.nodes.iter().filter(|v| boundary.vertices.binary_search(v).is_err());
+    let rigid_layer = match args.rigid_layer {
+        None => None,
+        Some(word) => {
+            let extent = match word {
+                LayerWord::Distance(d) => Extent::Distance(d),
+                LayerWord::Cells(n) => Extent::Cells(n),
+            };
+            Some(RigidLayer { extent, wall: Some(wall(args, boundary, patches, plan, &sliding)?) })
+        }
+    };
+    Ok(Options { also_moved: inside.copied().collect(), rigid_layer, sliding, ..Options::default() })
+}
+
+/// The facets that have the rigid layer: of the patches named, else all that move and do not slide.
+fn wall(
+    args: &MoveArgs,
+    boundary: &Boundary,
+    patches: &Patches<'_>,
+    plan: &Plan<'_>,
+    sliding: &[FacetSet],
+) -> motet::Result<FacetSet> {
+    if args.rigid_layer_at.is_empty() {
+        let within = |all: &[motet::base::VertexId], facet: usize| {
+            boundary.facets.list(facet).iter().all(|v| all.binary_search(v).is_ok())
+        };
+        return Ok(FacetSet::of_boundary(boundary, "the moving boundary", |i| {
+            within(&plan.moving, i) && !sliding.iter().any(|slide| within(&slide.vertices, i))
+        }));
+    }
+    let mut all = FacetSet { name: args.rigid_layer_at.join(", "), ..FacetSet::default() };
+    for word in &args.rigid_layer_at {
+        let patch = patches.find(word)?;
+        patch.rings.iter().for_each(|ring| all.rings.push(ring.iter().copied()));
+        all.vertices.extend(patch.vertices);
+    }
+    all.vertices.sort_unstable();
+    all.vertices.dedup();
+    Ok(all)
+}
+
+/// Goes through the frames; `false` where one was not reached, which is the last one then.
+fn frames(
+    plan: &mut Plan<'_>,
+    mover: &mut Mover,
+    sink: &mut Sink<'_>,
+    report: &mut Report,
+    threads: &Threads,
+    console: &Console,
+) -> motet::Result<bool> {
+    let n = plan.times.len();
+    let bar = console.bar((n - plan.first) as u64, "moving");
+    let mut points = mover.reference().to_vec();
+    let mut before = (plan.times.first().copied().unwrap_or_default(), points.clone());
+    for k in plan.first..n {
+        let displacements = plan.displacements(k)?;
+        let certificate = mover.advance(&displacements, &mut points, threads)?;
+        let time = before.0 + (plan.times[k] - before.0) * certificate.fraction;
+        let is_last = k + 1 == n || !certificate.complete;
+        let velocity = if plan.timed { Some(velocity(&before, time, &points)?) } else { None };
+        let writing = Instant::now();
+        let file = sink.take(time, &points, velocity, is_last)?;
+        report.seconds.write += writing.elapsed().as_secs_f64();
+        if let Some(file) = &file {
+            console.detail(format_args!("wrote {}", file.display()));
+        }
+        report.seconds.moving += certificate.seconds.total;
+        report.step(Step { step: k, time, file, certificate: certificate.clone() });
+        before = (time, points.clone());
+        bar.inc(1);
+        if !certificate.complete {
+            bar.finish_and_clear();
+            return Ok(false);
+        }
+    }
+    bar.finish_and_clear();
+    sink.lost.iter().for_each(|what| console.warn(what));
+    Ok(true)
+}
+
+/// By backward difference; none in the first frame, where nothing is behind.
+fn velocity(before: &(f64, Vec<Point>), time: f64, points: &[Point]) -> motet::Result<Vec<Point>> {
+    if time > before.0 {
+        mesh_velocity(&before.1, points, time - before.0)
+    } else {
+        Ok(vec![[0.0; 3]; points.len()])
+    }
+}
+
+/// Where frames go: each into a series, or the last into one file.
+struct Sink<'a> {
+    path: &'a Path,
+    options: WriteOptions,
+    reference: &'a Mesh,
+    /// The mesh as it is written, everything of the input kept.
+    mesh: Mesh,
+    series: Option<SeriesWriter>,
+    with_quality: bool,
+    lost: Vec<String>,
+}
+
+impl<'a> Sink<'a> {
+    fn new(args: &'a MoveArgs, reference: &'a Mesh) -> Self {
+        let (path, options) = (args.output.as_path(), args.writing.options());
+        let series = is_series(path).then(|| SeriesWriter::new(path, options.clone()));
+        Self {
+            path,
+            options,
+            reference,
+            mesh: reference.clone(),
+            series,
+            with_quality: args.quality,
+            lost: Vec::new(),
+        }
+    }
+
+    /// Takes a frame, and returns its file where it was written.
+    fn take(
+        &mut self,
+        time: f64,
+        points: &[Point],
+        velocity: Option<Vec<Point>>,
+        is_last: bool,
+    ) -> motet::Result<Option<std::path::PathBuf>> {
+        if self.series.is_none() && !is_last {
+            return Ok(None);
+        }
+        let pairs = points.iter().zip(&self.reference.points);
+        let displacement: Vec<Point> = pairs.map(|(a, b)| [0, 1, 2].map(|i| a[i] - b[i])).collect();
+        self.mesh.points.copy_from_slice(points);
+        self.mesh.set_point_field(Field::vectors("displacement", &displacement));
+        if let Some(velocity) = velocity {
+            self.mesh.set_point_field(Field::vectors("velocity", &velocity));
+        }
+        if self.with_quality {
+            self.mesh.set_cell_field(self.mesh.tet_field("eas", eas));
+        }
+        match &mut self.series {
+            None => {
+                self.lost = io::write(self.path, &self.mesh, &self.options)?;
+                Ok(Some(self.path.to_owned()))
+            }
+            Some(series) => {
+                let (file, lost) = series.add(time, &self.mesh)?;
+                self.lost = lost;
+                Ok(Some(file))
+            }
+        }
+    }
+
+    /// How many vertices are not where they were.
+    fn moved(&self) -> usize {
+        self.mesh.points.iter().zip(&self.reference.points).filter(|(a, b)| a != b).count()
+    }
+}
+
+/// What a certificate says of inverted cells, those that came so apart.
+pub(crate) fn inverted(certificate: &Certificate) -> String {
+    match certificate.inverted_before {
+        0 => certificate.inverted.to_string(),
+        before => format!("{} ({before} at first)", certificate.inverted),
+    }
+}

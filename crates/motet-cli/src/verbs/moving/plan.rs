@@ -1,0 +1,254 @@
+//! The asked motion as a list of frames: a time each, and where the boundary is then.
+
+use std::path::{Path, PathBuf};
+
+use motet::base::{Point, VertexId};
+use motet::geometry::vector::{distance, norm};
+use motet::mesh::bounds;
+use motet::motion::{BoundaryMotion, Matching, Prescribed, SurfaceMotion};
+use motet::{Error, Mesh, io};
+
+use super::args::{Match, MoveArgs};
+use super::patches::Patches;
+use crate::console::Console;
+use crate::table::short;
+
+/// Steps in which a motion is done for a series, where the call does not say.
+const SERIES_STEPS: u32 = 10;
+
+/// The frames of a motion, in order.
+pub(crate) struct Plan<'a> {
+    mesh: &'a Mesh,
+    /// The vertices that displacements are given for, rising: the boundary, and
+    /// vertices inside that the call names.
+    pub(crate) nodes: Vec<VertexId>,
+    /// Those of them that move: where a rigid layer goes.
+    pub(crate) moving: Vec<VertexId>,
+    /// When each frame is.
+    pub(crate) times: Vec<f64>,
+    /// The first frame that is asked for: a mesh alone needs none of how it came.
+    pub(crate) first: usize,
+    /// Whether the times are those of the world, so that there are velocities.
+    pub(crate) timed: bool,
+    fixed: Vec<VertexId>,
+    source: Source<'a>,
+}
+
+/// Where the frames come from.
+enum Source<'a> {
+    /// Parts of one motion, beginning with none of it.
+    Parts(BoundaryMotion),
+    /// A surface for each frame.
+    Surfaces { motion: SurfaceMotion<'a>, files: Vec<PathBuf> },
+}
+
+impl<'a> Plan<'a> {
+    pub(crate) fn new(
+        mesh: &'a Mesh,
+        boundary: &'a [VertexId],
+        patches: &Patches<'_>,
+        args: &MoveArgs,
+        console: &Console,
+    ) -> motet::Result<Self> {
+        let mut fixed = Vec::new();
+        for word in &args.fixed {
+            fixed.extend(patches.find(word)?.vertices);
+        }
+        let asked = Asked { mesh, boundary, fixed, args, console };
+        let Some(word) = &args.displacement else { return asked.words(patches) };
+        match Path::new(word) {
+            pvd if pvd.exists() && is_series(pvd) => asked.series(pvd),
+            surface if surface.exists() => asked.surface(surface),
+            _ => asked.array(word),
+        }
+    }
+
+    /// The displacement of each node in frame `k`. Frames are to be asked for in order.
+    pub(crate) fn displacements(&mut self, k: usize) -> motet::Result<Vec<Point>> {
+        let points = &self.mesh.points;
+        match &mut self.source {
+            Source::Parts(motion) => {
+                let parts = (self.times.len() - 1).max(1);
+                Ok(motion.displacements(points, k as f64 / parts as f64))
+            }
+            Source::Surfaces { motion, files } => {
+                let surface = io::read(&files[k])?;
+                let moved = motion.next(&surface).map_err(|e| e.in_file(&files[k]))?;
+                let mut all = BoundaryMotion::still(&self.nodes);
+                all.hold(&self.fixed);
+                all.go(&moved);
+                Ok(all.displacements(points, 1.0))
+            }
+        }
+    }
+}
+
+/// What the call asks for, on its way to a plan.
+struct Asked<'a, 'c> {
+    mesh: &'a Mesh,
+    boundary: &'a [VertexId],
+    fixed: Vec<VertexId>,
+    args: &'c MoveArgs,
+    console: &'c Console,
+}
+
+impl<'a> Asked<'a, '_> {
+    /// `--displacement FILE.pvd`
+    fn series(self, pvd: &Path) -> motet::Result<Plan<'a>> {
+        if self.args.steps.is_some() {
+            return Err(Error::options("--steps goes with one motion, not with a series of surfaces")
+                .remedy("leave --steps away: each surface is a step"));
+        }
+        let frames = io::read_series(pvd)?;
+        let moved = self.read_surface(&frames[0].1)?;
+        let mut motion = self.still(moved.iter().map(|(v, _)| *v));
+        motion.go(&moved);
+        let (own_times, files): (Vec<f64>, Vec<PathBuf>) = frames.into_iter().unzip();
+        let times = match self.args.dt {
+            Some(dt) => (0..files.len()).map(|k| k as f64 * dt).collect(),
+            None => own_times,
+        };
+        let timed = times.is_sorted_by(|a, b| a < b);
+        if !timed {
+            self.console.warn(format_args!("{}: its times do not rise: no velocities", pvd.display()));
+        }
+        let (nodes, moving) = (motion.vertices().to_vec(), motion.told());
+        let source = Source::Surfaces { motion: SurfaceMotion::new(self.mesh, self.matching()), files };
+        Ok(Plan { mesh: self.mesh, nodes, moving, times, first: 0, timed, fixed: self.fixed, source })
+    }
+
+    /// `--displacement FILE`
+    fn surface(self, file: &Path) -> motet::Result<Plan<'a>> {
+        let moved = self.read_surface(file)?;
+        let mut motion = self.still(moved.iter().map(|(v, _)| *v));
+        motion.go(&moved);
+        Ok(self.parts(motion))
+    }
+
+    fn read_surface(&self, file: &Path) -> motet::Result<Vec<(VertexId, Point)>> {
+        let surface = io::read(file)?;
+        let moved =
+            SurfaceMotion::new(self.mesh, self.matching()).next(&surface).map_err(|e| e.in_file(file))?;
+        let farthest = moved.iter().map(|(_, d)| norm(*d)).fold(0.0, f64::max);
+        let size = self.mesh.bounds().map_or(0.0, |[low, high]| distance(low, high));
+        if farthest > 0.5 * size {
+            self.console.warn(format_args!(
+                "{}: moves a vertex by {}, while the whole mesh measures {}; if its ids are those of another mesh, \
+                 use --match position",
+                file.display(),
+                short(farthest),
+                short(size)
+            ));
+        }
+        Ok(moved)
+    }
+
+    fn matching(&self) -> Matching {
+        match self.args.matching {
+            Match::Id => Matching::Id,
+            Match::Position => Matching::Position,
+        }
+    }
+
+    /// `--displacement ARRAY`: its values on the boundary.
+    fn array(self, word: &str) -> motet::Result<Plan<'a>> {
+        let Some(field) = self.mesh.point_field(word) else {
+            let vectors = self.mesh.point_data.iter().filter(|f| f.components == 3);
+            let names: Vec<&str> = vectors.map(|f| f.name.as_str()).collect();
+            let has = if names.is_empty() { "none".into() } else { names.join(", ") };
+            return Err(Error::options("neither a file nor a point array of the mesh")
+                .at(format!("--displacement {word}"))
+                .remedy(format!("vector point arrays of the mesh: {has}")));
+        };
+        let rows = field.to_vectors().map_err(|e| e.in_file(&self.args.mesh))?;
+        let bad = self.boundary.iter().find(|v| rows[v.index()].iter().any(|x| !x.is_finite()));
+        if let Some(v) = bad {
+            return Err(Error::input("a displacement that is no finite number")
+                .at(format!("array {word}, point {v}"))
+                .in_file(&self.args.mesh));
+        }
+        let moved: Vec<_> = self.boundary.iter().map(|&v| (v, rows[v.index()])).collect();
+        let mut motion = self.still([]);
+        motion.go(&moved);
+        Ok(self.parts(motion))
+    }
+
+    /// `--affine`, `--rotate` and `--translate`
+    fn words(self, patches: &Patches<'_>) -> motet::Result<Plan<'a>> {
+        if let Some(rows) = self.args.affine {
+            let mut motion = self.still([]);
+            motion.follow(self.boundary, Prescribed::Affine(rows))?;
+            return Ok(self.parts(motion));
+        }
+        let turned = self.args.rotate.iter().map(|turn| &turn.patch);
+        let mut words: Vec<&str> = Vec::new();
+        for word in turned.chain(self.args.translate.iter().map(|shift| &shift.patch)) {
+            if !words.contains(&word.as_str()) {
+                words.push(word);
+            }
+        }
+        let all = words.iter().map(|word| Ok((*word, patches.find(word)?.vertices)));
+        let all = all.collect::<motet::Result<Vec<_>>>()?;
+        let mut motion = self.still(all.iter().flat_map(|(_, vertices)| vertices.iter().copied()));
+        for (word, vertices) in &all {
+            let taken = motion.follow(vertices, self.motion_of(word, vertices))?;
+            if taken.refused > 0 {
+                self.console.detail(format_args!("{word}: {} vertices obey another patch", taken.refused));
+            }
+        }
+        Ok(self.parts(motion))
+    }
+
+    /// What a patch does: its turns, then its shifts.
+    fn motion_of(&self, word: &str, vertices: &[VertexId]) -> Prescribed {
+        let turns = self.args.rotate.iter().filter(|turn| turn.patch == word).map(|turn| Prescribed::Turn {
+            axis: turn.axis,
+            angle: turn.degrees.to_radians(),
+            centre: turn.centre.unwrap_or_else(|| self.middle(vertices)),
+        });
+        let shifts = self.args.translate.iter().filter(|shift| shift.patch == word);
+        let mut all: Vec<_> = turns.chain(shifts.map(|shift| Prescribed::Shift(shift.by))).collect();
+        // A shift alone is exact; as one of a sequence it would round.
+        if all.len() == 1 { all.remove(0) } else { Prescribed::Sequence(all) }
+    }
+
+    /// The middle of the box around some vertices.
+    fn middle(&self, vertices: &[VertexId]) -> Point {
+        let points: Vec<Point> = vertices.iter().map(|v| self.mesh.points[v.index()]).collect();
+        let [low, high] = bounds(&points).unwrap_or_default();
+        [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
+    }
+
+    /// Nothing moves yet, of the boundary and of the `named` vertices inside.
+    fn still(&self, named: impl IntoIterator<Item = VertexId>) -> BoundaryMotion {
+        let mut nodes = self.boundary.to_vec();
+        nodes.extend(named);
+        nodes.extend(&self.fixed);
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut motion = BoundaryMotion::still(&nodes);
+        motion.hold(&self.fixed);
+        motion
+    }
+
+    fn parts(self, motion: BoundaryMotion) -> Plan<'a> {
+        let (default, first) = if is_series(&self.args.output) { (SERIES_STEPS, 0) } else { (1, 1) };
+        let n = self.args.steps.unwrap_or(default);
+        let dt = self.args.dt.unwrap_or(1.0);
+        Plan {
+            mesh: self.mesh,
+            nodes: motion.vertices().to_vec(),
+            moving: motion.moving(&self.mesh.points),
+            times: (0..=n).map(|k| f64::from(k) * dt).collect(),
+            first,
+            timed: self.args.dt.is_some(),
+            fixed: self.fixed,
+            source: Source::Parts(motion),
+        }
+    }
+}
+
+/// Whether a file is a series by its ending.
+pub(crate) fn is_series(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+}
