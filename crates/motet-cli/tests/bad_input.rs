@@ -174,7 +174,7 @@ fn odd_meshes() -> Vec<Case> {
 fn hostile_files_are_refused_with_a_reason() {
     let cases = [broken_vtu(), broken_others(), odd_meshes()].concat_all();
     let mut faults = Vec::new();
-    println!("| file | exit | message |\n|---|---|---|");
+    let mut table = String::from("| file | exit | message |\n|---|---|---|\n");
     for case in &cases {
         let folder = Folder::new();
         folder.write(case.file, &case.bytes);
@@ -184,7 +184,7 @@ fn hostile_files_are_refused_with_a_reason() {
         let defects: Vec<&str> = out.lines().filter_map(|line| line.trim().strip_prefix("- ")).collect();
         let defects = defects.join("<br>");
         let message = err.lines().next().unwrap_or(&defects);
-        println!("| {} ({}) | {} | {message} |", case.file, case.call[0], code.unwrap_or(-1));
+        table += &format!("| {} ({}) | {} | {message} |\n", case.file, case.call[0], code.unwrap_or(-1));
         let mut fault =
             |what: String| faults.push(format!("{} ({}): {what}\n  {err}", case.file, case.call[0]));
         if code != Some(case.code) {
@@ -206,6 +206,7 @@ fn hostile_files_are_refused_with_a_reason() {
             fault(format!("left {:?}", folder.names()));
         }
     }
+    println!("{table}");
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
 
@@ -223,7 +224,7 @@ impl<T, const N: usize> ConcatAll<T> for [Vec<T>; N] {
 fn hostile_surfaces_of_others_never_panic() {
     let Some(data) = common::data() else { return };
     let mut faults = Vec::new();
-    println!("| file | exit | message |\n|---|---|---|");
+    let mut table = String::from("| file | exit | message |\n|---|---|---|\n");
     let entries = std::fs::read_dir(data.join("hostile_surfaces")).expect("the folder is readable");
     let mut files: Vec<_> = entries.map(|e| e.expect("an entry").path()).collect();
     files.sort();
@@ -233,7 +234,11 @@ fn hostile_surfaces_of_others_never_panic() {
         let call = folder.motet([std::ffi::OsStr::new("info"), file.as_os_str()]).assert();
         let code = call.get_output().status.code();
         let err = stderr(&call).replace(&*file.to_string_lossy(), &name);
-        println!("| {name} (info) | {} | {} |", code.unwrap_or(-1), err.lines().next().unwrap_or_default());
+        table += &format!(
+            "| {name} (info) | {} | {} |\n",
+            code.unwrap_or(-1),
+            err.lines().next().unwrap_or_default()
+        );
         let no_mesh = name.contains("lfs_pointer") || name.contains("empty");
         if code != Some(if no_mesh { 3 } else { 0 }) || err.contains("panicked") {
             faults.push(format!("{name}: exit {code:?}: {err}"));
@@ -248,5 +253,6 @@ fn hostile_surfaces_of_others_never_panic() {
             faults.push(format!("{name} (move): {:?}: {}", moved.get_output().status.code(), stderr(&moved)));
         }
     }
+    println!("{table}");
     assert!(faults.is_empty(), "\n{}", faults.join("\n"));
 }
