@@ -198,7 +198,7 @@ fn a_wall_follows_its_surfaces_while_the_ends_slide() {
         "move",
         "cube.vtu",
         "-o",
-        "out.pvd",
+        "new/folder/out.pvd",
         "--displacement",
         "wall.pvd",
         "--patch",
@@ -211,7 +211,7 @@ fn a_wall_follows_its_surfaces_while_the_ends_slide() {
         "lid",
     ];
     folder.motet(words).assert().code(0);
-    let series = read_series(folder.path("out.pvd")).unwrap();
+    let series = read_series(folder.path("new/folder/out.pvd")).unwrap();
     assert_eq!(series.iter().map(|(time, _)| *time).collect::<Vec<_>>(), [0.25, 1.25, 2.25]);
     let widest = read(&series[1].1).unwrap();
     for (p, q) in mesh.points.iter().zip(&widest.points) {

@@ -40,8 +40,8 @@ pub(crate) struct MoveArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
-    /// Where the result goes: a .pvd for a series (OUT_0000.vtu and so on beside it), any mesh
-    /// format for the last state
+    /// Where the result goes: a .pvd for a series (OUT_0000.vtu and so on beside it, in a folder
+    /// that is made if need be), any mesh format for the last state
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 

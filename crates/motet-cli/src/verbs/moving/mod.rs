@@ -59,10 +59,15 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     Ok(if all_done { Outcome::Done } else { Outcome::NotReached })
 }
 
-/// Refuses, before any work, an output that cannot be written or that would overwrite the motion.
+/// Refuses, before any work, an output that cannot be written or that would overwrite
+/// the motion. A series is many files: its folder is made where there is none.
 fn check_output(args: &MoveArgs) -> motet::Result<()> {
-    let frame = args.output.with_extension("vtu");
-    io::can_write(if is_series(&args.output) { &frame } else { &args.output })?;
+    if is_series(&args.output) {
+        let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
+        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&args.output, &e))?;
+    } else {
+        io::can_write(&args.output)?;
+    }
     let same =
         |a: &Path| a.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b));
     match args.displacement.as_ref().is_some_and(|word| same(Path::new(word))) {
