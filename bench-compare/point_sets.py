@@ -1,7 +1,7 @@
 """The point sets of the Delaunay bench, each a (n, 3) array of f64."""
 import numpy as np
 
-from meshes import HALF_EDGE, RADIUS, boundary_vertices, sphere_in_box
+from meshes import HALF_EDGE, RADIUS, sphere_in_box
 
 
 def cube(n):
