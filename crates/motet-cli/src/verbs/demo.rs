@@ -27,8 +27,9 @@ pub(crate) struct DemoArgs {
 }
 
 /// Quads along a face of the sphere's shells, and layers of cells from sphere to
-/// box: the second of the paper's four sizes.
-const SIZE: (usize, usize) = (22, 10);
+/// box: as many vertices as the second of the paper's four sizes has, spread so that the
+/// cells are about as tall as wide.
+const SIZE: (usize, usize) = (16, 20);
 
 /// The sphere has radius 1 and the walls are 5 from its centre: this leaves a gap of
 /// one radius.
