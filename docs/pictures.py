@@ -19,12 +19,12 @@ from PIL import Image, ImageDraw, ImageFont
 from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
 
 HERE = Path(__file__).resolve().parent
-PANEL = (580, 580)
+PANEL = (550, 550)
 INK = "#22303c"
-RANGE = (0.0, 0.6)
+RANGE = (0.0, 0.8)
 # Red is bad (below 0.2), sand is fair, blue-green is good; pale enough that the edges stay visible.
 QUALITY = LinearSegmentedColormap.from_list("quality", [
-    (0.0, "#7d0a2a"), (0.2 / 0.6, "#e0583f"), (0.3 / 0.6, "#f6d58e"), (0.4 / 0.6, "#b9dfc0"), (0.5 / 0.6, "#5fb3b3"), (1.0, "#17607a")])
+    (0.0, "#7d0a2a"), (0.25, "#e0583f"), (0.4, "#f6d58e"), (0.6, "#b9dfc0"), (0.8, "#5fb3b3"), (1.0, "#17607a")])
 
 
 def series(folder):
@@ -89,7 +89,7 @@ def colour_bar(draw, left, top, width):
     for x in range(width):
         colour = tuple(int(255 * c) for c in QUALITY(x / (width - 1))[:3])
         draw.line([(left + x, top), (left + x, top + 12)], fill=colour)
-    for value in (0.0, 0.2, 0.4, 0.6):
+    for value in (0.0, 0.2, 0.4, 0.6, 0.8):
         x = left + int((value - low) / (high - low) * (width - 1))
         draw.text((x, top + 18), f"{value:g}", fill=INK, font=font(15), anchor="ma")
     draw.text((left - 14, top + 6), "EAS", fill=INK, font=font(16), anchor="rm")
