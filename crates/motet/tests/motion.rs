@@ -739,3 +739,16 @@ fn what_cannot_be_moved_is_refused_with_a_reason() {
     let error = mover.step(&driven, &mut out, &Threads::single()).unwrap_err().to_string();
     assert!(error.contains("no finite number"), "{error}");
 }
+
+#[test]
+fn cells_whose_facets_are_not_known_are_refused() {
+    let mut mesh = motet::mesh::shapes::box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]);
+    mesh.cells.push(motet::mesh::CellKind::LAGRANGE_TETRAHEDRON, (0..10).map(motet::base::VertexId));
+    mesh.cell_data.clear();
+    let error =
+        motet::motion::Mover::new(&mesh, &Default::default(), &motet::base::Threads::single()).unwrap_err();
+    assert!(
+        error.to_string().starts_with("1 volume cells are of a kind whose facets are not known"),
+        "{error}"
+    );
+}

@@ -273,14 +273,19 @@ fn used_by_volume(mesh: &Mesh) -> Vec<bool> {
 }
 
 fn check_input(mesh: &Mesh, boundary: &Boundary, options: &Options) -> Result<()> {
+    if boundary.n_unknown > 0 {
+        return Err(Error::input(format!(
+            "{} volume cells are of a kind whose facets are not known",
+            boundary.n_unknown
+        ))
+        .remedy("write the mesh with linear or quadratic cells in place of Lagrange ones"));
+    }
     if boundary.is_empty() {
         let what = match mesh.cells.dim() {
             Some(3) => "the volume cells have no boundary that could be moved".into(),
             dim => format!("volume cells are needed, but the cells have dimension {}", dim.unwrap_or(0)),
         };
-        return Err(
-            Error::input(what).remedy("give a volume mesh; `motet mesh` makes one from a closed surface")
-        );
+        return Err(Error::input(what).remedy("give a volume mesh: a surface has no inside to move"));
     }
     let named = options.also_moved.iter().chain(options.sliding.iter().flat_map(|s| &s.vertices));
     if let Some(v) = named.clone().find(|v| v.index() >= mesh.points.len()) {

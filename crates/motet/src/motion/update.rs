@@ -12,8 +12,9 @@
 //! displacement: no branch, no second pass. Every vertex is for itself: results do not
 //! depend on the number of threads.
 
+use std::sync::Mutex;
+
 use pulp::{NullaryFnOnce, f64x4};
-use rayon::prelude::*;
 
 use crate::base::{Point, Threads};
 
@@ -40,6 +41,11 @@ pub(crate) struct Update {
 /// Below this a second thread takes longer to wake than to do its part.
 const SMALLEST: usize = 2048;
 
+/// Parts for each thread. The caller begins at once and takes part after part while the
+/// others, which sleep between steps, wake up: with a share for each, fixed beforehand,
+/// it would wait for the last to wake.
+const PARTS: usize = 16;
+
 impl Update {
     /// `out = from + sum w_i d_i`, where `displacement` has an entry for each node.
     pub(crate) fn apply(
@@ -55,14 +61,19 @@ impl Update {
             let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
             add_means(&from[vertices], nodes, weights, displacement, out);
         };
-        // Two parts a thread: one that is held up can leave the second to another.
-        let part = out.len().div_ceil(2 * threads.count()).max(SMALLEST);
-        match threads.pool().filter(|_| part < out.len()) {
-            None => some(0, out),
-            Some(pool) => pool.install(|| {
-                out.par_chunks_mut(part).enumerate().for_each(|(i, out)| some(i * part, out));
-            }),
-        }
+        let part = out.len().div_ceil(PARTS * threads.count()).max(SMALLEST);
+        let Some(pool) = threads.pool().filter(|_| part < out.len()) else { return some(0, out) };
+        let parts = Mutex::new(out.chunks_mut(part).enumerate());
+        let next = || parts.lock().ok()?.next();
+        let work = || {
+            while let Some((i, out)) = next() {
+                some(i * part, out);
+            }
+        };
+        pool.in_place_scope(|scope| {
+            (1..threads.count()).for_each(|_| scope.spawn(|_| work()));
+            work();
+        });
     }
 
     /// The nodes that vertex `v` follows, and their weights.
