@@ -6,7 +6,7 @@
 //! and a third of the mispredictions.
 
 use super::conflict::{IN, Newcomer, OUT, PENDING, in_conflict};
-use super::store::Store;
+use super::store::{Store, facets};
 use crate::base::Point;
 use pulp::Simd;
 
@@ -19,16 +19,41 @@ pub(super) struct Facet {
     pub(super) outer: u32,
 }
 
-/// Working space, kept from one insertion to the next.
+/// Working space, kept from one insertion to the next. The arrays only grow, so that nothing is cleared in between;
+/// what counts are their first `n_tets` and `n_facets` entries.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
-    /// Tets in conflict; later the slots for the new tets.
-    pub(super) tets: Vec<u32>,
-    pub(super) facets: Vec<Facet>,
+    tets: Vec<u32>,
+    n_tets: usize,
+    facets: Vec<Facet>,
+    n_facets: usize,
     queue: Vec<u32>,
 }
 
 impl Cavity {
+    /// The facets around the cavity.
+    #[inline(always)]
+    pub(super) fn facets(&self) -> &[Facet] {
+        &self.facets[..self.n_facets]
+    }
+
+    /// A slot for each facet: those of the cavity's tets first. Missing ones are claimed, the rest is released.
+    #[inline(always)]
+    pub(super) fn slots(&self) -> &[u32] {
+        &self.tets[..self.n_facets]
+    }
+
+    /// Makes [`Self::slots`] what they say.
+    #[inline(always)]
+    pub(super) fn exchange_slots(&mut self, store: &mut Store) {
+        make_room(&mut self.tets, self.n_facets);
+        if self.n_facets < self.n_tets {
+            store.release(&self.tets[self.n_facets..self.n_tets]);
+        } else {
+            store.claim(&mut self.tets[self.n_tets..self.n_facets]);
+        }
+    }
+
     /// Collects the tets in conflict, given the `first`, and the facets around them.
     #[inline(always)]
     pub(super) fn dig<S: Simd>(
@@ -39,13 +64,14 @@ impl Cavity {
         first: u32,
         new: Newcomer,
     ) {
-        self.tets.clear();
-        self.tets.push(first);
+        make_room(&mut self.tets, 1);
+        self.tets[0] = first;
+        self.n_tets = 1;
         store.gauges[first as usize].mark = new.mark() + IN;
         let mut spread = 0;
-        while spread < self.tets.len() {
+        while spread < self.n_tets {
             let queued = self.spread(store, spread, new.mark());
-            spread = self.tets.len();
+            spread = self.n_tets;
             self.test(simd, store, points, queued, new);
         }
         self.enclose(store, new.mark() + OUT);
@@ -54,15 +80,12 @@ impl Cavity {
     /// Queues the unseen neighbours of tets from place `from` on; answers how many.
     #[inline(always)]
     fn spread(&mut self, store: &mut Store, from: usize, mark: u32) -> usize {
-        let room = 4 * (self.tets.len() - from);
-        if self.queue.len() < room {
-            self.queue.resize(2 * room, 0);
-        }
-        let queue = &mut self.queue[..room];
-        let (tets, gauges) = (&store.tets[..], &mut store.gauges[..]);
+        let tets = &self.tets[from..self.n_tets];
+        make_room(&mut self.queue, 4 * tets.len());
+        let (links, gauges, queue) = (&store.links[..], &mut store.gauges[..], &mut self.queue[..]);
         let mut queued = 0;
-        for &tet in &self.tets[from..] {
-            for link in tets[tet as usize].links {
+        for &tet in tets {
+            for link in links[tet as usize] {
                 let neighbor = link >> 2;
                 let seen = &mut gauges[neighbor as usize].mark;
                 queue[queued] = neighbor;
@@ -76,33 +99,39 @@ impl Cavity {
     /// Tests the queued tets and appends those in conflict.
     #[inline(always)]
     fn test<S: Simd>(&mut self, simd: S, store: &mut Store, points: &[Point], queued: usize, new: Newcomer) {
-        let mut end = self.tets.len();
-        self.tets.resize(end + queued, 0);
+        make_room(&mut self.tets, self.n_tets + queued);
+        let (tets, mut n) = (&mut self.tets[..], self.n_tets);
         for &tet in &self.queue[..queued] {
             let conflict = in_conflict(simd, store, points, tet, new);
-            store.gauges[tet as usize].mark = new.mark() + if conflict { IN } else { OUT };
-            self.tets[end] = tet;
-            end += usize::from(conflict);
+            store.gauges[tet as usize].mark = new.mark() + OUT + (IN - OUT) * u32::from(conflict);
+            tets[n] = tet;
+            n += usize::from(conflict);
         }
-        self.tets.truncate(end);
+        self.n_tets = n;
     }
 
     /// Collects the facets between tets of the cavity and tets marked `out`.
     #[inline(always)]
     fn enclose(&mut self, store: &Store, out: u32) {
-        let room = 4 * self.tets.len();
-        if self.facets.len() < room {
-            self.facets.resize(room, Facet::default());
-        }
-        let (tets, gauges, facets) = (&store.tets[..], &store.gauges[..], &mut self.facets[..]);
+        let tets = &self.tets[..self.n_tets];
+        make_room(&mut self.facets, 4 * tets.len());
+        let (gauges, found) = (&store.gauges[..], &mut self.facets[..]);
         let mut n = 0;
-        for &tet in &self.tets {
-            let record = &tets[tet as usize];
-            for (vertices, outer) in record.facets().into_iter().zip(record.links) {
-                facets[n] = Facet { vertices, outer };
+        for &tet in tets {
+            let (vertices, links) = (store.vertices[tet as usize], store.links[tet as usize]);
+            for (vertices, outer) in facets(vertices).into_iter().zip(links) {
+                found[n] = Facet { vertices, outer };
                 n += usize::from(gauges[(outer >> 2) as usize].mark == out);
             }
         }
-        self.facets.truncate(n);
+        self.n_facets = n;
+    }
+}
+
+/// Makes an array that only grows `n` long, and somewhat longer.
+#[inline(always)]
+pub(super) fn make_room<T: Clone + Default>(array: &mut Vec<T>, n: usize) {
+    if array.len() < n {
+        array.resize(2 * n, T::default());
     }
 }

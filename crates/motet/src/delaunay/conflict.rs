@@ -1,7 +1,6 @@
 //! Whether a newcomer lies inside the sphere of a tet, or beyond the hull facet of a ghost.
 
-use super::gauge::evaluate;
-use super::store::Store;
+use super::store::{Store, is_ghost};
 use crate::base::Point;
 use crate::geometry::predicates::insphere::{UNDERFLOW, beyond_filter};
 use crate::geometry::predicates::{break_tie, orient};
@@ -40,17 +39,19 @@ pub(super) fn in_conflict<S: Simd>(
     tet: u32,
     new: Newcomer,
 ) -> bool {
-    let record = &store.tets[tet as usize];
-    let x = sub(new.point, points[record.vertices[0] as usize]);
-    let (determinant, bound) = evaluate(&record.minors, &store.gauges[tet as usize], x);
-    let sure = bound + UNDERFLOW;
-    if determinant > sure {
-        true
-    } else if determinant < -sure {
-        false
-    } else {
-        simd.vectorize(Doubtful { store, points, tet, new, bound })
+    let (determinant, bound) = estimate::<S>(store, points, tet, new);
+    // One branch, taken seldom: the sign itself is a coin toss and stays a number.
+    if determinant.abs() > bound + UNDERFLOW {
+        return determinant > 0.0;
     }
+    simd.vectorize(Doubtful { store, points, tet, new, bound })
+}
+
+/// The determinant whose sign decides, and a bound of its error without underflow.
+#[inline(always)]
+fn estimate<S: Simd>(store: &Store, points: &[Point], tet: u32, new: Newcomer) -> (f64, f64) {
+    let gauge = &store.gauges[tet as usize];
+    gauge.evaluate::<S>(sub(new.point, points[gauge.origin as usize]))
 }
 
 /// A test that `f64` could not decide; out of line, but with the instructions of `S`.
@@ -67,7 +68,7 @@ impl WithSimd for Doubtful<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        if self.store.tets[self.tet as usize].is_ghost() { self.ghost(simd) } else { self.tet::<S>() }
+        if is_ghost(self.store.vertices[self.tet as usize]) { self.ghost(simd) } else { self.tet::<S>() }
     }
 }
 
@@ -83,7 +84,7 @@ impl Doubtful<'_> {
 
     /// Five cospherical points: some 7 a newcomer on a grid, hardly any elsewhere.
     fn tie(&self, [a, b, c, d]: [Point; 4]) -> bool {
-        let [i, j, k, l] = self.store.tets[self.tet as usize].vertices;
+        let [i, j, k, l] = self.store.vertices[self.tet as usize];
         let new = self.new;
         if new.vertex > i.max(j).max(k).max(l) {
             return false;
@@ -93,13 +94,12 @@ impl Doubtful<'_> {
 
     /// Beyond the hull facet; or in its plane and inside its circle, which is to say inside the sphere of the tet behind it.
     fn ghost<S: Simd>(&self, simd: S) -> bool {
-        let ghost = &self.store.tets[self.tet as usize];
-        let [a, b, c] = [0, 1, 2].map(|i| self.points[ghost.vertices[i] as usize]);
+        let [a, b, c, _] = self.store.corners(self.points, self.tet);
         let side = orient::beyond_filter(a, b, c, self.new.point);
         if side != 0 {
             return side > 0;
         }
-        let behind = ghost.links[3] >> 2;
+        let behind = self.store.links[self.tet as usize][3] >> 2;
         match self.store.gauges[behind as usize].mark.wrapping_sub(self.new.mark()) {
             IN => true,
             OUT => false,
@@ -112,9 +112,7 @@ impl Doubtful<'_> {
 /// in the compiler's eyes.
 #[inline(always)]
 fn in_conflict_flat<S: Simd>(_: S, store: &Store, points: &[Point], tet: u32, new: Newcomer) -> bool {
-    let record = &store.tets[tet as usize];
-    let x = sub(new.point, points[record.vertices[0] as usize]);
-    let (determinant, bound) = evaluate(&record.minors, &store.gauges[tet as usize], x);
+    let (determinant, bound) = estimate::<S>(store, points, tet, new);
     if determinant.abs() > bound + UNDERFLOW {
         return determinant > 0.0;
     }

@@ -1,20 +1,22 @@
 //! Fills the cavity: a tet from the newcomer to each facet around it, linked to each other.
 
-use super::cavity::{Cavity, Facet};
+use super::cavity::{Cavity, Facet, make_room};
 use super::conflict::Newcomer;
 use super::edges::{Edges, Matrix, SMALL, Table};
 use super::gauge::{Arm, of_ghost, of_tet};
-use super::store::{INFINITY, Store, Tet};
+use super::store::{INFINITY, Store};
 use crate::base::Point;
 use crate::geometry::vector::sub;
+use pulp::Simd;
 
 /// Working space, kept from one insertion to the next.
 #[derive(Debug)]
 pub(super) struct Fill {
-    /// Vertices of the cavity; with `place` a sparse set (Briggs and Torczon 1993).
+    /// Vertices of the cavity.
     vertices: Vec<u32>,
-    /// Vertex to its place in `vertices`, true if found there.
+    /// Vertex to `base` and its place in `vertices`; anything below `base` is from an earlier cavity.
     place: Vec<u32>,
+    base: u32,
     /// The vertices relative to the newcomer.
     arms: Vec<Arm>,
     /// The facets in places.
@@ -31,6 +33,7 @@ impl Fill {
         Self {
             vertices: Vec::new(),
             place: vec![0; n_points],
+            base: 1,
             arms: Vec::new(),
             corners: Vec::new(),
             matrix: Matrix::default(),
@@ -41,63 +44,69 @@ impl Fill {
 
     /// Replaces the tets of the cavity; answers one of the new tets that is no ghost.
     #[inline(always)]
-    pub(super) fn fill(
+    pub(super) fn fill<S: Simd>(
         &mut self,
+        _: S,
         store: &mut Store,
         points: &[Point],
         cavity: &mut Cavity,
         new: Newcomer,
     ) -> u32 {
-        store.fit(&mut cavity.tets, cavity.facets.len());
-        let n = self.number(&cavity.facets);
-        self.reach(points, n, new.point);
+        let n = self.number(cavity.facets());
+        self.reach::<S>(points, n, new.point);
+        cavity.exchange_slots(store);
+        let (slots, facets) = (cavity.slots(), cavity.facets());
         let parts = Parts {
             store,
-            slots: &cavity.tets,
-            facets: &cavity.facets,
-            corners: &self.corners[..cavity.facets.len()],
+            slots,
+            facets,
+            corners: &self.corners[..facets.len()],
             arms: &self.arms,
             new,
             least: self.least,
         };
         if n <= SMALL {
-            parts.make(&mut self.matrix)
+            parts.make::<S, _>(&mut self.matrix)
         } else {
-            self.table.clear(3 * cavity.facets.len());
-            parts.make(&mut self.table)
+            self.table.clear(3 * facets.len());
+            parts.make::<S, _>(&mut self.table)
         }
     }
 
     /// Numbers the vertices of the cavity in the order in which they are met; answers how many there are. Plain
-    /// loops over arrays that only grow: iterator chains here were not inlined, and cost a tenth of all instructions.
+    /// loops over arrays that only grow, without a branch: iterator chains here were not inlined, and whether a vertex is
+    /// fresh is a coin toss.
     #[inline(always)]
     fn number(&mut self, facets: &[Facet]) -> usize {
-        if self.corners.len() < facets.len() {
-            self.corners.resize(2 * facets.len(), [0; 3]);
-            self.vertices.resize(6 * facets.len(), 0);
-            self.arms.resize(6 * facets.len(), Arm::new([0.0; 3]));
+        make_room(&mut self.corners, facets.len());
+        make_room(&mut self.vertices, 3 * facets.len());
+        make_room(&mut self.arms, 3 * facets.len());
+        if self.base.checked_add(3 * facets.len() as u32).is_none() {
+            self.place.fill(0);
+            self.base = 1;
         }
         // Slices: their addresses stay in registers, a vector's would be read again after every write.
-        let (vertices, place) = (&mut self.vertices[..], &mut self.place[..]);
+        let (vertices, place, base) = (&mut self.vertices[..], &mut self.place[..], self.base);
         let mut n = 0;
         for (corner, facet) in self.corners.iter_mut().zip(facets) {
             for (local, &v) in corner.iter_mut().zip(&facet.vertices) {
-                let known = place[v as usize];
-                let fresh = known as usize >= n || vertices[known as usize] != v;
-                *local = if fresh { n as u32 } else { known };
-                place[v as usize] = *local;
+                let known = &mut place[v as usize];
+                let fresh = *known < base;
+                *known = if fresh { base + n } else { *known };
+                *local = *known - base;
                 vertices[*local as usize] = v;
-                n += usize::from(fresh);
+                n += u32::from(fresh);
             }
         }
-        n
+        self.base += n;
+        n as usize
     }
 
     /// The first `n` vertices relative to the newcomer at `origin`.
     #[inline(always)]
-    fn reach(&mut self, points: &[Point], n: usize, origin: Point) {
+    fn reach<S: Simd>(&mut self, points: &[Point], n: usize, origin: Point) {
         for (arm, &v) in self.arms[..n].iter_mut().zip(&self.vertices[..n]) {
-            *arm = Arm::new(sub(points[v as usize], origin));
+            *arm = Arm::new::<S>(sub(points[v as usize], origin));
         }
     }
 }
@@ -116,27 +125,28 @@ struct Parts<'a> {
 impl Parts<'_> {
     /// Two facets around the cavity share an edge, in opposite directions; so do their new tets.
     #[inline(always)]
-    fn make(self, edges: &mut impl Edges) -> u32 {
+    fn make<S: Simd, E: Edges>(self, edges: &mut E) -> u32 {
         for (&slot, &[a, b, c]) in self.slots.iter().zip(self.corners) {
             edges.put(b, c, 4 * slot + 1);
             edges.put(c, a, 4 * slot + 2);
             edges.put(a, b, 4 * slot + 3);
         }
-        let (tets, gauges) = (&mut self.store.tets[..], &mut self.store.gauges[..]);
+        let Store { vertices, links, gauges, .. } = self.store;
+        let (vertices, links, gauges) = (&mut vertices[..], &mut links[..], &mut gauges[..]);
+        let (newcomer, mark) = (self.new.vertex, self.new.mark());
         let mut last = 0;
         for ((&slot, facet), &[a, b, c]) in self.slots.iter().zip(self.facets).zip(self.corners) {
             let [i, j, k] = facet.vertices;
-            let links = [facet.outer, edges.get(c, b), edges.get(a, c), edges.get(b, a)];
-            let [a, b, c] = [a, b, c].map(|v| &self.arms[v as usize]);
-            let (minors, gauge) = if k == INFINITY {
-                of_ghost([a, b], self.new.mark(), self.least)
+            vertices[slot as usize] = [newcomer, i, j, k];
+            links[slot as usize] = [facet.outer, edges.get(c, b), edges.get(a, c), edges.get(b, a)];
+            links[(facet.outer >> 2) as usize][(facet.outer & 3) as usize] = 4 * slot;
+            let (a, b) = (&self.arms[a as usize], &self.arms[b as usize]);
+            gauges[slot as usize] = if k == INFINITY {
+                of_ghost::<S>(newcomer, [a, b], mark, self.least)
             } else {
                 last = slot;
-                of_tet([a, b, c], self.new.mark(), self.least)
+                of_tet::<S>(newcomer, [a, b, &self.arms[c as usize]], mark, self.least)
             };
-            tets[slot as usize] = Tet { vertices: [self.new.vertex, i, j, k], links, minors };
-            gauges[slot as usize] = gauge;
-            tets[(facet.outer >> 2) as usize].links[(facet.outer & 3) as usize] = 4 * slot;
         }
         last
     }

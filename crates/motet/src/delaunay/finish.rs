@@ -1,8 +1,8 @@
-//! From the builder's records to what the caller sees: tets, neighbours and hull under the caller's ids.
+//! From the builder's arrays to what the caller sees: tets, neighbours and hull under the caller's ids.
 
 use super::HullFacet;
-use super::store::{FACETS, INFINITY, Store};
-use crate::base::{TetId, VertexId};
+use super::store::{FACETS, FREE, Store, is_ghost};
+use crate::base::{TetId, Threads, VertexId};
 use crate::spatial::OUTSIDE;
 
 /// Tets without ghosts and free slots.
@@ -13,42 +13,50 @@ pub(super) struct Finished {
 }
 
 /// `vertex_to_id[v]` is the caller's id of vertex `v` (and anything for the one at infinity).
-pub(super) fn finish(store: &Store, vertex_to_id: &[u32]) -> Finished {
-    let slot_to_tet = number(store);
-    let n_tets = slot_to_tet.iter().filter(|&&t| t != OUTSIDE).count();
-    let mut out = Finished {
-        tets: Vec::with_capacity(n_tets),
-        neighbors: Vec::with_capacity(n_tets),
-        hull: Vec::new(),
+///
+/// The arrays of the builder become those of the caller where they lie (a vector collected from its own elements
+/// keeps its memory): at a million points that saves 216 MB of fresh pages, which cost more than the work itself.
+pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> Finished {
+    let slot_to_tet = number(&store);
+    let hull = hull(&store, &slot_to_tet, vertex_to_id);
+    let Store { vertices, links, .. } = store;
+    let id = |v: u32| VertexId(vertex_to_id[v as usize]);
+    let tet = |link: u32| slot_to_tet[(link >> 2) as usize];
+    let tets = || compact(vertices, &slot_to_tet, |[a, b, c, d]| [id(a), id(b), id(c), id(d)]);
+    let neighbors = || compact(links, &slot_to_tet, |[a, b, c, d]| [tet(a), tet(b), tet(c), tet(d)]);
+    let (tets, neighbors) = match threads.pool() {
+        Some(pool) => pool.join(tets, neighbors),
+        None => (tets(), neighbors()),
     };
-    for (tet, number) in store.tets.iter().zip(&slot_to_tet) {
-        if *number != OUTSIDE {
-            out.tets.push(tet.vertices.map(|v| VertexId(vertex_to_id[v as usize])));
-            out.neighbors.push(tet.links.map(|link| slot_to_tet[(link >> 2) as usize]));
-        } else if !tet.is_free() {
-            out.hull.push(hull_facet(store, tet.links[3], &slot_to_tet, vertex_to_id));
-        }
-    }
-    out
+    Finished { tets, neighbors, hull }
 }
 
-/// Numbers the tets that are neither ghosts nor free, in the order of slots.
+/// Numbers the tets that are neither ghosts nor free, in the order of slots; the others are [`OUTSIDE`].
 fn number(store: &Store) -> Vec<TetId> {
     let mut next = 0;
-    let number = |tet: &super::store::Tet| {
-        if tet.vertices[3] == INFINITY {
-            return OUTSIDE;
-        }
-        next += 1;
-        TetId(next - 1)
+    let number = |&vertices: &[u32; 4]| {
+        let tet = if is_ghost(vertices) { OUTSIDE } else { TetId(next) };
+        next += u32::from(!is_ghost(vertices));
+        tet
     };
-    store.tets.iter().map(number).collect()
+    store.vertices.iter().map(number).collect()
+}
+
+/// The entries of slots with a number.
+fn compact<T: Copy, U>(slots: Vec<T>, slot_to_tet: &[TetId], entry: impl Fn(T) -> U) -> Vec<U> {
+    let numbered = slots.into_iter().zip(slot_to_tet).filter(|(_, tet)| **tet != OUTSIDE);
+    numbered.map(|(slot, _)| entry(slot)).collect()
+}
+
+fn hull(store: &Store, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> Vec<HullFacet> {
+    let ghosts = (0..store.n_slots()).filter(|&s| slot_to_tet[s] == OUTSIDE && store.vertices[s] != FREE);
+    ghosts.map(|ghost| hull_facet(store, store.links[ghost][3], slot_to_tet, vertex_to_id)).collect()
 }
 
 /// The facet of a tet at `link`, seen from outside.
 fn hull_facet(store: &Store, link: u32, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> HullFacet {
     let (slot, facet) = ((link >> 2) as usize, (link & 3) as usize);
     // With the opposite vertex in front the facet is positive, so it turns its front outward.
-    let vertices = FACETS[facet].map(|i| VertexId(vertex_to_id[store.tets[slot].vertices[i] as usize]));
+    let vertices = FACETS[facet].map(|i| VertexId(vertex_to_id[store.vertices[slot][i] as usize]));
     HullFacet { vertices, tet: slot_to_tet[slot], facet: facet as u8 }
 }

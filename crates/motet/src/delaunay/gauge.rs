@@ -6,25 +6,19 @@
 //! outward. Storing the minors replaces 60 operations a test by 12, and a branch on ghosts by none.
 
 use crate::base::Point;
-use crate::geometry::predicates::insphere::FILTER;
+use crate::geometry::fused::{cross, dot, multiply_add};
+use crate::geometry::predicates::insphere::{FILTER, minors};
 use crate::geometry::predicates::pair::U;
-use crate::geometry::vector::{cross, dot};
+use pulp::Simd;
 
-/// The stored part of the in-sphere determinant.
+/// All that the conflict test wants to know of a tet.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(super) struct Minors {
+#[repr(C, align(16))]
+pub(super) struct Gauge {
     pub(super) normal: Point,
     pub(super) volume: f64,
-}
-
-impl Minors {
-    pub(super) const ZERO: Self = Self { normal: [0.0; 3], volume: 0.0 };
-}
-
-/// What the conflict test finds out about a tet, and how sure the test is.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Gauge {
+    /// The tet's vertex 0, to which `x` is relative.
+    pub(super) origin: u32,
     /// `4 * newcomer + state` of the last newcomer that met the tet: no clearing between insertions.
     pub(super) mark: u32,
     /// Error bound of the conflict test is `error (reach |x|_1 + |x|^2)`.
@@ -34,7 +28,17 @@ pub(super) struct Gauge {
 }
 
 impl Gauge {
-    pub(super) const FREE: Self = Self { mark: 0, error: 0.0, reach: 0.0 };
+    pub(super) const FREE: Self =
+        Self { normal: [0.0; 3], volume: 0.0, origin: 0, mark: 0, error: 0.0, reach: 0.0 };
+
+    /// `normal . x - volume |x|^2` and its error bound without underflow.
+    #[inline(always)]
+    pub(super) fn evaluate<S: Simd>(&self, x: Point) -> (f64, f64) {
+        let squared = dot::<S>(x, x);
+        let determinant = multiply_add::<S>(-self.volume, squared, dot::<S>(self.normal, x));
+        let absolute = x[0].abs() + x[1].abs() + x[2].abs();
+        (determinant, f64::from(self.error) * multiply_add::<S>(f64::from(self.reach), absolute, squared))
+    }
 }
 
 /// Error of `normal . x` of a ghost over `|b||c||x|_1`: 8 to 9 u by the count in `insphere`.
@@ -49,7 +53,7 @@ const UP: f64 = 1.0 + 1e-6;
 pub(super) const LEAST: f32 = f32::MIN_POSITIVE;
 
 /// A vertex relative to vertex 0 of the tets being made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Arm {
     pub(super) vector: Point,
     pub(super) squared: f64,
@@ -58,37 +62,25 @@ pub(super) struct Arm {
 
 impl Arm {
     #[inline(always)]
-    pub(super) fn new(vector: Point) -> Self {
-        let squared = dot(vector, vector);
+    pub(super) fn new<S: Simd>(vector: Point) -> Self {
+        let squared = dot::<S>(vector, vector);
         Self { vector, squared, length: squared.sqrt() }
     }
 }
 
-/// Minors and gauge of the tet with these three arms.
+/// The gauge of the tet of the vertex `origin` and these three arms from it.
 #[inline(always)]
-pub(super) fn of_tet([b, c, d]: [&Arm; 3], mark: u32, least: f32) -> (Minors, Gauge) {
-    let cd = cross(c.vector, d.vector);
-    let db = cross(d.vector, b.vector);
-    let bc = cross(b.vector, c.vector);
-    let normal = std::array::from_fn(|i| b.squared * cd[i] + c.squared * db[i] + d.squared * bc[i]);
-    let volume = dot(b.vector, cd);
+pub(super) fn of_tet<S: Simd>(origin: u32, [b, c, d]: [&Arm; 3], mark: u32, least: f32) -> Gauge {
+    let (normal, volume) = minors::<S>([b.vector, c.vector, d.vector], [b.squared, c.squared, d.squared]);
     let error = (FILTER * UP * (b.length * c.length * d.length)) as f32;
     let reach = ((b.length + c.length + d.length) * UP) as f32;
-    (Minors { normal, volume }, Gauge { mark, error: error.max(least), reach: reach.max(LEAST) })
+    Gauge { normal, volume, origin, mark, error: error.max(least), reach: reach.max(LEAST) }
 }
 
-/// Minors and gauge of the ghost whose hull facet has these two arms.
+/// The gauge of the ghost whose hull facet has the vertex `origin` and these two arms from it.
 #[inline(always)]
-pub(super) fn of_ghost([b, c]: [&Arm; 2], mark: u32, least: f32) -> (Minors, Gauge) {
+pub(super) fn of_ghost<S: Simd>(origin: u32, [b, c]: [&Arm; 2], mark: u32, least: f32) -> Gauge {
     let error = (GHOST_FILTER * UP / GHOST_REACH * (b.length * c.length)) as f32;
-    let minors = Minors { normal: cross(b.vector, c.vector), volume: 0.0 };
-    (minors, Gauge { mark, error: error.max(least), reach: GHOST_REACH as f32 })
-}
-
-/// `normal . x - volume |x|^2` and its error bound without underflow.
-#[inline(always)]
-pub(super) fn evaluate(minors: &Minors, gauge: &Gauge, x: Point) -> (f64, f64) {
-    let squared = dot(x, x);
-    let reach = f64::from(gauge.reach) * (x[0].abs() + x[1].abs() + x[2].abs());
-    (dot(minors.normal, x) - minors.volume * squared, f64::from(gauge.error) * (reach + squared))
+    let normal = cross::<S>(b.vector, c.vector);
+    Gauge { normal, volume: 0.0, origin, mark, error: error.max(least), reach: GHOST_REACH as f32 }
 }

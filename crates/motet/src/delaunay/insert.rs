@@ -62,10 +62,10 @@ impl WithSimd for Insertion<'_> {
                 unreachable!("the points are distinct, so each is in conflict with the tet that holds it");
             };
             cavity.dig(simd, self.store, self.points, first, new);
-            if self.store.tets.len() + cavity.facets.len() > MAX_TETS {
+            if self.store.n_slots() + cavity.facets().len() > MAX_TETS {
                 return Err(Error::input(format!("more than {MAX_TETS} tets")).remedy("divide the set"));
             }
-            hint = self.fill.fill(self.store, self.points, &mut cavity, new);
+            hint = self.fill.fill(simd, self.store, self.points, &mut cavity, new);
         }
         Ok(())
     }

@@ -1,10 +1,11 @@
 //! The first tet: four points in general position, and the four ghosts around them.
 
 use super::gauge::{Arm, of_ghost, of_tet};
-use super::store::{FACETS, INFINITY, Store, Tet};
+use super::store::{FACETS, INFINITY, Store, is_ghost};
 use crate::base::{Error, Point, Result};
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::geometry::vector::sub;
+use pulp::Scalar;
 
 /// Brings four points that span a tet to the front of `ids` (distinct points in the order of insertion).
 pub(super) fn bring_tet_to_front(ids: &mut [u32], points: &[Point]) -> Result<()> {
@@ -38,19 +39,21 @@ pub(super) fn first_tet(store: &mut Store, points: &[Point], least: f32) {
 }
 
 fn push(store: &mut Store, points: &[Point], vertices: [u32; 4], least: f32) {
-    let [origin, i, j, k] = vertices.map(|v| points[v as usize]);
-    let [b, c, d] = [i, j, k].map(|p| Arm::new(sub(p, origin)));
-    let ghost = vertices[3] == INFINITY;
-    let (minors, gauge) = if ghost { of_ghost([&b, &c], 0, least) } else { of_tet([&b, &c, &d], 0, least) };
-    store.tets.push(Tet { vertices, links: [0; 4], minors });
-    store.gauges.push(gauge);
+    let [a, i, j, k] = vertices;
+    let [b, c, d] = [i, j, k].map(|v| Arm::new::<Scalar>(sub(points[v as usize], points[a as usize])));
+    store.vertices.push(vertices);
+    store.links.push([0; 4]);
+    store.gauges.push(match is_ghost(vertices) {
+        true => of_ghost::<Scalar>(a, [&b, &c], 0, least),
+        false => of_tet::<Scalar>(a, [&b, &c, &d], 0, least),
+    });
 }
 
 /// Links facets of equal vertices: five tets, so by comparing all.
 fn link_all(store: &mut Store) {
     let sides: Vec<(u32, [u32; 3])> = (0..20u32)
         .map(|side| {
-            let vertices = store.tets[side as usize / 4].vertices;
+            let vertices = store.vertices[side as usize / 4];
             let mut facet = FACETS[side as usize % 4].map(|i| vertices[i]);
             facet.sort_unstable();
             (side, facet)
@@ -58,6 +61,6 @@ fn link_all(store: &mut Store) {
         .collect();
     for &(side, facet) in &sides {
         let twin = sides.iter().find(|&&(other, same)| other != side && same == facet);
-        store.tets[side as usize / 4].links[side as usize % 4] = twin.map_or(0, |t| t.0);
+        store.links[side as usize / 4][side as usize % 4] = twin.map_or(0, |t| t.0);
     }
 }

@@ -1,5 +1,6 @@
 //! Floor 1: pure functions on points; nothing here knows a mesh.
 
+pub(crate) mod fused;
 pub mod predicates;
 pub mod quality;
 pub mod segment;

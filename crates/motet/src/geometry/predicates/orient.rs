@@ -65,7 +65,7 @@ pub(crate) fn beyond_filter(a: Point, b: Point, c: Point, d: Point) -> i8 {
 
 #[inline(always)]
 fn in_pairs<S: Simd>(a: Point, b: Point, c: Point, d: Point) -> Pair {
-    let [b, c, d] = [b, c, d].map(|p| difference(p, a));
+    let (b, c, d) = (difference(b, a), difference(c, a), difference(d, a));
     dot::<S>(cross::<S>(b, c), d)
 }
 
