@@ -128,7 +128,7 @@ impl<'a> Facets<'a> {
         let faces = self.cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
         let all_ids = self.cells.connectivity().items().iter().chain(faces);
         let n_vertices = all_ids.map(|v| v.index() + 1).max().unwrap_or(0);
-        let buckets = Buckets::fill(n_vertices, |put| self.put_all(put));
+        let buckets = Buckets::fill(n_vertices, self);
         buckets.for_each_run(|run| {
             uses.clear();
             uses.extend(run.iter().map(|entry| FacetUse::unpack(entry.1)));
@@ -150,9 +150,18 @@ impl<'a> Facets<'a> {
         }
     }
 
+}
+
+/// Something with facets to be sorted. A trait and not a closure, for it is asked twice, by different
+/// functions, and both are to be compiled into the loop over the facets.
+trait Source {
     /// Yields the key of every facet: its smallest corner, the second and the
     /// largest packed together, and its use.
-    fn put_all(&self, put: &mut dyn FnMut(u32, u64, u64)) {
+    fn put_all(&self, put: &mut impl FnMut(u32, u64, u64));
+}
+
+impl Source for Facets<'_> {
+    fn put_all(&self, put: &mut impl FnMut(u32, u64, u64)) {
         for (cell, kind, vertices) in self.cells.iter() {
             if kind == CellKind::TETRA {
                 let tet = [vertices[0].0, vertices[1].0, vertices[2].0, vertices[3].0];
@@ -178,7 +187,7 @@ fn pack(second: u32, last: u32) -> u64 {
 }
 
 #[inline]
-fn put_tet(cell: u32, tet: [u32; 4], facets: [[usize; 3]; 4], put: &mut dyn FnMut(u32, u64, u64)) {
+fn put_tet(cell: u32, tet: [u32; 4], facets: [[usize; 3]; 4], put: &mut impl FnMut(u32, u64, u64)) {
     for (local, facet) in facets.into_iter().enumerate() {
         let [a, b, c] = facet.map(|i| tet[i]);
         let (low, high) = (a.min(b), a.max(b));
@@ -197,16 +206,15 @@ struct Buckets {
 }
 
 impl Buckets {
-    /// `walk` gives every facet to the function it is handed; it is called twice.
-    fn fill(n_vertices: usize, walk: impl Fn(&mut dyn FnMut(u32, u64, u64))) -> Self {
+    fn fill(n_vertices: usize, facets: &impl Source) -> Self {
         let mut offsets = vec![0u32; n_vertices + 1];
-        walk(&mut |first, _, _| offsets[first as usize + 1] += 1);
+        facets.put_all(&mut |first, _, _| offsets[first as usize + 1] += 1);
         for i in 0..n_vertices {
             offsets[i + 1] += offsets[i];
         }
         let mut next = offsets.clone();
         let mut entries = vec![(0, 0); offsets[n_vertices] as usize];
-        walk(&mut |first, key, facet| {
+        facets.put_all(&mut |first, key, facet| {
             let place = &mut next[first as usize];
             entries[*place as usize] = (key, facet);
             *place += 1;
@@ -229,16 +237,20 @@ impl Buckets {
 /// Says that no tet lies behind a facet.
 pub const NO_TET: u32 = u32::MAX;
 
+impl Source for &[[VertexId; 4]] {
+    fn put_all(&self, put: &mut impl FnMut(u32, u64, u64)) {
+        for (t, [a, b, c, d]) in self.iter().enumerate() {
+            put_tet(t as u32, [a.0, b.0, c.0, d.0], tet::FACETS, put);
+        }
+    }
+}
+
 /// The tet behind each facet of each tet: `[t][i]` lies opposite vertex `i` of
 /// tet `t`; [`NO_TET`] on the boundary, and where more than two tets share the
 /// facet (then nothing says which).
 pub fn tet_neighbors(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
     let n_vertices = tets.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
-    let buckets = Buckets::fill(n_vertices, |put| {
-        for (t, vertices) in tets.iter().enumerate() {
-            put_tet(t as u32, vertices.map(|v| v.0), tet::FACETS, put);
-        }
-    });
+    let buckets = Buckets::fill(n_vertices, &tets);
     let mut neighbors = vec![[NO_TET; 4]; tets.len()];
     buckets.for_each_run(|run| {
         if let [x, y] = run {

@@ -27,7 +27,7 @@ impl Corners {
     /// Files do not agree on how to number a wedge, and some number every tet the
     /// other way round: whatever most cells of a kind do counts as upright.
     pub(crate) fn of(cells: &Cells, points: &[Point]) -> Self {
-        let mut corners = Self::default();
+        let mut corners = Self::with_capacity(cells.len());
         let facets = Facets::of(cells);
         let mut n_upright = [0i64; 256];
         for (cell, kind, vertices) in cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
@@ -55,6 +55,11 @@ impl Corners {
             }
         }
         corners
+    }
+
+    fn with_capacity(n: usize) -> Self {
+        let (tets, cells) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        Self { tets, cells, is_cell: Vec::with_capacity(n) }
     }
 
     pub(crate) fn len(&self) -> usize {
