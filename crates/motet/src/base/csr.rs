@@ -45,7 +45,7 @@ impl<T> Csr<T> {
     }
 
     /// All lists in order.
-    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> + '_ {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> + Clone + '_ {
         self.offsets.windows(2).map(|w| &self.items[w[0] as usize..w[1] as usize])
     }
 

@@ -1,6 +1,11 @@
 //! How many threads a call may use: always the caller's choice, never a global pool.
 
+use rayon::prelude::*;
+
 use crate::base::{Error, Result};
+
+/// What a thread takes at least in one go: less is done sooner than shared out.
+const SMALLEST_PART: usize = 1024;
 
 /// A pool of threads that belongs to the caller. Results do not depend on its size.
 #[derive(Debug, Default)]
@@ -32,6 +37,16 @@ impl Threads {
     /// How many threads work.
     pub fn count(&self) -> usize {
         self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// `of` each number below `n`, in their order.
+    pub fn map<T: Send>(&self, n: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
+        match &self.pool {
+            None => (0..n).map(of).collect(),
+            Some(pool) => {
+                pool.install(|| (0..n).into_par_iter().with_min_len(SMALLEST_PART).map(of).collect())
+            }
+        }
     }
 
     /// The pool, where there is more than one thread. `None`: use a plain loop,

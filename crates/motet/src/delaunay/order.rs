@@ -9,7 +9,6 @@
 
 use crate::base::{Point, Threads};
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
-use rayon::prelude::*;
 
 /// The first round has about this many points.
 const FIRST_ROUND: usize = 1000;
@@ -47,14 +46,10 @@ fn last_round(n: usize) -> u32 {
 fn keys(points: &[Point], threads: &Threads, last_round: u32) -> Vec<Keyed> {
     let (corner, extent) = cube(points.iter().copied());
     let curve = Curve::new(corner, extent);
-    let key = |(id, p): (usize, &Point)| {
-        let round = last_round - (hash(*p).trailing_zeros() / 3).min(last_round);
-        (u64::from(round) << KEY_BITS | curve.key(*p), id as u32)
-    };
-    match threads.pool() {
-        Some(pool) => pool.install(|| points.par_iter().enumerate().with_min_len(4096).map(key).collect()),
-        None => points.iter().enumerate().map(key).collect(),
-    }
+    threads.map(points.len(), |id| {
+        let round = last_round - (hash(points[id]).trailing_zeros() / 3).min(last_round);
+        (u64::from(round) << KEY_BITS | curve.key(points[id]), id as u32)
+    })
 }
 
 /// A hash of the coordinates, equal for equal points (`-0.0 == 0.0`); the mixing of

@@ -149,7 +149,6 @@ impl<'a> Facets<'a> {
             see(&same.iter().map(|(_, u)| *u).collect::<Vec<_>>());
         }
     }
-
 }
 
 /// Something with facets to be sorted. A trait and not a closure, for it is asked twice, by different
@@ -180,9 +179,9 @@ impl Source for Facets<'_> {
 }
 
 /// VTK's facets of a tet by the vertex that each leaves out: 2, 0, 1, 3.
-const VTK_TET_FACETS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 3], [0, 2, 3], [0, 1, 2]];
+pub(super) const VTK_TET_FACETS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 3], [0, 2, 3], [0, 1, 2]];
 
-fn pack(second: u32, last: u32) -> u64 {
+pub(super) fn pack(second: u32, last: u32) -> u64 {
     u64::from(second) << 32 | u64::from(last)
 }
 

@@ -3,6 +3,7 @@
 use crate::base::{CellId, Csr, Point, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::facets::facet_shapes;
+use crate::mesh::lone::lone_facets;
 use crate::mesh::{CellKind, Cells, cell_volume};
 
 /// The facets that exactly one volume cell uses, whatever its kind.
@@ -27,13 +28,11 @@ impl Boundary {
     /// The boundary of the volume cells among `cells`; others are passed over.
     pub fn of(cells: &Cells) -> Self {
         let facets = Facets::of(cells);
-        let mut alone: Vec<FacetUse> = Vec::new();
-        facets.for_each_shared(|uses| {
-            if let [single] = uses {
-                alone.push(*single);
-            }
-        });
-        alone.sort_unstable();
+        let alone =
+            match cells.counts().iter().all(|(kind, _)| *kind == CellKind::TETRA || kind.dim() != Some(3)) {
+                true => lone_facets(cells),
+                false => used_once(&facets),
+            };
         let mut boundary = Self { n_unknown: count_unknown(cells), ..Self::default() };
         for facet in alone {
             let (kind, vertices) = facets.vertices(facet);
@@ -66,6 +65,18 @@ impl Boundary {
             }
         }
     }
+}
+
+/// The facets of one use, in the order of the cells.
+fn used_once(facets: &Facets) -> Vec<FacetUse> {
+    let mut alone: Vec<FacetUse> = Vec::new();
+    facets.for_each_shared(|uses| {
+        if let [single] = uses {
+            alone.push(*single);
+        }
+    });
+    alone.sort_unstable();
+    alone
 }
 
 /// How many of the `n` vertices of a facet are corners.

@@ -130,7 +130,7 @@ impl Cells {
     }
 
     /// All cells: id, kind, vertices.
-    pub fn iter(&self) -> impl Iterator<Item = (CellId, CellKind, &[VertexId])> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = (CellId, CellKind, &[VertexId])> + Clone + '_ {
         self.kinds
             .iter()
             .zip(self.vertices.iter())
@@ -139,7 +139,7 @@ impl Cells {
     }
 
     /// The linear tetrahedra: where each stands among the cells, and its vertices.
-    pub fn tets(&self) -> impl Iterator<Item = (CellId, [VertexId; 4])> + '_ {
+    pub fn tets(&self) -> impl Iterator<Item = (CellId, [VertexId; 4])> + Clone + '_ {
         self.iter()
             .filter(|(_, kind, _)| *kind == CellKind::TETRA)
             .map(|(id, _, v)| (id, [v[0], v[1], v[2], v[3]]))

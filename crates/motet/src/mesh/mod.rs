@@ -9,6 +9,7 @@ mod exchange;
 pub mod facets;
 mod field;
 mod labels;
+mod lone;
 mod measure;
 pub mod shapes;
 mod summary;

@@ -14,7 +14,7 @@ use crate::geometry::vector::{add, scale, sub};
 use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
 use crate::motion::mover::Mover;
-use crate::motion::update::{Padded, Update};
+use crate::motion::update::{Displacements, Padded, Update};
 
 /// Where a call of [`Mover::advance`] left the mesh.
 #[derive(Debug)]
@@ -118,7 +118,7 @@ impl Mover {
         largest(|fraction| {
             let part: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
             timed(&mut seconds.update, || {
-                let nodes = self.nodes.displacements(&part);
+                let nodes = self.nodes.displacements(&part, threads);
                 self.update.apply(&self.reference, &nodes, out, threads);
             });
             timed(&mut seconds.check, || self.check.holds(out, &self.reference, 0.0, threads))
@@ -170,7 +170,7 @@ impl Mover {
     /// Goes the admissible part of the displacement in one step from the reference.
     fn go_in_one_step(&mut self, target: &[Point], fraction: f64, out: &mut [Point], threads: &Threads) {
         let driven: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
-        self.update.apply(&self.reference, &self.nodes.displacements(&driven), out, threads);
+        self.update.apply(&self.reference, &self.nodes.displacements(&driven, threads), out, threads);
         self.state = Some(State { points: out.to_vec(), driven, update: None });
     }
 }
@@ -194,12 +194,13 @@ impl Leg<'_> {
 
     fn place(&self, part: f64, out: &mut [Point], threads: &Threads) {
         let nodes = &self.mover.nodes;
-        let to = nodes.displacements(&self.driven(part));
-        let from = nodes.displacements(&self.state.driven);
-        let change: Vec<Padded> =
-            to.iter().zip(from).map(|(to, from)| [0, 1, 2, 3].map(|i| to[i] - from[i])).collect();
+        let target = self.driven(part);
+        let to = nodes.displacements(&target, threads);
+        let from = nodes.displacements(&self.state.driven, threads);
+        let (to, from) = (to.table(), from.table());
+        let change = to.iter().zip(&*from).map(|(to, from)| Padded::new(sub(to.point(), from.point())));
         if let Some(update) = &self.state.update {
-            update.apply(&self.state.points, &change, out, threads);
+            update.apply(&self.state.points, &Displacements::All(change.collect()), out, threads);
         }
         nodes.place(&self.mover.reference, &to, out);
     }

@@ -24,9 +24,10 @@ const CHUNK: usize = 1 << 14;
 
 impl Check {
     pub(crate) fn new(cells: &Cells, points: &[Point], threads: &Threads) -> Self {
-        let mut check = Self { corners: Corners::of(cells, points), before: Vec::new() };
-        check.before = check.not_upright(points, threads);
-        check
+        let mut corners = Corners::of(cells);
+        let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
+        let before = corners.stand_up(cells, &signs);
+        Self { corners, before }
     }
 
     /// Corners, in rising order, that are inverted or flat.
@@ -93,6 +94,10 @@ impl Check {
 }
 
 fn is_upright(tet: [VertexId; 4], points: &[Point]) -> bool {
-    let [a, b, c, d] = tet.map(|v| points[v.index()]);
-    orient3d(a, b, c, d) > 0
+    orientation(tet, points) > 0
+}
+
+#[inline]
+fn orientation([a, b, c, d]: [VertexId; 4], points: &[Point]) -> i8 {
+    orient3d(points[a.index()], points[b.index()], points[c.index()], points[d.index()])
 }

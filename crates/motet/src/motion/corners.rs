@@ -6,7 +6,7 @@
 //! between its corners). Corners where more facets meet, such as a pyramid's tip,
 //! have no such tet; they are left to the corners around them.
 
-use crate::base::{CellId, Point, VertexId};
+use crate::base::{CellId, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Cells};
 
@@ -22,16 +22,11 @@ pub(crate) struct Corners {
 }
 
 impl Corners {
-    /// The corners of the volume cells of `cells`.
-    ///
-    /// Files do not agree on how to number a wedge, and some number every tet the
-    /// other way round: whatever most cells of a kind do counts as upright.
-    pub(crate) fn of(cells: &Cells, points: &[Point]) -> Self {
+    /// The corners of the volume cells of `cells`, as they are numbered: [`Self::stand_up`] comes next.
+    pub(crate) fn of(cells: &Cells) -> Self {
         let mut corners = Self::with_capacity(cells.len());
         let facets = Facets::of(cells);
-        let mut n_upright = [0i64; 256];
         for (cell, kind, vertices) in cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
-            let first = corners.tets.len();
             if kind == CellKind::TETRA {
                 corners.tets.push([vertices[0], vertices[1], vertices[2], vertices[3]]);
             } else {
@@ -39,22 +34,35 @@ impl Corners {
             }
             corners.cells.resize(corners.tets.len(), cell);
             corners.is_cell.resize(corners.tets.len(), kind == CellKind::TETRA);
-            for tet in &mut corners.tets[first..] {
-                let volume = crate::geometry::tet::volume_6(tet.map(|v| points[v.index()]));
-                // Faces of a polyhedron may run either way round: each corner for itself.
-                if kind == CellKind::POLYHEDRON && volume < 0.0 {
-                    tet.swap(2, 3);
-                }
-                n_upright[kind.0 as usize] += i64::from(volume > 0.0) - i64::from(volume < 0.0);
-            }
-        }
-        for (tet, cell) in corners.tets.iter_mut().zip(&corners.cells) {
-            let kind = cells.kind(*cell);
-            if kind != CellKind::POLYHEDRON && n_upright[kind.0 as usize] < 0 {
-                tet.swap(2, 3);
-            }
         }
         corners
+    }
+
+    /// Turns corners so that positive means upright, given the sign of the volume of each; answers those
+    /// that are not upright, in rising order.
+    ///
+    /// Files do not agree on how to number a wedge, and some number every tet the
+    /// other way round: whatever most cells of a kind do counts as upright. Faces of a
+    /// polyhedron may run either way round: there each corner is for itself.
+    pub(crate) fn stand_up(&mut self, cells: &Cells, signs: &[i8]) -> Vec<u32> {
+        let mut n_upright = [0i64; 256];
+        for (cell, &sign) in self.cells.iter().zip(signs) {
+            n_upright[cells.kind(*cell).0 as usize] += i64::from(sign);
+        }
+        let mut not_upright = Vec::new();
+        for (i, (tet, (cell, &sign))) in (0..).zip(self.tets.iter_mut().zip(self.cells.iter().zip(signs))) {
+            let kind = cells.kind(*cell);
+            let side =
+                if kind == CellKind::POLYHEDRON { i64::from(sign) } else { n_upright[kind.0 as usize] };
+            if side < 0 {
+                tet.swap(2, 3);
+            }
+            let is_upright = if side < 0 { sign < 0 } else { sign > 0 };
+            if !is_upright {
+                not_upright.push(i);
+            }
+        }
+        not_upright
     }
 
     fn with_capacity(n: usize) -> Self {

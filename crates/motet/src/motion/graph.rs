@@ -1,11 +1,8 @@
 //! The graph: the Delaunay triangulation of the nodes, and where each other vertex hangs in it.
 
-use rayon::prelude::*;
-
-use crate::base::{Point, Result, Threads};
+use crate::base::{Point, Result, TetId, Threads};
 use crate::delaunay::Triangulation;
 use crate::motion::weights::weights;
-use crate::spatial::Located;
 
 /// Where points hang in the triangulation of some nodes.
 #[derive(Debug, Default)]
@@ -49,13 +46,8 @@ pub(crate) fn triangulate(nodes: &[Point], threads: &Threads) -> Result<Triangul
 pub(crate) fn hang(triangulation: &Triangulation, points: &[Point], threads: &Threads) -> Hanging {
     let located = triangulation.locator().locate_all(points, threads);
     let nodes = triangulation.points();
-    let weights_of = |(&p, at): (&Point, &Located)| {
-        weights(p, triangulation.tets()[at.tet().index()].map(|v| nodes[v.index()]))
-    };
-    let weights = match threads.pool() {
-        None => points.iter().zip(&located).map(weights_of).collect(),
-        Some(pool) => pool.install(|| points.par_iter().zip(&located).map(weights_of).collect()),
-    };
+    let corners = |tet: TetId| triangulation.tets()[tet.index()].map(|v| nodes[v.index()]);
+    let weights = threads.map(points.len(), |i| weights(points[i], corners(located[i].tet())));
     let mut number = vec![0; triangulation.tets().len()];
     located.iter().for_each(|at| number[at.tet().index()] = 1);
     let mut tets = Vec::new();

@@ -14,7 +14,7 @@
 //! two vertices of the layer where the wall stretches or bends: there the cells of
 //! the layer stretch along with the wall.
 
-use crate::base::{Error, Point, Result, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{add, scale, sub};
 use crate::mesh::Cells;
@@ -91,10 +91,11 @@ impl Layer {
     }
 
     /// Displacements of all members, when the driven nodes have these.
-    pub(crate) fn displacements<'a>(&'a self, driven: &'a [Point]) -> impl Iterator<Item = Moved> + 'a {
+    pub(crate) fn displacements(&self, driven: &[Point], threads: &Threads) -> Vec<Moved> {
         let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
-        let rotations = self.wall.rotations(of_wall);
-        self.members.iter().map(move |m| {
+        let rotations = self.wall.rotations(of_wall, threads);
+        threads.map(self.members.len(), |i| {
+            let m = &self.members[i];
             let corners = self.wall.triangle(m.triangle as usize);
             let foot = triangle::at(corners.map(of_wall), m.weights);
             let parts = corners.iter().zip(m.weights).map(|(&v, w)| (w, rotations[v as usize]));

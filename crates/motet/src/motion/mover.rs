@@ -157,7 +157,7 @@ impl Mover {
                 self.reference.len()
             )));
         }
-        let nodes = self.nodes.displacements(displacement);
+        let nodes = self.nodes.displacements(displacement, threads);
         self.update.apply(&self.reference, &nodes, out, threads);
         Ok(())
     }
@@ -175,7 +175,7 @@ impl Mover {
     ) -> Result<()> {
         self.check_displacement(displacement)?;
         let update = self.rebuild(&self.reference, threads)?;
-        update.apply(&self.reference, &self.nodes.displacements(displacement), out, threads);
+        update.apply(&self.reference, &self.nodes.displacements(displacement, threads), out, threads);
         Ok(())
     }
 

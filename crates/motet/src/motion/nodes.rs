@@ -8,7 +8,7 @@ use crate::mesh::{Boundary, Mesh};
 use crate::motion::layer::Layer;
 use crate::motion::options::{FacetSet, Options, RigidLayer};
 use crate::motion::slide::{Slide, free_vertices, key};
-use crate::motion::update::{Padded, padded, unpadded};
+use crate::motion::update::{Displacements, Padded};
 
 /// All nodes of a mesh, and what moves them.
 #[derive(Debug, Default)]
@@ -98,21 +98,24 @@ impl Nodes {
         Ok(())
     }
 
-    /// Displacements of all nodes, and of one more that never moves, from those of the driven ones.
-    pub(crate) fn displacements(&self, driven: &[Point]) -> Vec<Padded> {
-        let mut all = vec![[0.0; 4]; self.vertices.len() + 1];
-        all.iter_mut().zip(driven).for_each(|(all, &d)| *all = padded(d));
+    /// Displacements of all nodes from those of the driven ones.
+    pub(crate) fn displacements<'a>(&self, driven: &'a [Point], threads: &Threads) -> Displacements<'a> {
+        if self.layer.is_none() && self.slides.is_empty() {
+            return Displacements::Driven(driven);
+        }
+        let mut all = vec![Padded::default(); self.vertices.len() + 1];
+        all.iter_mut().zip(driven).for_each(|(all, &d)| *all = Padded::new(d));
         if let Some(layer) = &self.layer {
             let kinds = self.member_nodes.iter().zip(&self.member_slides);
-            for (moved, (&node, slide)) in layer.displacements(driven).zip(kinds) {
-                all[node as usize] = padded(match slide {
+            for (moved, (&node, slide)) in layer.displacements(driven, threads).into_iter().zip(kinds) {
+                all[node as usize] = Padded::new(match slide {
                     Some(slide) => moved.in_plane(self.slides[*slide as usize].normal),
                     None => moved.total(),
                 });
             }
         }
         self.slides.iter().for_each(|slide| slide.apply(&mut all));
-        all
+        Displacements::All(all)
     }
 
     pub(crate) fn n_sliding(&self) -> usize {
@@ -123,7 +126,7 @@ impl Nodes {
     /// Puts every node to exactly where it belongs.
     pub(crate) fn place(&self, reference: &[Point], displacement: &[Padded], out: &mut [Point]) {
         for (v, &d) in self.vertices.iter().zip(displacement) {
-            out[v.index()] = add(reference[v.index()], unpadded(d));
+            out[v.index()] = add(reference[v.index()], d.point());
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::mesh::Boundary;
 use crate::motion::graph::{hang, triangulate};
 use crate::motion::options::FacetSet;
-use crate::motion::update::{Padded, padded, unpadded};
+use crate::motion::update::Padded;
 
 /// Vertices of a flat patch may be off their plane by this part of its radius. Real inlets
 /// are cut by meshers, not by rulers: 0.003 was met. The displacement is interpolated
@@ -114,9 +114,9 @@ impl Slide {
     pub(crate) fn apply(&self, displacement: &mut [Padded]) {
         for (&sliding, (nodes, weights)) in self.sliding.iter().zip(&self.follows) {
             let sum = nodes.iter().zip(weights).fold([0.0; 3], |sum, (&node, &weight)| {
-                add(sum, scale(unpadded(displacement[node as usize]), weight))
+                add(sum, scale(displacement[node as usize].point(), weight))
             });
-            displacement[sliding as usize] = padded(sum);
+            displacement[sliding as usize] = Padded::new(sum);
         }
     }
 }

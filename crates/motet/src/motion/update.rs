@@ -12,21 +12,45 @@
 //! displacement: no branch, no second pass. Every vertex is for itself: results do not
 //! depend on the number of threads.
 
+use std::borrow::Cow;
 use std::sync::Mutex;
 
 use pulp::{NullaryFnOnce, f64x4};
 
 use crate::base::{Point, Threads};
 
-/// A displacement and a fourth number that means nothing: four load at once.
-pub(crate) type Padded = [f64; 4];
+/// A displacement and a zero: four numbers load at once, and from one cache line.
+#[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C, align(32))]
+pub(crate) struct Padded([f64; 4]);
 
-pub(crate) fn padded([x, y, z]: Point) -> Padded {
-    [x, y, z, 0.0]
+impl Padded {
+    pub(crate) fn new([x, y, z]: Point) -> Self {
+        Self([x, y, z, 0.0])
+    }
+
+    pub(crate) fn point(self) -> Point {
+        let [x, y, z, _] = self.0;
+        [x, y, z]
+    }
 }
 
-pub(crate) fn unpadded([x, y, z, _]: Padded) -> Point {
-    [x, y, z]
+/// Displacements of all nodes.
+pub(crate) enum Displacements<'a> {
+    /// All nodes are driven.
+    Driven(&'a [Point]),
+    /// Some are not; the last entry is that of the node that never moves.
+    All(Vec<Padded>),
+}
+
+impl Displacements<'_> {
+    /// As the update reads them: four numbers a node, and a node at the end that never moves.
+    pub(crate) fn table(&self) -> Cow<'_, [Padded]> {
+        match self {
+            Self::Driven(all) => all.iter().map(|&d| Padded::new(d)).chain([Padded::default()]).collect(),
+            Self::All(all) => Cow::Borrowed(all),
+        }
+    }
 }
 
 /// On what each vertex hangs.
@@ -47,27 +71,32 @@ const SMALLEST: usize = 2048;
 const PARTS: usize = 16;
 
 impl Update {
-    /// `out = from + sum w_i d_i`, where `displacement` has an entry for each node.
+    /// `out = from + sum w_i d_i`.
+    ///
+    /// Every thread makes a table of its own: one that another thread has read a step ago is slow to
+    /// write (for 17,000 nodes 90 us in place of 20, where the step takes 300).
     pub(crate) fn apply(
         &self,
         from: &[Point],
-        displacement: &[Padded],
+        displacements: &Displacements,
         out: &mut [Point],
         threads: &Threads,
     ) {
-        let displacement: &[f64x4] = bytemuck::cast_slice(displacement);
-        let some = |start: usize, out: &mut [Point]| {
+        let some = |start: usize, table: &[Padded], out: &mut [Point]| {
             let vertices = start..start + out.len();
             let (nodes, weights) = (&self.nodes[vertices.clone()], &self.weights[vertices.clone()]);
-            add_means(&from[vertices], nodes, weights, displacement, out);
+            add_means(&from[vertices], nodes, weights, bytemuck::cast_slice(table), out);
         };
         let part = out.len().div_ceil(PARTS * threads.count()).max(SMALLEST);
-        let Some(pool) = threads.pool().filter(|_| part < out.len()) else { return some(0, out) };
+        let Some(pool) = threads.pool().filter(|_| part < out.len()) else {
+            return some(0, &displacements.table(), out);
+        };
         let parts = Mutex::new(out.chunks_mut(part).enumerate());
         let next = || parts.lock().ok()?.next();
         let work = || {
+            let table = displacements.table();
             while let Some((i, out)) = next() {
-                some(i * part, out);
+                some(i * part, &table, out);
             }
         };
         pool.in_place_scope(|scope| {

@@ -110,8 +110,7 @@ impl<'a> Locator<'a> {
         [self.points[a.index()], self.points[b.index()], self.points[c.index()], self.points[d.index()]]
     }
 
-    /// A facet that has `q` strictly beyond it, but not the one to the tet `from`. All four are decided in `f64` at once,
-    /// for what a branch would guess wrongly; closer calls go the exact way, one by one.
+    /// A facet that has `q` strictly beyond it, but not the one to the tet `from`.
     #[inline]
     fn exit(&self, tet: TetId, from: TetId, q: Point, first: usize) -> Option<usize> {
         let corners = self.corners(tet);
