@@ -24,6 +24,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 let Ok(written) = write(&mesh, &options) else { continue };
                 fs::write(folder.join(format!("{name}_{k}")), &written.files[0].1)?;
                 *n_files.entry(target.clone()).or_insert(0) += 1;
+                if target == "vtu" {
+                    fs::create_dir_all(corpus.join("vtu_tail"))?;
+                    fs::write(corpus.join("vtu_tail").join(format!("{name}_{k}")), &written.files[0].1)?;
+                }
             }
         }
     }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::base::{Error, Result};
 
 /// What a thread takes at least in one go: less is done sooner than shared out.
-const SMALLEST_PART: usize = 1024;
+const SMALLEST_PART: usize = 4096;
 
 /// A pool of threads that belongs to the caller. Results do not depend on its size.
 #[derive(Debug, Default)]

@@ -1,6 +1,7 @@
 //! Points as the builder wants them: finite, and scaled by a power of two into the range where its filters hold.
 
 use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::is_finite;
 
 /// The longest side of the box is scaled to 2^24 .. 2^25: then the error bounds fit into `f32`
 /// and no stage of the filters can overflow.
@@ -23,12 +24,7 @@ pub(super) fn check(points: &[Point]) -> Result<()> {
         let what = format!("{} points, expected at most {MAX_POINTS}", points.len());
         return Err(Error::input(what).remedy("divide the set"));
     }
-    // The sum of anything with NaN or infinity is neither finite: a test that needs no branch.
-    let finite = points.iter().all(|p| (p[0] * 0.0 + p[1] * 0.0 + p[2] * 0.0) == 0.0);
-    if finite {
-        return Ok(());
-    }
-    let bad = points.iter().position(|p| p.iter().any(|x| !x.is_finite())).unwrap_or(0);
+    let Some(bad) = points.iter().position(|&p| !is_finite(p)) else { return Ok(()) };
     let [x, y, z] = points[bad];
     Err(Error::input(format!("the coordinates ({x}, {y}, {z}) are not finite numbers"))
         .at(format!("point {}", VertexId::new(bad)))

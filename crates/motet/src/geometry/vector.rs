@@ -32,6 +32,12 @@ pub fn cross(a: Point, b: Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// Whether no coordinate is NaN or infinite: a sum of anything with one of these is neither. No branch for each.
+#[inline(always)]
+pub fn is_finite(a: Point) -> bool {
+    (a[0] * 0.0 + a[1] * 0.0 + a[2] * 0.0) == 0.0
+}
+
 /// `|a|`
 #[inline(always)]
 pub fn norm(a: Point) -> f64 {

@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use crate::base::{CellId, Point, VertexId};
 use crate::geometry::predicates::{collinear, orient3d};
+use crate::geometry::vector::is_finite;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::n_corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
-use crate::mesh::check::points::is_finite;
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, VertexId};
+use crate::geometry::vector::is_finite;
 
 macro_rules! defect_kinds {
     ($($variant:ident = $name:literal, $meaning:literal;)*) => {
@@ -98,7 +99,7 @@ impl Example {
         for v in vertices {
             (0..3).for_each(|k| at[k] += points[v.index()][k] / vertices.len() as f64);
         }
-        let finite = at.iter().all(|x| x.is_finite()) && !vertices.is_empty();
+        let finite = is_finite(at) && !vertices.is_empty();
         let mut cells = cells.to_vec();
         // A cell may meet itself.
         cells.dedup();

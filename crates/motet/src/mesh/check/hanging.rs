@@ -6,8 +6,8 @@
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::distance;
+use crate::geometry::vector::is_finite;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
-use crate::mesh::check::points::is_finite;
 use crate::mesh::{Boundary, Mesh, bounds, triangulate};
 
 /// A vertex this close to a facet, as a part of its longest edge, lies on it:

@@ -1,6 +1,7 @@
 //! Points that are no place, that nothing uses, or that lie on one another.
 
-use crate::base::{Point, VertexId};
+use crate::base::VertexId;
+use crate::geometry::vector::is_finite;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 
@@ -63,10 +64,6 @@ pub(super) fn defects(mesh: &Mesh, canonical: &Canonical) -> Vec<Defect> {
         }
     }
     vec![non_finite, orphan, duplicate]
-}
-
-pub(super) fn is_finite(point: Point) -> bool {
-    point.iter().all(|x| x.is_finite())
 }
 
 fn used(mesh: &Mesh) -> Vec<bool> {
