@@ -31,10 +31,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
     }
-    let folder = corpus.join("pvd");
-    fs::create_dir_all(&folder)?;
-    fs::write(folder.join("two"), PVD)?;
-    n_files.insert("pvd".into(), 1);
+    for (target, text) in [("pvd", PVD), ("dolfin", DOLFIN), ("tetgen", TETGEN)] {
+        let folder = corpus.join(target);
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join("two"), text)?;
+        n_files.insert(target.into(), 1);
+    }
     n_files.iter().for_each(|(target, n)| println!("{target}: {n} files"));
     Ok(())
 }
@@ -47,6 +49,27 @@ const PVD: &str = r#"<?xml version="1.0"?>
   </Collection>
 </VTKFile>
 "#;
+
+const DOLFIN: &str = r#"<?xml version="1.0"?>
+<dolfin xmlns:dolfin="http://fenicsproject.org">
+  <mesh celltype="tetrahedron" dim="3">
+    <vertices size="5">
+      <vertex index="0" x="0" y="0" z="0"/><vertex index="1" x="1" y="0" z="0"/>
+      <vertex index="2" x="0" y="1" z="0"/><vertex index="3" x="0" y="0" z="1"/>
+      <vertex index="4" x="1e0" y="1.0" z="1"/>
+    </vertices>
+    <cells size="2">
+      <tetrahedron index="0" v0="0" v1="1" v2="2" v3="3"/>
+      <tetrahedron index="1" v0="1" v1="2" v2="3" v3="4"/>
+    </cells>
+    <data><mesh_function type="uint" dim="3" size="2"><entity index="0" value="7"/><entity index="1" value="8"/></mesh_function></data>
+  </mesh>
+</dolfin>
+"#;
+
+/// The .node, .ele and .face files, a zero byte between them.
+const TETGEN: &str = "5 3 1 1\n0 0 0 0 2 -1\n1 1 0 0 2 -1\n2 0 1 0 2 -1\n3 0 0 1 2 -1\n4 1 1 1 2 -1 # a comment\n\
+    \02 4 1\n0 0 1 2 3 7\n1 1 2 3 4 8\n\02 1\n0 0 1 2 -1\n1 2 3 4 -2\n";
 
 /// Small meshes with all that a file may hold.
 fn meshes() -> Vec<(&'static str, Mesh)> {
