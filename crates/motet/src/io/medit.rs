@@ -13,9 +13,9 @@ use std::io::Write as _;
 
 use crate::base::{Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays, lost_names};
+use crate::io::format::{Format, Input, Notes, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::{Text, push_floats, quoted};
-use crate::io::{Format, Input, Notes, WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 pub(super) const FORMAT: Format =

@@ -1,7 +1,8 @@
-//! Floor 3: files. One format a file, one registry for all.
+//! Floor 3: files. `format` says what a format is, each has a file or folder of its own, and `registry` knows them all.
 
 mod cell_labels;
 mod dolfin;
+mod format;
 mod labels;
 mod latin;
 mod legacy;
@@ -24,9 +25,7 @@ mod tetgen;
 mod text;
 mod vtkxml;
 
-pub use registry::{
-    Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written, can_write, formats,
-    read, read_as, read_noted, write,
-};
+pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
+pub use registry::{can_write, formats, read, read_as, read_noted, write};
 pub use replace::{replace, replace_all};
 pub use series::{SeriesWriter, parse_series, read_series};

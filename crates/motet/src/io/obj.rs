@@ -12,9 +12,9 @@ use std::io::Write as _;
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays};
+use crate::io::format::{Format, Input, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_float, parse_int, push_floats, quoted};
-use crate::io::{Format, Input, WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 pub(super) const FORMAT: Format =

@@ -7,7 +7,8 @@ use quick_xml::escape::{escape, unescape};
 use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
-use crate::io::{WriteOptions, replace, write};
+use crate::io::format::WriteOptions;
+use crate::io::{replace, write};
 use crate::mesh::Mesh;
 
 /// The times of a series and the file of each, in the order in which they are written down.

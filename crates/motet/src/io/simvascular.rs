@@ -17,10 +17,10 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, Result, VertexId};
+use crate::io::format::{Format, Input};
 use crate::io::registry::read_noted;
 use crate::io::select::rows;
 use crate::io::tags::Tags;
-use crate::io::{Format, Input};
 use crate::mesh::{Field, Mesh, Values};
 
 pub(super) const FORMAT: Format =

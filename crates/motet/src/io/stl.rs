@@ -14,9 +14,9 @@ use std::io::Write as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
+use crate::io::format::{Encoding, Format, Input, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, push_floats, quoted};
-use crate::io::{Encoding, Format, Input, WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 pub(super) const FORMAT: Format =

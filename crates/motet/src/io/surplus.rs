@@ -3,7 +3,7 @@
 //! orientation. VTK ignores what is too much; it is left out, and said.
 
 use crate::base::VertexId;
-use crate::io::registry::Notes;
+use crate::io::format::Notes;
 use crate::mesh::CellKind;
 
 /// Shortens the lists of such cells. Offsets that do not fit are left to those who check them.

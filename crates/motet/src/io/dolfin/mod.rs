@@ -21,7 +21,7 @@ use std::io::Read as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
-use crate::io::{Format, Input, Notes};
+use crate::io::format::{Format, Input, Notes};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 use xml::{Collection, Document};
 

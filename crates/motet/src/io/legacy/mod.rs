@@ -17,7 +17,7 @@ mod read;
 mod source;
 mod write;
 
-use crate::io::registry::Format;
+use crate::io::format::Format;
 
 /// VTK's older files.
 pub(super) const VTK: Format =

@@ -1,12 +1,12 @@
 //! The sections of a legacy VTK file, put together to a mesh.
 
 use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::format::{Input, Notes};
 use crate::io::labels::take_label_names;
 use crate::io::legacy::arrays::{Type, decode, skip_metadata, values};
 use crate::io::legacy::source::{Source, short};
 use crate::io::polygonal::{SECTIONS, kind_in_section};
 use crate::io::polyhedra::next_polyhedron;
-use crate::io::registry::{Input, Notes};
 use crate::io::scalar::{Scalar, to_ids, to_points};
 use crate::io::surplus::trim;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};

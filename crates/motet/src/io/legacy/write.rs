@@ -3,11 +3,11 @@
 use std::io::Write as _;
 
 use crate::base::{Error, Result};
+use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::labels::label_fields;
 use crate::io::legacy::arrays::{encode, encode_length};
 use crate::io::polyhedra::face_stream;
 use crate::io::scalar::{big_bytes, write_text};
-use crate::io::{Encoding, WriteOptions, Written};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {

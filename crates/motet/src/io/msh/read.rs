@@ -5,9 +5,9 @@ use super::entities::{Entities, Entity};
 use super::kinds::{ElementType, element_types};
 use super::source::{Form, Source};
 use crate::base::{Point, Result, VertexId};
+use crate::io::format::{Input, Notes};
 use crate::io::tags::Tags;
 use crate::io::text::quoted;
-use crate::io::{Input, Notes};
 use crate::mesh::{Cells, Field, LabelNames, Mesh, Values};
 
 /// What has been read so far.

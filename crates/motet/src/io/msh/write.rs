@@ -6,8 +6,8 @@ use super::kinds::{ElementType, element_types};
 use super::sink::Sink;
 use crate::base::{Error, Result};
 use crate::io::cell_labels::{cell_labels, int_column, say_all};
+use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::select::{keep_cells, lost_arrays};
-use crate::io::{Encoding, WriteOptions, Written};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 /// Entity of each node, as meshio names it.

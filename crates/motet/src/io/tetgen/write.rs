@@ -5,10 +5,10 @@ use std::io::Write as _;
 use super::EDGE_NODES;
 use crate::base::{Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_names, say_all};
+use crate::io::format::{WriteOptions, Written};
 use crate::io::node_order::vtk_to_other;
 use crate::io::select::{keep_cells, lost_arrays};
 use crate::io::text::push_float;
-use crate::io::{WriteOptions, Written};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
 /// Writes `.node`, `.ele` and `.face`, and `.edge` where there are edges.

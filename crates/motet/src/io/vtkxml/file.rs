@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 
 use crate::base::{Error, Point, Result};
+use crate::io::format::{Compression, Notes};
 use crate::io::latin::latin_or_utf8;
 use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
 use crate::io::vtkxml::payload::{Layout, Payload};
 use crate::io::vtkxml::tail::Tail;
-use crate::io::{Compression, Notes};
 use crate::mesh::{Field, Values};
 
 /// An opened file.

@@ -29,7 +29,7 @@ mod vtu;
 mod writer;
 
 use crate::base::{Error, Result};
-use crate::io::registry::{Format, Input, Notes};
+use crate::io::format::{Format, Input, Notes};
 use crate::mesh::Mesh;
 
 pub(super) use tail::Tail;

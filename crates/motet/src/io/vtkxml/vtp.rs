@@ -1,6 +1,7 @@
 //! Polygonal data (`.vtp`): vertices, lines, polygons, strips.
 
 use crate::base::{CellId, Csr, Error, Result, VertexId};
+use crate::io::format::{WriteOptions, Written};
 use crate::io::labels::label_fields;
 use crate::io::polygonal::{SECTIONS, kind_in_section, section_of};
 use crate::io::scalar::select_rows;
@@ -9,7 +10,6 @@ use crate::io::vtkxml::file::File;
 use crate::io::vtkxml::pieces::read_pieces;
 use crate::io::vtkxml::vtu::read_points;
 use crate::io::vtkxml::writer::{Data, Writer, ends, plain};
-use crate::io::{WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 const KIND: &str = "PolyData";

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use crate::base::{Error, Result, VertexId};
+use crate::io::format::{WriteOptions, Written};
 use crate::io::labels::label_fields;
 use crate::io::surplus::trim;
 use crate::io::vtkxml::document::Element;
@@ -10,7 +11,6 @@ use crate::io::vtkxml::file::File;
 use crate::io::vtkxml::pieces::read_pieces;
 use crate::io::vtkxml::polyhedra;
 use crate::io::vtkxml::writer::{Data, Writer, ends, plain};
-use crate::io::{WriteOptions, Written};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 const KIND: &str = "UnstructuredGrid";

@@ -7,9 +7,9 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::base::{Csr, Error, ErrorKind, Point, Result, VertexId};
+use crate::io::format::{Compression, Encoding, WriteOptions};
 use crate::io::scalar::{native_bytes, write_lines, write_text};
 use crate::io::vtkxml::codec::{Packer, vtk_name};
-use crate::io::{Compression, Encoding, WriteOptions};
 use crate::mesh::{Field, Values};
 
 /// Bytes packed at a time: VTK's own choice, and the reach of zlib's window.
