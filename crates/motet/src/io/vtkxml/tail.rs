@@ -9,6 +9,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::base::{Error, Result};
+use crate::io::vtkxml::document::Document;
 
 /// Smaller files are read whole.
 const SMALL: u64 = 256 << 10;
@@ -49,15 +50,11 @@ impl Tail {
     }
 }
 
-/// Where raw appended data starts, behind the underscore.
+/// Where raw appended data starts, behind the underscore. The parser says it, and not a search for words: these stand
+/// in comments and in other attributes, too.
 fn appended_start(head: &[u8]) -> Option<usize> {
-    const ELEMENT: &[u8] = b"<AppendedData";
-    let element = head.windows(ELEMENT.len()).position(|w| w == ELEMENT)?;
-    let end = element + head[element..].iter().position(|&b| b == b'>')?;
-    let tag = std::str::from_utf8(&head[element..end]).ok()?;
-    let blank = head[end + 1..].iter().take_while(|b| b.is_ascii_whitespace()).count();
-    let start = end + 1 + blank;
-    (tag.contains("\"raw\"") && head.get(start) == Some(&b'_')).then_some(start + 1)
+    let appended = Document::parse(head).ok()?.appended.filter(|appended| !appended.base64)?;
+    Some(head.len() - appended.bytes.len())
 }
 
 #[cfg(test)]
@@ -71,5 +68,13 @@ mod tests {
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\">\n _xyz"), None);
         assert_eq!(appended_start(b"<V><AppendedData encoding=\"raw\">\n "), None);
         assert_eq!(appended_start(b"<V></V>"), None);
+    }
+
+    #[test]
+    fn what_only_looks_like_raw_data_is_read_whole() {
+        // Base64 is what VTK takes where the encoding is not told.
+        assert_eq!(appended_start(b"<V><AppendedData encod#ng=\"raw\">\n _xyz"), None);
+        assert_eq!(appended_start(b"<V><AppendedData encoding=\"base64\" note=\"raw\">\n _xyz"), None);
+        assert_eq!(appended_start(b"<V><!-- <AppendedData encoding=\"raw\"> _x --><B/></V>"), None);
     }
 }
