@@ -44,6 +44,8 @@ class Model:
         arrays = [self.folder / "ids.u32", self.folder / "weights.f64", self.folder / "boundary.f64"]
         contenders = {f"motet {layer} {t}t": motet(path, layer, t) for layer in LAYERS for t in (1, 2)}
         contenders |= {f"C loop {t}t": [loop, "update", *arrays, t, BUDGET] for t in (1, 2)}
+        same = [self.folder / name for name in ("all_ids.u32", "all_weights.f64", "displacement.f64", "from.f64")]
+        contenders |= {f"C same {t}t": [loop, "move", *same, t, BUDGET] for t in (1, 2)}
         contenders["SciPy update"] = [*scipy, "update", self.folder, BUDGET]
         for t in (1, 2):
             contenders[f"copy {t}t"] = [loop, "copy", 72 * self.inside, t, BUDGET]
@@ -124,13 +126,15 @@ def updates(models):
                            for big in (" big", "") for t in (1, 2)],
                          shown(m.results["C loop 1t"]), shown(m.results["C loop 2t"]),
                          nanoseconds(m.seconds("C loop 1t"), m.inside), over(m.seconds("C loop 1t"), a),
-                         over(m.seconds("C loop 2t"), b), shown(m.results["SciPy update"]),
+                         over(m.seconds("C loop 2t"), b), shown(m.results["C same 1t"]), shown(m.results["C same 2t"]),
+                         over(m.seconds("C same 1t"), a), over(m.seconds("C same 2t"), b), shown(m.results["SciPy update"]),
                          over(m.seconds("SciPy update"), a)])
-    print("\nUpdate: displacement of the boundary in, all points out. The C loop (`gcc -O3 -march=native`) moves the inner"
-          "\nvertices alone, 72 bytes each. B/v: bytes that motet must move per vertex of the mesh. Share of the speed of a"
+    print("\nUpdate: displacement of the boundary in, all points out. The C loops (`gcc -O3 -march=native`):"
+          "\n`C` moves the inner vertices alone, from places and not by displacements, 72 bytes each; `C same` does motet's"
+          "\njob, all vertices by displacements, 96 bytes each. B/v: bytes that motet must move per vertex of the mesh. Share of the speed of a"
           "\nplain copy measured in the same run: `memory` of 1 GiB, `cache` of as many bytes as the C loop moves.\n")
     print(table(["model", "motet 1t", "motet 2t", "1t/2t", "ns/v", "B/v", "GB/s", "of memory 1t", "2t", "of cache 1t", "2t",
-                 "C 1t", "C 2t", "C ns/v", "C/motet 1t", "2t", "SciPy", "SciPy/motet"], rows))
+                 "C 1t", "C 2t", "C ns/v", "C/motet 1t", "2t", "C same 1t", "2t", "C same/motet 1t", "2t", "SciPy", "SciPy/motet"], rows))
     print("\nCopy (read + write), GB/s:\n")
     print(table(["model", "bytes", "1t", "2t", "1 GiB 1t", "2t"],
                 [[m.name, f"{72 * m.inside:,}", *[f"{speed(m, c):.1f}" for c in ("copy 1t", "copy 2t", "copy big 1t", "copy big 2t")]]

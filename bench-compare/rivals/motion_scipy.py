@@ -34,6 +34,15 @@ def prepare(path, folder):
     ids.tofile(folder / "ids.u32")
     weights.tofile(folder / "weights.f64")
     moved.tofile(folder / "boundary.f64")
+    # The same job as motet's: all vertices, boundary ones at their own node, by displacements.
+    all_ids = np.empty((len(points), 4), np.uint32)
+    all_weights = np.full((len(points), 4), 0.25)
+    all_ids[boundary] = np.arange(len(boundary))[:, None]
+    all_ids[inside], all_weights[inside] = ids, weights
+    all_ids.tofile(folder / "all_ids.u32")
+    all_weights.tofile(folder / "all_weights.f64")
+    (moved - points[boundary]).tofile(folder / "displacement.f64")
+    points.tofile(folder / "from.f64")
     return {"seconds": [seconds], "missed": missed, "graph_tets": len(graph.simplices), "inside": len(inside)}
 
 
