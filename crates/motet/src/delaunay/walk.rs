@@ -34,7 +34,8 @@ pub(super) fn walk<S: Simd>(
     }
 }
 
-/// The link across a facet that has `q` strictly on its other side; `entered` is the link by which the walk came.
+/// The link across a facet that has `q` strictly on its other side; `entered` is the link by which the walk came. `sure`
+/// bounds the error of any determinant within the box of all points (static filter); closer calls ask the exact sign.
 #[inline(always)]
 fn exit<S: Simd>(
     store: &Store,
@@ -52,26 +53,21 @@ fn exit<S: Simd>(
     let came_by = if entered >> 2 == tet { entered & 3 } else { 4 };
     let arm = |i: usize| sub(points[vertices[i] as usize], q);
     let arms = [arm(0), arm(1), arm(2), arm(3)];
+    // All four at once: which one it is cannot be guessed, so a branch for each costs more than the arithmetic.
+    let (mut beyond, mut decided) = (0u32, 0u32);
     for (i, [a, b, c]) in FACETS.into_iter().enumerate() {
-        let exact = || {
-            orient::orient3d(
-                q,
-                points[vertices[a] as usize],
-                points[vertices[b] as usize],
-                points[vertices[c] as usize],
-            )
-        };
-        if i as u32 != came_by && beyond::<S>([arms[a], arms[b], arms[c]], sure, exact) {
-            return Some(links[i]);
-        }
+        let determinant = dot::<S>(cross::<S>(arms[a], arms[b]), arms[c]);
+        beyond |= u32::from(determinant < -sure) << i;
+        decided |= u32::from(determinant.abs() > sure) << i;
     }
-    None
-}
-
-/// Whether the origin lies strictly beyond a facet given by its `arms`. `sure` bounds the error of any such determinant
-/// within the box of all points (static filter); closer calls ask the `exact` sign.
-#[inline(always)]
-fn beyond<S: Simd>([a, b, c]: [Point; 3], sure: f64, exact: impl FnOnce() -> i8) -> bool {
-    let determinant = dot::<S>(cross::<S>(a, b), c);
-    if determinant.abs() > sure { determinant < 0.0 } else { exact() < 0 }
+    let others = 0b1111 & !(1 << came_by);
+    if beyond & others != 0 {
+        return Some(links[(beyond & others).trailing_zeros() as usize % 4]);
+    }
+    let doubtful = others & !decided;
+    let exact = |i: u32| {
+        let [a, b, c] = FACETS[i as usize].map(|j| points[vertices[j] as usize]);
+        orient::orient3d(q, a, b, c) < 0
+    };
+    (0..4).find(|&i| doubtful & 1 << i != 0 && exact(i)).map(|i| links[i as usize])
 }
