@@ -431,6 +431,27 @@ fn appended_data_that_lie_are_refused() {
     }
 }
 
+/// Large files with raw appended data are read array by array, small ones whole: what is refused is the same.
+#[test]
+fn a_block_that_reaches_into_the_next_array_is_refused_either_way() {
+    let options = WriteOptions { compression: Compression::Zlib, ..WriteOptions::default() };
+    let (mut file, _) = write(".vtu", &shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]), &options);
+    let head = b"<AppendedData encoding=\"raw\">";
+    let end = file.windows(head.len()).position(|w| w == head).expect("appended data") + head.len();
+    let start = end + file[end..].iter().position(|&b| b == b'_').expect("an underscore") + 1;
+    let packed = u64::from_le_bytes(file[start + 24..start + 32].try_into().unwrap());
+    file[start + 24..start + 32].copy_from_slice(&(packed + 9).to_le_bytes());
+    let whole = read(".vtu", &file).unwrap_err();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.vtu");
+    file.resize(300 << 10, 0);
+    std::fs::write(&path, &file).unwrap();
+    let by_array = io::read(&path).unwrap_err();
+    assert!(whole.to_string().contains("block 0 of 1 has"), "{whole}");
+    assert_eq!(whole.place(), by_array.place());
+    assert!(by_array.to_string().contains("block 0 of 1 has"), "{by_array}");
+}
+
 #[test]
 fn pieces_are_joined_and_must_have_the_same_arrays() {
     let (start, end) = (TET.find("    <Piece").unwrap(), TET.find("  </UnstructuredGrid>").unwrap());

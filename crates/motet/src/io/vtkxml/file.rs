@@ -304,11 +304,12 @@ impl<'s, 'a> Array<'s, 'a> {
         if let Some(tail) = self.file.tail {
             return Payload::open_file(tail, offset, next, self.file.layout);
         }
-        let bytes = &appended.bytes[offset..];
         if !appended.base64 {
-            return Payload::open(Cow::Borrowed(bytes), self.file.layout);
+            // Blocks end where the next array starts, whichever way the file is read; plain data say themselves how long they are.
+            let end = if self.file.layout.compression == Compression::None { len } else { next };
+            return Payload::open(Cow::Borrowed(&appended.bytes[offset..end]), self.file.layout);
         }
-        let text = &bytes[..next - offset];
+        let text = &appended.bytes[offset..next];
         let end = text.iter().position(|&b| b == b'<').unwrap_or(text.len());
         Payload::open_base64(&text[..end], self.file.layout)
     }
