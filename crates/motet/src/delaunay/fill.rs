@@ -151,3 +151,22 @@ impl Parts<'_> {
         last
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbering_starts_anew_where_the_numbers_end() {
+        let facet = |vertices| Facet { vertices, outer: 0 };
+        let facets = [facet([5, 7, 2]), facet([7, 5, 9]), facet([2, 9, 5])];
+        let mut fill = Fill::new(10, 0.0);
+        fill.base = u32::MAX - 20;
+        for _ in 0..4 {
+            assert_eq!(fill.number(&facets), 4);
+            assert_eq!(fill.vertices[..4], [5, 7, 2, 9]);
+            assert_eq!(fill.corners[..3], [[0, 1, 2], [1, 0, 3], [2, 3, 0]]);
+        }
+        assert!(fill.base < 20, "{}", fill.base);
+    }
+}
