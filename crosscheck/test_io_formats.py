@@ -629,3 +629,31 @@ def test_the_face_files_of_a_pipe_beside_its_volume(motet, data, tmp_path):
     assert {"inlet", "outlet", "wall"} <= set(mesh.field_data)
     done = motet("convert", data / "tetmeshes" / "sv_ale_pipe", Path(out), code=3)
     assert "holds 2 volumes: lumen, wall" in done.stderr
+
+
+def test_a_written_simvascular_folder_has_the_ids_of_the_program_that_made_the_mesh(motet, data, tmp_path):
+    """Our own search for the element behind each facet finds what SimVascular wrote."""
+    pipe = data / "tetmeshes" / "sv_boundary_layer_pipe"
+    motet("convert", pipe, tmp_path / "one.vtu")
+    folder = tmp_path / "mesh-complete"
+    motet("convert", tmp_path / "one.vtu", str(folder) + "/")
+    volume, ours = pyvista.read(pipe / "lumen.vtu"), pyvista.read(folder / "mesh-complete.mesh.vtu")
+    assert_same_array(ours.points, volume.points.astype(float), "points")
+    for name in ("GlobalNodeID",):
+        assert_same_array(ours.point_data[name], volume.point_data[name], name)
+    for name in ("GlobalElementID", "ModelRegionID"):
+        assert_same_array(ours.cell_data[name], volume.cell_data[name], name)
+
+    def elements(face):
+        """{the three GlobalNodeIDs of a triangle: its GlobalElementID}"""
+        triangles = np.sort(face.point_data["GlobalNodeID"][face.regular_faces], axis=1)
+        return dict(zip(map(tuple, triangles.tolist()), face.cell_data["GlobalElementID"].tolist()))
+
+    exterior = elements(pyvista.read(folder / "mesh-complete.exterior.vtp"))
+    for face in ("inlet", "outlet", "wall"):
+        theirs = elements(pyvista.read(pipe / f"lumen_{face}.vtp"))
+        assert elements(pyvista.read(folder / "mesh-surfaces" / f"{face}.vtp")) == theirs
+        assert all(exterior[triangle] == element for triangle, element in theirs.items())
+    assert elements(pyvista.read(folder / "walls_combined.vtp")) == theirs
+    done = motet("convert", tmp_path / "one.vtu", str(folder) + "/", code=2)
+    assert "not empty" in done.stderr

@@ -79,7 +79,7 @@ pub struct WriteOptions {
 #[derive(Clone, Debug, Default)]
 pub struct Written {
     /// File ending (with dot) and content; the ending replaces that of the path asked for.
-    /// An empty ending means the path itself.
+    /// An empty ending means the path itself. For a format that is a folder: the path within it.
     pub files: Vec<(String, Vec<u8>)>,
     /// What the format cannot hold, each in a sentence for the user.
     pub lost: Vec<String>,

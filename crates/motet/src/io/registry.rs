@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::base::{Error, ErrorKind, Result};
 use crate::io::format::{Format, Input, Notes, WriteOptions};
-use crate::io::replace::{replace_all, replace_with};
+use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{dolfin, legacy, medit, msh, obj, simvascular, stl, tetgen, vtkxml};
 use crate::mesh::Mesh;
 
@@ -40,6 +40,13 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
     })
 }
 
+/// The format that `path` is to be written in: that of a folder where it ends with a slash or is one.
+fn for_writing(path: &Path) -> Result<&'static Format> {
+    let ends_with_slash =
+        path.as_os_str().as_encoded_bytes().last().is_some_and(|&b| std::path::is_separator(b.into()));
+    if ends_with_slash || path.is_dir() { folder_format(path) } else { by_ending(path) }
+}
+
 /// Whether a mesh could be written to `path`, so that a long run can ask before
 /// it starts: the ending is that of a format with a writer, and the folder is there.
 ///
@@ -47,7 +54,7 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
 /// Of kind [`ErrorKind::Options`] for the ending, [`ErrorKind::Io`] for the folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
-    let writable = by_ending(path).is_ok_and(|f| f.write.is_some());
+    let writable = for_writing(path).is_ok_and(|f| f.write.is_some());
     if !writable {
         let known: Vec<_> =
             FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.endings).copied().collect();
@@ -55,12 +62,23 @@ pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
             .in_file(path)
             .remedy(format!("endings that can: {}", known.join(" "))));
     }
+    refuse_full_folder(path)?;
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty());
     match folder.filter(|folder| !folder.is_dir()) {
         Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
             .in_file(path)
             .remedy("make the folder first")),
         None => Ok(()),
+    }
+}
+
+/// A folder that holds something is not written over: nothing is lost, and no old face is left among new ones.
+fn refuse_full_folder(path: &Path) -> Result<()> {
+    match path.read_dir().map(|mut entries| entries.next().is_some()) {
+        Ok(true) => Err(Error::options("is a folder that is not empty")
+            .in_file(path)
+            .remedy("name a folder that is new or empty")),
+        _ => Ok(()),
     }
 }
 
@@ -143,7 +161,7 @@ fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
 /// When the format cannot hold the mesh, or the system refuses the file.
 pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Result<Vec<String>> {
     let path = path.as_ref();
-    let format = by_ending(path)?;
+    let format = for_writing(path)?;
     let Some(write) = format.write else {
         return Err(Error::input(format!("{} files can only be read", format.name)).in_file(path));
     };
@@ -153,6 +171,11 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         return replace_with(path, |sink| vtkxml::write_to(mesh, options, sink));
     }
     let written = write(mesh, options).map_err(|e| e.in_file(path))?;
+    if format.endings.contains(&"/") {
+        refuse_full_folder(path)?;
+        replace_folder(path, &written.files)?;
+        return Ok(written.lost);
+    }
     let files = written.files.iter().map(|(ending, bytes)| (with_ending(path, ending), bytes.as_slice()));
     replace_all(&files.collect::<Vec<_>>())?;
     Ok(written.lost)

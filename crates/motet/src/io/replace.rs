@@ -39,6 +39,24 @@ pub(super) fn replace_with<T>(path: &Path, write: impl FnOnce(&mut dyn Write) ->
     Ok(result)
 }
 
+/// Writes a folder of files beside `path`, then renames it into place. Nothing stands at `path`, or an empty folder.
+pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
+    let told = |e: std::io::Error| Error::io(path, &e);
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(parent).map_err(told)?;
+    // Inside a folder that is its owner's alone; the one that is renamed has the rights that the user's umask says.
+    let inner = folder.path().join("folder");
+    for (name, bytes) in files {
+        let file = inner.join(name);
+        std::fs::create_dir_all(file.parent().unwrap_or(&inner)).map_err(told)?;
+        std::fs::write(file, bytes).map_err(told)?;
+    }
+    if path.is_dir() {
+        std::fs::remove_dir(path).map_err(told)?;
+    }
+    std::fs::rename(inner, path).map_err(told)
+}
+
 fn write_beside(path: &Path, bytes: &[u8]) -> Result<NamedTempFile> {
     let mut file = create_beside(path)?;
     file.write_all(bytes).map_err(|e| Error::io(path, &e))?;

@@ -1,7 +1,5 @@
-//! SimVascular's mesh-complete folders: a volume, and a file for each of its faces.
+//! A folder into one mesh.
 //!
-//! Two layouts are known: `mesh-complete.mesh.vtu` with `mesh-surfaces/*.vtp`, and
-//! `NAME.vtu` with `NAME_*.vtp` beside it, where the folder has one such volume.
 //! Points of a face are found in the volume by `GlobalNodeID`, or where a file has
 //! none by equal coordinates. Triangles of faces follow the cells of the volume,
 //! with the array `patch`: `ModelFaceID` where each face has its own, else running
@@ -17,17 +15,12 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, Result, VertexId};
-use crate::io::format::{Format, Input};
+use crate::io::format::Input;
 use crate::io::registry::read_noted;
 use crate::io::select::rows;
+use crate::io::simvascular::{FACE_ID, NODE_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
 use crate::mesh::{Field, Mesh, Values};
-
-pub(super) const FORMAT: Format =
-    Format { name: "SimVascular mesh-complete", endings: &["/"], read: Some(read), write: None };
-
-const NODE_ID: &str = "GlobalNodeID";
-const FACE_ID: &str = "ModelFaceID";
 
 /// The files of one folder.
 struct Layout {
@@ -36,7 +29,7 @@ struct Layout {
     faces: Vec<(String, PathBuf)>,
 }
 
-fn read(input: &Input<'_>) -> Result<Mesh> {
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let layout = Layout::of(input.path)?;
     let take = |path: &Path| {
         let (mesh, notes) = read_noted(path)?;
@@ -78,11 +71,11 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
 
 impl Layout {
     fn of(folder: &Path) -> Result<Self> {
-        let complete = folder.join("mesh-complete.mesh.vtu");
+        let complete = folder.join(VOLUME);
         if complete.is_file() {
-            let faces = files(&folder.join("mesh-surfaces"), "vtp")?;
+            let faces = files(&folder.join(SURFACES), "vtp")?;
             if faces.is_empty() {
-                return Err(Error::input("there is no face (*.vtp)").in_file(folder.join("mesh-surfaces")));
+                return Err(Error::input("there is no face (*.vtp)").in_file(folder.join(SURFACES)));
             }
             return Ok(Self { volume: complete, faces });
         }
@@ -135,7 +128,7 @@ fn files(folder: &Path, ending: &str) -> Result<Vec<(String, PathBuf)>> {
     Ok(found)
 }
 
-fn node_ids(mesh: &Mesh) -> Option<Vec<u64>> {
+pub(super) fn node_ids(mesh: &Mesh) -> Option<Vec<u64>> {
     let ids = mesh.point_field(NODE_ID).filter(|f| f.components == 1)?.values.to_i64()?;
     ids.into_iter().map(|id| u64::try_from(id).ok()).collect()
 }

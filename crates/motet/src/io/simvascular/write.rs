@@ -1,0 +1,197 @@
+//! One mesh into a folder.
+//!
+//! Every patch becomes a face with the ids by which solvers find it: `GlobalNodeID` (its points in the volume),
+//! `GlobalElementID` (the element behind each facet), `ModelFaceID` (the label of the patch). Ids that the mesh has
+//! and that tell its points or elements apart are kept, else both are numbered from 1.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::base::{Error, Result, VertexId};
+use crate::io::format::{WriteOptions, Written};
+use crate::io::select::rows;
+use crate::io::simvascular::read::node_ids;
+use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
+use crate::io::tags::Tags;
+use crate::io::vtkxml;
+use crate::mesh::{Boundary, Cells, Field, Labels, Mesh, Values};
+
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let of_dim = |dim| -> Vec<usize> {
+        (0..mesh.cells.len()).filter(|&i| mesh.cells.kinds()[i].dim() == Some(dim)).collect()
+    };
+    let (volume_cells, surface_cells) = (of_dim(3), of_dim(2));
+    if volume_cells.is_empty() {
+        return Err(Error::input("a mesh-complete folder needs volume cells, and there are none")
+            .remedy("write a surface as .vtp"));
+    }
+    let (labels, mut faces) = faces(mesh, &surface_cells);
+    if faces.is_empty() {
+        return Err(Error::input("a mesh-complete folder is made of faces, and no surface cell has a patch")
+            .remedy("give the mesh surface cells with the cell array \"patch\""));
+    }
+    let numbered = Numbered::new(mesh, &volume_cells);
+    let mut written = Written::default();
+    let volume = numbered.volume(&volume_cells);
+    add(&mut written, VOLUME.into(), (vtkxml::VTU.write, &volume), options)?;
+    let mut unknown = 0;
+    let face = |written: &mut Written, path: String, cells: &[usize]| -> Result<usize> {
+        let (face, inside) = numbered.face(cells, &labels);
+        add(written, path, (vtkxml::VTP.write, &face), options)?;
+        Ok(inside)
+    };
+    for (name, cells) in &faces {
+        unknown += face(&mut written, format!("{SURFACES}/{name}.vtp"), cells)?;
+    }
+    let exterior: Vec<usize> = surface_cells.iter().copied().filter(|&i| labels.ids[i] != 0).collect();
+    face(&mut written, "mesh-complete.exterior.vtp".into(), &exterior)?;
+    faces.retain(|name, _| name.to_lowercase().starts_with("wall"));
+    let mut walls: Vec<usize> = faces.into_values().flatten().collect();
+    walls.sort_unstable();
+    if !walls.is_empty() {
+        face(&mut written, "walls_combined.vtp".into(), &walls)?;
+    }
+    let others = mesh.cells.len() - volume_cells.len() - exterior.len();
+    if others > 0 {
+        written
+            .lost
+            .push(format!("{others} cells that are neither volume cells nor of a patch are left out"));
+    }
+    if unknown > 0 {
+        written.lost.push(format!(
+            "{unknown} facets of patches are no facets of the boundary: their {ELEMENT_ID} is 0"
+        ));
+    }
+    written.lost.dedup();
+    Ok(written)
+}
+
+/// Adds the file that a writer of one file makes.
+fn add(
+    written: &mut Written,
+    path: String,
+    (write, mesh): (Option<crate::io::format::Write>, &Mesh),
+    options: &WriteOptions,
+) -> Result<()> {
+    let Some(write) = write else { return Err(Error::input(format!("{path} cannot be written"))) };
+    let one = write(mesh, options)?;
+    written.lost.extend(one.lost);
+    written.files.extend(one.files.into_iter().map(|(_, bytes)| (path.clone(), bytes)));
+    Ok(())
+}
+
+/// The patch of each cell, and the cells of each patch by a name that can be a file's.
+fn faces(mesh: &Mesh, surface_cells: &[usize]) -> (Labels, BTreeMap<String, Vec<usize>>) {
+    let labels = mesh.patches().unwrap_or_default();
+    let mut faces = BTreeMap::new();
+    for label in labels.used() {
+        let cells: Vec<usize> = surface_cells.iter().copied().filter(|&i| labels.ids[i] == label).collect();
+        let is_safe = |c: char| c.is_alphanumeric() || "-_.+ ".contains(c);
+        let mut name: String = labels.name(label).chars().map(|c| if is_safe(c) { c } else { '_' }).collect();
+        if name.trim_matches(['.', ' ']).is_empty() || faces.contains_key(&name) {
+            name = format!("{name}_{label}");
+        }
+        if !cells.is_empty() {
+            faces.insert(name, cells);
+        }
+    }
+    (labels, faces)
+}
+
+/// A mesh and the ids of its points and elements.
+struct Numbered<'m> {
+    mesh: &'m Mesh,
+    node_ids: Values,
+    /// For each cell; 0 for cells that are no volume cells.
+    element_ids: Vec<i64>,
+    /// The element behind a facet of the boundary, by the facet's sorted corners.
+    behind: HashMap<Vec<VertexId>, i64>,
+}
+
+impl<'m> Numbered<'m> {
+    fn new(mesh: &'m Mesh, volume_cells: &[usize]) -> Self {
+        let own = node_ids(mesh).filter(|ids| !ids.contains(&0) && Tags::new(ids, NODE_ID).is_ok());
+        let node_ids = match own {
+            Some(ids) => integers(ids.into_iter().map(|id| id as i64).collect()),
+            None => integers((1..).take(mesh.points.len()).collect()),
+        };
+        let mut element_ids = vec![0; mesh.cells.len()];
+        let own = mesh.cell_field(ELEMENT_ID).filter(|f| f.components == 1).and_then(|f| f.values.to_i64());
+        let own = own.map(|ids| volume_cells.iter().map(|&i| ids[i]).collect::<Vec<_>>()).filter(|ids| {
+            let unsigned: Vec<u64> = ids.iter().map(|&id| id.max(0) as u64).collect();
+            !unsigned.contains(&0) && Tags::new(&unsigned, ELEMENT_ID).is_ok()
+        });
+        let ids = own.unwrap_or_else(|| (1..).take(volume_cells.len()).collect());
+        volume_cells.iter().zip(ids).for_each(|(&i, id)| element_ids[i] = id);
+        let boundary = Boundary::of(&mesh.cells);
+        let keys = boundary.facets.iter().zip(&boundary.kinds).zip(&boundary.cells);
+        let behind = keys.map(|((facet, kind), cell)| {
+            let n = crate::mesh::n_corners(*kind, facet.len());
+            (key(&facet[..n]), element_ids[cell.index()])
+        });
+        Self { mesh, node_ids, behind: behind.collect(), element_ids }
+    }
+
+    fn volume(&self, volume_cells: &[usize]) -> Mesh {
+        let mut volume = self.part(&(0..self.mesh.points.len()).collect::<Vec<_>>(), volume_cells);
+        let ids = volume_cells.iter().map(|&i| self.element_ids[i]).collect();
+        volume.set_cell_field(Field::scalars(ELEMENT_ID, integers(ids)));
+        if volume.cell_field(REGION_ID).is_none() {
+            let regions = self.mesh.regions().map(|regions| regions.ids);
+            let region = |&i: &usize| regions.as_ref().map_or(1, |ids| ids[i]);
+            volume.set_cell_field(Field::scalars(
+                REGION_ID,
+                volume_cells.iter().map(region).collect::<Vec<_>>(),
+            ));
+        }
+        volume.field_data.clone_from(&self.mesh.field_data);
+        volume.label_names.regions.clone_from(&self.mesh.label_names.regions);
+        volume
+    }
+
+    /// The surface of some cells, and how many of them are no facets of the boundary.
+    fn face(&self, cells: &[usize], labels: &Labels) -> (Mesh, usize) {
+        let vertices = |i: &usize| self.mesh.cells.connectivity().list(*i);
+        let mut used: Vec<usize> = cells.iter().flat_map(vertices).map(|v| v.index()).collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut face = self.part(&used, cells);
+        let behind = |i: &usize| {
+            let kind = self.mesh.cells.kinds()[*i];
+            let corners = &vertices(i)[..crate::mesh::n_corners(kind, vertices(i).len())];
+            self.behind.get(&key(corners)).copied().unwrap_or(0)
+        };
+        let behind: Vec<i64> = cells.iter().map(behind).collect();
+        let inside = behind.iter().filter(|&&id| id == 0).count();
+        face.set_cell_field(Field::scalars(ELEMENT_ID, integers(behind)));
+        let face_ids: Vec<i32> = cells.iter().map(|&i| labels.ids[i]).collect();
+        face.set_cell_field(Field::scalars(FACE_ID, face_ids));
+        (face, inside)
+    }
+
+    /// Some points and cells, with their arrays.
+    fn part(&self, points: &[usize], part: &[usize]) -> Mesh {
+        let place = |v: &VertexId| VertexId::new(points.partition_point(|&u| u < v.index()));
+        let mut cells = Cells::new();
+        for &i in part {
+            cells.push(self.mesh.cells.kinds()[i], self.mesh.cells.connectivity().list(i).iter().map(place));
+        }
+        let mut mesh = Mesh::new(points.iter().map(|&i| self.mesh.points[i]).collect(), cells);
+        mesh.point_data = self.mesh.point_data.iter().map(|f| rows(f, points)).collect();
+        mesh.cell_data = self.mesh.cell_data.iter().map(|f| rows(f, part)).collect();
+        let ids = Field::scalars(NODE_ID, self.node_ids.clone());
+        mesh.set_point_field(rows(&ids, points));
+        mesh
+    }
+}
+
+fn key(corners: &[VertexId]) -> Vec<VertexId> {
+    let mut key = corners.to_vec();
+    key.sort_unstable();
+    key
+}
+
+/// In 32 bits where they fit, as SimVascular has them.
+fn integers(ids: Vec<i64>) -> Values {
+    let small: Option<Vec<i32>> = ids.iter().map(|&id| i32::try_from(id).ok()).collect();
+    small.map_or(Values::I64(ids), Values::I32)
+}
