@@ -735,3 +735,22 @@ fn a_face_of_another_volume_is_told() {
     let error = read(folder.path()).unwrap_err().to_string();
     assert!(error.contains("there is no face (*.vtp)"), "{error}");
 }
+
+#[test]
+fn an_entity_gets_a_number_also_where_the_largest_is_taken() {
+    let mut mesh = motet::mesh::shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
+    let n = mesh.cells.len();
+    mesh.cell_data.clear();
+    // One entity with several labels: version 4 knows one to an entity, so new ones are needed.
+    mesh.set_cell_field(Field::scalars("gmsh:geometrical", vec![i32::MAX; n]));
+    mesh.set_cell_field(Field::scalars("gmsh:physical", (1..).take(n).collect::<Vec<i32>>()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.msh");
+    let options = WriteOptions { version: Some("4.1".into()), ..WriteOptions::default() };
+    write(&path, &mesh, &options).unwrap();
+    let back = read(&path).unwrap();
+    assert_eq!(
+        back.cell_field("gmsh:physical").unwrap().values,
+        mesh.cell_field("gmsh:physical").unwrap().values
+    );
+}

@@ -1,6 +1,6 @@
 //! Writing MSH files, both versions in both forms.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::kinds::{ElementType, element_types};
 use super::sink::Sink;
@@ -99,10 +99,8 @@ impl Tagged {
 fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32>> {
     let mut label_of = BTreeMap::new();
     let mut entity_of = BTreeMap::new();
-    let mut next = [0i32; 4];
-    for (&dim, &entity) in dims.iter().zip(wanted) {
-        next[dim as usize] = next[dim as usize].max(entity);
-    }
+    let mut numbers = Numbers::default();
+    dims.iter().zip(wanted).for_each(|(&dim, &entity)| numbers.take(dim, entity));
     let mut entities = Vec::with_capacity(dims.len());
     for ((&dim, &entity), &label) in dims.iter().zip(wanted).zip(physical) {
         let fits = entity > 0 && *label_of.entry((dim, entity)).or_insert(label) == label;
@@ -113,10 +111,9 @@ fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32
         let new = match entity_of.get(&(dim, entity, label)) {
             Some(&new) => new,
             None => {
-                let new = next[dim as usize].checked_add(1).ok_or_else(|| {
+                let new = numbers.new_one(dim).ok_or_else(|| {
                     Error::input("no number is left for a new entity").remedy("leave gmsh:geometrical out")
                 })?;
-                next[dim as usize] = new;
                 entity_of.insert((dim, entity, label), new);
                 new
             }
@@ -124,6 +121,35 @@ fn entities_of(dims: &[i32], wanted: &[i32], physical: &[i32]) -> Result<Vec<i32
         entities.push(new);
     }
     Ok(entities)
+}
+
+/// Numbers of entities that are taken, in each dimension.
+#[derive(Default)]
+struct Numbers {
+    taken: [BTreeSet<i32>; 4],
+    /// None below is free.
+    lowest: [i32; 4],
+}
+
+impl Numbers {
+    fn take(&mut self, dim: i32, number: i32) {
+        self.taken[dim as usize].insert(number.max(0));
+    }
+
+    /// The number after the largest; where that is the last there is, the lowest free one.
+    fn new_one(&mut self, dim: i32) -> Option<i32> {
+        let (taken, lowest) = (&mut self.taken[dim as usize], &mut self.lowest[dim as usize]);
+        let new = match taken.last().map_or(Some(1), |last| last.checked_add(1)) {
+            Some(new) => new,
+            None => {
+                let new = (*lowest + 1..i32::MAX).find(|number| !taken.contains(number))?;
+                *lowest = new;
+                new
+            }
+        };
+        taken.insert(new);
+        Some(new)
+    }
 }
 
 fn header(sink: &mut Sink, version: &str) {
