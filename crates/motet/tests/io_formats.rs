@@ -754,3 +754,43 @@ fn an_entity_gets_a_number_also_where_the_largest_is_taken() {
         mesh.cell_field("gmsh:physical").unwrap().values
     );
 }
+
+#[test]
+fn a_mesh_goes_into_a_simvascular_folder_and_comes_back() {
+    let mut mesh = motet::mesh::shapes::box_grid([2, 1, 1], [[0.0; 3], [1.0; 3]]);
+    mesh.label_names.patches.insert(1, "wall/left".into());
+    mesh.set_point_field(Field::scalars("p", (0..mesh.points.len() as i32).collect::<Vec<_>>()));
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("mesh-complete/");
+    let lost = write(&folder, &mesh, &WriteOptions::default()).unwrap();
+    assert!(lost.is_empty(), "{lost:?}");
+    assert!(folder.join("mesh-surfaces/wall_left.vtp").is_file());
+    assert!(folder.join("walls_combined.vtp").is_file());
+    let back = read(&folder).unwrap();
+    assert_eq!(back.points, mesh.points);
+    assert_eq!(back.point_field("p"), mesh.point_field("p"));
+    // The same cells with the same labels; faces come in the order of their names.
+    let cells = |mesh: &Mesh| {
+        let labels = mesh.patches().unwrap().ids;
+        let mut cells: Vec<_> =
+            mesh.cells.iter().map(|(i, kind, v)| (kind, v.to_vec(), labels[i.index()])).collect();
+        cells.sort();
+        cells
+    };
+    assert_eq!(cells(&back), cells(&mesh));
+    mesh.label_names.patches.insert(1, "wall_left".into());
+    assert_eq!(back.label_names.patches, mesh.label_names.patches);
+    // Each facet has the element behind it: they share its three vertices.
+    let elements = back.cell_field("GlobalElementID").unwrap().values.to_i64().unwrap();
+    for (i, kind, vertices) in back.cells.iter().filter(|(_, kind, _)| *kind == CellKind::TRIANGLE) {
+        let behind = motet::base::CellId::new(elements[i.index()] as usize - 1);
+        assert!(vertices.iter().all(|v| back.cells.vertices(behind).contains(v)), "{kind:?} {i}");
+    }
+    let error = write(&folder, &mesh, &WriteOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("is a folder that is not empty"), "{error}");
+    mesh.cell_data.clear();
+    let error = write(parent.path().join("bare/"), &mesh, &WriteOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("no surface cell has a patch"), "{error}");
+    assert!(!parent.path().join("bare").exists());
+    assert_eq!(fs::read_dir(parent.path()).unwrap().count(), 1);
+}

@@ -20,13 +20,14 @@ use crate::table::{count, seconds};
 Examples:
   motet convert vessel.msh vessel.vtu                     for ParaView
   motet convert mesh-complete/ vessel.vtu                 a SimVascular folder, faces as patches
+  motet convert vessel.msh mesh-complete/                 and the other way
   motet convert vessel.vtu vessel.msh --version 2.2       for OpenFOAM's and old readers
   motet convert a.vtu b.vtu --encoding ascii --compression none")]
 pub(crate) struct ConvertArgs {
     /// The file (or folder) to read
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// The file to write
+    /// The file to write, or a new folder, with a slash at its end
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
