@@ -26,7 +26,7 @@ impl Tags {
     /// When a number occurs twice.
     pub(super) fn new(numbers: &[u64], what: &str) -> Result<Self> {
         let first = numbers.iter().copied().min().unwrap_or(0);
-        if numbers.iter().zip(first..).all(|(&number, running)| number == running) {
+        if numbers.iter().zip(0..).all(|(&number, place)| number - first == place) {
             return Ok(Self::Running { first, n: numbers.len() });
         }
         let span = numbers.iter().copied().max().map_or(0, |last| last - first);
@@ -71,6 +71,14 @@ impl Tags {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_number_there_is_is_a_number() {
+        let tags = Tags::new(&[u64::MAX], "node").unwrap();
+        assert_eq!((tags.place(u64::MAX), tags.place(0)), (Some(0), None));
+        assert!(Tags::new(&[u64::MAX, u64::MAX], "node").is_err());
+        assert_eq!(Tags::new(&[u64::MAX, 3], "node").unwrap().place(3), Some(1));
+    }
 
     #[test]
     fn every_number_finds_its_place_and_no_other_does() {
