@@ -4,7 +4,7 @@
 //! the rest: flat arrays and two passes, no hash map. One million tets (four
 //! million facets) take about 64 MB while it runs.
 
-use crate::base::{CellId, Csr, VertexId};
+use crate::base::{CellId, Csr, TetId, VertexId};
 use crate::geometry::tet;
 use crate::mesh::facets::{FacetShape, facet_shapes};
 use crate::mesh::{CellKind, Cells};
@@ -244,18 +244,27 @@ impl Source for &[[VertexId; 4]] {
     }
 }
 
+/// Calls `see` once for every facet of the tets, with `(tet, i)` for each tet that has it, in rising order: facet `i` lies opposite
+/// vertex `i`. Facets come in the order of their vertices, lowest first.
+pub fn for_each_tet_facet(tets: &[[VertexId; 4]], mut see: impl FnMut(&[(TetId, usize)])) {
+    let n_vertices = tets.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
+    let mut uses = Vec::new();
+    Buckets::fill(n_vertices, &tets).for_each_run(|run| {
+        uses.clear();
+        uses.extend(run.iter().map(|entry| (TetId((entry.1 >> 32) as u32), entry.1 as u32 as usize)));
+        see(&uses);
+    });
+}
+
 /// The tet behind each facet of each tet: `[t][i]` lies opposite vertex `i` of
 /// tet `t`; [`NO_TET`] on the boundary, and where more than two tets share the
 /// facet (then nothing says which).
 pub fn tet_neighbors(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
-    let n_vertices = tets.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
-    let buckets = Buckets::fill(n_vertices, &tets);
     let mut neighbors = vec![[NO_TET; 4]; tets.len()];
-    buckets.for_each_run(|run| {
-        if let [x, y] = run {
-            let [x, y] = [x, y].map(|entry| ((entry.1 >> 32) as usize, entry.1 as u32));
-            neighbors[x.0][x.1 as usize] = y.0 as u32;
-            neighbors[y.0][y.1 as usize] = x.0 as u32;
+    for_each_tet_facet(tets, |uses| {
+        if let &[(x, i), (y, j)] = uses {
+            neighbors[x.index()][i] = y.0;
+            neighbors[y.index()][j] = x.0;
         }
     });
     neighbors

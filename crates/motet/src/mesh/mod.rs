@@ -14,6 +14,7 @@ mod measure;
 pub mod shapes;
 mod summary;
 mod surface;
+mod tet_mesh;
 mod triangulate;
 mod volume;
 
@@ -29,5 +30,6 @@ pub use summary::{
     Summary,
 };
 pub use surface::Surface;
+pub use tet_mesh::TetMesh;
 pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

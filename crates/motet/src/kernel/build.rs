@@ -1,0 +1,198 @@
+//! A complex from plain tets, and what the tets became of it.
+
+use crate::base::{Error, Result, TetId, VertexId};
+use crate::geometry::quality::eas;
+use crate::geometry::tet::FACETS;
+use crate::kernel::complex::{Complex, Hold, NO_TET};
+use crate::kernel::journal::Journal;
+use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::orientation::orient;
+use crate::mesh::TetMesh;
+use crate::mesh::adjacency::for_each_tet_facet;
+
+impl Complex {
+    /// The complex of a mesh, and which of its tets were numbered the other way round (empty: none).
+    ///
+    /// # Errors
+    /// When an array does not fit ([`TetMesh::validate`]), when more than two tets share a facet, a triangle is no facet of a
+    /// tet, or the mesh is one-sided; the place is the first such tet or triangle.
+    pub fn new(mesh: TetMesh) -> Result<(Self, Vec<bool>)> {
+        mesh.validate()?;
+        if mesh.tets.len() >= MAX_TETS as usize {
+            return Err(Error::input(format!("{} tets are more than {MAX_TETS}", mesh.tets.len()))
+                .remedy("split the mesh"));
+        }
+        let TetMesh { points, mut tets, regions, triangles, patches, fixed_vertices, mut fixed_edges } = mesh;
+        let labelled = sorted_triangles(&triangles);
+        let mut joined = Joined::of(&tets, &regions, &labelled, &patches)?;
+        let mut qualities = measured(&points, &tets);
+        let mut is_turned = Vec::new();
+        if qualities.iter().any(|&q| q <= 0.0) {
+            is_turned = orient(&mut tets, &joined.across(), &points)?;
+            if is_turned.contains(&true) {
+                joined = Joined::of(&tets, &regions, &labelled, &patches)?;
+                qualities = measured(&points, &tets);
+            } else {
+                is_turned.clear();
+            }
+        }
+        let mut vertex_to_tet = vec![NO_TET; points.len()];
+        for (t, tet) in tets.iter().enumerate() {
+            tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
+        }
+        fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
+        fixed_edges.sort_unstable();
+        let mut complex = Self {
+            holds: vec![Hold::Free; points.len()],
+            vertex_is_new: vec![false; points.len()],
+            points,
+            vertex_to_tet,
+            is_new: vec![false; tets.len()],
+            tets,
+            links: joined.links,
+            regions,
+            qualities,
+            walls: joined.walls,
+            free_vertices: Vec::new(),
+            free_tets: Vec::new(),
+            free_walls: Vec::new(),
+            fixed_edges,
+            keeps_surface: true,
+            journal: Journal::default(),
+        };
+        complex.hold_walls(&fixed_vertices);
+        Ok((complex, is_turned))
+    }
+
+    /// Vertices of walls are held by the surface, fixed ones and those without a tet altogether.
+    fn hold_walls(&mut self, fixed_vertices: &[VertexId]) {
+        for i in 0..self.walls.len() {
+            let side = self.walls[i].sides[0];
+            for v in self.facet(side) {
+                self.holds[v.index()] = Hold::Surface;
+            }
+        }
+        for (hold, tet) in self.holds.iter_mut().zip(&self.vertex_to_tet) {
+            if *tet == NO_TET {
+                *hold = Hold::Fixed;
+            }
+        }
+        for v in fixed_vertices.iter().chain(self.fixed_edges.as_flattened()) {
+            self.holds[v.index()] = Hold::Fixed;
+        }
+    }
+
+    /// Makes the hold of a vertex stronger or weaker than it was found to be.
+    pub fn set_hold(&mut self, vertex: VertexId, hold: Hold) {
+        self.holds[vertex.index()] = hold;
+    }
+}
+
+fn measured(points: &[[f64; 3]], tets: &[[VertexId; 4]]) -> Vec<f64> {
+    let mut qualities = Vec::with_capacity(tets.len());
+    for [a, b, c, d] in tets {
+        let corners = [points[a.index()], points[b.index()], points[c.index()], points[d.index()]];
+        qualities.push(eas(corners));
+    }
+    qualities
+}
+
+/// Triangles with their vertices in rising order, themselves in rising order; with the place of each.
+fn sorted_triangles(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 3], u32)> {
+    let sorted = |t: &[VertexId; 3]| {
+        let mut t = *t;
+        t.sort_unstable();
+        t
+    };
+    let mut all: Vec<_> = triangles.iter().map(sorted).zip(0..).collect();
+    all.sort_unstable();
+    all
+}
+
+/// What lies behind every facet.
+struct Joined {
+    links: Vec<[Link; 4]>,
+    walls: Vec<Wall>,
+}
+
+impl Joined {
+    fn of(
+        tets: &[[VertexId; 4]],
+        regions: &[i32],
+        labelled: &[([VertexId; 3], u32)],
+        patches: &[i32],
+    ) -> Result<Self> {
+        let mut joined = Self { links: vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()], walls: Vec::new() };
+        let mut crowded = None;
+        let mut next = 0;
+        for_each_tet_facet(tets, |uses| {
+            let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
+            let is_boundary = uses.len() == 1;
+            // Facets and triangles come in the same order.
+            let mut triangle = NO_TRIANGLE;
+            if next < labelled.len() {
+                let key = key(tets, uses[0]);
+                while next < labelled.len() && labelled[next].0 < key {
+                    next += 1;
+                }
+                if next < labelled.len() && labelled[next].0 == key {
+                    triangle = labelled[next].1;
+                }
+            }
+            if uses.len() > 2 {
+                crowded.get_or_insert((uses[0].0, key(tets, uses[0]), uses.len()));
+            } else if is_boundary
+                || triangle != NO_TRIANGLE
+                || regions[uses[0].0.index()] != regions[uses[1].0.index()]
+            {
+                let sides = [half(0), if is_boundary { HalfFacet::NONE } else { half(1) }];
+                let patch = patches.get(triangle as usize).copied().unwrap_or(0);
+                joined.add_wall(Wall { sides, patch, triangle });
+            } else {
+                joined.links[uses[0].0.index()][uses[0].1] = Link::tet(half(1));
+                joined.links[uses[1].0.index()][uses[1].1] = Link::tet(half(0));
+            }
+        });
+        match crowded {
+            None => Ok(joined),
+            Some((tet, facet, n)) => Err(Error::input(format!(
+                "{n} tets share the facet of the points {:?}, where two can be",
+                facet.map(|v| v.0)
+            ))
+            .at(format!("tet {tet}"))
+            .remedy("`motet info` lists what is wrong with a mesh")),
+        }
+    }
+
+    fn add_wall(&mut self, wall: Wall) {
+        let id = WallId(self.walls.len() as u32);
+        self.walls.push(wall);
+        for side in wall.sides.into_iter().filter(|side| !side.is_none()) {
+            self.links[side.tet().index()][side.facet()] = Link::wall(id);
+        }
+    }
+
+    /// The facet behind each facet, through walls.
+    fn across(&self) -> Vec<[HalfFacet; 4]> {
+        let across = |t: usize, i: usize| match self.links[t][i].behind() {
+            Behind::Tet(half) => half,
+            Behind::Wall(wall) => self.walls[wall.index()].other(HalfFacet::new(TetId::new(t), i)),
+        };
+        (0..self.links.len()).map(|t| [0, 1, 2, 3].map(|i| across(t, i))).collect()
+    }
+}
+
+fn key(tets: &[[VertexId; 4]], (tet, i): (TetId, usize)) -> [VertexId; 3] {
+    let mut key = FACETS[i].map(|place| tets[tet.index()][place]);
+    key.sort_unstable();
+    key
+}
+
+impl Complex {
+    /// The vertices of a facet, counter-clockwise seen from outside its tet.
+    #[inline]
+    pub fn facet(&self, half: HalfFacet) -> [VertexId; 3] {
+        let tet = self.vertices(half.tet());
+        FACETS[half.facet()].map(|place| tet[place])
+    }
+}

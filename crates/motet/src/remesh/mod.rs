@@ -1,0 +1,57 @@
+//! Floor 6: bad tets found, classified, repaired, and only those.
+
+mod candidate;
+pub mod classify;
+mod options;
+mod repair;
+mod report;
+
+use std::time::Instant;
+
+use crate::base::{Result, TetId};
+use crate::kernel::Complex;
+use crate::mesh::TetMesh;
+
+pub use options::{Goal, Options};
+pub use report::{Operation, Report};
+
+/// A mesh after remeshing, and what was done.
+#[derive(Debug)]
+pub struct Outcome {
+    /// The complex.
+    pub complex: Complex,
+    /// What was done.
+    pub report: Report,
+}
+
+/// Repairs the bad tets of a mesh.
+///
+/// # Errors
+/// When the mesh is not one: see [`Complex::new`].
+pub fn remesh(mesh: TetMesh, options: &Options) -> Result<Outcome> {
+    let start = Instant::now();
+    let (complex, _) = Complex::new(mesh)?;
+    let mut report = Report { seconds: [start.elapsed().as_secs_f64(), 0.0], ..Report::default() };
+    let start = Instant::now();
+    let is_bad = |c: &Complex, t: TetId| c.quality(t) < options.min_eas;
+    let bad: Vec<TetId> = complex.tets().filter(|&t| is_bad(&complex, t)).collect();
+    note(&complex, &bad, 0, &mut report);
+    let mut repair = repair::Repair::new(complex, options.min_eas);
+    let left = repair.run(bad, options.rounds);
+    report.operations = repair.operations;
+    let complex = repair.complex;
+    note(&complex, &left, 1, &mut report);
+    report.kept = complex.tets().filter(|&t| complex.is_original(t)).count();
+    report.seconds[1] = start.elapsed().as_secs_f64();
+    Ok(Outcome { complex, report })
+}
+
+fn note(complex: &Complex, bad: &[TetId], when: usize, report: &mut Report) {
+    let by_type = if when == 0 { &mut report.found } else { &mut report.left };
+    for &tet in bad {
+        by_type[classify::classify(complex.corners(tet)).number()] += 1;
+    }
+    report.tets[when] = complex.n_tets();
+    report.worst_eas[when] = complex.tets().map(|t| complex.quality(t)).fold(f64::INFINITY, f64::min);
+    report.inverted[when] = complex.tets().filter(|&t| complex.quality(t) <= 0.0).count();
+}

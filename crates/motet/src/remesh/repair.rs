@@ -1,0 +1,223 @@
+//! The repair of one bad tet after another, worst first.
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::{EDGES, centroid};
+use crate::geometry::vector::{add, scale};
+use crate::kernel::{Complex, Hold, Shell, Star};
+use crate::ops::{
+    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
+};
+use crate::remesh::candidate::Candidate;
+use crate::remesh::classify::{Defect, classify};
+use crate::remesh::report::Operation;
+
+/// What is repaired, and the room that it takes.
+pub(super) struct Repair {
+    pub(super) complex: Complex,
+    pub(super) operations: [usize; 8],
+    target: f64,
+    candidate: Candidate,
+    edge_removal: EdgeRemoval,
+    face_removal: FaceRemoval,
+    smoothing: Smoothing,
+    insertion: Insertion,
+    star: Star,
+    shells: [Shell; 2],
+    /// Tets that came and are bad.
+    came_bad: Vec<TetId>,
+}
+
+impl Repair {
+    pub(super) fn new(complex: Complex, target: f64) -> Self {
+        Self {
+            complex,
+            operations: [0; 8],
+            target,
+            candidate: Candidate::default(),
+            edge_removal: EdgeRemoval::default(),
+            face_removal: FaceRemoval::default(),
+            smoothing: Smoothing::default(),
+            insertion: Insertion::default(),
+            star: Star::default(),
+            shells: Default::default(),
+            came_bad: Vec::new(),
+        }
+    }
+
+    /// Repairs the bad tets, round after round, as long as that gets on; those that are left.
+    pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        for _ in 0..rounds {
+            self.sort(&mut bad);
+            let mut is_on = false;
+            for &tet in &bad {
+                if self.is_bad(tet) {
+                    is_on |= self.repair(tet);
+                }
+            }
+            bad.append(&mut self.came_bad);
+            bad.retain(|&t| self.is_bad(t));
+            if !is_on || bad.is_empty() {
+                break;
+            }
+        }
+        self.sort(&mut bad);
+        bad
+    }
+
+    fn sort(&self, bad: &mut Vec<TetId>) {
+        bad.sort_unstable_by(|&a, &b| {
+            self.complex.quality(a).total_cmp(&self.complex.quality(b)).then(a.cmp(&b))
+        });
+        bad.dedup();
+    }
+
+    fn is_bad(&self, tet: TetId) -> bool {
+        self.complex.is_alive(tet) && self.complex.quality(tet) < self.target
+    }
+
+    /// Makes the best change for one bad tet; whether there was one.
+    fn repair(&mut self, tet: TetId) -> bool {
+        self.candidate.begin();
+        let stages: [fn(&mut Self, TetId); 4] = [Self::reconnect, Self::by_type, Self::smooth, Self::insert];
+        for stage in stages {
+            stage(self, tet);
+            if self.candidate.reaches(self.target) {
+                break;
+            }
+        }
+        let Some((operation, came)) = self.candidate.commit(&mut self.complex) else { return false };
+        self.operations[operation as usize] += 1;
+        let (complex, target) = (&self.complex, self.target);
+        self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
+        true
+    }
+
+    fn bar(&self, tet: TetId) -> f64 {
+        self.candidate.bar(self.complex.quality(tet), self.target)
+    }
+
+    fn offer(&mut self, operation: Operation) {
+        self.candidate.offer(&self.complex, operation, self.target);
+    }
+
+    /// Stage one of the paper: its edges removed, and its facets.
+    fn reconnect(&mut self, tet: TetId) {
+        let vertices = self.complex.vertices(tet);
+        for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let bar = self.bar(tet);
+            if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
+                self.offer(Operation::EdgeRemoval);
+            }
+        }
+        for facet in 0..4 {
+            let bar = self.bar(tet);
+            if self.face_removal.propose(&self.complex, tet, facet, bar, &mut self.candidate.proposal) {
+                self.offer(Operation::FaceRemoval);
+            }
+        }
+    }
+
+    /// Stage two of the paper: as its type asks.
+    fn by_type(&mut self, tet: TetId) {
+        let vertices = self.complex.vertices(tet);
+        match classify(self.complex.corners(tet)) {
+            Defect::CrossedEdges { edge } => {
+                self.cross(tet, EDGES[edge].map(|i| vertices[i]), EDGES[5 - edge].map(|i| vertices[i]))
+            }
+            Defect::VertexAtEdge { vertex, edge } => {
+                let [a, b] = EDGES[edge].map(|i| vertices[i]);
+                self.shells[0].walk(&self.complex, tet, a, b);
+                let bar = self.bar(tet);
+                if split_onto(
+                    &self.complex,
+                    &self.shells[0],
+                    vertices[vertex],
+                    bar,
+                    &mut self.candidate.proposal,
+                ) {
+                    self.offer(Operation::SplitOnto);
+                }
+            }
+            Defect::VertexOverFacet { vertex } => {
+                for other in (0..4).filter(|&i| i != vertex) {
+                    self.collapse(tet, vertices[vertex], vertices[other]);
+                    self.collapse(tet, vertices[other], vertices[vertex]);
+                }
+            }
+            Defect::ShortEdge { edge } => {
+                let [a, b] = EDGES[edge].map(|i| vertices[i]);
+                self.collapse(tet, a, b);
+                self.collapse(tet, b, a);
+            }
+            Defect::Other => {}
+        }
+    }
+
+    fn cross(&mut self, tet: TetId, [a, b]: [VertexId; 2], [c, d]: [VertexId; 2]) {
+        let [first, second] = &mut self.shells;
+        first.walk(&self.complex, tet, a, b);
+        second.walk(&self.complex, tet, c, d);
+        let middle = [a, b, c, d].into_iter().fold([0.0; 3], |sum, v| add(sum, self.complex.point(v)));
+        let bar = self.bar(tet);
+        let [first, second] = &self.shells;
+        if split_crossed(
+            &self.complex,
+            [first, second],
+            scale(middle, 0.25),
+            bar,
+            &mut self.candidate.proposal,
+        ) {
+            self.offer(Operation::SplitCrossed);
+        }
+    }
+
+    fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
+        if self.complex.hold(gone) != Hold::Free {
+            return;
+        }
+        self.star.gather(&self.complex, gone);
+        let bar = self.bar(tet);
+        if collapse(&self.complex, &self.star.tets, gone, kept, bar, &mut self.candidate.proposal) {
+            self.offer(Operation::Collapse);
+        }
+    }
+
+    /// Its vertices moved.
+    fn smooth(&mut self, tet: TetId) {
+        for vertex in self.complex.vertices(tet) {
+            if self.complex.hold(vertex) != Hold::Free {
+                continue;
+            }
+            self.star.gather(&self.complex, vertex);
+            let limits = [self.bar(tet), self.target];
+            if self.smoothing.propose(
+                &self.complex,
+                &self.star.tets,
+                vertex,
+                limits,
+                &mut self.candidate.proposal,
+            ) {
+                self.offer(Operation::Smoothing);
+            }
+        }
+    }
+
+    /// A vertex put into its middle, and onto its longest edge.
+    fn insert(&mut self, tet: TetId) {
+        let vertices = self.complex.vertices(tet);
+        let bar = self.bar(tet);
+        let middle = centroid(self.complex.corners(tet));
+        if self.insertion.propose(&self.complex, &[tet], middle, bar, &mut self.candidate.proposal) {
+            self.offer(Operation::Insertion);
+        }
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let shell = &mut self.shells[0];
+            shell.walk(&self.complex, tet, a, b);
+            let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+            let bar = self.candidate.bar(self.complex.quality(tet), self.target);
+            if split_edge(&self.complex, shell, middle, bar, &mut self.candidate.proposal) {
+                self.offer(Operation::SplitEdge);
+            }
+        }
+    }
+}
