@@ -1,14 +1,14 @@
 //! A complex from plain tets, and what the tets became of it.
 
 use crate::base::{Error, Result, TetId, VertexId};
-use crate::geometry::quality::eas;
+use crate::geometry::quality::rough_eas;
 use crate::geometry::tet::FACETS;
-use crate::kernel::complex::{Complex, Hold, NO_TET};
+use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
 use crate::kernel::journal::Journal;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
 use crate::kernel::orientation::orient;
 use crate::mesh::TetMesh;
-use crate::mesh::adjacency::for_each_tet_facet;
+use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 
 impl Complex {
     /// The complex of a mesh, and which of its tets were numbered the other way round (empty: none).
@@ -23,19 +23,19 @@ impl Complex {
                 .remedy("split the mesh"));
         }
         let TetMesh { points, mut tets, regions, triangles, patches, fixed_vertices, mut fixed_edges } = mesh;
-        let labelled = sorted_triangles(&triangles);
-        let mut joined = Joined::of(&tets, &regions, &labelled, &patches)?;
-        let mut qualities = measured(&points, &tets);
+        let mut joined = Joined::of(&tets, &regions, &triangles, &patches)?;
+        let mut rough = rough_eas(&points, &tets);
         let mut is_turned = Vec::new();
-        if qualities.iter().any(|&q| q <= 0.0) {
+        if rough.iter().any(|&q| q <= 0.0) {
             is_turned = orient(&mut tets, &joined.across(), &points)?;
             if is_turned.contains(&true) {
-                joined = Joined::of(&tets, &regions, &labelled, &patches)?;
-                qualities = measured(&points, &tets);
+                joined = Joined::of(&tets, &regions, &triangles, &patches)?;
+                rough = rough_eas(&points, &tets);
             } else {
                 is_turned.clear();
             }
         }
+        let n_tets = tets.len();
         let mut vertex_to_tet = vec![NO_TET; points.len()];
         for (t, tet) in tets.iter().enumerate() {
             tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
@@ -51,7 +51,8 @@ impl Complex {
             tets,
             links: joined.links,
             regions,
-            qualities,
+            qualities: vec![UNMEASURED; n_tets],
+            rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
             free_tets: Vec::new(),
@@ -88,27 +89,6 @@ impl Complex {
     }
 }
 
-fn measured(points: &[[f64; 3]], tets: &[[VertexId; 4]]) -> Vec<f64> {
-    let mut qualities = Vec::with_capacity(tets.len());
-    for [a, b, c, d] in tets {
-        let corners = [points[a.index()], points[b.index()], points[c.index()], points[d.index()]];
-        qualities.push(eas(corners));
-    }
-    qualities
-}
-
-/// Triangles with their vertices in rising order, themselves in rising order; with the place of each.
-fn sorted_triangles(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 3], u32)> {
-    let sorted = |t: &[VertexId; 3]| {
-        let mut t = *t;
-        t.sort_unstable();
-        t
-    };
-    let mut all: Vec<_> = triangles.iter().map(sorted).zip(0..).collect();
-    all.sort_unstable();
-    all
-}
-
 /// What lies behind every facet.
 struct Joined {
     links: Vec<[Link; 4]>,
@@ -119,45 +99,37 @@ impl Joined {
     fn of(
         tets: &[[VertexId; 4]],
         regions: &[i32],
-        labelled: &[([VertexId; 3], u32)],
+        triangles: &[[VertexId; 3]],
         patches: &[i32],
     ) -> Result<Self> {
         let mut joined = Self { links: vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()], walls: Vec::new() };
-        let mut crowded = None;
-        let mut next = 0;
-        for_each_tet_facet(tets, |uses| {
+        let mut fault = None;
+        for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
-            let is_boundary = uses.len() == 1;
-            // Facets and triangles come in the same order.
-            let mut triangle = NO_TRIANGLE;
-            if next < labelled.len() {
-                let key = key(tets, uses[0]);
-                while next < labelled.len() && labelled[next].0 < key {
-                    next += 1;
+            let region = |i: usize| regions[uses[i].0.index()];
+            match *uses {
+                [(t, i), (u, j)] if triangles.is_empty() && region(0) == region(1) => {
+                    joined.links[t.index()][i] = Link::tet(half(1));
+                    joined.links[u.index()][j] = Link::tet(half(0));
                 }
-                if next < labelled.len() && labelled[next].0 == key {
-                    triangle = labelled[next].1;
+                [_] | [_, _] => {
+                    let triangle = triangles.first().copied().unwrap_or(NO_TRIANGLE);
+                    let sides = [half(0), if uses.len() == 2 { half(1) } else { HalfFacet::NONE }];
+                    let patch = patches.get(triangle as usize).copied().unwrap_or(0);
+                    joined.add_wall(Wall { sides, patch, triangle });
                 }
-            }
-            if uses.len() > 2 {
-                crowded.get_or_insert((uses[0].0, key(tets, uses[0]), uses.len()));
-            } else if is_boundary
-                || triangle != NO_TRIANGLE
-                || regions[uses[0].0.index()] != regions[uses[1].0.index()]
-            {
-                let sides = [half(0), if is_boundary { HalfFacet::NONE } else { half(1) }];
-                let patch = patches.get(triangle as usize).copied().unwrap_or(0);
-                joined.add_wall(Wall { sides, patch, triangle });
-            } else {
-                joined.links[uses[0].0.index()][uses[0].1] = Link::tet(half(1));
-                joined.links[uses[1].0.index()][uses[1].1] = Link::tet(half(0));
+                // A triangle that is no facet stays as it is; its vertices are held by whoever hands it over.
+                [] => {}
+                _ => {
+                    fault.get_or_insert((uses[0], uses.len()));
+                }
             }
         });
-        match crowded {
+        match fault {
             None => Ok(joined),
-            Some((tet, facet, n)) => Err(Error::input(format!(
+            Some(((tet, i), n)) => Err(Error::input(format!(
                 "{n} tets share the facet of the points {:?}, where two can be",
-                facet.map(|v| v.0)
+                FACETS[i].map(|place| tets[tet.index()][place].0)
             ))
             .at(format!("tet {tet}"))
             .remedy("`motet info` lists what is wrong with a mesh")),
@@ -180,12 +152,6 @@ impl Joined {
         };
         (0..self.links.len()).map(|t| [0, 1, 2, 3].map(|i| across(t, i))).collect()
     }
-}
-
-fn key(tets: &[[VertexId; 4]], (tet, i): (TetId, usize)) -> [VertexId; 3] {
-    let mut key = FACETS[i].map(|place| tets[tet.index()][place]);
-    key.sort_unstable();
-    key
 }
 
 impl Complex {

@@ -1,7 +1,7 @@
 //! Tets that can be changed: with what lies behind each facet, and a free list.
 
 use crate::base::{Point, TetId, VertexId};
-use crate::geometry::quality::eas;
+use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
 use crate::kernel::journal::Journal;
 use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
 
@@ -31,7 +31,10 @@ pub struct Complex {
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) links: Vec<[Link; 4]>,
     pub(super) regions: Vec<i32>,
+    /// [`UNMEASURED`] until somebody who may write has asked.
     pub(super) qualities: Vec<f64>,
+    /// The first mesh's qualities, nearly.
+    pub(super) rough: Vec<f32>,
     /// Whether a tet is not one of the first mesh; one whose vertex has moved is not.
     pub(super) is_new: Vec<bool>,
     /// Whether a vertex is not one of the first mesh, or has moved.
@@ -46,6 +49,9 @@ pub struct Complex {
     pub(super) keeps_surface: bool,
     pub(super) journal: Journal,
 }
+
+/// The quality of a tet of the first mesh that nobody has measured.
+pub(super) const UNMEASURED: f64 = f64::NAN;
 
 /// No tet.
 pub(crate) const NO_TET: TetId = TetId(u32::MAX);
@@ -119,7 +125,27 @@ impl Complex {
     /// The quality of a tet: see [`Self::measure`].
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
-        self.qualities[tet.index()]
+        let known = self.qualities[tet.index()];
+        if known.is_nan() { self.measure(self.corners(tet)) } else { known }
+    }
+
+    /// The tets whose quality is below `bar`, in rising order. The first mesh's are looked at closely only where a rough look leaves a doubt.
+    pub fn below(&self, bar: f64) -> Vec<TetId> {
+        let limit = bar + ROUGH_EAS_ERROR;
+        let is_doubtful = |t: &TetId| self.is_new[t.index()] || f64::from(self.rough[t.index()]) <= limit;
+        let all = (0..self.tets.len()).map(TetId::new).filter(is_doubtful);
+        all.filter(|&t| self.is_alive(t) && self.quality(t) < bar).collect()
+    }
+
+    /// The tet of the lowest quality, the first of equal ones; `None` where there is no tet.
+    pub fn worst(&self) -> Option<(TetId, f64)> {
+        let rough = |t: TetId| match self.is_new[t.index()] {
+            true => self.quality(t),
+            false => f64::from(self.rough[t.index()]),
+        };
+        let lowest = self.tets().map(rough).fold(f64::INFINITY, f64::min);
+        let nearly = self.tets().filter(|&t| rough(t) <= lowest + 2.0 * ROUGH_EAS_ERROR);
+        nearly.map(|t| (t, self.quality(t))).min_by(|x, y| x.1.total_cmp(&y.1))
     }
 
     /// The measure that everything here is judged by: EAS.

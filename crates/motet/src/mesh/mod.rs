@@ -14,6 +14,7 @@ mod measure;
 pub mod shapes;
 mod summary;
 mod surface;
+pub mod tet_facets;
 mod tet_mesh;
 mod triangulate;
 mod volume;

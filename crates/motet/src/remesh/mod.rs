@@ -33,8 +33,7 @@ pub fn remesh(mesh: TetMesh, options: &Options) -> Result<Outcome> {
     let (complex, _) = Complex::new(mesh)?;
     let mut report = Report { seconds: [start.elapsed().as_secs_f64(), 0.0], ..Report::default() };
     let start = Instant::now();
-    let is_bad = |c: &Complex, t: TetId| c.quality(t) < options.min_eas;
-    let bad: Vec<TetId> = complex.tets().filter(|&t| is_bad(&complex, t)).collect();
+    let bad = complex.below(options.min_eas);
     note(&complex, &bad, 0, &mut report);
     let mut repair = repair::Repair::new(complex, options.min_eas);
     let left = repair.run(bad, options.rounds);
@@ -52,6 +51,6 @@ fn note(complex: &Complex, bad: &[TetId], when: usize, report: &mut Report) {
         by_type[classify::classify(complex.corners(tet)).number()] += 1;
     }
     report.tets[when] = complex.n_tets();
-    report.worst_eas[when] = complex.tets().map(|t| complex.quality(t)).fold(f64::INFINITY, f64::min);
-    report.inverted[when] = complex.tets().filter(|&t| complex.quality(t) <= 0.0).count();
+    report.worst_eas[when] = complex.worst().map_or(0.0, |w| w.1);
+    report.inverted[when] = bad.iter().filter(|&&t| complex.quality(t) <= 0.0).count();
 }
