@@ -52,6 +52,11 @@ impl Candidate {
             }
             Some(s) => worst > s.worst,
         };
+        let is_bad = |quality: f64| quality < target;
+        // More bad tets in place of fewer are no progress, even if the worst of them is better.
+        let n_bad = self.proposal.fill.iter().filter(|tet| is_bad(tet.quality)).count();
+        let n_bad_before = || self.proposal.cavity.iter().filter(|&&t| is_bad(complex.quality(t))).count();
+        let is_better = is_better && (n_bad == 0 || n_bad <= n_bad_before());
         if is_better && complex.check(&self.proposal).is_ok() {
             std::mem::swap(&mut self.proposal, &mut self.best);
             self.score = Some(Score { worst, n_touched });

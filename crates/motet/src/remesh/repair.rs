@@ -1,21 +1,30 @@
 //! The repair of one bad tet after another, worst first.
 
-use crate::base::{TetId, VertexId};
-use crate::geometry::tet::{EDGES, centroid};
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Complex, Hold, Shell, Star};
-use crate::ops::{
-    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
-};
+use crate::kernel::{Behind, Complex, Hold, Shell, Star};
+use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_onto};
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::Operation;
+
+/// What is asked of the tets round those that nothing helps, time after time.
+const WIDER: [f64; 3] = [0.3, 0.35, 0.4];
+
+/// What is tried for a tet, one after the other until it is no longer bad.
+const STAGES: [fn(&mut Repair, TetId); 5] =
+    [Repair::reconnect, Repair::by_type, Repair::smooth, Repair::collapse_any, Repair::insert];
+/// How many of them the first round tries. Each round that leaves bad tets tries one more: many of those that seem to need a vertex
+/// inserted no longer do once their neighbours are repaired.
+const FIRST_STAGES: usize = 2;
 
 /// What is repaired, and the room that it takes.
 pub(super) struct Repair {
     pub(super) complex: Complex,
     pub(super) operations: [usize; 8],
     target: f64,
+    n_stages: usize,
     candidate: Candidate,
     edge_removal: EdgeRemoval,
     face_removal: FaceRemoval,
@@ -33,6 +42,7 @@ impl Repair {
             complex,
             operations: [0; 8],
             target,
+            n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
             edge_removal: EdgeRemoval::default(),
             face_removal: FaceRemoval::default(),
@@ -45,23 +55,58 @@ impl Repair {
     }
 
     /// Repairs the bad tets, round after round, as long as that gets on; those that are left.
+    ///
+    /// Where it does not get on, what lies round those that are left is made better first: a change that would repair one
+    /// is often held up by a neighbour that is hardly better.
     pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        let mut asked = WIDER.iter();
         for _ in 0..rounds {
-            self.sort(&mut bad);
-            let mut is_on = false;
-            for &tet in &bad {
-                if self.is_bad(tet) {
-                    is_on |= self.repair(tet);
-                }
-            }
-            bad.append(&mut self.came_bad);
-            bad.retain(|&t| self.is_bad(t));
-            if !is_on || bad.is_empty() {
+            let is_on = self.round(&mut bad);
+            if bad.is_empty() {
                 break;
             }
+            if self.n_stages < STAGES.len() {
+                self.n_stages += 1;
+                continue;
+            }
+            if is_on {
+                continue;
+            }
+            let Some(target) = asked.next() else { break };
+            self.improve_around(&bad, *target);
         }
         self.sort(&mut bad);
         bad
+    }
+
+    /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
+    fn round(&mut self, bad: &mut Vec<TetId>) -> bool {
+        self.sort(bad);
+        let mut is_on = false;
+        for &tet in bad.iter() {
+            if self.is_bad(tet) {
+                is_on |= self.repair(tet);
+            }
+        }
+        bad.append(&mut self.came_bad);
+        bad.retain(|&t| self.is_bad(t));
+        is_on
+    }
+
+    /// Improves the tets that share a vertex with a bad one, up to a higher target.
+    fn improve_around(&mut self, bad: &[TetId], target: f64) {
+        let mut around = Vec::new();
+        for &tet in bad {
+            for vertex in self.complex.vertices(tet) {
+                self.star.gather(&self.complex, vertex);
+                around.extend_from_slice(&self.star.tets);
+            }
+        }
+        let usual = std::mem::replace(&mut self.target, target);
+        around.retain(|&t| self.is_bad(t));
+        self.round(&mut around);
+        self.came_bad.clear();
+        self.target = usual;
     }
 
     fn sort(&self, bad: &mut Vec<TetId>) {
@@ -78,8 +123,7 @@ impl Repair {
     /// Makes the best change for one bad tet; whether there was one.
     fn repair(&mut self, tet: TetId) -> bool {
         self.candidate.begin();
-        let stages: [fn(&mut Self, TetId); 4] = [Self::reconnect, Self::by_type, Self::smooth, Self::insert];
-        for stage in stages {
+        for stage in &STAGES[..self.n_stages] {
             stage(self, tet);
             if self.candidate.reaches(self.target) {
                 break;
@@ -202,22 +246,39 @@ impl Repair {
         }
     }
 
-    /// A vertex put into its middle, and onto its longest edge.
-    fn insert(&mut self, tet: TetId) {
+    /// Its edges collapsed, either way.
+    fn collapse_any(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
-        let bar = self.bar(tet);
-        let middle = centroid(self.complex.corners(tet));
-        if self.insertion.propose(&self.complex, &[tet], middle, bar, &mut self.candidate.proposal) {
-            self.offer(Operation::Insertion);
-        }
-        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
-            let shell = &mut self.shells[0];
-            shell.walk(&self.complex, tet, a, b);
-            let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-            let bar = self.candidate.bar(self.complex.quality(tet), self.target);
-            if split_edge(&self.complex, shell, middle, bar, &mut self.candidate.proposal) {
-                self.offer(Operation::SplitEdge);
+        for gone in vertices {
+            for kept in vertices.into_iter().filter(|&v| v != gone) {
+                self.collapse(tet, gone, kept);
             }
+        }
+    }
+
+    /// A vertex put into its middle, into the middle of its edges, of its facets.
+    fn insert(&mut self, tet: TetId) {
+        let corners = self.complex.corners(tet);
+        self.insert_at(tet, &[tet], centroid(corners));
+        let vertices = self.complex.vertices(tet);
+        for [i, j] in EDGES {
+            self.shells[0].walk(&self.complex, tet, vertices[i], vertices[j]);
+            let seed = std::mem::take(&mut self.shells[0].tets);
+            self.insert_at(tet, &seed, scale(add(corners[i], corners[j]), 0.5));
+            self.shells[0].tets = seed;
+        }
+        for (i, facet) in FACETS.into_iter().enumerate() {
+            if let Behind::Tet(half) = self.complex.behind(tet, i) {
+                let [a, b, c] = facet.map(|corner| corners[corner]);
+                self.insert_at(tet, &[tet, half.tet()], scale(add(add(a, b), c), 1.0 / 3.0));
+            }
+        }
+    }
+
+    fn insert_at(&mut self, tet: TetId, seed: &[TetId], point: Point) {
+        let limits = [self.bar(tet), self.target];
+        if self.insertion.propose(&self.complex, seed, point, limits, &mut self.candidate.proposal) {
+            self.offer(Operation::Insertion);
         }
     }
 }
