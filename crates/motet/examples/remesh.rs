@@ -16,7 +16,7 @@ fn main() {
     let options = Options { min_eas: args.get(1).map_or(0.2, |x| x.parse().unwrap()), ..Options::default() };
     for _ in 0..3 {
         let t = std::time::Instant::now();
-        let out = remesh(tm.clone(), &options).unwrap();
+        let out = remesh(&tm, &options).unwrap();
         println!("{:.1} ms {:?}", t.elapsed().as_secs_f64() * 1e3, out.report);
         if args.len() > 2 {
             out.complex.verify().unwrap();

@@ -5,7 +5,7 @@ use crate::kernel::change::{Fill, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
 use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
-use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
+use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 
 impl Complex {
     /// Makes a change. `came` gets the ids of the tets of the fill, in their order.
@@ -49,6 +49,7 @@ impl Complex {
                 self.points[vertex.index()] = point;
                 self.holds[vertex.index()] = hold;
                 self.vertex_is_new[vertex.index()] = true;
+                self.vertex_came[vertex.index()] = true;
             }
             VertexChange::Move(vertex, point) => {
                 self.note_vertex(vertex);
@@ -63,7 +64,12 @@ impl Complex {
             let i = v.index();
             Entry::Vertex(
                 v,
-                VertexRecord { point: c.points[i], hold: c.holds[i], is_new: c.vertex_is_new[i] },
+                VertexRecord {
+                    point: c.points[i],
+                    hold: c.holds[i],
+                    is_new: c.vertex_is_new[i],
+                    came: c.vertex_came[i],
+                },
             )
         });
     }
@@ -129,7 +135,7 @@ impl Complex {
             Joint::NewWall(x, y, new) => {
                 let sides = [half(x), y.map_or(HalfFacet::NONE, half)];
                 let id = self.take_wall_slot();
-                self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle });
+                self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
             }
         }
     }
@@ -148,7 +154,11 @@ impl Complex {
 
     fn free_wall(&mut self, id: WallId) {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
-        self.walls[id.index()] = Wall::FREE;
+        let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
+        if !wall.is_new && wall.triangle != NO_TRIANGLE {
+            self.gone_triangles.push(wall.triangle);
+            self.note(|_| Entry::GoneTriangle);
+        }
         self.free_walls.push(id);
         self.note(|_| Entry::FreedWall);
     }
@@ -189,6 +199,7 @@ impl Complex {
         self.points.push([0.0; 3]);
         self.holds.push(Hold::Free);
         self.vertex_is_new.push(true);
+        self.vertex_came.push(true);
         self.vertex_to_tet.push(NO_TET);
         VertexId::new(self.points.len() - 1)
     }

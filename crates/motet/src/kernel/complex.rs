@@ -39,6 +39,8 @@ pub struct Complex {
     pub(super) is_new: Vec<bool>,
     /// Whether a vertex is not one of the first mesh, or has moved.
     pub(super) vertex_is_new: Vec<bool>,
+    /// Whether a vertex is not one of the first mesh.
+    pub(super) vertex_came: Vec<bool>,
     pub(super) walls: Vec<Wall>,
     pub(super) free_vertices: Vec<VertexId>,
     pub(super) free_tets: Vec<TetId>,
@@ -47,6 +49,10 @@ pub struct Complex {
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
+    /// Whether most tets of the first mesh are numbered the other way round.
+    pub(super) mostly_turned: bool,
+    /// Triangles of the first mesh that are no walls any more.
+    pub(super) gone_triangles: Vec<u32>,
     pub(super) journal: Journal,
 }
 

@@ -28,9 +28,9 @@ pub struct Outcome {
 ///
 /// # Errors
 /// When the mesh is not one: see [`Complex::new`].
-pub fn remesh(mesh: TetMesh, options: &Options) -> Result<Outcome> {
+pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let start = Instant::now();
-    let (complex, _) = Complex::new(mesh)?;
+    let complex = Complex::new(mesh)?;
     let mut report = Report { seconds: [start.elapsed().as_secs_f64(), 0.0], ..Report::default() };
     let start = Instant::now();
     let bad = complex.below(options.min_eas);
