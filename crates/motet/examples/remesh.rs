@@ -13,8 +13,8 @@ fn main() {
             tm.patches.push(1);
         }
     }
-    let options = Options { min_eas: args.get(1).map_or(0.2, |x| x.parse().unwrap()), ..Options::default() };
-    for _ in 0..3 {
+    let options = Options { min_eas: args.get(1).map_or(0.2, |x| x.parse().unwrap()), surface: if args.iter().any(|a| a == "adapt") { motet::remesh::SurfaceRule::Adapt { distance: None } } else { motet::remesh::SurfaceRule::Keep }, ..Options::default() };
+    for _ in 0..args.get(3).map_or(3, |x| x.parse().unwrap_or(1)) {
         let t = std::time::Instant::now();
         let out = remesh(&tm, &options).unwrap();
         println!("{:.1} ms {:?}", t.elapsed().as_secs_f64() * 1e3, out.report);

@@ -77,7 +77,7 @@ impl Editor {
             0 => self.edge_removal.propose(complex, tet, [a, b], 0.0, change),
             1 => self.face_removal.propose(complex, tet, edge % 4, 0.0, change),
             2 => collapse(complex, star, a, b, 0.0, change),
-            3 => split_edge(complex, first, middle, 0.0, change),
+            3 => split_edge(complex, first, [a, b], (middle, Hold::Free), 0.0, change),
             4 => split_crossed(complex, [first, second], centroid(complex.corners(tet)), 0.0, change),
             5 => split_onto(complex, first, c, 0.0, change),
             6 => self.smoothing.propose(complex, star, a, [0.0, 0.5], change),

@@ -76,6 +76,8 @@ pub(super) enum Joint {
     InnerWall([FillFacet; 2], WallId),
     /// A wall that comes, with one or two tets of the fill.
     NewWall(FillFacet, Option<FillFacet>, NewWall),
+    /// A wall that comes on a tet outside, with a tet of the fill on its other side or nothing.
+    Bared(HalfFacet, Option<FillFacet>, NewWall),
 }
 
 /// A tet of the fill, by its place, and one of its facets.
@@ -258,6 +260,13 @@ impl Complex {
             ] => {
                 two_sides(x, y)?;
                 Joint::NewWall(part(x), Some(part(y)), change.walls[*wall as usize])
+            }
+            [Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }] => {
+                Joint::Bared(*outside, None, change.walls[*wall as usize])
+            }
+            [x @ Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }, y @ Use { role: Fill(..), .. }] => {
+                same_side(x, y)?;
+                Joint::Bared(*outside, Some(part(y)), change.walls[*wall as usize])
             }
             _ => return Err(self.refusal(uses)),
         };

@@ -1,7 +1,7 @@
 //! The only code that writes connectivity.
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::change::{Fill, VertexChange};
+use crate::kernel::change::{Fill, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
 use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
@@ -132,12 +132,14 @@ impl Complex {
             Joint::InnerWall(sides, wall) => {
                 self.set_wall(wall, Wall { sides: sides.map(half), ..self.walls[wall.index()] });
             }
-            Joint::NewWall(x, y, new) => {
-                let sides = [half(x), y.map_or(HalfFacet::NONE, half)];
-                let id = self.take_wall_slot();
-                self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
-            }
+            Joint::NewWall(x, y, new) => self.add_wall([half(x), y.map_or(HalfFacet::NONE, half)], new),
+            Joint::Bared(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
         }
+    }
+
+    fn add_wall(&mut self, sides: [HalfFacet; 2], new: NewWall) {
+        let id = self.take_wall_slot();
+        self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
     }
 
     /// Writes a wall, and the links of the tets at it.

@@ -4,10 +4,11 @@ use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
-use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_onto};
+use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::Operation;
+use crate::remesh::surface::{Surface, is_smooth, patch_of};
 
 /// What is asked of the tets round those that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.3, 0.35, 0.4];
@@ -23,6 +24,7 @@ const FIRST_STAGES: usize = 2;
 pub(super) struct Repair {
     pub(super) complex: Complex,
     pub(super) operations: [usize; 8],
+    surface: Option<Surface>,
     target: f64,
     n_stages: usize,
     candidate: Candidate,
@@ -37,10 +39,11 @@ pub(super) struct Repair {
 }
 
 impl Repair {
-    pub(super) fn new(complex: Complex, target: f64) -> Self {
+    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64) -> Self {
         Self {
             complex,
             operations: [0; 8],
+            surface,
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
@@ -141,7 +144,7 @@ impl Repair {
     }
 
     fn offer(&mut self, operation: Operation) {
-        self.candidate.offer(&self.complex, operation, self.target);
+        self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
     }
 
     /// Stage one of the paper: its edges removed, and its facets.
@@ -149,6 +152,9 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
+            if self.surface.is_some() && self.is_feature(tet, edge) {
+                continue;
+            }
             if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::EdgeRemoval);
             }
@@ -159,6 +165,13 @@ impl Repair {
                 self.offer(Operation::FaceRemoval);
             }
         }
+    }
+
+    /// Whether an edge is one of walls that do not lie smoothly side by side.
+    fn is_feature(&mut self, tet: TetId, edge: [VertexId; 2]) -> bool {
+        let shell = &mut self.shells[0];
+        shell.walk(&self.complex, tet, edge[0], edge[1]);
+        !shell.walls.is_empty() && !is_smooth(&self.complex, edge, shell)
     }
 
     /// Stage two of the paper: as its type asks.
@@ -216,7 +229,7 @@ impl Repair {
     }
 
     fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
-        if self.complex.hold(gone) != Hold::Free {
+        if !self.may_go(tet, gone, kept) {
             return;
         }
         self.star.gather(&self.complex, gone);
@@ -226,10 +239,25 @@ impl Repair {
         }
     }
 
+    /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
+    fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
+        let hold = self.complex.hold(gone);
+        if hold == Hold::Free || self.surface.is_none() || hold == Hold::Fixed {
+            return hold == Hold::Free;
+        }
+        let shell = &mut self.shells[0];
+        shell.walk(&self.complex, tet, gone, kept);
+        !shell.walls.is_empty() && (hold == Hold::Surface || !is_smooth(&self.complex, [gone, kept], shell))
+    }
+
     /// Its vertices moved.
     fn smooth(&mut self, tet: TetId) {
         for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free {
+            let hold = self.complex.hold(vertex);
+            if hold == Hold::Surface && self.surface.is_some() {
+                self.slide(tet, vertex);
+            }
+            if hold != Hold::Free {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
@@ -246,6 +274,41 @@ impl Repair {
         }
     }
 
+    /// A vertex of it moved along the surface.
+    fn slide(&mut self, tet: TetId, vertex: VertexId) {
+        self.star.gather(&self.complex, vertex);
+        let limits = [self.bar(tet), self.target];
+        let Some(surface) = &self.surface else { return };
+        let Some(patch) = patch_of(&self.complex, &self.star.tets, vertex) else { return };
+        let project = |point: Point| surface.project(patch, point);
+        let (complex, star) = (&self.complex, &self.star.tets);
+        if self.smoothing.propose_on(complex, star, vertex, limits, project, &mut self.candidate.proposal) {
+            self.offer(Operation::Smoothing);
+        }
+    }
+
+    /// Its edges on the surface split.
+    fn split_surface(&mut self, tet: TetId) {
+        if self.surface.is_none() {
+            return;
+        }
+        let vertices = self.complex.vertices(tet);
+        for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let [a, b] = edge;
+            let bar = self.bar(tet);
+            let shell = &mut self.shells[0];
+            shell.walk(&self.complex, tet, a, b);
+            if shell.walls.is_empty() || self.complex.is_fixed_edge(a, b) {
+                continue;
+            }
+            let hold = if is_smooth(&self.complex, edge, shell) { Hold::Surface } else { Hold::Edge };
+            let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+            if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut self.candidate.proposal) {
+                self.offer(Operation::SplitEdge);
+            }
+        }
+    }
+
     /// Its edges collapsed, either way.
     fn collapse_any(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
@@ -258,6 +321,7 @@ impl Repair {
 
     /// A vertex put into its middle, into the middle of its edges, of its facets.
     fn insert(&mut self, tet: TetId) {
+        self.split_surface(tet);
         let corners = self.complex.corners(tet);
         self.insert_at(tet, &[tet], centroid(corners));
         let vertices = self.complex.vertices(tet);
