@@ -264,7 +264,11 @@ impl Complex {
             [Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }] => {
                 Joint::Bared(*outside, None, change.walls[*wall as usize])
             }
-            [x @ Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }, y @ Use { role: Fill(..), .. }] => {
+            [
+                x @ Use { role: Outer(_, outside), .. },
+                Use { role: NewWall(wall), .. },
+                y @ Use { role: Fill(..), .. },
+            ] => {
                 same_side(x, y)?;
                 Joint::Bared(*outside, Some(part(y)), change.walls[*wall as usize])
             }

@@ -64,7 +64,10 @@ impl Candidate {
         let n_bad = self.proposal.fill.iter().filter(|tet| is_bad(tet.quality)).count();
         let n_bad_before = || self.proposal.cavity.iter().filter(|&&t| is_bad(complex.quality(t))).count();
         let is_better = is_better && (n_bad == 0 || n_bad <= n_bad_before());
-        if is_better && surface.is_none_or(|s| s.accepts(complex, &self.proposal)) && complex.check(&self.proposal).is_ok() {
+        if is_better
+            && surface.is_none_or(|s| s.accepts(complex, &self.proposal))
+            && complex.check(&self.proposal).is_ok()
+        {
             std::mem::swap(&mut self.proposal, &mut self.best);
             self.score = Some(Score { worst, n_touched });
             self.operation = operation;

@@ -39,7 +39,11 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let bad = complex.below(options.min_eas);
     note(&complex, &bad, 0, &mut report);
     let mut repair = repair::Repair::new(complex, surface, options.min_eas);
-    let left = repair.run(bad, options.rounds);
+    let mut left = repair.run(bad, options.rounds);
+    if options.goal == Goal::Best {
+        repair.best(options.rounds);
+        left = repair.complex.below(options.min_eas);
+    }
     report.operations = repair.operations;
     let complex = repair.complex;
     note(&complex, &left, 1, &mut report);

@@ -4,14 +4,19 @@ use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
-use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto};
+use crate::ops::{
+    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
+};
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::Operation;
 use crate::remesh::surface::{Surface, is_smooth, patch_of};
 
-/// What is asked of the tets round those that nothing helps, time after time.
-const WIDER: [f64; 3] = [0.3, 0.35, 0.4];
+/// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
+const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
+
+/// The targets of [`Repair::best`].
+const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
 
 /// What is tried for a tet, one after the other until it is no longer bad.
 const STAGES: [fn(&mut Repair, TetId); 5] =
@@ -75,11 +80,21 @@ impl Repair {
             if is_on {
                 continue;
             }
-            let Some(target) = asked.next() else { break };
-            self.improve_around(&bad, *target);
+            let Some(more) = asked.next() else { break };
+            self.improve_around(&bad, self.target + more);
         }
         self.sort(&mut bad);
         bad
+    }
+
+    /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
+    pub(super) fn best(&mut self, rounds: usize) {
+        for target in BEST {
+            self.target = target.max(self.target);
+            self.n_stages = FIRST_STAGES;
+            let bad = self.complex.below(self.target);
+            self.run(bad, rounds);
+        }
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.

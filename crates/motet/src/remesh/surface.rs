@@ -37,7 +37,8 @@ impl Surface {
         for (_, wall) in complex.walls() {
             triangles.entry(wall.patch).or_default().push(complex.facet(wall.sides[0]));
         }
-        let points: Vec<Point> = (0..complex.n_vertex_slots()).map(|v| complex.point(VertexId::new(v))).collect();
+        let points: Vec<Point> =
+            (0..complex.n_vertex_slots()).map(|v| complex.point(VertexId::new(v))).collect();
         let patch = |triangles: Vec<[VertexId; 3]>| Patch {
             normals: triangles.iter().map(|t| area_vector(t.map(|v| points[v.index()]))).collect(),
             tree: NearestTriangle::new(&points, &triangles),
@@ -67,7 +68,8 @@ impl Surface {
             let of_moved = of_moved.filter(|(_, vertices)| vertices.contains(&moved));
             walls.extend(of_moved.map(|(patch, vertices)| (patch, change.corners(complex, vertices))));
         }
-        walls.iter().all(|&(patch, triangle)| self.lies_on(patch, triangle)) && self.covers(complex, change, &walls)
+        walls.iter().all(|&(patch, triangle)| self.lies_on(patch, triangle))
+            && self.covers(complex, change, &walls)
     }
 
     fn lies_on(&self, patch: i32, triangle: [Point; 3]) -> bool {
@@ -81,7 +83,8 @@ impl Surface {
         let facing = patch.normals[below.triangle];
         // Walls have no side of their own: either way round will do.
         let cosine = dot(normal, facing).abs() / (norm(normal) * norm(facing));
-        cosine > TURNED && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
+        cosine > TURNED
+            && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
     }
 
     /// Whether what a vertex leaves behind lies near the walls that come.
@@ -112,7 +115,8 @@ fn walls_of<'a>(complex: &'a Complex, tets: &[crate::base::TetId]) -> Vec<(&'a W
 
 /// The patch of the walls of a vertex, if it is but one.
 pub(super) fn patch_of(complex: &Complex, star: &[crate::base::TetId], vertex: VertexId) -> Option<i32> {
-    let mut patches = walls_of(complex, star).into_iter().filter(|(_, v)| v.contains(&vertex)).map(|w| w.0.patch);
+    let mut patches =
+        walls_of(complex, star).into_iter().filter(|(_, v)| v.contains(&vertex)).map(|w| w.0.patch);
     let first = patches.next()?;
     patches.all(|patch| patch == first).then_some(first)
 }
