@@ -272,29 +272,17 @@ fn every_vertex_hangs_on_four_nodes_whose_mean_it_is() {
     }
 }
 
-/// Every tetrahedral mesh of the data folder, where there is one.
+/// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
 fn data_meshes() -> Vec<(String, Mesh)> {
+    let names = include_str!("real_tet_meshes.txt").lines();
     let folder = std::env::var("MOTET_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
-    let names = [
-        "tetmeshes/pescio_AbdominalAorticAneurysm.msh",
-        "tetmeshes/sv_ale_pipe/lumen.vtu",
-        "tetmeshes/sv_ale_pipe/wall.vtu",
-        "tetmeshes/sv_boundary_layer_pipe/lumen.vtu",
-        "tetmeshes/ambit_pipe_fsi/pipe_fsi_domain.vtu",
-        "moving_wall/ambit_la_lv/lalv_domain_with_aledisp.vtu",
-        "bad_tets/stellar_house2.node",
-        "bad_tets/polyfem_microstructure_P1.msh",
-        "bad_tets/polyfem_screw.msh",
-        "copyleft/lifev_aorta_fluid_30K.mesh",
-        "copyleft/dolfin_aneurysm.xml.gz",
-    ];
     let folder = std::path::Path::new(&folder);
     if !folder.exists() {
         println!("skipped: no data in {}", folder.display());
         return Vec::new();
     }
-    names.iter().map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
+    names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
 }
 
 #[test]
