@@ -729,6 +729,17 @@ fn what_cannot_be_moved_is_refused_with_a_reason() {
 }
 
 #[test]
+fn a_patch_may_hold_a_lagrange_cell_of_any_length() {
+    let mut mesh = solid(2, CellKind::TETRA);
+    let first = mesh.cells.len();
+    mesh.cells.push(CellKind::LAGRANGE_TRIANGLE, [0].map(VertexId));
+    mesh.cells.push(CellKind::LAGRANGE_TRIANGLE, [0, 1, 3, 9, 10, 12].map(VertexId));
+    let set = FacetSet::of_cells(&mesh, "patch", |cell| cell >= first);
+    assert_eq!(set.rings.iter().map(<[_]>::len).collect::<Vec<_>>(), [1, 3]);
+    assert_eq!(set.vertices, [0, 1, 3, 9, 10, 12].map(VertexId));
+}
+
+#[test]
 fn cells_whose_facets_are_not_known_are_refused() {
     let mut mesh = motet::mesh::shapes::box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]);
     mesh.cells.push(motet::mesh::CellKind::LAGRANGE_TETRAHEDRON, (0..10).map(motet::base::VertexId));

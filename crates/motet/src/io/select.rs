@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::base::VertexId;
-use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, Values};
+use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, Values, corners};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
 pub(super) fn keep_cells<'m>(
@@ -52,14 +52,13 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
     let place = |v: &VertexId| VertexId::new(used.partition_point(|u| u < v));
     let mut cells = Cells::new();
     for (kind, vertices) in boundary.kinds.iter().zip(boundary.facets.iter()) {
-        let (kind, n_corners) = match *kind {
-            CellKind::POLYGON => (CellKind::POLYGON, vertices.len()),
-            CellKind::TRIANGLE | CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE => {
-                (CellKind::TRIANGLE, 3)
-            }
-            _ => (CellKind::QUAD, 4),
+        let ring = corners(*kind, vertices);
+        let kind = match (*kind, ring.len()) {
+            (CellKind::POLYGON, _) => CellKind::POLYGON,
+            (_, 3) => CellKind::TRIANGLE,
+            _ => CellKind::QUAD,
         };
-        cells.push(kind, vertices[..n_corners].iter().map(place));
+        cells.push(kind, ring.iter().map(place));
     }
     let vertex_rows: Vec<usize> = used.iter().map(|v| v.index()).collect();
     let cell_rows: Vec<usize> = boundary.cells.iter().map(|c| c.index()).collect();

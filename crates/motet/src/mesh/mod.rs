@@ -20,7 +20,7 @@ mod triangulate;
 mod volume;
 
 pub use boundary::Boundary;
-pub(crate) use boundary::n_corners;
+pub(crate) use boundary::corners;
 pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use exchange::{Mesh, bounds};

@@ -13,7 +13,7 @@ use crate::io::simvascular::read::node_ids;
 use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
 use crate::io::vtkxml;
-use crate::mesh::{Boundary, Cells, Field, Labels, Mesh, Values};
+use crate::mesh::{Boundary, Cells, Field, Labels, Mesh, Values, corners};
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let of_dim = |dim| -> Vec<usize> {
@@ -124,10 +124,8 @@ impl<'m> Numbered<'m> {
         volume_cells.iter().zip(ids).for_each(|(&i, id)| element_ids[i] = id);
         let boundary = Boundary::of(&mesh.cells);
         let keys = boundary.facets.iter().zip(&boundary.kinds).zip(&boundary.cells);
-        let behind = keys.map(|((facet, kind), cell)| {
-            let n = crate::mesh::n_corners(*kind, facet.len());
-            (key(&facet[..n]), element_ids[cell.index()])
-        });
+        let behind =
+            keys.map(|((facet, kind), cell)| (key(corners(*kind, facet)), element_ids[cell.index()]));
         Self { mesh, node_ids, behind: behind.collect(), element_ids }
     }
 
@@ -157,8 +155,7 @@ impl<'m> Numbered<'m> {
         let mut face = self.part(&used, cells);
         let behind = |i: &usize| {
             let kind = self.mesh.cells.kinds()[*i];
-            let corners = &vertices(i)[..crate::mesh::n_corners(kind, vertices(i).len())];
-            self.behind.get(&key(corners)).copied().unwrap_or(0)
+            self.behind.get(&key(corners(kind, vertices(i)))).copied().unwrap_or(0)
         };
         let behind: Vec<i64> = cells.iter().map(behind).collect();
         let inside = behind.iter().filter(|&&id| id == 0).count();
