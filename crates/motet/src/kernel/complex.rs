@@ -80,6 +80,11 @@ impl Complex {
         self.points.len()
     }
 
+    /// How many vertices belong to a tet.
+    pub fn n_used_vertices(&self) -> usize {
+        self.vertex_to_tet.iter().filter(|&&t| t != NO_TET).count()
+    }
+
     /// The tets that there are, in rising order.
     pub fn tets(&self) -> impl Iterator<Item = TetId> + Clone + '_ {
         (0..self.tets.len()).map(TetId::new).filter(|&t| self.is_alive(t))

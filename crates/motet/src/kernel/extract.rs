@@ -22,10 +22,30 @@ pub struct Extract {
     pub vertex_to_old: Vec<u32>,
     /// For each triangle the one it was before, or a part of.
     pub triangle_to_old: Vec<u32>,
+    /// The tets of the complex that came, in the order in which they stand at the end of the mesh.
+    pub came: Vec<TetId>,
     /// Tets of the mesh before that are no more, in rising order.
     pub gone_tets: Vec<TetId>,
     /// Vertices of the mesh after that came or moved, in rising order.
     pub changed_vertices: Vec<VertexId>,
+}
+
+impl Extract {
+    /// Which tet of the mesh a tet of the complex is.
+    pub fn tet(&self, tet: TetId) -> TetId {
+        let n_kept = self.tet_to_old.len() - self.came.len();
+        let place = self.came.binary_search(&tet).map(|i| n_kept + i);
+        TetId::new(place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.0)).unwrap_or_default())
+    }
+
+    /// Where each vertex of the mesh before is now; [`NEW`] for those that are no more.
+    pub fn old_to_vertex(&self, n_old: usize) -> Vec<u32> {
+        let mut old_to_vertex = vec![NEW; n_old];
+        for (new, &old) in (0..).zip(&self.vertex_to_old).filter(|(_, old)| **old != NEW) {
+            old_to_vertex[old as usize] = new;
+        }
+        old_to_vertex
+    }
 }
 
 impl Complex {
@@ -51,6 +71,7 @@ impl Complex {
             tets.push(tet);
             extract.mesh.regions.push(self.region(t));
             extract.tet_to_old.push(NEW);
+            extract.came.push(t);
         }
         extract.gone_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
         self.extract_triangles(first, new_id, &mut extract);

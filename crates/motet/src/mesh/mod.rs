@@ -16,6 +16,7 @@ mod summary;
 mod surface;
 pub mod tet_facets;
 mod tet_mesh;
+mod tet_part;
 mod triangulate;
 mod volume;
 
@@ -32,5 +33,6 @@ pub use summary::{
 };
 pub use surface::Surface;
 pub use tet_mesh::TetMesh;
+pub use tet_part::TetPart;
 pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

@@ -9,7 +9,7 @@ use crate::ops::{
 };
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
-use crate::remesh::report::Operation;
+use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Surface, is_smooth, patch_of};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
@@ -28,7 +28,7 @@ const FIRST_STAGES: usize = 2;
 /// What is repaired, and the room that it takes.
 pub(super) struct Repair {
     pub(super) complex: Complex,
-    pub(super) operations: [usize; 8],
+    pub(super) operations: Counts,
     surface: Option<Surface>,
     target: f64,
     n_stages: usize,
@@ -47,7 +47,7 @@ impl Repair {
     pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64) -> Self {
         Self {
             complex,
-            operations: [0; 8],
+            operations: Counts::default(),
             surface,
             target,
             n_stages: FIRST_STAGES,
@@ -148,7 +148,7 @@ impl Repair {
             }
         }
         let Some((operation, came)) = self.candidate.commit(&mut self.complex) else { return false };
-        self.operations[operation as usize] += 1;
+        self.operations.add(operation);
         let (complex, target) = (&self.complex, self.target);
         self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
         true
