@@ -2,7 +2,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, scale};
+use crate::geometry::vector::{add, distance, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
 use crate::ops::{
     EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
@@ -14,6 +14,9 @@ use crate::remesh::surface::{Surface, is_smooth, patch_of};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
+
+/// How often in a row edges are split without fewer bad tets in the end.
+const MOST_IN_VAIN: usize = 5;
 
 /// The targets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
@@ -85,6 +88,84 @@ impl Repair {
         }
         self.sort(&mut bad);
         bad
+    }
+
+    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
+    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
+    /// of the surface, which are too long for where they are.
+    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        let mut best = (left.clone(), self.complex.mark(), self.operations);
+        let mut n_in_vain = 0;
+        while !left.is_empty() && n_in_vain < MOST_IN_VAIN {
+            let mut bad = Vec::new();
+            for &tet in &left {
+                if self.is_bad(tet) {
+                    self.split_longest(tet);
+                }
+                bad.append(&mut self.came_bad);
+            }
+            bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
+            left = self.run(bad, rounds);
+            n_in_vain += 1;
+            if left.len() < best.0.len() {
+                best = (left.clone(), self.complex.mark(), self.operations);
+                n_in_vain = 0;
+            }
+        }
+        self.complex.undo(best.1);
+        self.operations = best.2;
+        self.complex.forget();
+        best.0
+    }
+
+    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
+    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
+    fn split_longest(&mut self, mut tet: TetId) {
+        loop {
+            let (edge, length) = self.longest_edge(tet);
+            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
+            match self.shells[0].tets.iter().copied().find(longer) {
+                Some(next) => tet = next,
+                None => return self.split_unjudged(edge),
+            }
+        }
+    }
+
+    fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
+        let vertices = self.complex.vertices(tet);
+        let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let length = distance(self.complex.point(a), self.complex.point(b));
+            if length > longest.1 {
+                longest = ([a, b], length);
+            }
+        }
+        longest
+    }
+
+    /// Splits the edge whose shell was walked last, if every tet stays positive.
+    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
+        let [a, b] = edge;
+        let shell = &self.shells[0];
+        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !shell.is_free() {
+            return;
+        }
+        let hold = match shell.is_free() {
+            true => Hold::Free,
+            false if is_smooth(&self.complex, edge, shell) => Hold::Surface,
+            false => Hold::Edge,
+        };
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let mut came = Vec::new();
+        let proposal = &mut self.candidate.proposal;
+        if split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal) {
+            if let Ok(checked) = self.complex.check_against(proposal, 0.0) {
+                self.complex.commit(checked, &mut came);
+                self.operations.add(Operation::SplitEdge);
+            }
+        }
+        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
     }
 
     /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.

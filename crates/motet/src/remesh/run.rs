@@ -35,6 +35,9 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     report.before = State::of(&complex, &bad, |t| t);
     let mut repair = Repair::new(complex, surface, options.min_eas);
     let mut left = repair.run(bad, options.rounds);
+    if !left.is_empty() && options.surface != SurfaceRule::Keep {
+        left = repair.divide(left, options.rounds);
+    }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
         left = repair.complex.below(options.min_eas);
