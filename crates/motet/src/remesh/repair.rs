@@ -10,7 +10,7 @@ use crate::ops::{
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::{Counts, Operation};
-use crate::remesh::surface::{Surface, is_smooth, patch_of};
+use crate::remesh::surface::{CREASES, Surface, patch_of};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
@@ -90,6 +90,15 @@ impl Repair {
         bad
     }
 
+    /// Repairs what is left once more, with fewer creases held as features.
+    pub(super) fn soften(&mut self, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        if let Some(surface) = &mut self.surface {
+            surface.hold_features(&mut self.complex, CREASES[1]);
+        }
+        let left = self.run(left, rounds);
+        self.divide(left, rounds)
+    }
+
     /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
     /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
     /// of the surface, which are too long for where they are.
@@ -151,11 +160,7 @@ impl Repair {
         if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !shell.is_free() {
             return;
         }
-        let hold = match shell.is_free() {
-            true => Hold::Free,
-            false if is_smooth(&self.complex, edge, shell) => Hold::Surface,
-            false => Hold::Edge,
-        };
+        let hold = self.hold_on(edge);
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let mut came = Vec::new();
         let proposal = &mut self.candidate.proposal;
@@ -248,8 +253,11 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
-            if self.surface.is_some() && self.is_feature(tet, edge) {
-                continue;
+            if self.surface.is_some() {
+                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+                if self.hold_on(edge) == Hold::Edge {
+                    continue;
+                }
             }
             if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::EdgeRemoval);
@@ -263,11 +271,14 @@ impl Repair {
         }
     }
 
-    /// Whether an edge is one of walls that do not lie smoothly side by side.
-    fn is_feature(&mut self, tet: TetId, edge: [VertexId; 2]) -> bool {
-        let shell = &mut self.shells[0];
-        shell.walk(&self.complex, tet, edge[0], edge[1]);
-        !shell.walls.is_empty() && !is_smooth(&self.complex, edge, shell)
+    /// What holds a vertex on the edge whose shell was walked last.
+    fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
+        let shell = &self.shells[0];
+        match &self.surface {
+            _ if shell.is_free() => Hold::Free,
+            Some(surface) if surface.is_smooth(&self.complex, edge, shell) => Hold::Surface,
+            _ => Hold::Edge,
+        }
     }
 
     /// Stage two of the paper: as its type asks.
@@ -338,12 +349,14 @@ impl Repair {
     /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
     fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
         let hold = self.complex.hold(gone);
-        if hold == Hold::Free || self.surface.is_none() || hold == Hold::Fixed {
+        let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
+        else {
             return hold == Hold::Free;
-        }
+        };
         let shell = &mut self.shells[0];
         shell.walk(&self.complex, tet, gone, kept);
-        !shell.walls.is_empty() && (hold == Hold::Surface || !is_smooth(&self.complex, [gone, kept], shell))
+        !shell.walls.is_empty()
+            && (hold == Hold::Surface || !surface.is_smooth(&self.complex, [gone, kept], shell))
     }
 
     /// Its vertices moved.
@@ -397,7 +410,8 @@ impl Repair {
             if shell.walls.is_empty() || self.complex.is_fixed_edge(a, b) {
                 continue;
             }
-            let hold = if is_smooth(&self.complex, edge, shell) { Hold::Surface } else { Hold::Edge };
+            let hold = self.hold_on(edge);
+            let shell = &self.shells[0];
             let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
             if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut self.candidate.proposal) {
                 self.offer(Operation::SplitEdge);

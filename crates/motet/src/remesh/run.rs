@@ -9,7 +9,7 @@ use crate::remesh::left::explain;
 use crate::remesh::options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
 use crate::remesh::repair::Repair;
 use crate::remesh::report::{Report, State};
-use crate::remesh::surface::{Surface, hold_features};
+use crate::remesh::surface::{CREASES, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
@@ -37,6 +37,9 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let mut left = repair.run(bad, options.rounds);
     if !left.is_empty() && options.surface != SurfaceRule::Keep {
         left = repair.divide(left, options.rounds);
+        if !left.is_empty() {
+            left = repair.soften(left, options.rounds);
+        }
     }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
@@ -62,9 +65,10 @@ fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option
         let [low, high] = bounds(&mesh.points).unwrap_or_default();
         (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
     };
-    hold_features(complex);
+    let mut surface = Surface::of(complex, distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()));
+    surface.hold_features(complex, CREASES[0]);
     complex.adapt_surface();
-    Some(Surface::of(complex, distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent())))
+    Some(surface)
 }
 
 /// Tells the time since it was last asked.
