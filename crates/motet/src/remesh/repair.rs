@@ -178,7 +178,7 @@ impl Repair {
         for target in BEST {
             self.target = target.max(self.target);
             self.n_stages = FIRST_STAGES;
-            let bad = self.complex.below(self.target);
+            let bad = self.below(self.target);
             self.run(bad, rounds);
         }
     }
@@ -220,8 +220,15 @@ impl Repair {
         bad.dedup();
     }
 
+    /// The tets below a quality that may be changed.
+    pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
+        let mut below = self.complex.below(quality);
+        below.retain(|&t| !self.complex.is_locked(t));
+        below
+    }
+
     fn is_bad(&self, tet: TetId) -> bool {
-        self.complex.is_alive(tet) && self.complex.quality(tet) < self.target
+        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
     }
 
     /// Makes the best change for one bad tet; whether there was one.

@@ -5,6 +5,7 @@ use std::time::Instant;
 use crate::base::{Result, TetId};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds};
+use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
 use crate::remesh::options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
 use crate::remesh::repair::Repair;
@@ -31,7 +32,8 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let surface = adaptable(&mut complex, mesh, options);
     report.seconds.join = watch.lap();
 
-    let bad = complex.below(options.min_eas);
+    let mut bad = complex.below(options.min_eas);
+    report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
     let mut repair = Repair::new(complex, surface, options.min_eas);
     let mut left = repair.run(bad, options.rounds);
@@ -43,7 +45,7 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
-        left = repair.complex.below(options.min_eas);
+        left = repair.below(options.min_eas);
     }
     report.operations = repair.operations;
     let complex = repair.complex;
@@ -56,6 +58,23 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     report.left = explain(&complex, &left, options.min_eas, |t: TetId| extract.tet(t).0);
     report.seconds.extract = watch.lap();
     Ok(Outcome { extract, report })
+}
+
+/// Takes the tets of boundary layers out of the bad ones, and locks all that are thin; how many were taken out.
+fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) -> usize {
+    if !options.keep_layers || bad.is_empty() {
+        return 0;
+    }
+    let Some(layers) = Layers::of(complex) else { return 0 };
+    let n_bad = bad.len();
+    bad.retain(|&tet| {
+        let stays = layers.holds(complex, tet, options.min_eas);
+        if stays {
+            complex.lock(tet);
+        }
+        !stays
+    });
+    n_bad - bad.len()
 }
 
 /// The surface, where it may change.
