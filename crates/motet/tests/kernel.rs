@@ -1,7 +1,9 @@
 //! The kernel: whatever is done, every invariant holds, and undoing it gives back every bit.
 
-use motet::base::{Point, TetId, Threads, VertexId};
-use motet::delaunay::Triangulation;
+mod common;
+
+use common::{Numbers, random_mesh};
+use motet::base::{TetId, VertexId};
 use motet::geometry::tet::{EDGES, centroid};
 use motet::kernel::{Change, Complex, HalfFacet, Hold, Reject, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
@@ -9,40 +11,6 @@ use motet::ops::{
     EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
 };
 use proptest::prelude::*;
-
-/// A stream of numbers without end.
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-/// Random points in a box, triangulated; two regions with a jagged interface, and some labelled facets.
-fn random_mesh(n: usize, seed: u64) -> TetMesh {
-    let mut numbers = Numbers(seed);
-    let mut points: Vec<Point> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| x as f64)).collect();
-    points.extend((0..n).map(|_| [(); 3].map(|()| numbers.unit())));
-    let delaunay = Triangulation::new(&points, &Threads::single()).unwrap();
-    let tets = delaunay.tets().to_vec();
-    let corners = |t: &[VertexId; 4]| t.map(|v| points[v.index()]);
-    let regions = tets.iter().map(|t| if centroid(corners(t))[0] < 0.5 { 3 } else { 7 }).collect();
-    let triangles: Vec<_> = tets.iter().step_by(29).map(|&[a, b, c, _]| [c, a, b]).collect();
-    let patches = (0..triangles.len() as i32).map(|i| 1 + i % 3).collect();
-    TetMesh { points, tets, regions, triangles, patches, ..TetMesh::default() }
-}
 
 /// One of each operation.
 #[derive(Default)]

@@ -1,5 +1,8 @@
 //! Mesh motion: affine maps, periodic walls, rigid layers, sliding patches, sub-steps, bad input.
 
+mod common;
+
+use common::data_meshes;
 use motet::Mesh;
 use motet::base::{Csr, Point, Threads, VertexId};
 use motet::geometry::vector::{add, distance, norm, scale, sub};
@@ -270,19 +273,6 @@ fn every_vertex_hangs_on_four_nodes_whose_mean_it_is() {
         assert_eq!(n + mover.boundary().len(), mesh.points.len());
         assert_eq!(n, mover.setup().hanging);
     }
-}
-
-/// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
-fn data_meshes() -> Vec<(String, Mesh)> {
-    let names = include_str!("real_tet_meshes.txt").lines();
-    let folder = std::env::var("MOTET_DATA")
-        .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
-    let folder = std::path::Path::new(&folder);
-    if !folder.exists() {
-        println!("skipped: no data in {}", folder.display());
-        return Vec::new();
-    }
-    names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
 }
 
 #[test]

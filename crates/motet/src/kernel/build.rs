@@ -53,6 +53,7 @@ impl Complex {
             links: joined.links,
             regions: regions.clone(),
             qualities: vec![UNMEASURED; n_tets],
+            is_tangled: rough.iter().any(|&q| q <= 0.0),
             rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
@@ -108,11 +109,13 @@ impl Joined {
     ) -> Result<Self> {
         let mut joined = Self { links: vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()], walls: Vec::new() };
         let mut fault = None;
+        // Most meshes have but one, and then two reads from anywhere in memory are spared a facet.
+        let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
         for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
-            let region = |i: usize| regions[uses[i].0.index()];
+            let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];
             match *uses {
-                [(t, i), (u, j)] if triangles.is_empty() && region(0) == region(1) => {
+                [(t, i), (u, j)] if triangles.is_empty() && same_region(t, u) => {
                     joined.links[t.index()][i] = Link::tet(half(1));
                     joined.links[u.index()][j] = Link::tet(half(0));
                 }

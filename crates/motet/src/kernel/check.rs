@@ -25,6 +25,8 @@ pub enum Reject {
     Open([VertexId; 3]),
     /// More than two tets would share this facet, or two would lie on one side of it.
     Crowded([VertexId; 3]),
+    /// An edge or a facet would come that is there already, outside the cavity: possible only where tets overlap.
+    Exists([VertexId; 2]),
     /// A wall would go although the surface is to be kept.
     Wall([VertexId; 3]),
     /// A tet would change its region.
@@ -48,6 +50,7 @@ impl fmt::Display for Reject {
             Self::NotPositive(tet) => write!(f, "the tet {tet:?} would not be positive"),
             Self::Open(facet) => write!(f, "the facet {facet:?} would have nothing behind it"),
             Self::Crowded(facet) => write!(f, "too many tets would share the facet {facet:?}"),
+            Self::Exists(edge) => write!(f, "the edge {edge:?}, or a facet with it, is there already"),
             Self::Wall(facet) => write!(f, "the wall {facet:?} would be lost"),
             Self::Region(facet) => write!(f, "tets would change their region at {facet:?}"),
             Self::Vertex(v) => write!(f, "vertex {v} would be lost"),
@@ -144,6 +147,9 @@ impl Complex {
             }
         }
         self.check_edges(change)?;
+        if self.is_tangled {
+            self.check_news(change)?;
+        }
         self.join(change)
     }
 
@@ -190,6 +196,52 @@ impl Complex {
             }
         }
         Ok(())
+    }
+
+    /// Edges and facets that come must not be there already. Where all tets are positive none can be: it would lie within the cavity, with other tets.
+    fn check_news(&self, change: &Change) -> Result<(), Reject> {
+        let is_in_cavity = |vertices: &[VertexId]| {
+            change.cavity.iter().any(|&t| vertices.iter().all(|v| self.vertices(t).contains(v)))
+        };
+        for tet in &change.fill {
+            let edges = EDGES.map(|edge| edge.map(|i| tet.vertices[i]));
+            for edge in edges.into_iter().filter(|edge| !is_in_cavity(edge)) {
+                if self.is_outside(&edge, change) {
+                    return Err(Reject::Exists(edge));
+                }
+            }
+            for facet in FACETS.map(|facet| facet.map(|i| tet.vertices[i])) {
+                if !is_in_cavity(&facet) && self.is_outside(&facet, change) {
+                    return Err(Reject::Exists([facet[0], facet[1]]));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a tet that is not in the cavity has all of some vertices.
+    fn is_outside(&self, vertices: &[VertexId], change: &Change) -> bool {
+        // A vertex to come is not in the lists yet, or has no tet.
+        let is_there = |v: &VertexId| v.index() < self.points.len() && self.is_used(*v);
+        if !vertices.iter().all(is_there) {
+            return false;
+        }
+        let mut found = vec![self.tet_of(vertices[0])];
+        let mut i = 0;
+        while i < found.len() {
+            let tet = found[i];
+            i += 1;
+            if vertices.iter().all(|v| self.vertices(tet).contains(v)) && !change.cavity.contains(&tet) {
+                return true;
+            }
+            let place = self.place(tet, vertices[0]);
+            for next in (0..4).filter(|&facet| facet != place).map(|facet| self.across(tet, facet)) {
+                if !next.is_none() && !found.contains(&next.tet()) {
+                    found.push(next.tet());
+                }
+            }
+        }
+        false
     }
 
     /// Joins every facet of the fill to what lies behind it.

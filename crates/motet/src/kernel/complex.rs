@@ -51,6 +51,8 @@ pub struct Complex {
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
+    /// Whether a tet of the first mesh was flat or inverted: then tets may overlap.
+    pub(super) is_tangled: bool,
     /// Whether most tets of the first mesh are numbered the other way round.
     pub(super) mostly_turned: bool,
     /// Triangles of the first mesh that are no walls any more.

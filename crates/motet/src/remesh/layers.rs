@@ -7,6 +7,7 @@
 //!     |  layer 1          stretched along the normal to the width of the facet.
 //!     w ======== .  wall
 //! ```
+//! Where a mesh has layers, most of what looks bad is thin on purpose; where few of the bad are, there are no layers.
 //! A sliver in a mesh without layers has no short edge, and a needle's short edge does not stand in columns side by side: neither is taken
 //! for a layer.
 
@@ -23,7 +24,7 @@ const UPRIGHT: f64 = 0.82;
 /// An edge of a column is at most so many times as long as the one below.
 const GROWTH: f64 = 3.0;
 /// Layers are looked for only where this part of some wall vertices has a column.
-const ENOUGH: f64 = 0.1;
+const ENOUGH: f64 = 0.4;
 /// How many wall vertices are looked at to tell.
 const SAMPLE: usize = 256;
 /// No column is higher.

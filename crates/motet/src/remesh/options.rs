@@ -1,10 +1,15 @@
 //! What a remesher is told beside the mesh.
 
+use crate::geometry::quality::dihedral::REGULAR;
+
 /// What is to be repaired, and how.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// A tet below this EAS is bad. Default: 0.2.
     pub min_eas: f64,
+    /// A tet is bad, too, when one of its dihedral angles is smaller than this, in degrees. It raises the EAS that is asked to the one that makes sure of
+    /// the angle: see [`Self::limit`]. Default: 0.
+    pub min_dihedral_deg: f64,
     /// How far to go. Default: [`Goal::Repair`].
     pub goal: Goal,
     /// What may happen to the surface. Default: [`SurfaceRule::Keep`].
@@ -17,7 +22,21 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { min_eas: 0.2, goal: Goal::Repair, surface: SurfaceRule::Keep, keep_layers: true, rounds: 20 }
+        Self {
+            min_eas: 0.2,
+            min_dihedral_deg: 0.0,
+            goal: Goal::Repair,
+            surface: SurfaceRule::Keep,
+            keep_layers: true,
+            rounds: 20,
+        }
+    }
+}
+
+impl Options {
+    /// The EAS below which a tet is bad. One of EAS q has no dihedral angle below q acos(1/3).
+    pub fn limit(&self) -> f64 {
+        self.min_eas.max(self.min_dihedral_deg.to_radians() / REGULAR)
     }
 }
 

@@ -18,6 +18,11 @@ const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
 /// How often in a row edges are split without fewer bad tets in the end.
 const MOST_IN_VAIN: usize = 5;
 
+/// What is left must shrink to this part of itself, or the round was in vain.
+const PROGRESS: f64 = 0.95;
+/// No more edges are split once there are so many times as many tets.
+const MOST_GROWTH: usize = 3;
+
 /// The targets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
 
@@ -86,6 +91,8 @@ impl Repair {
             let Some(more) = asked.next() else { break };
             self.improve_around(&bad, self.target + more);
         }
+        bad.append(&mut self.came_bad);
+        bad.retain(|&t| self.is_bad(t));
         self.sort(&mut bad);
         bad
     }
@@ -105,7 +112,8 @@ impl Repair {
     pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
         let mut best = (left.clone(), self.complex.mark(), self.operations);
         let mut n_in_vain = 0;
-        while !left.is_empty() && n_in_vain < MOST_IN_VAIN {
+        let most_tets = MOST_GROWTH * self.complex.n_tets();
+        while !left.is_empty() && n_in_vain < MOST_IN_VAIN && self.complex.n_tets() < most_tets {
             let mut bad = Vec::new();
             for &tet in &left {
                 if self.is_bad(tet) {
@@ -117,8 +125,10 @@ impl Repair {
             left = self.run(bad, rounds);
             n_in_vain += 1;
             if left.len() < best.0.len() {
+                if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
+                    n_in_vain = 0;
+                }
                 best = (left.clone(), self.complex.mark(), self.operations);
-                n_in_vain = 0;
             }
         }
         self.complex.undo(best.1);
@@ -209,8 +219,9 @@ impl Repair {
         let usual = std::mem::replace(&mut self.target, target);
         around.retain(|&t| self.is_bad(t));
         self.round(&mut around);
-        self.came_bad.clear();
         self.target = usual;
+        around.retain(|&t| self.is_bad(t));
+        self.came_bad.append(&mut around);
     }
 
     fn sort(&self, bad: &mut Vec<TetId>) {

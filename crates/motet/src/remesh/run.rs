@@ -27,15 +27,16 @@ pub struct Outcome {
 /// When the mesh is not one: see [`Complex::new`].
 pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let mut watch = Watch(Instant::now());
-    let mut report = Report { min_eas: options.min_eas, ..Report::default() };
+    let min_eas = options.limit();
+    let mut report = Report { min_eas, ..Report::default() };
     let mut complex = Complex::new(mesh)?;
     let surface = adaptable(&mut complex, mesh, options);
     report.seconds.join = watch.lap();
 
-    let mut bad = complex.below(options.min_eas);
+    let mut bad = complex.below(min_eas);
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
-    let mut repair = Repair::new(complex, surface, options.min_eas);
+    let mut repair = Repair::new(complex, surface, min_eas);
     let mut left = repair.run(bad, options.rounds);
     if !left.is_empty() && options.surface != SurfaceRule::Keep {
         left = repair.divide(left, options.rounds);
@@ -45,7 +46,7 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
-        left = repair.below(options.min_eas);
+        left = repair.below(min_eas);
     }
     report.operations = repair.operations;
     let complex = repair.complex;
@@ -55,7 +56,7 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     report.after = State::of(&complex, &left, |t| extract.tet(t));
     report.kept = mesh.tets.len() - extract.gone_tets.len();
     report.kept_share = report.kept as f64 / mesh.tets.len().max(1) as f64;
-    report.left = explain(&complex, &left, options.min_eas, |t: TetId| extract.tet(t).0);
+    report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
     report.seconds.extract = watch.lap();
     Ok(Outcome { extract, report })
 }
@@ -66,15 +67,14 @@ fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) 
         return 0;
     }
     let Some(layers) = Layers::of(complex) else { return 0 };
-    let n_bad = bad.len();
-    bad.retain(|&tet| {
-        let stays = layers.holds(complex, tet, options.min_eas);
-        if stays {
-            complex.lock(tet);
-        }
-        !stays
-    });
-    n_bad - bad.len()
+    let (thin, others): (Vec<_>, Vec<_>) =
+        bad.iter().partition(|&&t| layers.holds(complex, t, options.limit()));
+    if thin.len() < others.len() {
+        return 0;
+    }
+    thin.iter().for_each(|&tet| complex.lock(tet));
+    *bad = others;
+    thin.len()
 }
 
 /// The surface, where it may change.

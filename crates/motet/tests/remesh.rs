@@ -1,0 +1,186 @@
+//! Remeshing: what is bad gets good, what is not stays to the bit, and what is left is explained.
+
+mod common;
+
+use common::{Numbers, data_meshes, random_mesh};
+use motet::base::{Point, VertexId};
+use motet::geometry::quality::eas;
+use motet::geometry::tet::volume;
+use motet::geometry::vector::distance;
+use motet::kernel::{Complex, Hold, NEW};
+use motet::mesh::shapes::sphere_in_box;
+use motet::mesh::{TetMesh, TetPart};
+use motet::remesh::classify::{Defect, classify};
+use motet::remesh::{Options, Outcome, SurfaceRule, remesh};
+use proptest::prelude::*;
+
+fn corners(mesh: &TetMesh, tet: usize) -> [Point; 4] {
+    mesh.tets[tet].map(|v| mesh.points[v.index()])
+}
+
+/// Moves free vertices at random by up to `part` of their shortest edge.
+fn shake(mesh: &mut TetMesh, part: f64, seed: u64) {
+    let complex = Complex::new(mesh).unwrap();
+    let mut shortest = vec![f64::INFINITY; mesh.points.len()];
+    for tet in &mesh.tets {
+        for (a, b) in (0..4).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let length = distance(mesh.points[tet[a].index()], mesh.points[tet[b].index()]);
+            for v in [tet[a], tet[b]] {
+                shortest[v.index()] = shortest[v.index()].min(length);
+            }
+        }
+    }
+    let mut numbers = Numbers(seed);
+    for v in 0..mesh.points.len() {
+        let shift = [(); 3].map(|()| (2.0 * numbers.unit() - 1.0) * part * shortest[v]);
+        if complex.hold(VertexId::new(v)) == Hold::Free {
+            (0..3).for_each(|i| mesh.points[v][i] += shift[i]);
+        }
+    }
+}
+
+/// What must hold of every outcome.
+fn hold_to_the_promise(mesh: &TetMesh, outcome: &Outcome, keep: bool) -> Result<(), TestCaseError> {
+    let (new, report) = (&outcome.extract.mesh, &outcome.report);
+    Complex::new(new).unwrap().verify().map_err(TestCaseError::fail)?;
+    let qualities: Vec<f64> = (0..new.tets.len()).map(|t| eas(corners(new, t))).collect();
+    let n_bad = qualities.iter().filter(|&&q| q < report.min_eas).count();
+    prop_assert_eq!(n_bad, report.after.bad + report.layers);
+    prop_assert_eq!(report.left.len(), report.after.bad);
+    prop_assert!(report.after.bad <= report.before.bad && report.after.inverted <= report.before.inverted);
+    let worst = qualities.iter().copied().fold(f64::INFINITY, f64::min);
+    prop_assert_eq!(report.after.worst.unwrap().eas, worst);
+    prop_assert!(worst >= report.before.worst.unwrap().eas);
+    let kept = outcome.extract.tet_to_old.iter().enumerate().filter(|(_, old)| **old != NEW);
+    prop_assert_eq!(kept.clone().count(), report.kept);
+    for (now, &old) in kept {
+        let bits = |mesh: &TetMesh, t: usize| corners(mesh, t).map(|p| p.map(f64::to_bits));
+        prop_assert_eq!(bits(new, now), bits(mesh, old as usize));
+        prop_assert_eq!(new.regions[now], mesh.regions[old as usize]);
+    }
+    if keep {
+        let same = |mesh: &TetMesh| {
+            mesh.triangles
+                .iter()
+                .map(|t| t.map(|v| mesh.points[v.index()].map(f64::to_bits)))
+                .collect::<Vec<_>>()
+        };
+        prop_assert_eq!(same(new), same(mesh));
+        prop_assert_eq!(&new.patches, &mesh.patches);
+        prop_assert_eq!(boundary(new), boundary(mesh));
+        for (now, before) in volumes(new).into_iter().zip(volumes(mesh)) {
+            prop_assert!(now.0 == before.0 && (now.1 - before.1).abs() < 1e-12 * before.1.abs());
+        }
+    }
+    Ok(())
+}
+
+/// Facets of the boundary by the bits of their points.
+fn boundary(mesh: &TetMesh) -> Vec<Vec<[u64; 3]>> {
+    let complex = Complex::new(mesh).unwrap();
+    let walls = complex.walls().filter(|(_, wall)| wall.sides[1].is_none());
+    let mut facets: Vec<_> = walls
+        .map(|(_, wall)| {
+            let mut points =
+                complex.facet(wall.sides[0]).map(|v| complex.point(v).map(f64::to_bits)).to_vec();
+            points.sort_unstable();
+            points
+        })
+        .collect();
+    facets.sort_unstable();
+    facets
+}
+
+fn volumes(mesh: &TetMesh) -> Vec<(i32, f64)> {
+    let mut regions = mesh.regions.clone();
+    regions.sort_unstable();
+    regions.dedup();
+    let complex = Complex::new(mesh).unwrap();
+    let of = |region: i32| {
+        let tets = complex.tets().filter(|&t| complex.region(t) == region);
+        tets.map(|t| volume(complex.corners(t))).sum()
+    };
+    regions.into_iter().map(|region| (region, of(region))).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_mesh_comes_out_no_worse_and_the_rest_untouched(seed in any::<u64>(), n in 10usize..60, part in 0.0f64..1.0, keep in any::<bool>()) {
+        let mut mesh = random_mesh(n, seed);
+        shake(&mut mesh, part, seed);
+        let surface = if keep { SurfaceRule::Keep } else { SurfaceRule::Adapt { distance: None } };
+        let options = Options { surface, ..Options::default() };
+        let outcome = remesh(&mesh, &options).unwrap();
+        hold_to_the_promise(&mesh, &outcome, keep)?;
+        let again = remesh(&mesh, &options).unwrap();
+        prop_assert_eq!(&again.extract.mesh, &outcome.extract.mesh);
+    }
+}
+
+#[test]
+fn a_tangle_is_untangled() {
+    let mut mesh = TetPart::of(&sphere_in_box(10, 8)).unwrap().mesh;
+    shake(&mut mesh, 0.5, 7);
+    let outcome = remesh(&mesh, &Options::default()).unwrap();
+    let (before, after) = (&outcome.report.before, &outcome.report.after);
+    println!("{before:?}\n{after:?}\nkept {:.3}", outcome.report.kept_share);
+    assert!(before.inverted > 100);
+    assert_eq!((after.inverted, after.bad), (0, 0));
+    hold_to_the_promise(&mesh, &outcome, true).unwrap();
+}
+
+#[test]
+fn the_four_types_are_what_the_paper_draws() {
+    let of = |tet: [Point; 4]| classify(tet);
+    let crossed = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.05], [1.0, 1.0, 0.0], [0.0, 1.0, 0.05]];
+    assert!(matches!(of(crossed), Defect::CrossedEdges { edge: 1 }), "{:?}", of(crossed));
+    let at_edge = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.05, 0.05]];
+    assert_eq!(of(at_edge), Defect::VertexAtEdge { vertex: 3, edge: 0 });
+    let over_facet = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.7, 0.0], [1.0, 0.6, 0.05]];
+    assert_eq!(of(over_facet), Defect::VertexOverFacet { vertex: 3 });
+    let short = [[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.3, 0.9]];
+    assert_eq!(of(short), Defect::ShortEdge { edge: 0 });
+}
+
+#[test]
+fn thin_layers_stay_unless_asked() {
+    for (name, mesh) in data_meshes().into_iter().filter(|(name, _)| name.contains("boundary_layer")) {
+        let part = TetPart::of(&mesh).unwrap().mesh;
+        let spared = remesh(&part, &Options::default()).unwrap().report;
+        println!(
+            "{name}: {} thin tets stay; {} bad found, {} left",
+            spared.layers, spared.before.bad, spared.after.bad
+        );
+        assert!(spared.layers > 40_000 && spared.after.bad == 0);
+    }
+}
+
+/// Every real mesh, its inner vertices shaken until tets are inverted.
+#[test]
+fn real_meshes_are_repaired_or_what_is_left_is_explained() {
+    for (name, mesh) in data_meshes() {
+        let mut part = TetPart::of(&mesh).unwrap().mesh;
+        shake(&mut part, 0.45, 3);
+        for surface in [SurfaceRule::Keep, SurfaceRule::Adapt { distance: None }] {
+            let outcome = remesh(&part, &Options { surface, ..Options::default() }).unwrap();
+            let report = &outcome.report;
+            let (before, after) = (&report.before, &report.after);
+            println!(
+                "{name} {surface:?}: bad {} -> {}, inverted {} -> {}, tets {} -> {}, kept {:.3}, {:.2} s",
+                before.bad,
+                after.bad,
+                before.inverted,
+                after.inverted,
+                before.tets,
+                after.tets,
+                report.kept_share,
+                report.seconds.repair
+            );
+            report.left.iter().take(3).for_each(|left| println!("    {:.3} {}", left.eas, left.reason));
+            assert_eq!(after.inverted, 0);
+            hold_to_the_promise(&part, &outcome, surface == SurfaceRule::Keep).unwrap();
+        }
+    }
+}
