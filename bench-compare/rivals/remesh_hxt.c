@@ -79,37 +79,38 @@ static void cross(const double *u, const double *v, double *w) {
 
 static double dot(const double *u, const double *v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
 
-static double angle(const double *u, const double *v) { return acos(dot(u, v) / sqrt(dot(u, u) * dot(v, v))); }
+/* The cosine between two vectors, turned by half: of the angle inside a facet, or between two facets. */
+static double inner(const double *u, const double *v) { return -dot(u, v) / sqrt(dot(u, u) * dot(v, v)); }
+
+typedef struct { double low, high; } Range; /* of cosines: the greatest and the least angle */
+
+static void widen(Range *range, double cosine) {
+  if (cosine < range->low) range->low = cosine;
+  if (cosine > range->high) range->high = cosine;
+}
+
+static double skew(Range cosines, double right) {
+  const double pi = acos(-1), greatest = acos(fmax(cosines.low, -1)), least = acos(fmin(cosines.high, 1));
+  return fmax((greatest - right) / (pi - right), (right - least) / right);
+}
 
 /* 1 - skew, as Verdict's tet_equiangle_skew; 0 for a tet that is not positive. */
 static double eas(double *a, double *b, double *c, double *d, void *unused) {
   (void)unused;
-  static const int facets[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  const double pi = acos(-1), right[2] = {acos(1. / 3), pi / 3};
-  double *corners[4] = {a, b, c, d}, normals[4][3], least[2] = {pi, pi}, greatest[2] = {0, 0};
+  static const int facets[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}; /* turned outward */
+  double *corners[4] = {a, b, c, d}, normals[4][3];
+  Range plane = {2, -2}, dihedral = {2, -2};
   for (int f = 0; f < 4; f++) {
     double edges[3][3];
     for (int k = 0; k < 3; k++)
       for (int i = 0; i < 3; i++) edges[k][i] = corners[facets[f][(k + 1) % 3]][i] - corners[facets[f][k]][i];
     cross(edges[0], edges[1], normals[f]);
-    if (f == 3) { /* corners 0, 2, 1 seen from outside: corner 3 must lie behind */
-      double up[3] = {d[0] - a[0], d[1] - a[1], d[2] - a[2]};
-      if (dot(normals[f], up) >= 0) return 0;
-    }
-    for (int k = 0; k < 3; k++) {
-      const double inner = pi - angle(edges[k], edges[(k + 1) % 3]);
-      least[1] = fmin(least[1], inner), greatest[1] = fmax(greatest[1], inner);
-    }
+    for (int k = 0; k < 3; k++) widen(&plane, inner(edges[k], edges[(k + 1) % 3]));
+    for (int g = 0; g < f; g++) widen(&dihedral, inner(normals[f], normals[g]));
   }
-  for (int f = 0; f < 4; f++)
-    for (int g = 0; g < f; g++) {
-      const double inner = pi - angle(normals[f], normals[g]);
-      least[0] = fmin(least[0], inner), greatest[0] = fmax(greatest[0], inner);
-    }
-  double skew = 0;
-  for (int k = 0; k < 2; k++)
-    skew = fmax(skew, fmax((greatest[k] - right[k]) / (pi - right[k]), (right[k] - least[k]) / right[k]));
-  return skew < 1 ? 1 - skew : 0;
+  const double up[3] = {d[0] - a[0], d[1] - a[1], d[2] - a[2]};
+  if (dot(normals[3], up) >= 0) return 0;
+  return fmax(0, 1 - fmax(skew(plane, acos(0.5)), skew(dihedral, acos(1. / 3))));
 }
 
 static Mesh *mesh_of(char **words) {
