@@ -7,7 +7,10 @@
 //! | [`mesh`] | 2 | the exchange form: points, cells of any kind, fields, labels, shapes |
 //! | [`io`] | 3 | one file per format, their registry, time series |
 //! | [`spatial`] | 3 | searching: which tet holds a point, which facet is nearest |
+//! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
+//! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
 //! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
+//! | [`remesh`] | 6 | bad tets found, classified, repaired, and only those |
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
@@ -16,8 +19,11 @@ pub mod base;
 pub mod delaunay;
 pub mod geometry;
 pub mod io;
+pub mod kernel;
 pub mod mesh;
 pub mod motion;
+pub mod ops;
+pub mod remesh;
 pub mod spatial;
 
 pub use base::{Error, ErrorKind, Result};

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use motet::base::{CellId, Csr, Point, VertexId};
 use motet::geometry::vector::{add, scale};
-use motet::mesh::adjacency::{Facets, NO_TET, tet_neighbors, vertex_to_cells};
+use motet::mesh::adjacency::{Facets, vertex_to_cells};
 use motet::mesh::facets::facet_shapes;
+use motet::mesh::tet_facets::{NO_TET, tet_neighbors};
 use motet::mesh::{Boundary, CellKind, Cells, cell_volumes, cone_volume};
 use proptest::prelude::*;
 

@@ -6,8 +6,18 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const FLOORS: &[(&str, u32)] =
-    &[("base", 0), ("geometry", 1), ("mesh", 2), ("io", 3), ("spatial", 3), ("delaunay", 6), ("motion", 7)];
+const FLOORS: &[(&str, u32)] = &[
+    ("base", 0),
+    ("geometry", 1),
+    ("mesh", 2),
+    ("io", 3),
+    ("spatial", 3),
+    ("kernel", 4),
+    ("ops", 5),
+    ("delaunay", 6),
+    ("remesh", 6),
+    ("motion", 7),
+];
 
 fn floor(module: &str) -> Option<u32> {
     FLOORS.iter().find(|(name, _)| *name == module).map(|(_, floor)| *floor)

@@ -5,7 +5,6 @@
 //! million facets) take about 64 MB while it runs.
 
 use crate::base::{CellId, Csr, VertexId};
-use crate::geometry::tet;
 use crate::mesh::facets::{FacetShape, facet_shapes};
 use crate::mesh::{CellKind, Cells};
 
@@ -151,15 +150,9 @@ impl<'a> Facets<'a> {
     }
 }
 
-/// Something with facets to be sorted. A trait and not a closure, for it is asked twice, by different
-/// functions, and both are to be compiled into the loop over the facets.
-trait Source {
+impl Facets<'_> {
     /// Yields the key of every facet: its smallest corner, the second and the
     /// largest packed together, and its use.
-    fn put_all(&self, put: &mut impl FnMut(u32, u64, u64));
-}
-
-impl Source for Facets<'_> {
     fn put_all(&self, put: &mut impl FnMut(u32, u64, u64)) {
         for (cell, kind, vertices) in self.cells.iter() {
             if kind == CellKind::TETRA {
@@ -205,7 +198,7 @@ struct Buckets {
 }
 
 impl Buckets {
-    fn fill(n_vertices: usize, facets: &impl Source) -> Self {
+    fn fill(n_vertices: usize, facets: &Facets) -> Self {
         let mut offsets = vec![0u32; n_vertices + 1];
         facets.put_all(&mut |first, _, _| offsets[first as usize + 1] += 1);
         for i in 0..n_vertices {
@@ -231,34 +224,6 @@ impl Buckets {
             bucket.chunk_by(|x, y| x.0 == y.0).for_each(&mut see);
         }
     }
-}
-
-/// Says that no tet lies behind a facet.
-pub const NO_TET: u32 = u32::MAX;
-
-impl Source for &[[VertexId; 4]] {
-    fn put_all(&self, put: &mut impl FnMut(u32, u64, u64)) {
-        for (t, [a, b, c, d]) in self.iter().enumerate() {
-            put_tet(t as u32, [a.0, b.0, c.0, d.0], tet::FACETS, put);
-        }
-    }
-}
-
-/// The tet behind each facet of each tet: `[t][i]` lies opposite vertex `i` of
-/// tet `t`; [`NO_TET`] on the boundary, and where more than two tets share the
-/// facet (then nothing says which).
-pub fn tet_neighbors(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
-    let n_vertices = tets.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
-    let buckets = Buckets::fill(n_vertices, &tets);
-    let mut neighbors = vec![[NO_TET; 4]; tets.len()];
-    buckets.for_each_run(|run| {
-        if let [x, y] = run {
-            let [x, y] = [x, y].map(|entry| ((entry.1 >> 32) as usize, entry.1 as u32));
-            neighbors[x.0][x.1 as usize] = y.0 as u32;
-            neighbors[y.0][y.1 as usize] = x.0 as u32;
-        }
-    });
-    neighbors
 }
 
 /// The cells around each of `n_points` vertices, in rising order. A cell that

@@ -14,11 +14,13 @@ mod measure;
 pub mod shapes;
 mod summary;
 mod surface;
+pub mod tet_facets;
+mod tet_mesh;
 mod triangulate;
 mod volume;
 
 pub use boundary::Boundary;
-pub(crate) use boundary::n_corners;
+pub(crate) use boundary::corners;
 pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use exchange::{Mesh, bounds};
@@ -29,5 +31,6 @@ pub use summary::{
     Summary,
 };
 pub use surface::Surface;
+pub use tet_mesh::TetMesh;
 pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

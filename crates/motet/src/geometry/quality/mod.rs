@@ -18,6 +18,7 @@ mod eas;
 mod edge_ratio;
 mod equiangle_skew;
 mod mean_ratio;
+mod rough_eas;
 mod scaled;
 mod volume;
 
@@ -26,4 +27,5 @@ pub use eas::eas;
 pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
 pub use mean_ratio::mean_ratio;
+pub use rough_eas::{ROUGH_EAS_ERROR, rough_eas};
 pub use volume::volume;

@@ -1,0 +1,167 @@
+//! A complex from plain tets, and what the tets became of it.
+
+use crate::base::{Error, Result, TetId, VertexId};
+use crate::geometry::quality::rough_eas;
+use crate::geometry::tet::FACETS;
+use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
+use crate::kernel::journal::Journal;
+use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::orientation::orient;
+use crate::mesh::TetMesh;
+use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
+
+impl Complex {
+    /// The complex of a mesh. Tets are turned the way most are; see `orientation`.
+    ///
+    /// # Errors
+    /// When an array does not fit ([`TetMesh::validate`]), when more than two tets share a facet, a triangle is no facet of a
+    /// tet, or the mesh is one-sided; the place is the first such tet or triangle.
+    pub fn new(mesh: &TetMesh) -> Result<Self> {
+        mesh.validate()?;
+        if mesh.tets.len() >= MAX_TETS as usize {
+            return Err(Error::input(format!("{} tets are more than {MAX_TETS}", mesh.tets.len()))
+                .remedy("split the mesh"));
+        }
+        let TetMesh { points, regions, triangles, patches, .. } = mesh;
+        let mut tets = mesh.tets.clone();
+        let mut joined = Joined::of(&tets, regions, triangles, patches)?;
+        let mut rough = rough_eas(points, &tets);
+        let mut n_turned = 0;
+        if rough.iter().any(|&q| q <= 0.0) {
+            n_turned = orient(&mut tets, &joined.across(), points)?;
+            if n_turned > 0 {
+                joined = Joined::of(&tets, regions, triangles, patches)?;
+                rough = rough_eas(points, &tets);
+            }
+        }
+        let n_tets = tets.len();
+        let mut vertex_to_tet = vec![NO_TET; points.len()];
+        for (t, tet) in tets.iter().enumerate() {
+            tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
+        }
+        let mut fixed_edges = mesh.fixed_edges.clone();
+        fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
+        fixed_edges.sort_unstable();
+        let mut complex = Self {
+            holds: vec![Hold::Free; points.len()],
+            vertex_is_new: vec![false; points.len()],
+            vertex_came: vec![false; points.len()],
+            points: points.clone(),
+            vertex_to_tet,
+            is_new: vec![false; tets.len()],
+            tets,
+            links: joined.links,
+            regions: regions.clone(),
+            qualities: vec![UNMEASURED; n_tets],
+            rough,
+            walls: joined.walls,
+            free_vertices: Vec::new(),
+            free_tets: Vec::new(),
+            free_walls: Vec::new(),
+            fixed_edges,
+            keeps_surface: true,
+            mostly_turned: 2 * n_turned > n_tets,
+            gone_triangles: Vec::new(),
+            journal: Journal::default(),
+        };
+        complex.hold_walls(&mesh.fixed_vertices);
+        Ok(complex)
+    }
+
+    /// Vertices of walls are held by the surface, fixed ones and those without a tet altogether.
+    fn hold_walls(&mut self, fixed_vertices: &[VertexId]) {
+        for i in 0..self.walls.len() {
+            let side = self.walls[i].sides[0];
+            for v in self.facet(side) {
+                self.holds[v.index()] = Hold::Surface;
+            }
+        }
+        for (hold, tet) in self.holds.iter_mut().zip(&self.vertex_to_tet) {
+            if *tet == NO_TET {
+                *hold = Hold::Fixed;
+            }
+        }
+        for v in fixed_vertices.iter().chain(self.fixed_edges.as_flattened()) {
+            self.holds[v.index()] = Hold::Fixed;
+        }
+    }
+
+    /// Makes the hold of a vertex stronger or weaker than it was found to be.
+    pub fn set_hold(&mut self, vertex: VertexId, hold: Hold) {
+        self.holds[vertex.index()] = hold;
+    }
+}
+
+/// What lies behind every facet.
+struct Joined {
+    links: Vec<[Link; 4]>,
+    walls: Vec<Wall>,
+}
+
+impl Joined {
+    fn of(
+        tets: &[[VertexId; 4]],
+        regions: &[i32],
+        triangles: &[[VertexId; 3]],
+        patches: &[i32],
+    ) -> Result<Self> {
+        let mut joined = Self { links: vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()], walls: Vec::new() };
+        let mut fault = None;
+        for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
+            let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
+            let region = |i: usize| regions[uses[i].0.index()];
+            match *uses {
+                [(t, i), (u, j)] if triangles.is_empty() && region(0) == region(1) => {
+                    joined.links[t.index()][i] = Link::tet(half(1));
+                    joined.links[u.index()][j] = Link::tet(half(0));
+                }
+                [_] | [_, _] => {
+                    let triangle = triangles.first().copied().unwrap_or(NO_TRIANGLE);
+                    let sides = [half(0), if uses.len() == 2 { half(1) } else { HalfFacet::NONE }];
+                    let patch = patches.get(triangle as usize).copied().unwrap_or(0);
+                    joined.add_wall(Wall { sides, patch, triangle, is_new: false });
+                }
+                // A triangle that is no facet stays as it is; its vertices are held by whoever hands it over.
+                [] => {}
+                _ => {
+                    fault.get_or_insert((uses[0], uses.len()));
+                }
+            }
+        });
+        match fault {
+            None => Ok(joined),
+            Some(((tet, i), n)) => Err(Error::input(format!(
+                "{n} tets share the facet of the points {:?}, where two can be",
+                FACETS[i].map(|place| tets[tet.index()][place].0)
+            ))
+            .at(format!("tet {tet}"))
+            .remedy("`motet info` lists what is wrong with a mesh")),
+        }
+    }
+
+    fn add_wall(&mut self, wall: Wall) {
+        let id = WallId(self.walls.len() as u32);
+        self.walls.push(wall);
+        for side in wall.sides.into_iter().filter(|side| !side.is_none()) {
+            self.links[side.tet().index()][side.facet()] = Link::wall(id);
+        }
+    }
+
+    /// The facet behind each facet, through walls.
+    fn across(&self) -> Vec<[HalfFacet; 4]> {
+        let across = |t: usize, i: usize| match self.links[t][i].behind() {
+            Behind::Tet(half) => half,
+            Behind::Wall(wall) => self.walls[wall.index()].other(HalfFacet::new(TetId::new(t), i)),
+        };
+        (0..self.links.len()).map(|t| [0, 1, 2, 3].map(|i| across(t, i))).collect()
+    }
+}
+
+impl Complex {
+    /// The vertices of a facet, counter-clockwise seen from outside its tet.
+    #[inline]
+    pub fn facet(&self, half: HalfFacet) -> [VertexId; 3] {
+        let tet = self.vertices(half.tet());
+        FACETS[half.facet()].map(|place| tet[place])
+    }
+}

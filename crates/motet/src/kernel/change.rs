@@ -1,0 +1,95 @@
+//! What an operation proposes: these tets go, those come, and one vertex comes, moves or goes.
+
+use crate::base::{Point, TetId, VertexId};
+use crate::kernel::complex::{Complex, Hold};
+
+/// A tet to come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fill {
+    /// Its vertices; it must be positive.
+    pub vertices: [VertexId; 4],
+    /// Its region.
+    pub region: i32,
+    /// Its quality, as [`Change::measure`] gives it.
+    pub quality: f64,
+}
+
+/// A facet of the fill that is to be a wall, where the walls of the surface change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewWall {
+    /// Its vertices, in any order.
+    pub vertices: [VertexId; 3],
+    /// Its patch.
+    pub patch: i32,
+    /// The triangle of the first mesh that it inherits from.
+    pub triangle: u32,
+}
+
+/// What a change does to a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum VertexChange {
+    /// Nothing.
+    #[default]
+    None,
+    /// A new one comes, with the id of [`Complex::next_vertex`], and what holds it.
+    Insert(Point, Hold),
+    /// One goes to another place.
+    Move(VertexId, Point),
+    /// One goes for good.
+    Remove(VertexId),
+}
+
+/// A proposal. Its lists are used again for the next one: [`Self::clear`].
+#[derive(Clone, Debug, Default)]
+pub struct Change {
+    /// The tets to go.
+    pub cavity: Vec<TetId>,
+    /// The tets to come.
+    pub fill: Vec<Fill>,
+    /// What happens to a vertex.
+    pub vertex: VertexChange,
+    /// Walls to come; those that go are the walls of the cavity which the fill has no facet for. Empty where the
+    /// surface stays.
+    pub walls: Vec<NewWall>,
+}
+
+impl Change {
+    /// Nothing goes, nothing comes.
+    pub fn clear(&mut self) {
+        self.cavity.clear();
+        self.fill.clear();
+        self.walls.clear();
+        self.vertex = VertexChange::None;
+    }
+
+    /// The lowest quality of the fill.
+    pub fn worst(&self) -> f64 {
+        self.fill.iter().map(|tet| tet.quality).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Adds a tet to the fill, measured at where its vertices are to be.
+    pub fn push(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32) {
+        let quality = complex.measure(self.corners(complex, vertices));
+        self.fill.push(Fill { vertices, region, quality });
+    }
+
+    /// Where vertices are to be.
+    #[inline]
+    pub fn corners<const N: usize>(&self, complex: &Complex, vertices: [VertexId; N]) -> [Point; N] {
+        let mut corners = [[0.0; 3]; N];
+        for i in 0..N {
+            corners[i] = self.point(complex, vertices[i]);
+        }
+        corners
+    }
+
+    /// Where a vertex is to be.
+    #[inline]
+    pub fn point(&self, complex: &Complex, vertex: VertexId) -> Point {
+        match self.vertex {
+            VertexChange::Insert(point, _) if vertex == complex.next_vertex() => point,
+            VertexChange::Move(moved, point) if vertex == moved => point,
+            _ => complex.point(vertex),
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! Whether a change may be made: everything that must never happen, tried on it.
+
+use std::fmt;
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::predicates::orient3d;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::kernel::change::{Change, NewWall, VertexChange};
+use crate::kernel::complex::{Complex, Hold};
+use crate::kernel::link::{Behind, HalfFacet, WallId};
+
+/// Why a change may not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reject {
+    /// The worst quality of the fill is not above what it has to beat.
+    Quality {
+        /// What it has to beat.
+        before: f64,
+        /// The worst of the fill.
+        after: f64,
+    },
+    /// A tet of the fill is flat or inverted.
+    NotPositive([VertexId; 4]),
+    /// A facet of the cavity's boundary has no tet of the fill behind it, or one of the fill nothing behind it.
+    Open([VertexId; 3]),
+    /// More than two tets would share this facet, or two would lie on one side of it.
+    Crowded([VertexId; 3]),
+    /// A wall would go although the surface is to be kept.
+    Wall([VertexId; 3]),
+    /// A tet would change its region.
+    Region([VertexId; 3]),
+    /// A vertex would be without a tet, unsaid.
+    Vertex(VertexId),
+    /// A vertex that is held would move or go.
+    Held(VertexId),
+    /// An edge that must stay would go.
+    Edge([VertexId; 2]),
+}
+
+impl fmt::Display for Reject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Quality { before, after } => {
+                write!(f, "the worst quality would go from {before} to {after}")
+            }
+            Self::NotPositive(tet) => write!(f, "the tet {tet:?} would not be positive"),
+            Self::Open(facet) => write!(f, "the facet {facet:?} would have nothing behind it"),
+            Self::Crowded(facet) => write!(f, "too many tets would share the facet {facet:?}"),
+            Self::Wall(facet) => write!(f, "the wall {facet:?} would be lost"),
+            Self::Region(facet) => write!(f, "tets would change their region at {facet:?}"),
+            Self::Vertex(v) => write!(f, "vertex {v} would be lost"),
+            Self::Held(v) => write!(f, "vertex {v} is held"),
+            Self::Edge(edge) => write!(f, "the edge {edge:?} would be lost"),
+        }
+    }
+}
+
+/// A change that may be made, and how its tets are joined: what [`Complex::commit`] takes.
+#[derive(Debug)]
+pub struct Checked<'a> {
+    pub(super) change: &'a Change,
+    pub(super) joints: Vec<Joint>,
+    pub(super) lost_walls: Vec<WallId>,
+}
+
+/// How one facet of the fill is joined to what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Joint {
+    /// Two tets of the fill.
+    Inner([FillFacet; 2]),
+    /// A tet of the fill and one outside.
+    Outer(FillFacet, HalfFacet),
+    /// A tet of the fill at a wall, in place of this facet of a tet of the cavity.
+    AtWall(FillFacet, WallId, HalfFacet),
+    /// A wall within the cavity, with a tet of the fill in place of each of its sides.
+    InnerWall([FillFacet; 2], WallId),
+    /// A wall that comes, with one or two tets of the fill.
+    NewWall(FillFacet, Option<FillFacet>, NewWall),
+    /// A wall that comes on a tet outside, with a tet of the fill on its other side or nothing.
+    Bared(HalfFacet, Option<FillFacet>, NewWall),
+}
+
+/// A tet of the fill, by its place, and one of its facets.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FillFacet {
+    pub(super) tet: u32,
+    pub(super) facet: u8,
+}
+
+/// One use of a facet, in the sorted list in which they meet.
+#[derive(Clone, Copy, Debug)]
+struct Use {
+    /// Vertices in rising order.
+    key: [VertexId; 3],
+    /// Whether `key` is an even permutation of the facet as seen from outside its tet.
+    is_even: bool,
+    role: Role,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Role {
+    /// A facet between the cavity and a tet outside.
+    Outer(HalfFacet, HalfFacet),
+    /// A wall of the cavity with no cavity on its other side.
+    AtWall(HalfFacet, WallId),
+    /// A wall with the cavity on both sides.
+    InnerWall(HalfFacet, WallId),
+    /// A wall to come, by its place.
+    NewWall(u32),
+    /// A facet of the fill.
+    Fill(u32, u8),
+}
+
+impl Complex {
+    /// Checks a change; the worst quality has to rise.
+    ///
+    /// # Errors
+    /// The first reason not to make it.
+    pub fn check<'a>(&self, change: &'a Change) -> Result<Checked<'a>, Reject> {
+        self.check_against(change, self.worst_of(&change.cavity))
+    }
+
+    /// Checks a change; the worst quality has to be above `bar`.
+    ///
+    /// # Errors
+    /// The first reason not to make it.
+    pub fn check_against<'a>(&self, change: &'a Change, bar: f64) -> Result<Checked<'a>, Reject> {
+        let after = change.worst();
+        // Not "at most": so that what is no number is refused.
+        if !(after > bar) {
+            return Err(Reject::Quality { before: bar, after });
+        }
+        self.check_vertices(change)?;
+        for tet in &change.fill {
+            let [a, b, c, d] = change.corners(self, tet.vertices);
+            if orient3d(a, b, c, d) <= 0 {
+                return Err(Reject::NotPositive(tet.vertices));
+            }
+        }
+        self.check_edges(change)?;
+        self.join(change)
+    }
+
+    /// The lowest quality of some tets.
+    pub fn worst_of(&self, tets: &[TetId]) -> f64 {
+        tets.iter().map(|&t| self.quality(t)).fold(f64::INFINITY, f64::min)
+    }
+
+    fn check_vertices(&self, change: &Change) -> Result<(), Reject> {
+        let moved = match change.vertex {
+            VertexChange::Move(v, _) | VertexChange::Remove(v) => Some(v),
+            _ => None,
+        };
+        let is_held = |v: VertexId| match self.keeps_surface {
+            true => self.hold(v) != Hold::Free,
+            false => self.hold(v) == Hold::Fixed,
+        };
+        if let Some(v) = moved.filter(|&v| is_held(v)) {
+            return Err(Reject::Held(v));
+        }
+        let gone = match change.vertex {
+            VertexChange::Remove(v) => Some(v),
+            _ => None,
+        };
+        for v in change.cavity.iter().flat_map(|&t| self.vertices(t)) {
+            let is_in_fill = change.fill.iter().any(|tet| tet.vertices.contains(&v));
+            if is_in_fill == (gone == Some(v)) {
+                return Err(Reject::Vertex(v));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_edges(&self, change: &Change) -> Result<(), Reject> {
+        if self.fixed_edges.is_empty() {
+            return Ok(());
+        }
+        for tet in change.cavity.iter().map(|&t| self.vertices(t)) {
+            for [a, b] in EDGES.map(|edge| edge.map(|i| tet[i])) {
+                let has = |fill: &[VertexId; 4]| fill.contains(&a) && fill.contains(&b);
+                if self.is_fixed_edge(a, b) && !change.fill.iter().any(|tet| has(&tet.vertices)) {
+                    return Err(Reject::Edge([a, b]));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Joins every facet of the fill to what lies behind it.
+    fn join<'a>(&self, change: &'a Change) -> Result<Checked<'a>, Reject> {
+        let mut uses = self.uses(change);
+        uses.sort_unstable_by_key(|u| (u.key, u.role));
+        let mut checked = Checked { change, joints: Vec::with_capacity(uses.len()), lost_walls: Vec::new() };
+        for same in uses.chunk_by(|x, y| x.key == y.key) {
+            self.join_facet(same, &mut checked)?;
+        }
+        Ok(checked)
+    }
+
+    fn join_facet(&self, uses: &[Use], checked: &mut Checked) -> Result<(), Reject> {
+        let change = checked.change;
+        let key = uses[0].key;
+        let part = |u: &Use| match u.role {
+            Role::Fill(tet, facet) => FillFacet { tet, facet },
+            _ => unreachable!("roles are matched below"),
+        };
+        let region = |u: &Use| match u.role {
+            Role::Fill(tet, _) => change.fill[tet as usize].region,
+            Role::Outer(half, _) | Role::AtWall(half, _) | Role::InnerWall(half, _) => {
+                self.region(half.tet())
+            }
+            Role::NewWall(_) => unreachable!("a wall to come has no region"),
+        };
+        let agree = |x: &Use, y: &Use| if region(x) == region(y) { Ok(()) } else { Err(Reject::Region(key)) };
+        let (same_side, two_sides) = (
+            |x: &Use, y: &Use| if x.is_even == y.is_even { Ok(()) } else { Err(Reject::Crowded(key)) },
+            |x: &Use, y: &Use| if x.is_even != y.is_even { Ok(()) } else { Err(Reject::Crowded(key)) },
+        );
+        use Role::{AtWall, Fill, InnerWall, NewWall, Outer};
+        let joint = match uses {
+            [x @ Use { role: Outer(_, outside), .. }, y @ Use { role: Fill(..), .. }] => {
+                same_side(x, y).and(agree(x, y))?;
+                Joint::Outer(part(y), *outside)
+            }
+            [x @ Use { role: AtWall(half, wall), .. }, y @ Use { role: Fill(..), .. }] => {
+                same_side(x, y).and(agree(x, y))?;
+                Joint::AtWall(part(y), *wall, *half)
+            }
+            [x @ Use { role: Fill(..), .. }, y @ Use { role: Fill(..), .. }] => {
+                two_sides(x, y).and(agree(x, y))?;
+                Joint::Inner([part(x), part(y)])
+            }
+            [
+                v @ Use { role: InnerWall(half, wall), .. },
+                w @ Use { role: InnerWall(..), .. },
+                x @ Use { role: Fill(..), .. },
+                y @ Use { role: Fill(..), .. },
+            ] => {
+                two_sides(x, y)?;
+                let (x, y) = if x.is_even == v.is_even { (x, y) } else { (y, x) };
+                agree(v, x).and(agree(w, y))?;
+                let is_first = self.wall(*wall).sides[0] == *half;
+                let sides = if is_first { [part(x), part(y)] } else { [part(y), part(x)] };
+                Joint::InnerWall(sides, *wall)
+            }
+            // Walls change only where the surface may.
+            _ if self.keeps_surface => return Err(self.refusal(uses)),
+            [Use { role: AtWall(_, wall), .. }]
+            | [Use { role: InnerWall(_, wall), .. }, Use { role: InnerWall(..), .. }] => {
+                checked.lost_walls.push(*wall);
+                return Ok(());
+            }
+            [Use { role: NewWall(wall), .. }, x @ Use { role: Fill(..), .. }] => {
+                Joint::NewWall(part(x), None, change.walls[*wall as usize])
+            }
+            [
+                Use { role: NewWall(wall), .. },
+                x @ Use { role: Fill(..), .. },
+                y @ Use { role: Fill(..), .. },
+            ] => {
+                two_sides(x, y)?;
+                Joint::NewWall(part(x), Some(part(y)), change.walls[*wall as usize])
+            }
+            [Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }] => {
+                Joint::Bared(*outside, None, change.walls[*wall as usize])
+            }
+            [
+                x @ Use { role: Outer(_, outside), .. },
+                Use { role: NewWall(wall), .. },
+                y @ Use { role: Fill(..), .. },
+            ] => {
+                same_side(x, y)?;
+                Joint::Bared(*outside, Some(part(y)), change.walls[*wall as usize])
+            }
+            _ => return Err(self.refusal(uses)),
+        };
+        checked.joints.push(joint);
+        Ok(())
+    }
+
+    fn refusal(&self, uses: &[Use]) -> Reject {
+        let key = uses[0].key;
+        let is_wall = |u: &Use| matches!(u.role, Role::AtWall(..) | Role::InnerWall(..) | Role::NewWall(_));
+        match uses.len() {
+            _ if uses.iter().any(is_wall) => Reject::Wall(key),
+            1 => Reject::Open(key),
+            _ => Reject::Crowded(key),
+        }
+    }
+
+    fn uses(&self, change: &Change) -> Vec<Use> {
+        let mut uses = Vec::with_capacity(4 * (change.cavity.len() + change.fill.len()));
+        let mut cavity = change.cavity.clone();
+        cavity.sort_unstable();
+        let is_inside = |half: HalfFacet| !half.is_none() && cavity.binary_search(&half.tet()).is_ok();
+        for half in change.cavity.iter().flat_map(|&t| (0..4).map(move |i| HalfFacet::new(t, i))) {
+            let role = match self.behind(half.tet(), half.facet()) {
+                Behind::Tet(other) if is_inside(other) => continue,
+                Behind::Tet(other) => Role::Outer(half, other),
+                Behind::Wall(wall) if is_inside(self.wall(wall).other(half)) => Role::InnerWall(half, wall),
+                Behind::Wall(wall) => Role::AtWall(half, wall),
+            };
+            uses.push(Use::new(self.facet(half), role));
+        }
+        for (place, wall) in (0..).zip(&change.walls) {
+            uses.push(Use::new(wall.vertices, Role::NewWall(place)));
+        }
+        for (place, tet) in (0..).zip(&change.fill) {
+            for (i, facet) in (0..).zip(FACETS) {
+                uses.push(Use::new(facet.map(|corner| tet.vertices[corner]), Role::Fill(place, i)));
+            }
+        }
+        uses
+    }
+}
+
+impl Use {
+    #[inline]
+    fn new([a, b, c]: [VertexId; 3], role: Role) -> Self {
+        let (x, y, first) = if a < b { (a, b, true) } else { (b, a, false) };
+        let (key, is_even) = if c > y {
+            ([x, y, c], first)
+        } else if c > x {
+            ([x, c, y], !first)
+        } else {
+            ([c, x, y], first)
+        };
+        Self { key, is_even, role }
+    }
+}

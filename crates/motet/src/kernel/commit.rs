@@ -1,0 +1,218 @@
+//! The only code that writes connectivity.
+
+use crate::base::{TetId, VertexId};
+use crate::kernel::change::{Fill, NewWall, VertexChange};
+use crate::kernel::check::{Checked, FillFacet, Joint};
+use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
+use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
+use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
+
+impl Complex {
+    /// Makes a change. `came` gets the ids of the tets of the fill, in their order.
+    pub fn commit(&mut self, checked: Checked, came: &mut Vec<TetId>) {
+        let Checked { change, joints, lost_walls } = checked;
+        self.commit_vertex(change.vertex);
+        came.clear();
+        for (i, fill) in change.fill.iter().enumerate() {
+            let slot = match change.cavity.get(i) {
+                Some(&tet) => tet,
+                None => self.take_tet_slot(),
+            };
+            self.write_tet(slot, fill);
+            came.push(slot);
+        }
+        for &tet in change.cavity.iter().skip(change.fill.len()) {
+            self.free_tet(tet);
+        }
+        for wall in lost_walls {
+            self.free_wall(wall);
+        }
+        for joint in joints {
+            self.commit_joint(joint, came);
+        }
+        for (fill, &tet) in change.fill.iter().zip(came.iter()) {
+            fill.vertices.into_iter().for_each(|v| self.set_tet_of(v, tet));
+        }
+        if let VertexChange::Remove(v) = change.vertex {
+            self.set_tet_of(v, NO_TET);
+            self.free_vertices.push(v);
+            self.note(|_| Entry::FreedVertex);
+        }
+    }
+
+    fn commit_vertex(&mut self, change: VertexChange) {
+        match change {
+            VertexChange::None | VertexChange::Remove(_) => {}
+            VertexChange::Insert(point, hold) => {
+                let vertex = self.take_vertex_slot();
+                self.note_vertex(vertex);
+                self.points[vertex.index()] = point;
+                self.holds[vertex.index()] = hold;
+                self.vertex_is_new[vertex.index()] = true;
+                self.vertex_came[vertex.index()] = true;
+            }
+            VertexChange::Move(vertex, point) => {
+                self.note_vertex(vertex);
+                self.points[vertex.index()] = point;
+                self.vertex_is_new[vertex.index()] = true;
+            }
+        }
+    }
+
+    fn note_vertex(&mut self, v: VertexId) {
+        self.note(|c| {
+            let i = v.index();
+            Entry::Vertex(
+                v,
+                VertexRecord {
+                    point: c.points[i],
+                    hold: c.holds[i],
+                    is_new: c.vertex_is_new[i],
+                    came: c.vertex_came[i],
+                },
+            )
+        });
+    }
+
+    fn write_tet(&mut self, tet: TetId, fill: &Fill) {
+        self.note_tet(tet);
+        let i = tet.index();
+        self.tets[i] = fill.vertices;
+        self.regions[i] = fill.region;
+        self.qualities[i] = fill.quality;
+        self.is_new[i] = true;
+    }
+
+    fn free_tet(&mut self, tet: TetId) {
+        self.note_tet(tet);
+        let i = tet.index();
+        self.tets[i] = FREE;
+        self.is_new[i] = true;
+        self.free_tets.push(tet);
+        self.note(|_| Entry::FreedTet);
+    }
+
+    fn note_tet(&mut self, tet: TetId) {
+        self.note(|c| {
+            let i = tet.index();
+            let record = TetRecord {
+                vertices: c.tets[i],
+                links: c.links[i],
+                region: c.regions[i],
+                quality: c.qualities[i],
+                is_new: c.is_new[i],
+            };
+            Entry::Tet(tet, record)
+        });
+    }
+
+    fn commit_joint(&mut self, joint: Joint, came: &[TetId]) {
+        let half = |part: FillFacet| HalfFacet::new(came[part.tet as usize], usize::from(part.facet));
+        match joint {
+            Joint::Inner([x, y]) => {
+                self.set_link(half(x), Link::tet(half(y)));
+                self.set_link(half(y), Link::tet(half(x)));
+            }
+            Joint::Outer(x, outside) => {
+                self.set_link(half(x), Link::tet(outside));
+                self.note(|c| {
+                    Entry::Link(
+                        outside.tet(),
+                        outside.facet() as u8,
+                        c.links[outside.tet().index()][outside.facet()],
+                    )
+                });
+                self.set_link(outside, Link::tet(half(x)));
+            }
+            Joint::AtWall(x, wall, before) => {
+                let mut sides = self.walls[wall.index()].sides;
+                sides[usize::from(sides[0] != before)] = half(x);
+                self.set_wall(wall, Wall { sides, ..self.walls[wall.index()] });
+            }
+            Joint::InnerWall(sides, wall) => {
+                self.set_wall(wall, Wall { sides: sides.map(half), ..self.walls[wall.index()] });
+            }
+            Joint::NewWall(x, y, new) => self.add_wall([half(x), y.map_or(HalfFacet::NONE, half)], new),
+            Joint::Bared(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
+        }
+    }
+
+    fn add_wall(&mut self, sides: [HalfFacet; 2], new: NewWall) {
+        let id = self.take_wall_slot();
+        self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
+    }
+
+    /// Writes a wall, and the links of the tets at it.
+    fn set_wall(&mut self, id: WallId, wall: Wall) {
+        self.note(|c| Entry::Wall(id, c.walls[id.index()]));
+        self.walls[id.index()] = wall;
+        for side in wall.sides.into_iter().filter(|side| !side.is_none()) {
+            self.note(|c| {
+                Entry::Link(side.tet(), side.facet() as u8, c.links[side.tet().index()][side.facet()])
+            });
+            self.set_link(side, Link::wall(id));
+        }
+    }
+
+    fn free_wall(&mut self, id: WallId) {
+        self.note(|c| Entry::Wall(id, c.walls[id.index()]));
+        let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
+        if !wall.is_new && wall.triangle != NO_TRIANGLE {
+            self.gone_triangles.push(wall.triangle);
+            self.note(|_| Entry::GoneTriangle);
+        }
+        self.free_walls.push(id);
+        self.note(|_| Entry::FreedWall);
+    }
+
+    #[inline]
+    fn set_link(&mut self, half: HalfFacet, link: Link) {
+        self.links[half.tet().index()][half.facet()] = link;
+    }
+
+    #[inline]
+    fn set_tet_of(&mut self, vertex: VertexId, tet: TetId) {
+        if self.vertex_to_tet[vertex.index()] != tet {
+            self.note(|c| Entry::VertexToTet(vertex, c.vertex_to_tet[vertex.index()]));
+            self.vertex_to_tet[vertex.index()] = tet;
+        }
+    }
+
+    fn take_tet_slot(&mut self) -> TetId {
+        if let Some(tet) = self.free_tets.pop() {
+            self.note(|_| Entry::TookTet(tet));
+            return tet;
+        }
+        self.note(|c| Entry::TetSlots(c.tets.len()));
+        self.tets.push(FREE);
+        self.links.push([Link::tet(HalfFacet::NONE); 4]);
+        self.regions.push(0);
+        self.qualities.push(0.0);
+        self.is_new.push(true);
+        TetId::new(self.tets.len() - 1)
+    }
+
+    fn take_vertex_slot(&mut self) -> VertexId {
+        if let Some(vertex) = self.free_vertices.pop() {
+            self.note(|_| Entry::TookVertex(vertex));
+            return vertex;
+        }
+        self.note(|c| Entry::VertexSlots(c.points.len()));
+        self.points.push([0.0; 3]);
+        self.holds.push(Hold::Free);
+        self.vertex_is_new.push(true);
+        self.vertex_came.push(true);
+        self.vertex_to_tet.push(NO_TET);
+        VertexId::new(self.points.len() - 1)
+    }
+
+    fn take_wall_slot(&mut self) -> WallId {
+        if let Some(wall) = self.free_walls.pop() {
+            self.note(|_| Entry::TookWall(wall));
+            return wall;
+        }
+        self.note(|c| Entry::WallSlots(c.walls.len()));
+        self.walls.push(Wall::FREE);
+        WallId(self.walls.len() as u32 - 1)
+    }
+}

@@ -1,0 +1,115 @@
+//! Everything that must hold of a complex at any time, each by name: for tests.
+
+use std::collections::HashMap;
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::FACETS;
+use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::link::{Behind, HalfFacet};
+
+impl Complex {
+    /// Looks everything over, in time proportional to the whole mesh.
+    ///
+    /// # Errors
+    /// The first fault, in words.
+    pub fn verify(&self) -> Result<(), String> {
+        self.verify_slots()?;
+        self.verify_links()?;
+        self.verify_facets()?;
+        self.verify_vertices()
+    }
+
+    fn verify_slots(&self) -> Result<(), String> {
+        let mut free: Vec<_> = self.free_tets.clone();
+        free.sort_unstable();
+        let dead: Vec<_> =
+            (0..self.tets.len()).map(TetId::new).filter(|t| self.tets[t.index()] == FREE).collect();
+        if free != dead {
+            return Err(format!("{} tets on the free list, {} slots free", free.len(), dead.len()));
+        }
+        for t in self.tets() {
+            let mut tet = self.vertices(t);
+            tet.sort_unstable();
+            if tet.windows(2).any(|w| w[0] == w[1]) || tet[3].index() >= self.points.len() {
+                return Err(format!("tet {t} has the vertices {tet:?}"));
+            }
+            let measured = self.measure(self.corners(t));
+            if measured.to_bits() != self.quality(t).to_bits() {
+                return Err(format!("tet {t} has the quality {measured}, not {}", self.quality(t)));
+            }
+        }
+        Ok(())
+    }
+
+    fn verify_links(&self) -> Result<(), String> {
+        for half in self.tets().flat_map(|t| (0..4).map(move |i| HalfFacet::new(t, i))) {
+            let other = self.across(half.tet(), half.facet());
+            match self.behind(half.tet(), half.facet()) {
+                Behind::Tet(_) if other.is_none() => {
+                    return Err(format!("{half:?} has nothing behind it and is no wall"));
+                }
+                Behind::Tet(_) if self.region(other.tet()) != self.region(half.tet()) => {
+                    return Err(format!("{half:?} lies between regions and is no wall"));
+                }
+                Behind::Tet(_) => {}
+                Behind::Wall(wall) if !self.wall(wall).sides.contains(&half) => {
+                    return Err(format!("{half:?} is at {wall:?}, which does not know it"));
+                }
+                Behind::Wall(_) => {}
+            }
+            if other.is_none() {
+                continue;
+            }
+            if !self.is_alive(other.tet()) || self.across(other.tet(), other.facet()) != half {
+                return Err(format!("{half:?} leads to {other:?}, which does not lead back"));
+            }
+            let ([a, b, c], theirs) = (self.facet(half), self.facet(other));
+            if ![[a, c, b], [b, a, c], [c, b, a]].contains(&theirs) {
+                return Err(format!("{half:?} and {other:?} do not see one facet from two sides"));
+            }
+        }
+        for (id, wall) in self.walls() {
+            let knows = |side: &HalfFacet| {
+                side.is_none() || self.behind(side.tet(), side.facet()) == Behind::Wall(id)
+            };
+            if !wall.sides.iter().all(knows) {
+                return Err(format!("{id:?} has a side that is not at it"));
+            }
+        }
+        Ok(())
+    }
+
+    /// No facet is used by more than two tets, counted without the links.
+    fn verify_facets(&self) -> Result<(), String> {
+        let mut counts: HashMap<[VertexId; 3], u32> = HashMap::new();
+        for tet in self.tets().map(|t| self.vertices(t)) {
+            for facet in FACETS {
+                let mut key = facet.map(|i| tet[i]);
+                key.sort_unstable();
+                *counts.entry(key).or_default() += 1;
+            }
+        }
+        match counts.iter().find(|(_, n)| **n > 2) {
+            Some((facet, n)) => Err(format!("{n} tets share the facet {facet:?}")),
+            None => Ok(()),
+        }
+    }
+
+    fn verify_vertices(&self) -> Result<(), String> {
+        let mut is_used = vec![false; self.points.len()];
+        self.tets().flat_map(|t| self.vertices(t)).for_each(|v| is_used[v.index()] = true);
+        for v in (0..self.points.len()).map(VertexId::new) {
+            let tet = self.tet_of(v);
+            if is_used[v.index()] != (tet != NO_TET) {
+                return Err(format!("vertex {v} has the tet {tet}, used: {}", is_used[v.index()]));
+            }
+            if tet != NO_TET && !self.vertices(tet).contains(&v) {
+                return Err(format!("vertex {v} is not in its tet {tet}"));
+            }
+        }
+        match self.free_vertices.iter().find(|v| self.is_used(**v)) {
+            Some(v) => Err(format!("vertex {v} is on the free list and used")),
+            None => Ok(()),
+        }
+    }
+}

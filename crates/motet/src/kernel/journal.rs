@@ -1,0 +1,128 @@
+//! What was overwritten, in order, so that it can be taken back to the bit.
+
+use crate::base::{Point, TetId, VertexId};
+use crate::kernel::complex::{Complex, Hold};
+use crate::kernel::link::{Link, Wall, WallId};
+
+/// One thing that was there before.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Entry {
+    Tet(TetId, TetRecord),
+    Vertex(VertexId, VertexRecord),
+    Wall(WallId, Wall),
+    Link(TetId, u8, Link),
+    VertexToTet(VertexId, TetId),
+    TetSlots(usize),
+    VertexSlots(usize),
+    WallSlots(usize),
+    TookTet(TetId),
+    TookVertex(VertexId),
+    TookWall(WallId),
+    FreedTet,
+    FreedVertex,
+    FreedWall,
+    GoneTriangle,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TetRecord {
+    pub(super) vertices: [VertexId; 4],
+    pub(super) links: [Link; 4],
+    pub(super) region: i32,
+    pub(super) quality: f64,
+    pub(super) is_new: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct VertexRecord {
+    pub(super) point: Point,
+    pub(super) hold: Hold,
+    pub(super) is_new: bool,
+    pub(super) came: bool,
+}
+
+/// The entries, while it is open.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Journal {
+    pub(super) is_open: bool,
+    pub(super) entries: Vec<Entry>,
+}
+
+/// A moment to go back to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Mark(usize);
+
+impl Complex {
+    /// Begins to write down what is overwritten, if that has not begun, and marks this moment.
+    pub fn mark(&mut self) -> Mark {
+        self.journal.is_open = true;
+        Mark(self.journal.entries.len())
+    }
+
+    /// Forgets all marks: nothing that has happened can be taken back any more.
+    pub fn forget(&mut self) {
+        self.journal = Journal::default();
+    }
+
+    #[inline(always)]
+    pub(super) fn note(&mut self, entry: impl FnOnce(&Self) -> Entry) {
+        if self.journal.is_open {
+            let entry = entry(self);
+            self.journal.entries.push(entry);
+        }
+    }
+
+    /// Takes everything back that was committed since `mark`: every array is as it was then, to the bit.
+    ///
+    /// Panics when `mark` is no moment of this journal.
+    pub fn undo(&mut self, Mark(mark): Mark) {
+        assert!(mark <= self.journal.entries.len(), "a mark of another journal");
+        for entry in self.journal.entries.drain(mark..).rev().collect::<Vec<_>>() {
+            self.take_back(entry);
+        }
+    }
+
+    fn take_back(&mut self, entry: Entry) {
+        match entry {
+            Entry::Tet(t, record) => {
+                let i = t.index();
+                self.tets[i] = record.vertices;
+                self.links[i] = record.links;
+                self.regions[i] = record.region;
+                self.qualities[i] = record.quality;
+                self.is_new[i] = record.is_new;
+            }
+            Entry::Vertex(v, record) => {
+                self.points[v.index()] = record.point;
+                self.holds[v.index()] = record.hold;
+                self.vertex_is_new[v.index()] = record.is_new;
+                self.vertex_came[v.index()] = record.came;
+            }
+            Entry::Wall(w, wall) => self.walls[w.index()] = wall,
+            Entry::Link(t, i, link) => self.links[t.index()][usize::from(i)] = link,
+            Entry::VertexToTet(v, t) => self.vertex_to_tet[v.index()] = t,
+            Entry::TetSlots(n) => {
+                self.tets.truncate(n);
+                self.links.truncate(n);
+                self.regions.truncate(n);
+                self.qualities.truncate(n);
+                self.is_new.truncate(n);
+            }
+            Entry::VertexSlots(n) => {
+                self.points.truncate(n);
+                self.holds.truncate(n);
+                self.vertex_is_new.truncate(n);
+                self.vertex_came.truncate(n);
+                self.vertex_to_tet.truncate(n);
+            }
+            Entry::WallSlots(n) => self.walls.truncate(n),
+            Entry::TookTet(t) => self.free_tets.push(t),
+            Entry::TookVertex(v) => self.free_vertices.push(v),
+            Entry::TookWall(w) => self.free_walls.push(w),
+            Entry::FreedTet => drop(self.free_tets.pop()),
+            Entry::FreedVertex => drop(self.free_vertices.pop()),
+            Entry::FreedWall => drop(self.free_walls.pop()),
+            Entry::GoneTriangle => drop(self.gone_triangles.pop()),
+        }
+    }
+}

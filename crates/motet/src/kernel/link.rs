@@ -1,0 +1,126 @@
+//! What lies behind a facet of a tet: another tet, or a wall.
+//!
+//! ```text
+//!     links[tet][i]  ->  31 .. 2   1 0        a tet, and which of its facets it is
+//!                        tet       facet
+//!                        all ones but bit 31: see below
+//!     bit 31 set     ->  a wall, which knows the tets on its two sides
+//! ```
+//! Nearly all facets of a mesh are plain, and cost nothing more; the walls are a list of their own.
+
+use crate::base::TetId;
+
+/// One facet of one tet: facet `i` lies opposite vertex `i`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct HalfFacet(pub(super) u32);
+
+impl HalfFacet {
+    /// Beyond the boundary.
+    pub const NONE: Self = Self(u32::MAX >> 1);
+
+    /// Facet `i` of a tet.
+    #[inline(always)]
+    pub fn new(tet: TetId, i: usize) -> Self {
+        debug_assert!(tet.0 < MAX_TETS && i < 4);
+        Self(tet.0 << 2 | i as u32)
+    }
+
+    /// The tet.
+    #[inline(always)]
+    pub fn tet(self) -> TetId {
+        TetId(self.0 >> 2)
+    }
+
+    /// Which of its facets.
+    #[inline(always)]
+    pub fn facet(self) -> usize {
+        (self.0 & 3) as usize
+    }
+
+    /// Whether there is no tet.
+    #[inline(always)]
+    pub fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+}
+
+/// A wall, by its place in the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct WallId(pub u32);
+
+impl WallId {
+    #[inline(always)]
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A facet that must stay: on the boundary, between two regions, or labelled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// The facets of the tets on its sides; on the boundary the second is [`HalfFacet::NONE`].
+    pub sides: [HalfFacet; 2],
+    /// Its patch; 0 without a label.
+    pub patch: i32,
+    /// The triangle of the first mesh that it is, or is a part of; [`NO_TRIANGLE`] where there was none.
+    pub triangle: u32,
+    /// Whether it is not one of the first mesh.
+    pub is_new: bool,
+}
+
+/// A wall that is no triangle of the mesh.
+pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
+
+impl Wall {
+    pub(super) const FREE: Self =
+        Self { sides: [HalfFacet::NONE; 2], patch: 0, triangle: NO_TRIANGLE, is_new: false };
+
+    /// The side that is not `side`.
+    #[inline(always)]
+    pub fn other(&self, side: HalfFacet) -> HalfFacet {
+        if self.sides[0] == side { self.sides[1] } else { self.sides[0] }
+    }
+}
+
+/// What a facet leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Behind {
+    /// The facet of another tet.
+    Tet(HalfFacet),
+    /// A wall.
+    Wall(WallId),
+}
+
+/// [`Behind`] in four bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Link(pub(super) u32);
+
+const WALL: u32 = 1 << 31;
+
+/// Ids of tets are below this.
+pub(super) const MAX_TETS: u32 = (1 << 29) - 1;
+
+impl Link {
+    #[inline(always)]
+    pub(super) fn tet(half: HalfFacet) -> Self {
+        Self(half.0)
+    }
+
+    #[inline(always)]
+    pub(super) fn wall(wall: WallId) -> Self {
+        Self(wall.0 | WALL)
+    }
+
+    #[inline(always)]
+    pub(super) fn is_wall(self) -> bool {
+        self.0 & WALL != 0
+    }
+
+    #[inline(always)]
+    pub(super) fn behind(self) -> Behind {
+        match self.is_wall() {
+            true => Behind::Wall(WallId(self.0 & !WALL)),
+            false => Behind::Tet(HalfFacet(self.0)),
+        }
+    }
+}

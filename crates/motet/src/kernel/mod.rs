@@ -1,0 +1,30 @@
+//! Floor 4: the only code that changes the connectivity of tets.
+//!
+//! A [`Complex`] holds tets with what lies behind each of their facets. Whoever wants to change it *proposes* a
+//! [`Change`]: the tets to go (the cavity), the tets to come (the fill), and what happens to a vertex. [`Complex::check`]
+//! holds it against everything that must never happen, and answers with a [`Checked`] change or with a [`Reject`].
+//! [`Complex::commit`] takes nothing but a checked one. What a journal has written down, [`Complex::undo`] takes back, to the bit.
+//!
+//! What must never happen: a tet of the fill that is not positive; a facet of the cavity's boundary that the fill
+//! does not have, or the reverse; a wall (boundary, interface or labelled facet) that gets lost or appears; a tet that changes
+//! sides; a vertex that gets lost unsaid; a worst quality that does not rise.
+
+mod build;
+mod change;
+mod check;
+mod commit;
+mod complex;
+mod extract;
+mod invariants;
+mod journal;
+mod link;
+mod orientation;
+mod star;
+
+pub use change::{Change, Fill, NewWall, VertexChange};
+pub use check::{Checked, Reject};
+pub use complex::{Complex, Hold};
+pub use extract::{Extract, NEW};
+pub use journal::Mark;
+pub use link::{Behind, HalfFacet, Wall, WallId};
+pub use star::{Shell, Star};

@@ -1,0 +1,225 @@
+//! Walking: the tets of a vertex (its star), the tets round an edge (its shell).
+
+use crate::base::{TetId, VertexId};
+use crate::kernel::complex::{Complex, NO_TET};
+use crate::kernel::link::{Behind, WallId};
+
+/// The tets round an edge `ab`, in order, with the vertices opposite the edge.
+///
+/// ```text
+///          r2               tet i is (a, b, ring[i], ring[i + 1]) and positive: seen along
+///        / | \              the edge from a to b, the ring runs clockwise.
+///      r3--ab--r1           Closed: as many tets as ring vertices.
+///        \ | /              Open (an edge of the boundary): one vertex more, the walls
+///          r0               of the boundary at either end.
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Shell {
+    /// The tets.
+    pub tets: Vec<TetId>,
+    /// The vertices opposite the edge.
+    pub ring: Vec<VertexId>,
+    /// Whether the tets go all the way round.
+    pub is_closed: bool,
+    /// Which of the facets at the edge are walls, by the places of their third vertices in the ring; those of an open shell's ends are.
+    pub walls: Vec<usize>,
+}
+
+/// For vertices at places `i` and `j` of a positive tet, the other places `k` and `l` such that (i, j, k, l) is positive.
+const OTHERS: [[[u8; 2]; 4]; 4] = [
+    [[0, 0], [2, 3], [3, 1], [1, 2]],
+    [[3, 2], [0, 0], [0, 3], [2, 0]],
+    [[1, 3], [3, 0], [0, 0], [0, 1]],
+    [[2, 1], [0, 2], [1, 0], [0, 0]],
+];
+
+/// The places of the vertices other than those at `i` and `j`; see [`OTHERS`].
+#[inline(always)]
+pub(super) fn others(i: usize, j: usize) -> [usize; 2] {
+    OTHERS[i][j].map(usize::from)
+}
+
+impl Shell {
+    /// Walks round the edge from `a` to `b`, which `start` has.
+    pub fn walk(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) {
+        self.clear();
+        if self.turn(complex, start, a, b) {
+            return;
+        }
+        // The boundary was met: round the other way to where it begins, and once more from there.
+        let first = Self::first(complex, start, a, b);
+        self.clear();
+        self.walls.push(0);
+        self.turn(complex, first, a, b);
+    }
+
+    fn clear(&mut self) {
+        self.tets.clear();
+        self.ring.clear();
+        self.walls.clear();
+        self.is_closed = false;
+    }
+
+    /// Goes round until it is back at `start` (true) or at the boundary (false).
+    fn turn(&mut self, complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> bool {
+        let mut tet = start;
+        loop {
+            let (i, j) = (complex.place(tet, a), complex.place(tet, b));
+            let [k, l] = others(i, j);
+            let vertices = complex.vertices(tet);
+            self.tets.push(tet);
+            self.ring.push(vertices[k]);
+            // The facet ahead is that of the next ring vertex, of the first one at last.
+            let is_wall = complex.is_wall(tet, k);
+            if is_wall {
+                self.walls.push(self.ring.len());
+            }
+            let next = complex.across(tet, k);
+            if next.is_none() {
+                self.ring.push(vertices[l]);
+                return false;
+            }
+            tet = next.tet();
+
+            if tet == start {
+                self.is_closed = true;
+                if self.walls.last() == Some(&self.ring.len()) {
+                    self.walls.pop();
+                    self.walls.insert(0, 0);
+                }
+                return true;
+            }
+        }
+    }
+
+    /// The tet of an open shell from which [`Self::turn`] sees them all.
+    fn first(complex: &Complex, start: TetId, a: VertexId, b: VertexId) -> TetId {
+        let mut tet = start;
+        loop {
+            let [_, l] = others(complex.place(tet, a), complex.place(tet, b));
+            let next = complex.across(tet, l);
+            if next.is_none() {
+                return tet;
+            }
+            tet = next.tet();
+        }
+    }
+
+    /// The wall at a place of [`Self::walls`], by one of its tets and the facet of that.
+    pub fn wall_at(&self, complex: &Complex, place: usize) -> WallId {
+        // Tet i has the ring vertices i and i + 1; its facet to either lies opposite the other.
+        let (tet, opposite) = match place {
+            0 => (0, 1 % self.ring.len()),
+            _ => (place - 1, place - 1),
+        };
+        let tet = self.tets[tet];
+        match complex.behind(tet, complex.place(tet, self.ring[opposite])) {
+            Behind::Wall(wall) => wall,
+            Behind::Tet(_) => unreachable!("places of walls are noted as such"),
+        }
+    }
+
+    /// Whether the edge lies inside one region, with no wall at it.
+    #[inline]
+    pub fn is_free(&self) -> bool {
+        self.walls.is_empty()
+    }
+}
+
+/// The tets of a vertex, as far as they hang together by facets.
+#[derive(Clone, Debug, Default)]
+pub struct Star {
+    /// The tets.
+    pub tets: Vec<TetId>,
+    /// Whether one of the facets at the vertex is a wall.
+    pub has_walls: bool,
+    marks: Marks,
+}
+
+impl Star {
+    /// Gathers the tets of `vertex`.
+    pub fn gather(&mut self, complex: &Complex, vertex: VertexId) {
+        self.tets.clear();
+        self.has_walls = false;
+        let start = complex.tet_of(vertex);
+        if start == NO_TET {
+            return;
+        }
+        self.marks.begin(complex.n_slots());
+        self.marks.add(start);
+        self.tets.push(start);
+        let mut i = 0;
+        while i < self.tets.len() {
+            let tet = self.tets[i];
+            let place = complex.place(tet, vertex);
+            for facet in (0..4).filter(|&facet| facet != place) {
+                self.has_walls |= complex.is_wall(tet, facet);
+                let next = complex.across(tet, facet);
+                if !next.is_none() && self.marks.add(next.tet()) {
+                    self.tets.push(next.tet());
+                }
+            }
+            i += 1;
+        }
+    }
+
+    /// Whether a tet is among those gathered last.
+    #[inline]
+    pub fn has(&self, tet: TetId) -> bool {
+        self.marks.has(tet)
+    }
+}
+
+/// A set of tets that is emptied in no time: each has the number of the round in which it was last added.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Marks {
+    rounds: Vec<u32>,
+    round: u32,
+}
+
+impl Marks {
+    /// Empties the set; ids are below `n`.
+    pub(crate) fn begin(&mut self, n: usize) {
+        if self.rounds.len() < n {
+            // Some to spare, zeroed by the system where they are touched.
+            self.rounds = vec![0; n + n / 8 + 64];
+            self.round = 0;
+        }
+        if self.round == u32::MAX {
+            self.rounds.fill(0);
+            self.round = 0;
+        }
+        self.round += 1;
+    }
+
+    /// Whether it was not in yet.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, tet: TetId) -> bool {
+        std::mem::replace(&mut self.rounds[tet.index()], self.round) != self.round
+    }
+
+    #[inline(always)]
+    pub(crate) fn has(&self, tet: TetId) -> bool {
+        self.rounds.get(tet.index()) == Some(&self.round)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::others;
+
+    #[test]
+    fn the_other_places_make_an_even_permutation() {
+        for i in 0..4 {
+            for j in (0..4).filter(|&j| j != i) {
+                let [k, l] = others(i, j);
+                let order = [i, j, k, l];
+                let swaps = (0..4).flat_map(|x| (0..x).map(move |y| (y, x)));
+                let n_inversions = swaps.filter(|&(y, x)| order[y] > order[x]).count();
+                let mut sorted = order;
+                sorted.sort_unstable();
+                assert!(sorted == [0, 1, 2, 3] && n_inversions % 2 == 0, "{order:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! What verbs that change connectivity work on: tets, labelled triangles, and what must stay as it is.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::is_finite;
+
+/// A tetrahedral mesh as plain arrays: what a solver hands over and gets back.
+///
+/// Every tet has a region, every triangle a patch. Triangles are facets of tets, on the boundary or inside; boundary
+/// facets and facets between two regions need no triangle to be kept.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TetMesh {
+    /// Coordinates of each vertex.
+    pub points: Vec<Point>,
+    /// The vertices of each tet. Either orientation is accepted.
+    pub tets: Vec<[VertexId; 4]>,
+    /// The region of each tet.
+    pub regions: Vec<i32>,
+    /// The vertices of each labelled facet.
+    pub triangles: Vec<[VertexId; 3]>,
+    /// The patch of each triangle.
+    pub patches: Vec<i32>,
+    /// Vertices that neither move nor go, such as those of cells of other kinds.
+    pub fixed_vertices: Vec<VertexId>,
+    /// Edges that stay, such as those of line cells.
+    pub fixed_edges: Vec<[VertexId; 2]>,
+}
+
+impl TetMesh {
+    /// Tets of one region, without triangles.
+    pub fn new(points: Vec<Point>, tets: Vec<[VertexId; 4]>) -> Self {
+        let regions = vec![0; tets.len()];
+        Self { points, tets, regions, ..Self::default() }
+    }
+
+    /// Checks that every array fits, every vertex id exists and every coordinate of a tet is a number.
+    ///
+    /// # Errors
+    /// Names the first tet, triangle or edge that does not fit.
+    pub fn validate(&self) -> Result<()> {
+        if self.regions.len() != self.tets.len() {
+            return Err(Error::input(format!("{} regions for {} tets", self.regions.len(), self.tets.len())));
+        }
+        if self.patches.len() != self.triangles.len() {
+            let (patches, triangles) = (self.patches.len(), self.triangles.len());
+            return Err(Error::input(format!("{patches} patches for {triangles} triangles")));
+        }
+        self.check_ids("tet", &self.tets)?;
+        self.check_ids("triangle", &self.triangles)?;
+        self.check_ids("fixed edge", &self.fixed_edges)?;
+        self.check_ids("fixed vertex", self.fixed_vertices.as_chunks::<1>().0)?;
+        self.check_numbers()
+    }
+
+    fn check_ids<const N: usize>(&self, what: &str, rows: &[[VertexId; N]]) -> Result<()> {
+        let n = self.points.len();
+        let is_off = |row: &[VertexId; N]| {
+            row.iter().any(|v| v.index() >= n) || (1..N).any(|i| row[..i].contains(&row[i]))
+        };
+        match rows.iter().position(is_off) {
+            None => Ok(()),
+            Some(i) => Err(Error::input(format!(
+                "names the points {:?}, but there are {n} points, and a {what} needs {N} different ones",
+                rows[i].map(|v| v.0)
+            ))
+            .at(format!("{what} {i}"))
+            .remedy("`motet info` lists what is wrong with a mesh")),
+        }
+    }
+
+    fn check_numbers(&self) -> Result<()> {
+        let is_off = |tet: &[VertexId; 4]| tet.iter().any(|v| !is_finite(self.points[v.index()]));
+        if self.points.iter().all(|p| is_finite(*p)) {
+            return Ok(());
+        }
+        match self.tets.iter().position(is_off) {
+            None => Ok(()),
+            Some(i) => Err(Error::input("has a vertex whose coordinates are no numbers")
+                .at(format!("tet {i}"))
+                .remedy("`motet info` lists what is wrong with a mesh")),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! An edge taken out, and the hole filled in the best of all ways.
+//!
+//! The tets round an edge `ab` go. What comes in their place is a triangulation of the ring round the edge, each triangle joined to `a` and
+//! to `b`. The one whose worst tet is best is found by dynamic programming (Klincsek 1980, *Minimal triangulations of
+//! polygonal domains*; Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral meshes*): the flips
+//! 3-2 and 4-4 are its cases for rings of three and four.
+
+use crate::base::{TetId, VertexId};
+use crate::kernel::{Change, Complex, NewWall, Shell};
+
+/// Rings with more vertices are left alone: triangulations become many, and good ones rare.
+const LARGEST_RING: usize = 10;
+
+/// Room for the tables, used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct EdgeRemoval {
+    shell: Shell,
+    /// For ring vertices i < j: the best worst quality of what fills the ring between them, and the third vertex of the triangle at `ij`.
+    best: Vec<(f64, u8)>,
+}
+
+impl EdgeRemoval {
+    /// Proposes to remove the edge from `a` to `b`, which `start` has. Where the surface may change, an edge that two walls of one patch meet at
+    /// is removed, too: the edge between the other two vertices of the walls takes its place. `false` when there is no way better than `bar`.
+    pub fn propose(
+        &mut self,
+        complex: &Complex,
+        start: TetId,
+        [a, b]: [VertexId; 2],
+        bar: f64,
+        change: &mut Change,
+    ) -> bool {
+        self.shell.walk(complex, start, a, b);
+        if complex.is_fixed_edge(a, b) {
+            return false;
+        }
+        change.clear();
+        change.cavity.extend_from_slice(&self.shell.tets);
+        let m = self.shell.ring.len();
+        match self.shell.walls[..] {
+            [] if m >= 3 => self.fill(complex, [a, b], (0, m), bar, change),
+            [i, j] if !complex.keeps_surface() => {
+                self.swap_walls(complex, [a, b], [i, j], change)
+                    && self.fill(complex, [a, b], (i, j - i + 1), bar, change)
+                    && (!self.shell.is_closed || self.fill(complex, [a, b], (j, m - j + i + 1), bar, change))
+            }
+            _ => false,
+        }
+    }
+
+    /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches.
+    fn swap_walls(
+        &self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        places: [usize; 2],
+        change: &mut Change,
+    ) -> bool {
+        let [first, second] = places.map(|place| complex.wall(self.shell.wall_at(complex, place)));
+        let [p, q] = places.map(|place| self.shell.ring[place]);
+        for (end, wall) in [(a, first), (b, second)] {
+            change.walls.push(NewWall { vertices: [end, p, q], patch: wall.patch, triangle: wall.triangle });
+        }
+        first.patch == second.patch
+    }
+
+    /// Fills the part of the ring that begins at a place and has so many vertices. Nothing comes between two.
+    fn fill(
+        &mut self,
+        complex: &Complex,
+        edge: [VertexId; 2],
+        (start, n): (usize, usize),
+        bar: f64,
+        change: &mut Change,
+    ) -> bool {
+        if n > LARGEST_RING {
+            return false;
+        }
+        let m = self.shell.ring.len();
+        let mut ring = [VertexId(0); LARGEST_RING];
+        for i in 0..n {
+            ring[i] = self.shell.ring[(start + i) % m];
+        }
+        if n < 3 {
+            return true;
+        }
+        let region = complex.region(self.shell.tets[start % self.shell.tets.len()]);
+        self.tabulate(complex, edge, &ring[..n], bar) && {
+            self.build(complex, edge, &ring[..n], region, (0, n - 1), change);
+            true
+        }
+    }
+
+    /// Fills the table; whether the whole ring has a filling better than `bar`.
+    fn tabulate(&mut self, complex: &Complex, [a, b]: [VertexId; 2], ring: &[VertexId], bar: f64) -> bool {
+        let best = &mut self.best;
+        let m = ring.len();
+        let [pa, pb] = [complex.point(a), complex.point(b)];
+        let mut points = [[0.0; 3]; LARGEST_RING];
+        for i in 0..m {
+            points[i] = complex.point(ring[i]);
+        }
+        best.clear();
+        best.resize(m * m, (f64::INFINITY, 0));
+        for length in 2..m {
+            for i in 0..m - length {
+                let j = i + length;
+                let mut found = (bar, u8::MAX);
+                for k in i + 1..j {
+                    let sides = best[i * m + k].0.min(best[k * m + j].0);
+                    if !(sides > found.0) {
+                        continue;
+                    }
+                    let above = complex.measure([points[i], points[k], points[j], pb]);
+                    if !(above > found.0) {
+                        continue;
+                    }
+                    let below = complex.measure([points[i], points[j], points[k], pa]);
+                    let all = sides.min(above).min(below);
+                    if all > found.0 {
+                        found = (all, k as u8);
+                    }
+                }
+                best[i * m + j] = if found.1 == u8::MAX { (f64::NEG_INFINITY, u8::MAX) } else { found };
+            }
+        }
+        best[m - 1].0 > bar
+    }
+
+    fn build(
+        &self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        ring: &[VertexId],
+        region: i32,
+        (i, j): (usize, usize),
+        change: &mut Change,
+    ) {
+        if j < i + 2 {
+            return;
+        }
+        let k = usize::from(self.best[i * ring.len() + j].1);
+        let [p, q, r] = [i, k, j].map(|place| ring[place]);
+        change.push(complex, [p, q, r, b], region);
+        change.push(complex, [p, r, q, a], region);
+        self.build(complex, [a, b], ring, region, (i, k), change);
+        self.build(complex, [a, b], ring, region, (k, j), change);
+    }
+}

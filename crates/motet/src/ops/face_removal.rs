@@ -1,0 +1,118 @@
+//! Some facets taken out, and an edge put through them: the inverse of the removal of an edge.
+//!
+//! Facets that lie one beside the other between the same two vertices `a` and `b` go, with the tets on both sides of them; the edge `ab` comes, with a
+//! tet to every outer edge of the facets. Which facets to take is found by trying at each edge whether to stop or to
+//! go on (Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral
+//! meshes*). With one facet it is the flip 2-3.
+
+use crate::base::{TetId, VertexId};
+use crate::kernel::{Behind, Change, Complex};
+
+/// At most so many facets go at once.
+const MOST_FACES: usize = 8;
+
+/// Room for the search, used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct FaceRemoval {
+    /// The tets on the sides of the facets taken so far, and the outer edges.
+    cavity: Vec<TetId>,
+    rim: Vec<[VertexId; 2]>,
+}
+
+/// A facet between `a` and `b`, by its tets.
+#[derive(Clone, Copy)]
+struct Face {
+    at_a: TetId,
+    at_b: TetId,
+}
+
+impl FaceRemoval {
+    /// Proposes to remove facet `i` of a tet, and others beside it where that is better. `false` when there is no way better than `bar`.
+    pub fn propose(
+        &mut self,
+        complex: &Complex,
+        tet: TetId,
+        i: usize,
+        bar: f64,
+        change: &mut Change,
+    ) -> bool {
+        change.clear();
+        let Behind::Tet(other) = complex.behind(tet, i) else { return false };
+        let a = complex.vertices(tet)[i];
+        let b = complex.vertices(other.tet())[other.facet()];
+        let face = Face { at_a: tet, at_b: other.tet() };
+        let [p, q, r] = complex.facet(crate::kernel::HalfFacet::new(tet, i));
+        self.cavity.clear();
+        self.rim.clear();
+        self.cavity.extend([face.at_a, face.at_b]);
+        for edge in [[p, q], [q, r], [r, p]] {
+            if !(self.at_edge(complex, [a, b], face, edge, bar, 0) > bar) {
+                return false;
+            }
+        }
+        change.cavity.extend_from_slice(&self.cavity);
+        for &[p, q] in &self.rim {
+            change.push(complex, [a, b, p, q], complex.region(tet));
+        }
+        true
+    }
+
+    /// The quality of the best that can come at an edge of a facet taken: the tet to the edge, or what comes when the facet behind the edge
+    /// is taken, too. Leaves what that takes in the lists.
+    fn at_edge(
+        &mut self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        face: Face,
+        [p, q]: [VertexId; 2],
+        bar: f64,
+        depth: usize,
+    ) -> f64 {
+        let stop = complex.measure([a, b, p, q].map(|v| complex.point(v)));
+        let (n_tets, n_edges) = (self.cavity.len(), self.rim.len());
+        if n_tets / 2 < MOST_FACES && depth < 4 {
+            if let Some((next, w)) = Self::beside(complex, [a, b], face, [p, q]) {
+                if !self.cavity.contains(&next.at_a) && !self.cavity.contains(&next.at_b) {
+                    self.cavity.extend([next.at_a, next.at_b]);
+                    let bar = stop.max(bar);
+                    let mut worst = self.at_edge(complex, [a, b], next, [p, w], bar, depth + 1);
+                    if worst > bar {
+                        worst = worst.min(self.at_edge(complex, [a, b], next, [w, q], bar, depth + 1));
+                    }
+                    if worst > bar {
+                        return worst;
+                    }
+                    self.cavity.truncate(n_tets);
+                    self.rim.truncate(n_edges);
+                }
+            }
+        }
+        self.rim.push([p, q]);
+        stop
+    }
+
+    /// The facet between `a` and `b` behind the edge `pq` of a facet, and its third vertex.
+    fn beside(
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        face: Face,
+        [p, q]: [VertexId; 2],
+    ) -> Option<(Face, VertexId)> {
+        let behind = |tet: TetId, apex: VertexId| {
+            let vertices = complex.vertices(tet);
+            let third = (0..4).find(|&i| ![apex, p, q].contains(&vertices[i]))?;
+            match complex.behind(tet, third) {
+                Behind::Tet(half) => Some((half.tet(), complex.vertices(half.tet())[half.facet()])),
+                Behind::Wall(_) => None,
+            }
+        };
+        let (at_a, w) = behind(face.at_a, a)?;
+        let (at_b, v) = behind(face.at_b, b)?;
+        if w != v || at_a == at_b {
+            return None;
+        }
+        let joined =
+            matches!(complex.behind(at_a, complex.place(at_a, a)), Behind::Tet(half) if half.tet() == at_b);
+        joined.then_some((Face { at_a, at_b }, w))
+    }
+}

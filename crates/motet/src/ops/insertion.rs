@@ -1,0 +1,106 @@
+//! A vertex put in, and joined to whatever it sees well.
+//!
+//! The cavity begins with the tets that hold the new vertex and grows tet by tet across the facet at which the fill is worst, as long as that makes
+//! it better (after Klingner and Shewchuk 2007, *Aggressive tetrahedral mesh improvement*, who find the cavity by
+//! the quality of each tet of the fill).
+
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::tet::FACETS;
+use crate::kernel::{Behind, Change, Complex, Hold, VertexChange};
+use crate::ops::Smoothing;
+
+/// The cavity has at most so many tets.
+const LARGEST_CAVITY: usize = 40;
+
+/// Room for the search, used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Insertion {
+    smoothing: Smoothing,
+    /// The facets round the cavity: the tet inside, which of its facets, the quality of the tet to come.
+    rim: Vec<(TetId, usize, f64)>,
+}
+
+impl Insertion {
+    /// Proposes a vertex at `point` or, if that is better, somewhere else in the cavity; `seed` are the tets to begin the cavity with. A worst quality
+    /// of `enough` is enough. `false` when there is no cavity better than `bar`.
+    pub fn propose(
+        &mut self,
+        complex: &Complex,
+        seed: &[TetId],
+        point: Point,
+        [bar, enough]: [f64; 2],
+        change: &mut Change,
+    ) -> bool {
+        // A cavity that is not good enough yet may become so when the vertex moves: what has to be beaten is asked only after.
+        let low = bar.min(0.5 * enough);
+        self.find_cavity(complex, seed, point, low, change) && {
+            let rim = self.rim.iter().map(|&(tet, facet, _)| {
+                let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
+                ([a, c, b, point], 3)
+            });
+            let point = self.smoothing.best_place(complex, rim, point, enough, Some);
+            self.fill(complex, point, change);
+            change.worst() > bar && !self.loses_a_vertex(complex, change)
+        }
+    }
+
+    fn fill(&self, complex: &Complex, point: Point, change: &mut Change) {
+        change.vertex = VertexChange::Insert(point, Hold::Free);
+        let apex = complex.next_vertex();
+        for &(tet, facet, _) in &self.rim {
+            let [a, b, c] = FACETS[facet].map(|corner| complex.vertices(tet)[corner]);
+            change.push(complex, [a, c, b, apex], complex.region(tet));
+        }
+    }
+
+    /// Grows a cavity round `point` until the tets from its facets to the point are all better than `bar`.
+    fn find_cavity(
+        &mut self,
+        complex: &Complex,
+        seed: &[TetId],
+        point: Point,
+        bar: f64,
+        change: &mut Change,
+    ) -> bool {
+        change.clear();
+        self.rim.clear();
+        for &tet in seed {
+            self.take(complex, tet, point, change);
+        }
+        loop {
+            let worst = (0..self.rim.len()).min_by(|&i, &j| self.rim[i].2.total_cmp(&self.rim[j].2));
+            let Some(worst) = worst else { return false };
+            let (tet, facet, quality) = self.rim[worst];
+            if quality > bar {
+                return true;
+            }
+            let Behind::Tet(behind) = complex.behind(tet, facet) else { return false };
+            if change.cavity.len() >= LARGEST_CAVITY {
+                return false;
+            }
+            self.take(complex, behind.tet(), point, change);
+        }
+    }
+
+    /// Puts a tet into the cavity: facets towards it go from the rim, its others come.
+    fn take(&mut self, complex: &Complex, tet: TetId, point: Point, change: &mut Change) {
+        change.cavity.push(tet);
+        for (facet, corners) in FACETS.into_iter().enumerate() {
+            if let Behind::Tet(half) = complex.behind(tet, facet) {
+                let known = self.rim.iter().position(|r| r.0 == half.tet() && r.1 == half.facet());
+                if let Some(known) = known {
+                    self.rim.swap_remove(known);
+                    continue;
+                }
+            }
+            let [a, b, c] = corners.map(|corner| complex.point(complex.vertices(tet)[corner]));
+            self.rim.push((tet, facet, complex.measure([a, c, b, point])));
+        }
+    }
+
+    /// Whether a vertex of the cavity is on none of its outer facets.
+    fn loses_a_vertex(&self, complex: &Complex, change: &Change) -> bool {
+        let is_kept = |v: VertexId| change.fill.iter().any(|tet| tet.vertices.contains(&v));
+        change.cavity.iter().any(|&t| !complex.vertices(t).into_iter().all(is_kept))
+    }
+}

@@ -1,0 +1,213 @@
+//! A vertex moved to where the worst of its tets is best.
+//!
+//! The worst quality is the smallest of many functions of the vertex' place. Where several are nearly smallest, the direction in which all of them rise
+//! fastest is the shortest vector in the convex hull of their gradients (Freitag and Ollivier-Gooch 1997, *Tetrahedral
+//! mesh improvement using swapping and smoothing*); the step is halved until the worst rises.
+
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::kernel::{Change, Complex, VertexChange};
+
+/// Qualities that are at most so far above the worst count as nearly smallest.
+const NEARLY: f64 = 0.03;
+/// How many directions are tried.
+const MOST_STEPS: usize = 8;
+/// How often a step is halved.
+const MOST_HALVINGS: usize = 5;
+/// A step that raises the worst by less is the last.
+const SMALLEST_GAIN: f64 = 1e-3;
+/// Gradients are differences over this part of the size of the star.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Room for the star, used again and again.
+#[derive(Clone, Debug, Default)]
+pub struct Smoothing {
+    tets: Vec<Corner>,
+    gradients: Vec<Point>,
+}
+
+/// A tet of the star: its points, the place of the vertex, and its quality.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    points: [Point; 4],
+    place: usize,
+    quality: f64,
+}
+
+impl Smoothing {
+    /// Proposes a better place for a vertex whose tets are `star`: one where the worst quality is `enough`, or as high as it gets. `false` when
+    /// there is none better than `bar`.
+    pub fn propose(
+        &mut self,
+        complex: &Complex,
+        star: &[TetId],
+        vertex: VertexId,
+        [bar, enough]: [f64; 2],
+        change: &mut Change,
+    ) -> bool {
+        self.propose_on(complex, star, vertex, [bar, enough], Some, change)
+    }
+
+    /// The same for a vertex that is not free: `project` draws each place onto what holds it, or says that there is no such place.
+    pub fn propose_on(
+        &mut self,
+        complex: &Complex,
+        star: &[TetId],
+        vertex: VertexId,
+        [bar, enough]: [f64; 2],
+        project: impl Fn(Point) -> Option<Point>,
+        change: &mut Change,
+    ) -> bool {
+        let corners = star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex)));
+        let point = self.best_place(complex, corners, complex.point(vertex), enough, project);
+        change.clear();
+        change.vertex = VertexChange::Move(vertex, point);
+        change.cavity.extend_from_slice(star);
+        for &tet in star {
+            change.push(complex, complex.vertices(tet), complex.region(tet));
+            if !(change.fill[change.fill.len() - 1].quality > bar) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The best place found for a vertex of some tets, of each of which it is the corner given.
+    pub fn best_place(
+        &mut self,
+        complex: &Complex,
+        star: impl Iterator<Item = ([Point; 4], usize)>,
+        start: Point,
+        enough: f64,
+        project: impl Fn(Point) -> Option<Point>,
+    ) -> Point {
+        self.tets.clear();
+        let mut size = 0.0f64;
+        for (mut points, place) in star {
+            points[place] = start;
+            let quality = complex.measure(points);
+            size = size.max(norm(sub(points[(place + 1) % 4], start)));
+            self.tets.push(Corner { points, place, quality });
+        }
+        let mut place = start;
+        let mut worst = self.worst();
+        let mut gain = 0.05;
+        for _ in 0..MOST_STEPS {
+            if worst >= enough {
+                break;
+            }
+            let direction = self.direction(complex, place, worst, size);
+            let slope = dot(direction, direction);
+            // Along the direction the worst rises by its square, if nothing else gets in the way.
+            if !(slope * size * size > 1e-6) {
+                break;
+            }
+            let mut length = (2.0 * gain / slope).min(0.5 * size / slope.sqrt());
+            let mut found = None;
+            for _ in 0..=MOST_HALVINGS {
+                if let Some(trial) = project(add(place, scale(direction, length))) {
+                    let quality = self.worst_at(complex, trial, worst);
+                    if quality > worst {
+                        found = Some((trial, quality));
+                        break;
+                    }
+                }
+                length *= 0.5;
+            }
+            let Some((trial, quality)) = found else { break };
+            gain = quality - worst;
+            place = trial;
+            self.move_to(complex, place);
+            worst = self.worst();
+            if gain < SMALLEST_GAIN {
+                break;
+            }
+        }
+        place
+    }
+
+    fn worst(&self) -> f64 {
+        self.tets.iter().map(|t| t.quality).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The worst quality with the vertex elsewhere; anything at most `bar` where it is not better.
+    fn worst_at(&self, complex: &Complex, place: Point, bar: f64) -> f64 {
+        let mut worst = f64::INFINITY;
+        for tet in &self.tets {
+            worst = worst.min(tet.at(complex, place));
+            if worst <= bar {
+                break;
+            }
+        }
+        worst
+    }
+
+    fn move_to(&mut self, complex: &Complex, place: Point) {
+        for tet in &mut self.tets {
+            tet.points[tet.place] = place;
+            tet.quality = complex.measure(tet.points);
+        }
+    }
+
+    /// The shortest vector in the convex hull of the gradients of the nearly worst.
+    fn direction(&mut self, complex: &Complex, place: Point, worst: f64, size: f64) -> Point {
+        self.gradients.clear();
+        let step = DIFFERENCE * size;
+        for tet in self.tets.iter().filter(|t| t.quality <= worst + NEARLY) {
+            let mut gradient = [0.0; 3];
+            for axis in 0..3 {
+                let mut beside = place;
+                beside[axis] += step;
+                gradient[axis] = (tet.at(complex, beside) - tet.quality) / step;
+            }
+            self.gradients.push(gradient);
+        }
+        shortest_in_hull(&self.gradients)
+    }
+}
+
+impl Corner {
+    fn at(&self, complex: &Complex, place: Point) -> f64 {
+        let mut points = self.points;
+        points[self.place] = place;
+        complex.measure(points)
+    }
+}
+
+/// The shortest vector in the convex hull of some, nearly: from the shortest one, again and again towards the one that lies farthest on the
+/// other side (Gilbert 1966, *An iterative procedure for computing the minimum of a quadratic form on a convex set*).
+fn shortest_in_hull(vectors: &[Point]) -> Point {
+    let Some(mut shortest) = vectors.iter().copied().min_by(|a, b| dot(*a, *a).total_cmp(&dot(*b, *b)))
+    else {
+        return [0.0; 3];
+    };
+    for _ in 0..30 {
+        let Some(farthest) =
+            vectors.iter().copied().min_by(|a, b| dot(*a, shortest).total_cmp(&dot(*b, shortest)))
+        else {
+            break;
+        };
+        let way = sub(farthest, shortest);
+        let (ahead, whole) = (-dot(shortest, way), dot(way, way));
+        if !(ahead > 1e-9 * whole) {
+            break;
+        }
+        shortest = add(shortest, scale(way, (ahead / whole).min(1.0)));
+    }
+    shortest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shortest_vector_of_a_hull_is_found() {
+        let near = |a: Point, b: Point| norm(sub(a, b)) < 1e-3;
+        assert!(near(shortest_in_hull(&[[1.0, 1.0, 0.0], [1.0, -1.0, 0.0]]), [1.0, 0.0, 0.0]));
+        assert!(near(shortest_in_hull(&[[2.0, 0.0, 0.0]]), [2.0, 0.0, 0.0]));
+        let around = [[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];
+        assert!(norm(shortest_in_hull(&around)) < 0.05);
+        assert_eq!(shortest_in_hull(&[]), [0.0; 3]);
+    }
+}

@@ -1,0 +1,139 @@
+//! In which way a tet is degenerate: the four types of the paper.
+//!
+//! ```text
+//!   I    two opposite edges cross closely           (sliver)     split both, join the new vertices
+//!   II   a vertex lies close to an opposite edge    (spade)      split the edge at the vertex
+//!   III  a vertex lies within the facet opposite    (cap)        collapse the vertex
+//!   IV   an edge is short                           (needle)     collapse the edge
+//! ```
+//! The limits are those of Moyle and Ventikos 2008, *Local remeshing for large amplitude grid deformations*, table 2. Lengths are parts of the mean
+//! length of the tet's edges: the text does not say of what.
+
+use serde::Serialize;
+
+use crate::base::Point;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+
+/// Two opposite edges that are closer than this make a tet of type I.
+pub const EDGE_TO_EDGE: f64 = 0.18;
+/// A vertex that is closer than this to an edge opposite makes it one of type II.
+pub const VERTEX_TO_EDGE: f64 = 0.21;
+/// An edge shorter than this makes it one of type IV.
+pub const SHORTEST_EDGE: f64 = 0.2;
+
+/// How a bad tet is degenerate, and where: places of its vertices and edges ([`EDGES`]).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Defect {
+    /// Type I: edges `edge` and `5 - edge` cross closely.
+    CrossedEdges {
+        /// One of them.
+        edge: usize,
+    },
+    /// Type II: a vertex close to an edge that is not its own.
+    VertexAtEdge {
+        /// The vertex.
+        vertex: usize,
+        /// The edge.
+        edge: usize,
+    },
+    /// Type III: a vertex whose foot lies within the opposite facet.
+    VertexOverFacet {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// Type IV: a short edge.
+    ShortEdge {
+        /// The edge.
+        edge: usize,
+    },
+    /// None of them.
+    Other,
+}
+
+impl Defect {
+    /// 0 for type I to 3 for type IV, 4 for none of them.
+    pub fn number(self) -> usize {
+        match self {
+            Self::CrossedEdges { .. } => 0,
+            Self::VertexAtEdge { .. } => 1,
+            Self::VertexOverFacet { .. } => 2,
+            Self::ShortEdge { .. } => 3,
+            Self::Other => 4,
+        }
+    }
+}
+
+/// Names of the types, by [`Defect::number`].
+pub const DEFECT_NAMES: [&str; 5] = ["I", "II", "III", "IV", "other"];
+
+/// How a bad tet is degenerate.
+pub fn classify(tet: [Point; 4]) -> Defect {
+    let lengths = EDGES.map(|[i, j]| norm(sub(tet[j], tet[i])));
+    let mean = lengths.iter().sum::<f64>() / 6.0;
+    let shortest = (1..6).fold(0, |s, e| if lengths[e] < lengths[s] { e } else { s });
+    if !(lengths[shortest] >= SHORTEST_EDGE * mean) {
+        return Defect::ShortEdge { edge: shortest };
+    }
+    let near = |(distance, _): &(f64, Defect), limit: f64| *distance < limit * mean;
+    let spade = vertex_to_edge(tet);
+    if near(&spade, VERTEX_TO_EDGE) {
+        return spade.1;
+    }
+    let crossed = edge_to_edge(tet);
+    if near(&crossed, EDGE_TO_EDGE) {
+        return crossed.1;
+    }
+    (0..4)
+        .filter(|&v| foot_is_inside(tet, v))
+        .map(|vertex| Defect::VertexOverFacet { vertex })
+        .next()
+        .unwrap_or(Defect::Other)
+}
+
+/// The vertex that is closest to an edge not its own, measured where its foot lies within the edge.
+fn vertex_to_edge(tet: [Point; 4]) -> (f64, Defect) {
+    let mut best = (f64::INFINITY, Defect::Other);
+    for (edge, [i, j]) in EDGES.into_iter().enumerate() {
+        let way = sub(tet[j], tet[i]);
+        for vertex in (0..4).filter(|&v| v != i && v != j) {
+            let t = dot(sub(tet[vertex], tet[i]), way) / dot(way, way);
+            let distance = norm(sub(tet[vertex], add(tet[i], scale(way, t))));
+            if t > 0.0 && t < 1.0 && distance < best.0 {
+                best = (distance, Defect::VertexAtEdge { vertex, edge });
+            }
+        }
+    }
+    best
+}
+
+/// The opposite edges that are closest, measured where they pass each other between their ends.
+fn edge_to_edge(tet: [Point; 4]) -> (f64, Defect) {
+    let mut best = (f64::INFINITY, Defect::Other);
+    for edge in 0..3 {
+        let [[a, b], [c, d]] = [EDGES[edge], EDGES[5 - edge]].map(|e| e.map(|i| tet[i]));
+        if let Some(distance) = passing_distance([a, b], [c, d]).filter(|d| *d < best.0) {
+            best = (distance, Defect::CrossedEdges { edge });
+        }
+    }
+    best
+}
+
+/// The distance of two lines where the closest points lie within both segments.
+fn passing_distance([a, b]: [Point; 2], [c, d]: [Point; 2]) -> Option<f64> {
+    let (u, v, w) = (sub(b, a), sub(d, c), sub(c, a));
+    let n = cross(u, v);
+    let n_squared = dot(n, n);
+    let s = dot(cross(w, v), n) / n_squared;
+    let t = dot(cross(w, u), n) / n_squared;
+    let within = |x: f64| x > 0.0 && x < 1.0;
+    (within(s) && within(t)).then(|| dot(w, n).abs() / n_squared.sqrt())
+}
+
+/// Whether the foot of a vertex on the plane of the opposite facet lies within the facet.
+fn foot_is_inside(tet: [Point; 4], vertex: usize) -> bool {
+    let [a, b, c] = FACETS[vertex].map(|i| tet[i]);
+    let normal = cross(sub(b, a), sub(c, a));
+    let p = tet[vertex];
+    [[a, b], [b, c], [c, a]].into_iter().all(|[q, r]| dot(cross(sub(r, q), sub(p, q)), normal) > 0.0)
+}

@@ -1,0 +1,44 @@
+//! What a remesher is told beside the mesh.
+
+/// What is to be repaired, and how.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// A tet below this EAS is bad. Default: 0.2.
+    pub min_eas: f64,
+    /// How far to go. Default: [`Goal::Repair`].
+    pub goal: Goal,
+    /// What may happen to the surface. Default: [`SurfaceRule::Keep`].
+    pub surface: SurfaceRule,
+    /// At most so many rounds over the bad tets. Default: 20.
+    pub rounds: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { min_eas: 0.2, goal: Goal::Repair, surface: SurfaceRule::Keep, rounds: 20 }
+    }
+}
+
+/// What may happen to walls: the boundary, interfaces between regions, labelled facets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SurfaceRule {
+    /// They stay as they are, to the bit.
+    Keep,
+    /// They may change within a distance of where they were, features and borders of patches kept.
+    Adapt {
+        /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's largest extent.
+        distance: Option<f64>,
+    },
+}
+
+/// How far the surface may stray, as a part of the mesh's largest extent, where nobody said.
+pub const DEFAULT_DISTANCE: f64 = 1e-3;
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Goal {
+    /// No bad tet left, as few tets touched as can be.
+    Repair,
+    /// The worst tets as good as they get, everywhere.
+    Best,
+}
