@@ -75,7 +75,8 @@ def tables(case, results):
     print(f"\n## Bad tets of a moved mesh, {case.name}\n")
     print(f"A sphere moved in a box by a Laplace equation (diffusivity 1/volume): {len(case.points):,} vertices, "
           f"{len(case.tets):,} tets, {given['bad']} of them bad (EAS < {BAD:g}).\nOne thread each, boundary to be kept; "
-          "seconds without reading and writing; medians of up to 3 rounds in turn.\n")
+          "seconds without reading and writing; medians of 3 repeats in a process (of 1 where it takes long), up to 3 rounds "
+          "in turn.\n")
     ours = results["motet"].get("seconds")
     rows = [["as it was", "", "", "", *columns(given), "", "", "", ""]]
     rows += [line(name, result, ours) for name, result in results.items() if "error" not in result]
