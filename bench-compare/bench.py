@@ -7,14 +7,15 @@ import sys
 import bench_delaunay
 import bench_files
 import bench_motion
+import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
-BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files}
+BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh}
 
 
 def words():
     parser = argparse.ArgumentParser(prog="bench-compare/run", description="motet beside its rivals on the same input")
-    parser.add_argument("benches", nargs="*", help="delaunay, motion, files (default: all)")
+    parser.add_argument("benches", nargs="*", help=f"{', '.join(BENCHES)} (default: all)")
     parser.add_argument("--rounds", type=int, default=5, help="how often each program's turn comes (default 5)")
     parser.add_argument("--largest", type=int, default=1_000_000, help="largest point set of the Delaunay bench")
     parser.add_argument("--sizes", default="ABCD", help="which of the paper's four models (default ABCD)")

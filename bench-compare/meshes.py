@@ -19,15 +19,15 @@ SIZES = {
 }
 
 
-def build(sphere_size, wall_size, grading):
-    """Points (n, 3) and positive tets (m, 4) of the box without the ball."""
+def build(sphere_size, wall_size, grading, ahead=HALF_EDGE):
+    """Points (n, 3) and positive tets (m, 4) of the box without the ball; it reaches to `ahead` in x."""
     import gmsh
 
     gmsh.initialize()
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("General.NumThreads", 1)
     occ = gmsh.model.occ
-    box = occ.addBox(*[-HALF_EDGE] * 3, *[2 * HALF_EDGE] * 3)
+    box = occ.addBox(*[-HALF_EDGE] * 3, HALF_EDGE + ahead, *[2 * HALF_EDGE] * 2)
     ball = occ.addSphere(0, 0, 0, RADIUS)
     occ.cut([(3, box)], [(3, ball)])
     occ.synchronize()

@@ -1,0 +1,58 @@
+"""Tets in numpy: volumes, angles, EAS, the boundary."""
+import numpy as np
+
+FACETS = np.array([(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)])  # opposite each corner; outward when the tet is positive
+EDGES = np.array([(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+REGULAR = np.degrees(np.arccos(1 / 3))  # the dihedral angle of the regular tet
+BAD = 0.2  # a tet with a smaller EAS is bad
+
+
+def dot(a, b):
+    return np.einsum("ij,ij->i", a, b)
+
+
+def angle(a, b):
+    """Degrees between vectors, row by row."""
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), dot(a, b)))
+
+
+def volumes(points, tets):
+    a, b, c, d = (points[tets[:, i]] for i in range(4))
+    return dot(np.cross(b - a, c - a), d - a) / 6
+
+
+def dihedrals(points, tets):
+    """The least and the greatest dihedral angle of each tet, in degrees."""
+    normals = []
+    for facet in FACETS:
+        a, b, c = (points[tets[:, i]] for i in facet)
+        normals.append(np.cross(b - a, c - a))
+    angles = [180 - angle(normals[i], normals[j]) for i, j in EDGES]
+    return np.minimum.reduce(angles), np.maximum.reduce(angles)
+
+
+def facet_angles(points, tets):
+    """The least and the greatest angle of the four facets of each tet, in degrees."""
+    angles = []
+    for facet in FACETS:
+        for turn in range(3):
+            a, b, c = (points[tets[:, i]] for i in np.roll(facet, turn))
+            angles.append(angle(b - a, c - a))
+    return np.minimum.reduce(angles), np.maximum.reduce(angles)
+
+
+def eas(points, tets):
+    """Equi-angle quality: the sign of the volume times 1 - skew, the skew as Verdict's `tet_equiangle_skew`."""
+    skews = []
+    for (least, greatest), best in ((dihedrals(points, tets), REGULAR), (facet_angles(points, tets), 60)):
+        skews += [(greatest - best) / (180 - best), (best - least) / best]
+    return np.sign(volumes(points, tets)) * (1 - np.maximum.reduce(skews))
+
+
+def boundary(tets):
+    """The facets that belong to one tet alone, turned outward."""
+    facets = tets[:, FACETS].reshape(-1, 3)
+    key = np.sort(facets, axis=1).astype(np.int64)
+    key = (key[:, 0] << 42) | (key[:, 1] << 21) | key[:, 2]  # up to two million vertices
+    _, first, count = np.unique(key, return_index=True, return_counts=True)
+    return facets[np.sort(first[count == 1])]
