@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::base::VertexId;
-use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, Values};
+use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
 pub(super) fn keep_cells<'m>(
@@ -27,7 +27,7 @@ pub(super) fn keep_cells<'m>(
     for (_, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| holds(*kind)) {
         cells.push(kind, vertices.iter().copied());
     }
-    let cell_data = mesh.cell_data.iter().map(|f| rows(f, &kept)).collect();
+    let cell_data = mesh.cell_data.iter().map(|f| f.pick(kept.iter().copied())).collect();
     let kept = Mesh {
         points: mesh.points.clone(),
         cells,
@@ -61,13 +61,15 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
         };
         cells.push(kind, vertices[..n_corners].iter().map(place));
     }
-    let vertex_rows: Vec<usize> = used.iter().map(|v| v.index()).collect();
-    let cell_rows: Vec<usize> = boundary.cells.iter().map(|c| c.index()).collect();
     let surface = Mesh {
         points: used.iter().map(|v| mesh.points[v.index()]).collect(),
         cells,
-        point_data: mesh.point_data.iter().map(|f| rows(f, &vertex_rows)).collect(),
-        cell_data: mesh.cell_data.iter().map(|f| rows(f, &cell_rows)).collect(),
+        point_data: mesh
+            .point_data
+            .iter()
+            .map(|f| f.pick(boundary.vertices.iter().map(|v| v.index())))
+            .collect(),
+        cell_data: mesh.cell_data.iter().map(|f| f.pick(boundary.cells.iter().map(|c| c.index()))).collect(),
         field_data: mesh.field_data.clone(),
         label_names: mesh.label_names.clone(),
     };
@@ -75,22 +77,6 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
         "{format} has surfaces only: the boundary of the volume cells is written, their inside is left out"
     );
     (Cow::Owned(surface), vec![note])
-}
-
-/// The rows of `field` named in `rows`, in that order.
-pub(super) fn rows(field: &Field, rows: &[usize]) -> Field {
-    fn pick<T: Clone>(values: &[T], components: usize, rows: &[usize]) -> Vec<T> {
-        rows.iter().flat_map(|&row| values[row * components..][..components].iter().cloned()).collect()
-    }
-    macro_rules! picked {
-        ($($variant:ident)*) => {
-            match &field.values {
-                $(Values::$variant(v) => Values::$variant(pick(v, field.components, rows)),)*
-            }
-        };
-    }
-    let values = picked!(I8 U8 I16 U16 I32 U32 I64 U64 F32 F64 Text);
-    Field { name: field.name.clone(), components: field.components, values }
 }
 
 /// A sentence on arrays that a format has no place for; none where there are none.

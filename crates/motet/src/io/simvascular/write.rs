@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::{WriteOptions, Written};
-use crate::io::select::rows;
 use crate::io::simvascular::read::node_ids;
 use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
@@ -176,10 +175,10 @@ impl<'m> Numbered<'m> {
             cells.push(self.mesh.cells.kinds()[i], self.mesh.cells.connectivity().list(i).iter().map(place));
         }
         let mut mesh = Mesh::new(points.iter().map(|&i| self.mesh.points[i]).collect(), cells);
-        mesh.point_data = self.mesh.point_data.iter().map(|f| rows(f, points)).collect();
-        mesh.cell_data = self.mesh.cell_data.iter().map(|f| rows(f, part)).collect();
+        mesh.point_data = self.mesh.point_data.iter().map(|f| f.pick(points.iter().copied())).collect();
+        mesh.cell_data = self.mesh.cell_data.iter().map(|f| f.pick(part.iter().copied())).collect();
         let ids = Field::scalars(NODE_ID, self.node_ids.clone());
-        mesh.set_point_field(rows(&ids, points));
+        mesh.set_point_field(ids.pick(points.iter().copied()));
         mesh
     }
 }
