@@ -47,6 +47,11 @@ impl Solid {
         self.volume_6.abs() / 6.0
     }
 
+    /// Whether the orientation is positive; exact.
+    pub fn is_positive(&self) -> bool {
+        self.volume_6 > 0.0
+    }
+
     /// The volume that both have in common, in `[0, smaller volume]`. The error stays below `1e-14` of the smaller
     /// volume (typically a tenth of that), for sizes from 1e-80 to 1e60.
     pub fn overlap(&self, other: &Self) -> f64 {

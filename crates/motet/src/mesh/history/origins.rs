@@ -28,7 +28,7 @@ pub enum Origin<'a, I> {
 
 /// What a stored [`Origins`] brings, before it is known to fit together.
 #[derive(Deserialize)]
-#[serde(bound(deserialize = "I: Deserialize<'de>"))]
+#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
 struct Parts<I> {
     n_old: usize,
     kept: Vec<I>,
