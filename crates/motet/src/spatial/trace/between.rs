@@ -8,7 +8,7 @@ use crate::mesh::{CellKind, Labels, Mesh};
 /// The history from `old` to `new`. `vertex_to_old` and `cell_to_old` have for each vertex and each cell of `new` the id it
 /// had in `old`, or [`Id::NONE`] where it is new.
 ///
-/// Vertices with the same id at another place are moved; tets that have one count as changed. New tets and triangles are
+/// Vertices with the same id at another place are moved; tets that have one count as changed, other cells do not. New tets and triangles are
 /// traced within the regions and patches that the meshes have in their arrays; new cells of other kinds cannot be.
 ///
 /// # Errors
@@ -54,14 +54,17 @@ pub fn between(
     })
 }
 
-/// The vertices that are new or elsewhere; they get no old id in `to_old`.
+/// The vertices that are new or elsewhere; they get no old id in `to_old`. One that is elsewhere but in no tet stays what
+/// it was, since there is nothing to interpolate in.
 fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [VertexId]) -> Vec<ChangedVertex> {
+    let mut has_tet = vec![false; new.points.len()];
+    new.cells.tets().for_each(|(_, tet)| tet.iter().for_each(|v| has_tet[v.index()] = true));
     let mut changed = Vec::new();
     for (i, was) in to_old.iter_mut().enumerate() {
         let vertex = VertexId::new(i);
         if *was == Id::NONE {
             changed.push(ChangedVertex { vertex, was: None });
-        } else if new.points[i] != old.points[was.index()] {
+        } else if has_tet[i] && new.points[i] != old.points[was.index()] {
             changed.push(ChangedVertex { vertex, was: Some(*was) });
             *was = Id::NONE;
         }
