@@ -58,6 +58,7 @@ impl Complex {
             free_vertices: Vec::new(),
             free_tets: Vec::new(),
             free_walls: Vec::new(),
+            is_locked: Vec::new(),
             fixed_edges,
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,

@@ -45,6 +45,8 @@ pub struct Complex {
     pub(super) free_vertices: Vec<VertexId>,
     pub(super) free_tets: Vec<TetId>,
     pub(super) free_walls: Vec<WallId>,
+    /// Tets that no change may touch; empty where there is none.
+    pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Whether walls stay as they are, and the vertices on them.
@@ -221,6 +223,20 @@ impl Complex {
     /// Whether walls, and the vertices on them, must stay as they are: so it is at first.
     pub fn keeps_surface(&self) -> bool {
         self.keeps_surface
+    }
+
+    /// Lets no change touch a tet any more.
+    pub fn lock(&mut self, tet: TetId) {
+        if self.is_locked.is_empty() {
+            self.is_locked = vec![false; self.tets.len()];
+        }
+        self.is_locked[tet.index()] = true;
+    }
+
+    /// Whether no change may touch a tet.
+    #[inline]
+    pub fn is_locked(&self, tet: TetId) -> bool {
+        self.is_locked.get(tet.index()).is_some_and(|&locked| locked)
     }
 
     /// Lets changes change walls, and move and remove the vertices on them that are not fixed.

@@ -8,6 +8,7 @@
 //! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
 //! | choose | `candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
+//! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
 //!
 //! Every change goes through [`kernel`](crate::kernel): the worst quality of what it touches rises, or it is not made. The method is that of Moyle and
@@ -15,6 +16,7 @@
 
 mod candidate;
 pub mod classify;
+mod layers;
 mod left;
 mod options;
 mod repair;

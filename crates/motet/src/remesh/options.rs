@@ -9,13 +9,15 @@ pub struct Options {
     pub goal: Goal,
     /// What may happen to the surface. Default: [`SurfaceRule::Keep`].
     pub surface: SurfaceRule,
+    /// Whether tets of boundary layers stay as they are: thin, but well shaped when stretched to the width of the wall's facets. Default: true.
+    pub keep_layers: bool,
     /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { min_eas: 0.2, goal: Goal::Repair, surface: SurfaceRule::Keep, rounds: 20 }
+        Self { min_eas: 0.2, goal: Goal::Repair, surface: SurfaceRule::Keep, keep_layers: true, rounds: 20 }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, scale};
+use crate::geometry::vector::{add, distance, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
 use crate::ops::{
     EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
@@ -10,10 +10,13 @@ use crate::ops::{
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::{Counts, Operation};
-use crate::remesh::surface::{Surface, is_smooth, patch_of};
+use crate::remesh::surface::{CREASES, Surface, patch_of};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
+
+/// How often in a row edges are split without fewer bad tets in the end.
+const MOST_IN_VAIN: usize = 5;
 
 /// The targets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
@@ -87,12 +90,95 @@ impl Repair {
         bad
     }
 
+    /// Repairs what is left once more, with fewer creases held as features.
+    pub(super) fn soften(&mut self, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        if let Some(surface) = &mut self.surface {
+            surface.hold_features(&mut self.complex, CREASES[1]);
+        }
+        let left = self.run(left, rounds);
+        self.divide(left, rounds)
+    }
+
+    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
+    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
+    /// of the surface, which are too long for where they are.
+    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        let mut best = (left.clone(), self.complex.mark(), self.operations);
+        let mut n_in_vain = 0;
+        while !left.is_empty() && n_in_vain < MOST_IN_VAIN {
+            let mut bad = Vec::new();
+            for &tet in &left {
+                if self.is_bad(tet) {
+                    self.split_longest(tet);
+                }
+                bad.append(&mut self.came_bad);
+            }
+            bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
+            left = self.run(bad, rounds);
+            n_in_vain += 1;
+            if left.len() < best.0.len() {
+                best = (left.clone(), self.complex.mark(), self.operations);
+                n_in_vain = 0;
+            }
+        }
+        self.complex.undo(best.1);
+        self.operations = best.2;
+        self.complex.forget();
+        best.0
+    }
+
+    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
+    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
+    fn split_longest(&mut self, mut tet: TetId) {
+        loop {
+            let (edge, length) = self.longest_edge(tet);
+            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
+            match self.shells[0].tets.iter().copied().find(longer) {
+                Some(next) => tet = next,
+                None => return self.split_unjudged(edge),
+            }
+        }
+    }
+
+    fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
+        let vertices = self.complex.vertices(tet);
+        let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let length = distance(self.complex.point(a), self.complex.point(b));
+            if length > longest.1 {
+                longest = ([a, b], length);
+            }
+        }
+        longest
+    }
+
+    /// Splits the edge whose shell was walked last, if every tet stays positive.
+    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
+        let [a, b] = edge;
+        let shell = &self.shells[0];
+        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !shell.is_free() {
+            return;
+        }
+        let hold = self.hold_on(edge);
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let mut came = Vec::new();
+        let proposal = &mut self.candidate.proposal;
+        if split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal) {
+            if let Ok(checked) = self.complex.check_against(proposal, 0.0) {
+                self.complex.commit(checked, &mut came);
+                self.operations.add(Operation::SplitEdge);
+            }
+        }
+        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+    }
+
     /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
     pub(super) fn best(&mut self, rounds: usize) {
         for target in BEST {
             self.target = target.max(self.target);
             self.n_stages = FIRST_STAGES;
-            let bad = self.complex.below(self.target);
+            let bad = self.below(self.target);
             self.run(bad, rounds);
         }
     }
@@ -134,8 +220,15 @@ impl Repair {
         bad.dedup();
     }
 
+    /// The tets below a quality that may be changed.
+    pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
+        let mut below = self.complex.below(quality);
+        below.retain(|&t| !self.complex.is_locked(t));
+        below
+    }
+
     fn is_bad(&self, tet: TetId) -> bool {
-        self.complex.is_alive(tet) && self.complex.quality(tet) < self.target
+        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
     }
 
     /// Makes the best change for one bad tet; whether there was one.
@@ -167,8 +260,11 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
-            if self.surface.is_some() && self.is_feature(tet, edge) {
-                continue;
+            if self.surface.is_some() {
+                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+                if self.hold_on(edge) == Hold::Edge {
+                    continue;
+                }
             }
             if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::EdgeRemoval);
@@ -182,11 +278,14 @@ impl Repair {
         }
     }
 
-    /// Whether an edge is one of walls that do not lie smoothly side by side.
-    fn is_feature(&mut self, tet: TetId, edge: [VertexId; 2]) -> bool {
-        let shell = &mut self.shells[0];
-        shell.walk(&self.complex, tet, edge[0], edge[1]);
-        !shell.walls.is_empty() && !is_smooth(&self.complex, edge, shell)
+    /// What holds a vertex on the edge whose shell was walked last.
+    fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
+        let shell = &self.shells[0];
+        match &self.surface {
+            _ if shell.is_free() => Hold::Free,
+            Some(surface) if surface.is_smooth(&self.complex, edge, shell) => Hold::Surface,
+            _ => Hold::Edge,
+        }
     }
 
     /// Stage two of the paper: as its type asks.
@@ -257,12 +356,14 @@ impl Repair {
     /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
     fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
         let hold = self.complex.hold(gone);
-        if hold == Hold::Free || self.surface.is_none() || hold == Hold::Fixed {
+        let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
+        else {
             return hold == Hold::Free;
-        }
+        };
         let shell = &mut self.shells[0];
         shell.walk(&self.complex, tet, gone, kept);
-        !shell.walls.is_empty() && (hold == Hold::Surface || !is_smooth(&self.complex, [gone, kept], shell))
+        !shell.walls.is_empty()
+            && (hold == Hold::Surface || !surface.is_smooth(&self.complex, [gone, kept], shell))
     }
 
     /// Its vertices moved.
@@ -316,7 +417,8 @@ impl Repair {
             if shell.walls.is_empty() || self.complex.is_fixed_edge(a, b) {
                 continue;
             }
-            let hold = if is_smooth(&self.complex, edge, shell) { Hold::Surface } else { Hold::Edge };
+            let hold = self.hold_on(edge);
+            let shell = &self.shells[0];
             let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
             if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut self.candidate.proposal) {
                 self.offer(Operation::SplitEdge);

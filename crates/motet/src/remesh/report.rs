@@ -135,6 +135,8 @@ pub struct Report {
     pub kept_share: f64,
     /// Bad tets that are left, worst first.
     pub left: Vec<Left>,
+    /// Tets of boundary layers that would count as bad, and stay.
+    pub layers: usize,
     /// Seconds by stage.
     pub seconds: Seconds,
 }

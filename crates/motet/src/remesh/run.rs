@@ -5,11 +5,12 @@ use std::time::Instant;
 use crate::base::{Result, TetId};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds};
+use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
 use crate::remesh::options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
 use crate::remesh::repair::Repair;
 use crate::remesh::report::{Report, State};
-use crate::remesh::surface::{Surface, hold_features};
+use crate::remesh::surface::{CREASES, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
@@ -31,13 +32,20 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let surface = adaptable(&mut complex, mesh, options);
     report.seconds.join = watch.lap();
 
-    let bad = complex.below(options.min_eas);
+    let mut bad = complex.below(options.min_eas);
+    report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
     let mut repair = Repair::new(complex, surface, options.min_eas);
     let mut left = repair.run(bad, options.rounds);
+    if !left.is_empty() && options.surface != SurfaceRule::Keep {
+        left = repair.divide(left, options.rounds);
+        if !left.is_empty() {
+            left = repair.soften(left, options.rounds);
+        }
+    }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
-        left = repair.complex.below(options.min_eas);
+        left = repair.below(options.min_eas);
     }
     report.operations = repair.operations;
     let complex = repair.complex;
@@ -52,6 +60,23 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     Ok(Outcome { extract, report })
 }
 
+/// Takes the tets of boundary layers out of the bad ones, and locks all that are thin; how many were taken out.
+fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) -> usize {
+    if !options.keep_layers || bad.is_empty() {
+        return 0;
+    }
+    let Some(layers) = Layers::of(complex) else { return 0 };
+    let n_bad = bad.len();
+    bad.retain(|&tet| {
+        let stays = layers.holds(complex, tet, options.min_eas);
+        if stays {
+            complex.lock(tet);
+        }
+        !stays
+    });
+    n_bad - bad.len()
+}
+
 /// The surface, where it may change.
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
     let SurfaceRule::Adapt { distance } = options.surface else { return None };
@@ -59,9 +84,10 @@ fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option
         let [low, high] = bounds(&mesh.points).unwrap_or_default();
         (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
     };
-    hold_features(complex);
+    let mut surface = Surface::of(complex, distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()));
+    surface.hold_features(complex, CREASES[0]);
     complex.adapt_surface();
-    Some(Surface::of(complex, distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent())))
+    Some(surface)
 }
 
 /// Tells the time since it was last asked.

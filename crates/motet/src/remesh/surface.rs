@@ -12,8 +12,9 @@ use crate::geometry::vector::{add, dot, norm, scale, sub};
 use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChange, Wall};
 use crate::spatial::NearestTriangle;
 
-/// Walls that meet at a sharper angle make a feature: cosine of the angle between their normals, 30 degrees.
-const CREASE: f64 = 0.866;
+/// Walls that meet at a sharper angle make a feature: cosine of the angle between their normals. 30 degrees at first; where that leaves bad
+/// tets 60, so that what is but a coarse image of something curved may change within the distance allowed.
+pub(super) const CREASES: [f64; 2] = [0.866, 0.5];
 /// A feature goes straight on through a vertex if it bends by less: cosine of 45 degrees.
 const STRAIGHT: f64 = 0.707;
 /// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
@@ -23,6 +24,9 @@ const TURNED: f64 = 0.707;
 pub(super) struct Surface {
     patches: BTreeMap<i32, Patch>,
     distance: f64,
+    crease: f64,
+    /// Vertices of the first mesh that were fixed before any feature was looked for.
+    is_fixed: Vec<bool>,
 }
 
 struct Patch {
@@ -43,7 +47,9 @@ impl Surface {
             normals: triangles.iter().map(|t| area_vector(t.map(|v| points[v.index()]))).collect(),
             tree: NearestTriangle::new(&points, &triangles),
         };
-        Self { patches: triangles.into_iter().map(|(id, t)| (id, patch(t))).collect(), distance }
+        let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
+        let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();
+        Self { patches, distance, crease: CREASES[0], is_fixed }
     }
 
     /// Where a vertex on walls of one patch would come to lie that is drawn to `point`.
@@ -121,56 +127,65 @@ pub(super) fn patch_of(complex: &Complex, star: &[crate::base::TetId], vertex: V
     patches.all(|patch| patch == first).then_some(first)
 }
 
-/// Whether the walls at an edge are a smooth part of one patch.
-pub(super) fn is_smooth(complex: &Complex, [a, b]: [VertexId; 2], shell: &Shell) -> bool {
-    let [i, j] = shell.walls[..] else { return false };
-    let [first, second] = [i, j].map(|place| complex.wall(shell.wall_at(complex, place)));
-    let [p, q] = [i, j].map(|place| complex.point(shell.ring[place]));
-    let [a, b] = [a, b].map(|v| complex.point(v));
-    // Turned so that they agree where the surface is flat.
-    let (m, n) = (area_vector([a, b, p]), area_vector([b, a, q]));
-    first.patch == second.patch && dot(m, n) > CREASE * norm(m) * norm(n)
-}
+impl Surface {
+    /// Whether the walls at an edge are a smooth part of one patch.
+    pub(super) fn is_smooth(&self, complex: &Complex, [a, b]: [VertexId; 2], shell: &Shell) -> bool {
+        let [i, j] = shell.walls[..] else { return false };
+        let [first, second] = [i, j].map(|place| complex.wall(shell.wall_at(complex, place)));
+        let [p, q] = [i, j].map(|place| complex.point(shell.ring[place]));
+        let [a, b] = [a, b].map(|v| complex.point(v));
+        // Turned so that they agree where the surface is flat.
+        let (m, n) = (area_vector([a, b, p]), area_vector([b, a, q]));
+        first.patch == second.patch && dot(m, n) > self.crease * norm(m) * norm(n)
+    }
 
-/// Finds features and corners, and holds the vertices on them.
-pub(super) fn hold_features(complex: &mut Complex) {
-    let mut edges: Vec<([VertexId; 2], Point, i32, VertexId)> = Vec::new();
-    for (_, wall) in complex.walls() {
-        let [a, b, c] = complex.facet(wall.sides[0]);
-        let normal = area_vector([a, b, c].map(|v| complex.point(v)));
-        for (edge, third) in [([a, b], c), ([b, c], a), ([c, a], b)] {
-            edges.push(([edge[0].min(edge[1]), edge[0].max(edge[1])], normal, wall.patch, third));
-        }
-    }
-    edges.sort_unstable_by_key(|edge| (edge.0, edge.3));
-    // The ways in which features leave each vertex.
-    let mut ways: Vec<(VertexId, Point)> = Vec::new();
-    for walls in edges.chunk_by(|x, y| x.0 == y.0) {
-        let [a, b] = walls[0].0;
-        let is_smooth = match walls {
-            [x, y] => {
-                let [m, n] = [x.3, y.3].map(|third| area_vector([a, b, third].map(|v| complex.point(v))));
-                x.2 == y.2 && -dot(m, n) > CREASE * norm(m) * norm(n)
+    /// Finds features and corners, where walls meet at a sharper angle than `crease`, and holds the vertices on them.
+    pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: f64) {
+        self.crease = crease;
+        for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
+            let is_fixed = self.is_fixed.get(v.index()).copied().unwrap_or(false);
+            if complex.hold(v) > Hold::Surface && !is_fixed {
+                complex.set_hold(v, Hold::Surface);
             }
-            _ => false,
-        };
-        if !is_smooth {
-            let way = sub(complex.point(b), complex.point(a));
-            let way = scale(way, 1.0 / norm(way));
-            ways.push((a, way));
-            ways.push((b, scale(way, -1.0)));
         }
+        let mut edges: Vec<([VertexId; 2], Point, i32, VertexId)> = Vec::new();
+        for (_, wall) in complex.walls() {
+            let [a, b, c] = complex.facet(wall.sides[0]);
+            let normal = area_vector([a, b, c].map(|v| complex.point(v)));
+            for (edge, third) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+                edges.push(([edge[0].min(edge[1]), edge[0].max(edge[1])], normal, wall.patch, third));
+            }
+        }
+        edges.sort_unstable_by_key(|edge| (edge.0, edge.3));
+        // The ways in which features leave each vertex.
+        let mut ways: Vec<(VertexId, Point)> = Vec::new();
+        for walls in edges.chunk_by(|x, y| x.0 == y.0) {
+            let [a, b] = walls[0].0;
+            let is_smooth = match walls {
+                [x, y] => {
+                    let [m, n] = [x.3, y.3].map(|third| area_vector([a, b, third].map(|v| complex.point(v))));
+                    x.2 == y.2 && -dot(m, n) > self.crease * norm(m) * norm(n)
+                }
+                _ => false,
+            };
+            if !is_smooth {
+                let way = sub(complex.point(b), complex.point(a));
+                let way = scale(way, 1.0 / norm(way));
+                ways.push((a, way));
+                ways.push((b, scale(way, -1.0)));
+            }
+        }
+        ways.sort_by_key(|way| way.0);
+        for of_vertex in ways.chunk_by(|x, y| x.0 == y.0) {
+            let hold = match of_vertex {
+                [(_, x), (_, y)] if -dot(*x, *y) > STRAIGHT => Hold::Edge,
+                _ => Hold::Fixed,
+            };
+            let vertex = of_vertex[0].0;
+            complex.set_hold(vertex, complex.hold(vertex).max(hold));
+        }
+        hold_touching(complex);
     }
-    ways.sort_by_key(|way| way.0);
-    for of_vertex in ways.chunk_by(|x, y| x.0 == y.0) {
-        let hold = match of_vertex {
-            [(_, x), (_, y)] if -dot(*x, *y) > STRAIGHT => Hold::Edge,
-            _ => Hold::Fixed,
-        };
-        let vertex = of_vertex[0].0;
-        complex.set_hold(vertex, complex.hold(vertex).max(hold));
-    }
-    hold_touching(complex);
 }
 
 /// Vertices at which parts of the mesh touch without sharing a facet stay.
