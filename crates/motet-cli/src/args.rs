@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{convert, demo, info, moving};
+use crate::verbs::{convert, demo, info, moving, remesh};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -26,6 +26,7 @@ pub(crate) enum Verb {
     Info(info::InfoArgs),
     Convert(convert::ConvertArgs),
     Move(Box<moving::MoveArgs>),
+    Remesh(Box<remesh::RemeshArgs>),
     Demo(demo::DemoArgs),
 }
 

@@ -28,6 +28,11 @@ impl Console {
         }
     }
 
+    /// Whether the user wants to know everything.
+    pub(crate) fn is_verbose(&self) -> bool {
+        self.verbose
+    }
+
     /// The result for programs: one JSON object on standard output, where asked for.
     pub(crate) fn report(&self, report: &impl Serialize) {
         if self.json {

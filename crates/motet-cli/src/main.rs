@@ -27,6 +27,7 @@ fn main() -> ExitCode {
         Verb::Info(args) => verbs::info::run(&args, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
+        Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
     exit::status(outcome, &console)

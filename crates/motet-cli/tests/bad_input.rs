@@ -6,7 +6,7 @@ mod common;
 
 use common::{Folder, cube, stderr, stdout};
 use motet::Mesh;
-use motet::base::VertexId;
+use motet::base::{CellId, VertexId};
 use motet::mesh::{CellKind, Cells};
 
 /// A file, the call that gets it (`FILE` stands for it), and what must come of it.
@@ -45,6 +45,8 @@ fn vtu(
 </Piece></UnstructuredGrid></VTKFile>"#
     )
 }
+
+const REMESH: &[&str] = &["remesh", "FILE", "-o", "out.vtu"];
 
 const POINTS: &str = "0 0 0 1 0 0 0 1 0 0 0 1";
 const HUGE: &str = "1152921504606846976";
@@ -147,6 +149,15 @@ fn odd_meshes() -> Vec<Case> {
     inverted.points[13] = [1.9, 0.5, 0.5];
     let mut flat = cube(2);
     flat.points[13] = flat.points[12];
+    let mut three_at_a_facet = cube(2);
+    let tet = three_at_a_facet.cells.vertices(CellId(0)).to_vec();
+    for x in [2.0, 3.0] {
+        let apex = VertexId::new(three_at_a_facet.points.len());
+        three_at_a_facet.points.push([x; 3]);
+        three_at_a_facet.cells.push(CellKind::TETRA, [tet[0], tet[1], tet[2], apex]);
+    }
+    let mut twice_in_a_tet = cube(2);
+    twice_in_a_tet.cells.push(CellKind::TETRA, [0, 1, 2, 2].map(VertexId));
     let mut orphan = cube(2);
     orphan.points.push([0.25, 0.3, 0.35]);
     let mut twice = cube(2);
@@ -167,6 +178,14 @@ fn odd_meshes() -> Vec<Case> {
         file("orphan_moved.vtu", &orphan, MOVE, 0, &[]),
         file("twice.vtu", &twice, INFO, 0, &["duplicate"]),
         file("twice_moved.vtu", &twice, MOVE, 0, &[]),
+        file("surface.vtp", &surface, REMESH, 3, &["surface.vtp: ", "no linear tetrahedra", "volume mesh"]),
+        file("nothing_remeshed.vtu", &Mesh::default(), REMESH, 3, &["nothing_remeshed.vtu: "]),
+        file("nan_remeshed.vtu", &not_a_number, REMESH, 3, &["nan_remeshed.vtu: cell ", "no numbers"]),
+        file("inverted_remeshed.vtu", &inverted, REMESH, 0, &["inverted"]),
+        file("flat_remeshed.vtu", &flat, REMESH, 0, &["inverted"]),
+        file("orphan_remeshed.vtu", &orphan, REMESH, 0, &[]),
+        file("three.vtu", &three_at_a_facet, REMESH, 3, &["three.vtu: cell 0: ", "share the facet"]),
+        file("same.vtu", &twice_in_a_tet, REMESH, 3, &["same.vtu: cell 48: ", "different"]),
     ]
 }
 
@@ -251,6 +270,13 @@ fn hostile_surfaces_of_others_never_panic() {
             || !folder.names().is_empty()
         {
             faults.push(format!("{name} (move): {:?}: {}", moved.get_output().status.code(), stderr(&moved)));
+        }
+        let remeshed = folder.motet(["remesh", &file.to_string_lossy(), "-o", "out.vtu"]).assert();
+        if remeshed.get_output().status.code() != Some(3)
+            || stderr(&remeshed).contains("panicked")
+            || !folder.names().is_empty()
+        {
+            faults.push(format!("{name} (remesh): {}", stderr(&remeshed)));
         }
     }
     println!("{table}");

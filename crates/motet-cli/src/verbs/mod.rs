@@ -4,3 +4,4 @@ pub(crate) mod convert;
 pub(crate) mod demo;
 pub(crate) mod info;
 pub(crate) mod moving;
+pub(crate) mod remesh;

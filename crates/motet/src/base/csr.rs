@@ -1,10 +1,26 @@
 //! Lists of lists in two flat arrays (compressed sparse rows).
 
 /// `n` lists of `T`, end to end in one array.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Parts<T>")]
 pub struct Csr<T> {
     offsets: Vec<u32>,
     items: Vec<T>,
+}
+
+/// What a stored [`Csr`] brings, before it is known to fit together.
+#[derive(serde::Deserialize)]
+struct Parts<T> {
+    offsets: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T> TryFrom<Parts<T>> for Csr<T> {
+    type Error = &'static str;
+
+    fn try_from(parts: Parts<T>) -> Result<Self, Self::Error> {
+        Self::new(parts.offsets, parts.items).ok_or("offsets do not rise from 0 to the number of items")
+    }
 }
 
 impl<T> Default for Csr<T> {
@@ -112,5 +128,7 @@ mod tests {
         assert!(Csr::new(vec![0, 3], vec![1, 2]).is_none());
         assert!(Csr::<u8>::new(vec![], vec![]).is_none());
         assert!(Csr::new(vec![0, 1, 2], vec![1, 2]).is_some());
+        assert!(serde_json::from_str::<Csr<u8>>(r#"{"offsets": [0, 3], "items": [1, 2]}"#).is_err());
+        assert!(serde_json::from_str::<Csr<u8>>(r#"{"offsets": [0, 2], "items": [1, 2]}"#).is_ok());
     }
 }

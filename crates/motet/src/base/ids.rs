@@ -2,12 +2,26 @@
 
 use std::fmt;
 
+/// What all ids have in common: for lists that serve any of them.
+pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
+    /// What stands in an array for no id.
+    const NONE: Self;
+
+    /// The id of place `index` in an array.
+    ///
+    /// Panics when `index` does not fit.
+    fn of(index: usize) -> Self;
+
+    /// The place in an array.
+    fn place(self) -> usize;
+}
+
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
         #[derive(
             Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash,
-            bytemuck::Pod, bytemuck::Zeroable, serde::Serialize,
+            bytemuck::Pod, bytemuck::Zeroable, serde::Serialize, serde::Deserialize,
         )]
         #[repr(transparent)]
         #[serde(transparent)]
@@ -31,6 +45,20 @@ macro_rules! id {
 
             /// How many of these one mesh may hold.
             pub const MAX_COUNT: usize = (u32::MAX - 1) as usize;
+        }
+
+        impl Id for $name {
+            const NONE: Self = Self(u32::MAX);
+
+            #[inline]
+            fn of(index: usize) -> Self {
+                Self::new(index)
+            }
+
+            #[inline]
+            fn place(self) -> usize {
+                self.index()
+            }
         }
 
         impl fmt::Display for $name {

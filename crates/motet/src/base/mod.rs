@@ -7,7 +7,7 @@ mod threads;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
-pub use ids::{CellId, TetId, VertexId};
+pub use ids::{CellId, Id, TetId, VertexId};
 pub use threads::Threads;
 
 /// Coordinates of a point, or any other vector in space.

@@ -1,6 +1,7 @@
 //! Floor 1: pure functions on points; nothing here knows a mesh.
 
 pub(crate) mod fused;
+pub mod overlap;
 pub mod predicates;
 pub mod quality;
 pub mod segment;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::base::VertexId;
-use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, Values, corners};
+use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, corners};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
 pub(super) fn keep_cells<'m>(
@@ -44,7 +44,7 @@ pub(super) fn of_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
         points: mesh.points.clone(),
         cells,
         point_data: mesh.point_data.clone(),
-        cell_data: mesh.cell_data.iter().map(|f| rows(f, &kept)).collect(),
+        cell_data: mesh.cell_data.iter().map(|f| f.pick(kept.iter().copied())).collect(),
         field_data: mesh.field_data.clone(),
         label_names: mesh.label_names.clone(),
     }
@@ -92,26 +92,10 @@ pub(super) fn facets_alone<'m>(
     Mesh {
         points: point_rows.iter().map(|&i| mesh.points[i]).collect(),
         cells,
-        point_data: mesh.point_data.iter().map(|f| rows(f, &point_rows)).collect(),
-        cell_data: mesh.cell_data.iter().map(|f| rows(f, cell_rows)).collect(),
+        point_data: mesh.point_data.iter().map(|f| f.pick(point_rows.iter().copied())).collect(),
+        cell_data: mesh.cell_data.iter().map(|f| f.pick(cell_rows.iter().copied())).collect(),
         ..Mesh::default()
     }
-}
-
-/// The rows of `field` named in `rows`, in that order.
-pub(super) fn rows(field: &Field, rows: &[usize]) -> Field {
-    fn pick<T: Clone>(values: &[T], components: usize, rows: &[usize]) -> Vec<T> {
-        rows.iter().flat_map(|&row| values[row * components..][..components].iter().cloned()).collect()
-    }
-    macro_rules! picked {
-        ($($variant:ident)*) => {
-            match &field.values {
-                $(Values::$variant(v) => Values::$variant(pick(v, field.components, rows)),)*
-            }
-        };
-    }
-    let values = picked!(I8 U8 I16 U16 I32 U32 I64 U64 F32 F64 Text);
-    Field { name: field.name.clone(), components: field.components, values }
 }
 
 /// A sentence on arrays that a format has no place for; none where there are none.

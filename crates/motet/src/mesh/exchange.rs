@@ -85,7 +85,7 @@ fn set(fields: &mut Vec<Field>, field: Field) {
     }
 }
 
-fn check_rows(fields: &[Field], n: usize, what: &str) -> Result<()> {
+pub(super) fn check_rows(fields: &[Field], n: usize, what: &str) -> Result<()> {
     match fields.iter().find(|f| f.values.len() != n * f.components) {
         None => Ok(()),
         Some(f) => Err(Error::input(format!(

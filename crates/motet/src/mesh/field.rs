@@ -15,12 +15,21 @@ macro_rules! values {
             pub fn len(&self) -> usize {
                 match self { $(Self::$variant(v) => v.len(),)* }
             }
+
+            /// Rows of `components` values each, picked in this order.
+            fn pick(&self, components: usize, rows: impl Iterator<Item = usize>) -> Self {
+                match self { $(Self::$variant(v) => Self::$variant(pick(v, components, rows)),)* }
+            }
         }
 
         $(impl From<Vec<$t>> for Values {
             fn from(v: Vec<$t>) -> Self { Self::$variant(v) }
         })*
     };
+}
+
+fn pick<T: Clone>(values: &[T], components: usize, rows: impl Iterator<Item = usize>) -> Vec<T> {
+    rows.flat_map(|row| values[row * components..][..components].iter().cloned()).collect()
 }
 
 values! {
@@ -106,6 +115,14 @@ impl Field {
     /// How many rows there are.
     pub fn n_rows(&self) -> usize {
         self.values.len() / self.components.max(1)
+    }
+
+    /// The rows with these numbers, in that order, bit for bit.
+    ///
+    /// Panics when there is no such row.
+    pub fn pick(&self, rows: impl IntoIterator<Item = usize>) -> Self {
+        let values = self.values.pick(self.components, rows.into_iter());
+        Self { name: self.name.clone(), components: self.components, values }
     }
 
     /// The rows as vectors in space.

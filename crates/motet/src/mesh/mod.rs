@@ -8,6 +8,7 @@ pub mod check;
 mod exchange;
 pub mod facets;
 mod field;
+pub mod history;
 mod labels;
 mod lone;
 mod measure;

@@ -1,6 +1,7 @@
 //! The tets of a mesh that holds more: taken out to be worked on, and where each was.
 
 use crate::base::{CellId, Error, Result, VertexId};
+use crate::geometry::tet::FACETS;
 use crate::mesh::{CellKind, Mesh, TetMesh};
 
 /// The linear tets and triangles of a mesh, as plain arrays. Cells of other kinds stay behind, and hold their vertices and edges where they are.
@@ -45,6 +46,7 @@ impl TetPart {
             return Err(no_tets(mesh));
         }
         part.hold_polyhedra(mesh);
+        part.hold_loose_triangles();
         Ok(part)
     }
 
@@ -62,6 +64,35 @@ impl TetPart {
     fn hold_polyhedra(&mut self, mesh: &Mesh) {
         for face in mesh.cells.polyhedron_faces().iter().flat_map(|faces| faces.iter()) {
             self.hold(face);
+        }
+    }
+
+    /// Triangles that are no facet of a tet, and all but the first of those that are the same, stay as well.
+    fn hold_loose_triangles(&mut self) {
+        let fixed = &self.mesh;
+        let sorted = |mut triangle: [VertexId; 3]| {
+            triangle.sort_unstable();
+            triangle
+        };
+        let mut open: Vec<_> = fixed.triangles.iter().map(|&t| sorted(t)).zip(0usize..).collect();
+        open.sort_unstable();
+        let mut is_loose = vec![true; open.len()];
+        let mut has_triangle = vec![false; fixed.points.len()];
+        fixed.triangles.iter().flatten().for_each(|v| has_triangle[v.index()] = true);
+        for tet in &fixed.tets {
+            // Few tets have three vertices on the surface.
+            if tet.iter().filter(|v| has_triangle[v.index()]).count() < 3 {
+                continue;
+            }
+            for facet in FACETS.map(|facet| sorted(facet.map(|i| tet[i]))) {
+                let first = open.partition_point(|(triangle, _)| *triangle < facet);
+                if let Some((_, i)) = open.get(first).filter(|(triangle, _)| *triangle == facet) {
+                    is_loose[*i] = false;
+                }
+            }
+        }
+        for i in (0..is_loose.len()).filter(|&i| is_loose[i]) {
+            self.hold(&self.mesh.triangles[i].clone());
         }
     }
 }

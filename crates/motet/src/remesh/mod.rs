@@ -10,6 +10,7 @@
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
 //! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
+//! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
 //!
 //! Every change goes through [`kernel`](crate::kernel): the worst quality of what it touches rises, or it is not made. The method is that of Moyle and
 //! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
@@ -23,8 +24,10 @@ mod repair;
 mod report;
 mod run;
 mod surface;
+mod whole;
 
 pub use left::{Left, Reason};
 pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
 pub use report::{Counts, Operation, Report, Seconds, State, Worst};
 pub use run::{Outcome, remesh};
+pub use whole::{MeshOutcome, remesh_mesh};

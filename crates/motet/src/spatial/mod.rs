@@ -1,8 +1,11 @@
 //! Floor 3: searching in space.
 
+mod boxes;
 pub(crate) mod hilbert;
 mod locate;
 mod nearest;
+pub mod trace;
 
+pub use boxes::{Bounds, BoxTree};
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};

@@ -17,7 +17,6 @@ use std::path::{Path, PathBuf};
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Input;
 use crate::io::reading::read_file;
-use crate::io::select::rows;
 use crate::io::simvascular::{FACE_ID, NODE_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
 use crate::io::vtkxml;
@@ -208,7 +207,7 @@ fn extend_arrays(mesh: &mut Mesh, face: &Mesh) {
     let (n_all, n_face) = (mesh.cells.len(), face.cells.len());
     for theirs in &face.cell_data {
         if mesh.cell_field(&theirs.name).is_none() {
-            let mut field = rows(theirs, &[]);
+            let mut field = theirs.pick([]);
             blank(&mut field.values, (n_all - n_face) * theirs.components);
             mesh.cell_data.push(field);
         }

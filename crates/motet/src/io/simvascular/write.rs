@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::{WriteOptions, Written};
-use crate::io::select::{facets_alone, of_kinds, rows};
+use crate::io::select::{facets_alone, of_kinds};
 use crate::io::simvascular::read::node_ids;
 use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
@@ -145,8 +145,8 @@ impl<'m> Numbered<'m> {
         used.sort_unstable();
         used.dedup();
         let mut face = facets_alone(self.mesh, &used, cells.iter().map(facet), cells);
-        let point_rows: Vec<usize> = used.iter().map(|v| v.index()).collect();
-        face.set_point_field(rows(&Field::scalars(NODE_ID, self.node_ids.clone()), &point_rows));
+        let point_rows = used.iter().map(|v| v.index());
+        face.set_point_field(Field::scalars(NODE_ID, self.node_ids.clone()).pick(point_rows));
         let behind = |(kind, vertices)| self.behind.get(&key(corners(kind, vertices))).copied().unwrap_or(0);
         let behind: Vec<i64> = cells.iter().map(facet).map(behind).collect();
         let inside = behind.iter().filter(|&&id| id == 0).count();

@@ -1,0 +1,207 @@
+//! The words of `motet remesh`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use motet::Error;
+use motet::mesh::history::{Rule, Rules};
+use motet::remesh::{self, Options, SurfaceRule};
+
+use crate::verbs::convert::WritingArgs;
+
+/// Find the bad tets of a mesh and repair them, and only them
+///
+/// A tet is bad when its equi-angle quality (EAS: 1 regular, 0 flat, negative inverted) is below
+/// --min-eas. Each is repaired where it is: edges and facets swapped, edges split and collapsed,
+/// vertices moved and inserted; a change that does not raise the worst quality of what it touches is
+/// not made. All else stays as it came, to the bit. Regions, patches and every array go along.
+#[derive(Debug, Args)]
+#[command(override_usage = "motet remesh MESH -o OUT [OPTIONS]")]
+#[command(after_help = "\
+Types of bad tets: I two opposite edges cross closely, II a vertex lies close to an edge opposite,
+III a vertex lies over the middle of the facet opposite, IV an edge is short.
+
+Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps on
+cells, so that integrals stay; whole numbers, names and directions are inherited. GlobalNodeID and
+GlobalElementID of new points and tets are numbers of their own.
+
+Examples:
+  motet remesh moved.vtu -o repaired.vtu
+  motet remesh moved.vtu -o repaired.vtu --surface adapt --distance 0.01
+        the wall may give way by a hundredth of a unit where it makes tets bad
+  motet remesh scan.msh -o better.vtu --goal best        the worst tets as good as they get
+  motet remesh moved.vtu -o repaired.vtu --json | jq .left
+  motet remesh moved.vtu -o repaired.vtu --carry flags=drop --history repaired.json
+
+Exit status 4: something bad is left; the mesh is written, and it is told what is left and why.")]
+pub(crate) struct RemeshArgs {
+    /// The mesh file (or folder)
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+    /// Where the result goes, in any mesh format
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// A tet below this EAS is bad
+    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Repair")]
+    pub(crate) min_eas: f64,
+    /// What may happen to the boundary, to interfaces of regions and to surface cells
+    #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
+    pub(crate) surface: Surface,
+    /// How far an adapting surface may stray from where it was, in units of the mesh [default: a
+    /// thousandth of the largest extent]
+    #[arg(long, value_name = "D", value_parser = distance, help_heading = "Repair")]
+    distance: Option<f64>,
+    /// How far to go
+    #[arg(long, value_name = "GOAL", default_value = "repair", help_heading = "Repair")]
+    pub(crate) goal: Goal,
+    /// What becomes of the thin tets of boundary layers at walls, which count as bad by their angles
+    #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
+    layers: Layers,
+    /// At most so many rounds over the bad tets
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Repair")]
+    rounds: u32,
+
+    /// What becomes of an array where the mesh changes. Repeatable
+    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
+    pub(crate) carry: Vec<(String, Carry)>,
+    /// Add the cell array `eas`
+    #[arg(long, help_heading = "Arrays")]
+    pub(crate) quality: bool,
+    /// Write where each point and cell came from, with weights, as one JSON object
+    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
+    pub(crate) history: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Surface {
+    /// Nothing: it stays to the bit
+    Keep,
+    /// It may change within --distance; creases, corners and borders of patches stay
+    Adapt,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Goal {
+    /// No bad tet left, as few tets touched as can be
+    Repair,
+    /// The worst tets as good as they get, everywhere
+    Best,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Layers {
+    /// They stay as they are and count as good
+    Keep,
+    /// They are repaired as any bad tet is
+    Repair,
+}
+
+/// What becomes of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Carry {
+    /// On points interpolated, on cells averaged by volume.
+    Mean,
+    Inherit,
+    Drop,
+}
+
+impl RemeshArgs {
+    pub(crate) fn options(&self) -> motet::Result<Options> {
+        let surface = match (self.surface, self.distance) {
+            (Surface::Keep, None) => SurfaceRule::Keep,
+            (Surface::Adapt, distance) => SurfaceRule::Adapt { distance },
+            (Surface::Keep, Some(_)) => {
+                return Err(Error::options(
+                    "--distance says how far a surface may stray, and this one is kept",
+                )
+                .remedy("add --surface adapt"));
+            }
+        };
+        Ok(Options {
+            min_eas: self.min_eas,
+            goal: match self.goal {
+                Goal::Repair => remesh::Goal::Repair,
+                Goal::Best => remesh::Goal::Best,
+            },
+            surface,
+            keep_layers: self.layers == Layers::Keep,
+            rounds: self.rounds as usize,
+        })
+    }
+
+    /// The rules for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
+    pub(crate) fn rules(&self, mesh: &motet::Mesh) -> motet::Result<Rules> {
+        let mut rules = Rules::default();
+        for (name, carry) in &self.carry {
+            let rule = |mean| match carry {
+                Carry::Mean => mean,
+                Carry::Inherit => Rule::Inherit,
+                Carry::Drop => Rule::Drop,
+            };
+            let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
+            if on_points {
+                rules.points.insert(name.clone(), rule(Rule::Interpolate));
+            }
+            if on_cells {
+                rules.cells.insert(name.clone(), rule(Rule::Conserve));
+            }
+            if !on_points && !on_cells {
+                let fields = mesh.point_data.iter().chain(&mesh.cell_data);
+                let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
+                return Err(Error::options(format!("--carry: the mesh has no array {name}"))
+                    .remedy(format!("its arrays: {}", known.join(", "))));
+            }
+        }
+        Ok(rules)
+    }
+}
+
+fn eas(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(eas) if 0.0 < eas && eas < 1.0 => Ok(eas),
+        _ => Err("an EAS between 0 (flat) and 1 (regular) is expected, such as 0.2".into()),
+    }
+}
+
+fn distance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(distance) if 0.0 < distance && distance < f64::INFINITY => Ok(distance),
+        _ => Err("a number above 0 is expected".into()),
+    }
+}
+
+fn carry(text: &str) -> Result<(String, Carry), String> {
+    let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
+    let carry = match rule {
+        "mean" => Carry::Mean,
+        "inherit" => Carry::Inherit,
+        "drop" => Carry::Drop,
+        _ => return Err("ARRAY=mean, ARRAY=inherit or ARRAY=drop is expected".into()),
+    };
+    Ok((name.to_owned(), carry))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_mean_what_the_help_says() {
+        assert_eq!(eas("0.25"), Ok(0.25));
+        assert_eq!(distance("1e-3"), Ok(1e-3));
+        assert_eq!(carry("a=b=drop"), Ok(("a=b".to_owned(), Carry::Drop)));
+    }
+
+    #[test]
+    fn what_is_off_is_told() {
+        for text in ["0", "1", "-0.2", "nan", "x"] {
+            assert!(eas(text).is_err(), "{text}");
+        }
+        assert!(distance("0").is_err() && distance("inf").is_err());
+        assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
+    }
+}

@@ -1,0 +1,78 @@
+//! `motet remesh`: bad tets found and repaired, all else as it came.
+
+mod args;
+mod report;
+
+use std::path::Path;
+use std::time::Instant;
+
+use motet::geometry::quality::eas;
+use motet::mesh::history::History;
+use motet::remesh::{MeshOutcome, remesh_mesh};
+use motet::{Error, ErrorKind, io};
+
+pub(crate) use args::RemeshArgs;
+
+use self::report::Report;
+use crate::args::Common;
+use crate::console::Console;
+use crate::exit::Outcome;
+use crate::table::seconds;
+
+pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+    let begin = Instant::now();
+    let options = args.options()?;
+    check_outputs(args)?;
+    let threads = common.threads()?;
+    let bar = console.bar(3, "remeshing");
+    let (old, notes) = io::read_noted(&args.mesh)?;
+    let read = begin.elapsed().as_secs_f64();
+    bar.inc(1);
+    let rules = args.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
+    let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    bar.inc(1);
+    let MeshOutcome { mut mesh, history, report } = outcome;
+    if args.quality {
+        mesh.set_cell_field(mesh.tet_field("eas", eas));
+    }
+    let writing = Instant::now();
+    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
+    if let Some(file) = &args.history {
+        write_history(file, &history)?;
+    }
+    let write = writing.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+
+    console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
+    console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
+    notes.iter().chain(&lost).for_each(|what| console.warn(what));
+    let mut told = Report::new(args, [&old, &mesh], &report, &history);
+    told.end([read, write, begin.elapsed().as_secs_f64()], notes, lost);
+    told.tell(console);
+    Ok(if report.is_complete() { Outcome::Done } else { Outcome::NotReached })
+}
+
+/// Refuses, before any work, outputs that cannot be written.
+fn check_outputs(args: &RemeshArgs) -> motet::Result<()> {
+    io::can_write(&args.output)?;
+    let Some(history) = &args.history else { return Ok(()) };
+    for other in [&args.output, &args.mesh] {
+        if history == other {
+            return Err(Error::options("the history would overwrite a mesh")
+                .in_file(history)
+                .remedy("give --history a file of its own"));
+        }
+    }
+    let folder = history.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        None => Ok(()),
+        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
+            .in_file(history)
+            .remedy("make the folder first")),
+    }
+}
+
+fn write_history(file: &Path, history: &History) -> motet::Result<()> {
+    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
+    io::replace(file, &json)
+}

@@ -1,0 +1,289 @@
+//! What a remeshing reports: to people tables, to programs an object.
+
+use std::path::PathBuf;
+
+use motet::Mesh;
+use motet::base::Point;
+use motet::mesh::history::{History, Ledger};
+use motet::remesh::classify::DEFECT_NAMES;
+use motet::remesh::{self, Counts, Reason};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::args::{RemeshArgs, Surface};
+use crate::console::Console;
+use crate::table::{Table, count, seconds, short};
+
+/// How many of the bad tets that are left are told where nobody asks for all.
+const FIRST: usize = 10;
+
+/// All that a remeshing came to.
+#[derive(Debug, Serialize)]
+pub(crate) struct Report {
+    mesh: PathBuf,
+    output: PathBuf,
+    /// Where the history went, if anywhere.
+    history: Option<PathBuf>,
+    /// Whether nothing bad is left.
+    complete: bool,
+    min_eas: f64,
+    before: State,
+    after: State,
+    /// How often each operation was made.
+    operations: Counts,
+    /// Tets that are as they came, to the bit.
+    kept: usize,
+    /// The same as a share of the tets that came.
+    untouched: f64,
+    /// Tets of boundary layers that would count as bad, and stayed.
+    layers: usize,
+    left: Vec<Left>,
+    /// How well the volumes of old and new tets fit.
+    volumes: Ledger,
+    passed_over: Vec<String>,
+    lost: Vec<String>,
+    seconds: Stages,
+    #[serde(skip)]
+    surface_is_kept: bool,
+}
+
+/// A mesh before or after.
+#[derive(Debug, Serialize)]
+struct State {
+    points: usize,
+    cells: usize,
+    tets: usize,
+    bad: usize,
+    /// How many of the bad are of each type.
+    types: Value,
+    inverted: usize,
+    worst_eas: Option<Worst>,
+}
+
+#[derive(Debug, Serialize)]
+struct Worst {
+    value: f64,
+    cell: u32,
+    place: Point,
+}
+
+/// A bad tet that is left.
+#[derive(Debug, Serialize)]
+struct Left {
+    cell: u32,
+    eas: f64,
+    place: Point,
+    #[serde(rename = "type")]
+    defect: &'static str,
+    reason: Reason,
+    /// The reason in words.
+    why: String,
+}
+
+/// Seconds by stage.
+#[derive(Debug, Default, Serialize)]
+struct Stages {
+    read: f64,
+    join: f64,
+    repair: f64,
+    extract: f64,
+    history: f64,
+    write: f64,
+    total: f64,
+}
+
+impl Report {
+    pub(crate) fn new(
+        args: &RemeshArgs,
+        [old, new]: [&Mesh; 2],
+        report: &remesh::Report,
+        history: &History,
+    ) -> Self {
+        let left = |left: &remesh::Left| Left {
+            cell: left.tet,
+            eas: left.eas,
+            place: left.place,
+            defect: left.defect,
+            reason: left.reason,
+            why: left.reason.to_string(),
+        };
+        let remesh::Seconds { join, repair, extract, history: carried } = report.seconds;
+        Self {
+            mesh: args.mesh.clone(),
+            output: args.output.clone(),
+            history: args.history.clone(),
+            complete: report.is_complete(),
+            min_eas: report.min_eas,
+            before: State::of(old, &report.before),
+            after: State::of(new, &report.after),
+            operations: report.operations,
+            kept: report.kept,
+            untouched: report.kept_share,
+            layers: report.layers,
+            left: report.left.iter().map(left).collect(),
+            volumes: history.ledger.clone(),
+            passed_over: Vec::new(),
+            lost: Vec::new(),
+            seconds: Stages { join, repair, extract, history: carried, ..Stages::default() },
+            surface_is_kept: args.surface == Surface::Keep,
+        }
+    }
+
+    pub(crate) fn end(
+        &mut self,
+        [read, write, total]: [f64; 3],
+        passed_over: Vec<String>,
+        lost: Vec<String>,
+    ) {
+        self.seconds = Stages { read, write, total, ..std::mem::take(&mut self.seconds) };
+        (self.passed_over, self.lost) = (passed_over, lost);
+    }
+
+    pub(crate) fn tell(&self, console: &Console) {
+        console.report(self);
+        console.say(format_args!(
+            "{}: {} points, {} tets; bad are those below EAS {}",
+            self.mesh.display(),
+            count(self.before.points),
+            count(self.before.tets),
+            self.min_eas
+        ));
+        if self.before.bad > 0 {
+            console.say(self.type_table());
+            console.say(self.operation_words());
+        }
+        console.say(self.state_table());
+        console.say(format_args!(
+            "kept to the bit: {} of {} tets, {} %",
+            count(self.kept),
+            count(self.before.tets),
+            percent(self.untouched)
+        ));
+        if self.layers > 0 {
+            console.say(format_args!("kept as boundary layers: {} thin tets", count(self.layers)));
+        }
+        self.tell_left(console);
+        console.say(format_args!("wrote {}", self.output.display()));
+        if let Some(history) = &self.history {
+            console.say(format_args!("wrote {}", history.display()));
+        }
+        let Stages { read, join, repair, extract, history, write, total } = self.seconds;
+        let [read, join, repair, extract, history, write, total] =
+            [read, join, repair, extract, history, write, total].map(seconds);
+        console.say(format_args!(
+            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, wrote {write}, \
+             all {total}"
+        ));
+    }
+
+    fn type_table(&self) -> Table {
+        let mut table = Table::new(["type", "found", "left"]);
+        let n = |state: &State, name: &str| count(state.types[name].as_u64().unwrap_or(0) as usize);
+        for name in DEFECT_NAMES {
+            table.row([name.to_string(), n(&self.before, name), n(&self.after, name)]);
+        }
+        table.row(["all".to_string(), count(self.before.bad), count(self.after.bad)]);
+        table
+    }
+
+    fn operation_words(&self) -> String {
+        let Counts {
+            edge_removal,
+            face_removal,
+            split_crossed,
+            split_onto,
+            collapse,
+            split_edge,
+            smoothing,
+            insertion,
+        } = self.operations;
+        let made = [
+            ("edges removed", edge_removal),
+            ("facets removed", face_removal),
+            ("crossed edges split", split_crossed),
+            ("edges split at a vertex", split_onto),
+            ("edges collapsed", collapse),
+            ("edges split", split_edge),
+            ("vertices moved", smoothing),
+            ("vertices inserted", insertion),
+        ];
+        let made: Vec<String> =
+            made.into_iter().filter(|m| m.1 > 0).map(|(what, n)| format!("{what} {}", count(n))).collect();
+        if made.is_empty() { "nothing was done".into() } else { format!("done: {}", made.join(", ")) }
+    }
+
+    fn state_table(&self) -> Table {
+        let mut table = Table::new(["", "before", "after"]);
+        let mut row = |what: &str, of: &dyn Fn(&State) -> String| {
+            table.row([what.to_string(), of(&self.before), of(&self.after)]);
+        };
+        row("points", &|s| count(s.points));
+        row("tets", &|s| count(s.tets));
+        row("bad", &|s| count(s.bad));
+        row("inverted", &|s| count(s.inverted));
+        let worst =
+            |of: fn(&Worst) -> String| move |s: &State| s.worst_eas.as_ref().map_or("-".to_string(), of);
+        row("worst EAS", &worst(|w| short(w.value)));
+        row("in cell", &worst(|w| w.cell.to_string()));
+        row("at", &worst(|w| place(w.place)));
+        table
+    }
+
+    fn tell_left(&self, console: &Console) {
+        if self.complete {
+            return;
+        }
+        let n = if console.is_verbose() { self.left.len() } else { FIRST };
+        console.say("left:");
+        for left in self.left.iter().take(n) {
+            console.say(format_args!(
+                "  cell {} at {}, EAS {}, type {}: {}",
+                left.cell,
+                place(left.place),
+                short(left.eas),
+                left.defect,
+                left.why
+            ));
+        }
+        if self.left.len() > n {
+            console.say(format_args!("  and {} more: -v and --json tell all", count(self.left.len() - n)));
+        }
+        let is_held = |left: &&Left| !matches!(left.reason, Reason::NothingHelps);
+        let n_held = self.left.iter().filter(is_held).count();
+        let advice = match self.surface_is_kept && n_held > 0 {
+            true => format!("; the surface holds {}, --surface adapt lets it give way", count(n_held)),
+            false => String::new(),
+        };
+        console.warn(format_args!(
+            "{}: not reached: {} of {} bad tets are left{advice}; what was reached is written",
+            self.mesh.display(),
+            count(self.after.bad),
+            count(self.before.bad)
+        ));
+    }
+}
+
+impl State {
+    fn of(mesh: &Mesh, state: &remesh::State) -> Self {
+        let [i, ii, iii, iv, other] = state.types;
+        Self {
+            points: mesh.points.len(),
+            cells: mesh.cells.len(),
+            tets: state.tets,
+            bad: state.bad,
+            types: json!({ "I": i, "II": ii, "III": iii, "IV": iv, "other": other }),
+            inverted: state.inverted,
+            worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet, place: w.place }),
+        }
+    }
+}
+
+fn place(p: Point) -> String {
+    p.map(short).join(", ")
+}
+
+/// Rounded down, so that only all is 100.
+fn percent(share: f64) -> String {
+    let floored = (share * 1e4).floor() / 1e2;
+    floored.to_string()
+}

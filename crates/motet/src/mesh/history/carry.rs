@@ -1,0 +1,185 @@
+//! Carries fields across a change: what was kept bit for bit, the rest by rule.
+
+use super::origins::{Origin, Origins};
+use super::rule::has_mean;
+use super::{History, Row, Rule, Rules};
+use crate::base::{Error, Id, Result};
+use crate::mesh::exchange::check_rows;
+use crate::mesh::{Field, Mesh, Values};
+
+impl History {
+    /// A point array of the old mesh on the points of the new one, by [`Rule::of_points`].
+    ///
+    /// # Errors
+    /// When the array has not one row for each old point.
+    pub fn transfer_points(&self, field: &Field) -> Result<Field> {
+        check(field, self.vertices.n_old(), "point")?;
+        Ok(carried(&self.vertices, field, Rule::of_points(field)))
+    }
+
+    /// A cell array of the old mesh on the cells of the new one, by [`Rule::of_cells`].
+    ///
+    /// # Errors
+    /// When the array has not one row for each old cell.
+    pub fn transfer_cells(&self, field: &Field) -> Result<Field> {
+        check(field, self.cells.n_old(), "cell")?;
+        Ok(carried(&self.cells, field, Rule::of_cells(field)))
+    }
+
+    /// [`Self::transfer_points`] by a rule of the caller's; `None` for [`Rule::Drop`].
+    ///
+    /// # Errors
+    /// Also when the rule means nothing: values on points are interpolated, not conserved, and whole numbers, texts have no mean.
+    pub fn transfer_points_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
+        check(field, self.vertices.n_old(), "point")?;
+        check_rule(field, rule, Rule::Interpolate, "point")?;
+        Ok((rule != Rule::Drop).then(|| carried(&self.vertices, field, rule)))
+    }
+
+    /// [`Self::transfer_cells`] by a rule of the caller's; `None` for [`Rule::Drop`].
+    ///
+    /// # Errors
+    /// Also when the rule means nothing: values on cells are conserved, not interpolated, and whole numbers, texts have no mean.
+    pub fn transfer_cells_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
+        check(field, self.cells.n_old(), "cell")?;
+        check_rule(field, rule, Rule::Conserve, "cell")?;
+        Ok((rule != Rule::Drop).then(|| carried(&self.cells, field, rule)))
+    }
+
+    /// Gives `new` all arrays that `old` has and it has not, on points, on cells and on the whole, and the names of
+    /// labels. Arrays that `new` has stay as they are.
+    ///
+    /// # Errors
+    /// When a mesh is not the one that the history is of, an array does not fit, or a rule names no array of `old` or
+    /// means nothing for it. `new` is then as it was.
+    pub fn transfer(&self, old: &Mesh, new: &mut Mesh, rules: &Rules) -> Result<()> {
+        check_count("old mesh", "points", self.vertices.n_old(), old.points.len())?;
+        check_count("old mesh", "cells", self.cells.n_old(), old.cells.len())?;
+        check_count("new mesh", "points", self.vertices.len(), new.points.len())?;
+        check_count("new mesh", "cells", self.cells.len(), new.cells.len())?;
+        check_names(&old.point_data, rules.points.keys(), "point")?;
+        check_names(&old.cell_data, rules.cells.keys(), "cell")?;
+        let on_points = missing(&old.point_data, &new.point_data).map(|field| {
+            let rule = rules.points.get(&field.name).copied().unwrap_or_else(|| Rule::of_points(field));
+            self.transfer_points_by(field, rule)
+        });
+        let on_points: Vec<Option<Field>> = on_points.collect::<Result<_>>()?;
+        let on_cells = missing(&old.cell_data, &new.cell_data).map(|field| {
+            let rule = rules.cells.get(&field.name).copied().unwrap_or_else(|| Rule::of_cells(field));
+            self.transfer_cells_by(field, rule)
+        });
+        let on_cells: Vec<Option<Field>> = on_cells.collect::<Result<_>>()?;
+        let on_mesh: Vec<Field> = missing(&old.field_data, &new.field_data).cloned().collect();
+        new.point_data.extend(on_points.into_iter().flatten());
+        new.cell_data.extend(on_cells.into_iter().flatten());
+        new.field_data.extend(on_mesh);
+        for (&label, name) in &old.label_names.regions {
+            new.label_names.regions.entry(label).or_insert_with(|| name.clone());
+        }
+        for (&label, name) in &old.label_names.patches {
+            new.label_names.patches.entry(label).or_insert_with(|| name.clone());
+        }
+        Ok(())
+    }
+}
+
+/// The arrays of `old` whose names `new` has not.
+fn missing<'a>(old: &'a [Field], new: &'a [Field]) -> impl Iterator<Item = &'a Field> {
+    old.iter().filter(|field| new.iter().all(|other| other.name != field.name))
+}
+
+fn check(field: &Field, n_old: usize, what: &str) -> Result<()> {
+    let remedy = "give the array that lies on the mesh from before the change";
+    check_rows(std::slice::from_ref(field), n_old, what).map_err(|e| e.remedy(remedy))
+}
+
+fn check_rule(field: &Field, rule: Rule, mean: Rule, what: &str) -> Result<()> {
+    let error = match rule {
+        Rule::Inherit | Rule::Drop => return Ok(()),
+        rule if rule != mean => Error::options(format!("cannot be asked to {rule:?}"))
+            .remedy(format!("{what} arrays take {mean:?}, Inherit or Drop")),
+        _ if has_mean(field) => return Ok(()),
+        _ => Error::options(format!("is asked to {rule:?}, but whole numbers and texts have no mean"))
+            .remedy("Inherit it, or store it as floats"),
+    };
+    Err(error.at(format!("{what} array {}", field.name)))
+}
+
+fn check_count(mesh: &str, what: &str, expected: usize, got: usize) -> Result<()> {
+    if expected == got {
+        return Ok(());
+    }
+    let text = format!("has {got} {what}, but the history is of one with {expected}");
+    Err(Error::input(text).at(mesh).remedy("give the two meshes that the history came with"))
+}
+
+fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>, what: &str) -> Result<()> {
+    let Some(name) = names.find(|name| fields.iter().all(|field| field.name != **name)) else {
+        return Ok(());
+    };
+    let known: Vec<&str> = fields.iter().map(|f| f.name.as_str()).collect();
+    Err(Error::options(format!("a rule names it, but the mesh has {}", known.join(", ")))
+        .at(format!("{what} array {name}")))
+}
+
+/// `field` has a row for each old thing, and means where the rule takes some.
+fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule) -> Field {
+    let values = match &field.values {
+        Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, field.components, old)),
+        Values::F32(old) if rule != Rule::Inherit => Values::F32(mixed(origins, field.components, old)),
+        _ => return field.pick(origins.main().map(I::place)),
+    };
+    Field { name: field.name.clone(), components: field.components, values }
+}
+
+/// A float that sums are taken of in double precision.
+trait Float: Copy + Into<f64> {
+    fn rounded(x: f64) -> Self;
+}
+
+impl Float for f64 {
+    fn rounded(x: f64) -> Self {
+        x
+    }
+}
+
+impl Float for f32 {
+    fn rounded(x: f64) -> Self {
+        x as f32
+    }
+}
+
+fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, old: &[T]) -> Vec<T> {
+    let mut new = Vec::with_capacity(origins.len() * components);
+    for origin in origins.iter() {
+        match origin {
+            Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
+            Origin::Changed(row) => new.extend((0..components).map(|k| {
+                let value = |id: I| old[id.place() * components + k].into();
+                T::rounded(mean(&row, value))
+            })),
+        }
+    }
+    new
+}
+
+/// The mean of a row's values. Taken from the first one on, so that equal values give their own, to the bit; and
+/// never beyond the least or the largest, as rounding might.
+fn mean<I: Id>(row: &Row<'_, I>, value: impl Fn(I) -> f64) -> f64 {
+    let first = value(row.from[0]);
+    let (mut sum, mut least, mut largest) = (0.0, first, first);
+    for (&id, &share) in row.from.iter().zip(row.shares).skip(1) {
+        let value = value(id);
+        sum += share * (value - first);
+        (least, largest) = (least.min(value), largest.max(value));
+    }
+    let mean = first + sum;
+    // NaN passes through: it was there before.
+    if mean < least {
+        least
+    } else if mean > largest {
+        largest
+    } else {
+        mean
+    }
+}

@@ -1,0 +1,183 @@
+//! Where each vertex, or each cell, of a new mesh came from.
+
+use serde::{Deserialize, Serialize};
+
+use super::row::{Row, Rows};
+use crate::base::{Error, Id, Result};
+
+/// For each thing of the new mesh the old thing that it is, or a row of old things with shares.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts<I>")]
+#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+pub struct Origins<I> {
+    n_old: usize,
+    /// The old id of each new thing that was kept; `NONE` where it changed.
+    kept: Vec<I>,
+    /// A row for each new thing that changed, in their order.
+    changed: Rows<I>,
+}
+
+/// Where one thing came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin<'a, I> {
+    /// It is this old thing.
+    Kept(I),
+    /// It is new, or was moved.
+    Changed(Row<'a, I>),
+}
+
+/// What a stored [`Origins`] brings, before it is known to fit together.
+#[derive(Deserialize)]
+#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+struct Parts<I> {
+    n_old: usize,
+    kept: Vec<I>,
+    changed: Rows<I>,
+}
+
+impl<I: Id> TryFrom<Parts<I>> for Origins<I> {
+    type Error = Error;
+
+    fn try_from(parts: Parts<I>) -> Result<Self> {
+        Self::new(parts.n_old, parts.kept, parts.changed)
+    }
+}
+
+impl<I: Id> Origins<I> {
+    /// `kept` has the old id of each new thing, or [`Id::NONE`] where the thing changed and `changed` has its row. `n_old` is
+    /// how many old things there were.
+    ///
+    /// # Errors
+    /// When an old id does not exist, or something has both an old id and a row, or neither.
+    pub fn new(n_old: usize, kept: Vec<I>, changed: Rows<I>) -> Result<Self> {
+        changed.check(n_old)?;
+        if let Some(new) = kept.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
+            return Err(Error::input(format!("was {}, but there were {n_old}", kept[new]))
+                .at(format!("origin of {new}")));
+        }
+        let without = || kept.iter().enumerate().filter(|(_, old)| **old == I::NONE).map(|(new, _)| new);
+        if !without().eq(changed.ids().iter().map(|id| id.place())) {
+            let n_without = without().count();
+            return Err(Error::input(format!(
+                "{n_without} things without an old id need as many rows, but there are {} rows, or they are of others",
+                changed.len()
+            )));
+        }
+        Ok(Self { n_old, kept, changed })
+    }
+
+    /// Everything stayed.
+    ///
+    /// Panics when `n` is more than ids can count.
+    pub fn identity(n: usize) -> Self {
+        Self { n_old: n, kept: (0..n).map(I::of).collect(), changed: Rows::new() }
+    }
+
+    /// How many things the old mesh had.
+    pub fn n_old(&self) -> usize {
+        self.n_old
+    }
+
+    /// How many things the new mesh has.
+    pub fn len(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Whether the new mesh has none.
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+
+    /// For each new thing the old one that it is, or [`Id::NONE`].
+    pub fn kept(&self) -> &[I] {
+        &self.kept
+    }
+
+    /// The rows of those that changed.
+    pub fn changed(&self) -> &Rows<I> {
+        &self.changed
+    }
+
+    /// Where `id` of the new mesh came from.
+    ///
+    /// Panics when there is no such thing.
+    pub fn of(&self, id: I) -> Origin<'_, I> {
+        match self.changed.of(id) {
+            Some(row) => Origin::Changed(row),
+            None => Origin::Kept(self.kept[id.place()]),
+        }
+    }
+
+    /// Where everything came from, in the order of the new mesh.
+    pub fn iter(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
+        let mut rows = self.changed.iter();
+        self.kept.iter().map(move |&old| match old == I::NONE {
+            false => Origin::Kept(old),
+            true => Origin::Changed(rows.next().expect("one row for each that changed")),
+        })
+    }
+
+    /// For each new thing the old one that it inherits from.
+    pub fn main(&self) -> impl Iterator<Item = I> + '_ {
+        self.iter().map(|origin| origin.main())
+    }
+
+    /// This change and then a `later` one, as one.
+    ///
+    /// Panics when `later` does not start from as many things as this one ends with.
+    #[must_use]
+    pub fn then(&self, later: &Self) -> Self {
+        assert_eq!(later.n_old, self.len(), "the later change starts where this one ends");
+        let mut kept = Vec::with_capacity(later.len());
+        let mut changed = Rows::new();
+        let mut parts = Vec::new();
+        for (id, origin) in later.iter().enumerate() {
+            let (from, shares) = origin.parts();
+            let direct = matches!(origin, Origin::Kept(_)).then(|| self.of(from[0]));
+            if let Some(Origin::Kept(old)) = direct {
+                kept.push(old);
+                continue;
+            }
+            parts.clear();
+            for (&middle, &share) in from.iter().zip(shares) {
+                let middle = self.of(middle);
+                let (from, shares) = middle.parts();
+                parts.extend(from.iter().zip(shares).map(|(&old, &part)| (old, share * part)));
+            }
+            merge(&mut parts);
+            kept.push(I::NONE);
+            changed.push(I::of(id), &parts, self.of(origin.main()).main());
+        }
+        Self { n_old: self.n_old, kept, changed }
+    }
+}
+
+impl<I: Id> Origin<'_, I> {
+    /// The old thing whose ids, names and directions are inherited.
+    pub fn main(&self) -> I {
+        match self {
+            Self::Kept(old) => *old,
+            Self::Changed(row) => row.main,
+        }
+    }
+
+    /// The old things and their shares, one of share 1 for what was kept.
+    pub fn parts(&self) -> (&[I], &[f64]) {
+        match self {
+            Self::Kept(old) => (std::slice::from_ref(old), &[1.0]),
+            Self::Changed(row) => (row.from, row.shares),
+        }
+    }
+}
+
+/// One entry for each old thing, by rising id.
+fn merge<I: Id>(parts: &mut Vec<(I, f64)>) {
+    parts.sort_by_key(|p| p.0);
+    parts.dedup_by(|later, first| {
+        let same = later.0 == first.0;
+        if same {
+            first.1 += later.1;
+        }
+        same
+    });
+}

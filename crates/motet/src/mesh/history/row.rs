@@ -1,0 +1,156 @@
+//! The rows of what changed: old things with shares, and the main one among them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::base::{Csr, Error, Id, Result};
+
+/// Shares of a row sum to 1 up to this, or the row is refused.
+const SUM: f64 = 1e-9;
+
+/// For each thing that changed the old things it came from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts<I>")]
+#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+pub struct Rows<I> {
+    /// New ids, rising.
+    ids: Vec<I>,
+    /// Old ids a row.
+    from: Csr<I>,
+    /// A share for each old id of each row.
+    shares: Vec<f64>,
+    /// The main old id of each row.
+    main: Vec<I>,
+}
+
+/// What stored [`Rows`] bring, before they are known to fit together.
+#[derive(Deserialize)]
+struct Parts<I> {
+    ids: Vec<I>,
+    from: Csr<I>,
+    shares: Vec<f64>,
+    main: Vec<I>,
+}
+
+impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
+    type Error = Error;
+
+    fn try_from(parts: Parts<I>) -> Result<Self> {
+        let Parts { ids, from, shares, main } = parts;
+        let n = ids.len();
+        if from.len() != n || main.len() != n || shares.len() != from.items().len() {
+            return Err(Error::input(format!(
+                "{n} ids need as many rows, but there are {} rows with {} shares for {} old ids, and {} main ids",
+                from.len(),
+                shares.len(),
+                from.items().len(),
+                main.len()
+            )));
+        }
+        if let Some(w) = ids.windows(2).find(|w| w[0] >= w[1]) {
+            return Err(Error::input(format!("row {} follows row {}: ids must rise", w[1], w[0])));
+        }
+        Ok(Self { ids, from, shares, main })
+    }
+}
+
+/// Where one thing that changed came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<'a, I> {
+    /// Old things.
+    pub from: &'a [I],
+    /// The share of each, all positive, 1 in sum.
+    pub shares: &'a [f64],
+    /// The old thing whose ids, names and directions are inherited: the one with the largest share, and for a moved
+    /// vertex the vertex itself.
+    pub main: I,
+}
+
+impl<I> Default for Rows<I> {
+    fn default() -> Self {
+        Self { ids: Vec::new(), from: Csr::default(), shares: Vec::new(), main: Vec::new() }
+    }
+}
+
+impl<I: Id> Rows<I> {
+    /// No rows.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds the row of `id`, which is larger than all ids before. Shares are scaled to sum to 1; those that are not
+    /// above 0 are left out; where none is left, `main` gives everything.
+    ///
+    /// Panics when `id` is not the largest.
+    pub fn push(&mut self, id: I, parts: &[(I, f64)], main: I) {
+        assert!(self.ids.last().is_none_or(|&last| last < id), "rows come in rising order of their ids");
+        let sum: f64 = parts.iter().map(|p| p.1).filter(|&share| share > 0.0).sum();
+        let scaled = parts.iter().map(|&(old, share)| (old, share / sum)).filter(|p| p.1 > 0.0);
+        let start = self.shares.len();
+        if sum > 0.0 && sum.is_finite() {
+            self.from.push(scaled.clone().map(|p| p.0));
+            self.shares.extend(scaled.map(|p| p.1));
+        } else {
+            self.from.push([main]);
+            self.shares.push(1.0);
+        }
+        settle(&mut self.shares[start..]);
+        self.ids.push(id);
+        self.main.push(main);
+    }
+
+    /// How many rows there are.
+    pub fn len(&self) -> usize {
+        self.ids.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
+    }
+
+    /// The new ids that have rows, rising.
+    pub fn ids(&self) -> &[I] {
+        &self.ids
+    }
+
+    /// The row of a new id, where it has one.
+    pub fn of(&self, id: I) -> Option<Row<'_, I>> {
+        self.ids.binary_search(&id).ok().map(|i| self.row(i))
+    }
+
+    /// All rows in the order of their ids.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Row<'_, I>> + '_ {
+        (0..self.len()).map(|i| self.row(i))
+    }
+
+    fn row(&self, i: usize) -> Row<'_, I> {
+        let range = self.from.offsets()[i] as usize..self.from.offsets()[i + 1] as usize;
+        Row { from: self.from.list(i), shares: &self.shares[range], main: self.main[i] }
+    }
+
+    /// Checks that the rows name only the `n_old` old things, with shares that are some.
+    pub(super) fn check(&self, n_old: usize) -> Result<()> {
+        let fault = self.iter().zip(&self.ids).find_map(|(row, id)| row.fault(n_old).map(|what| (id, what)));
+        fault.map_or(Ok(()), |(id, what)| Err(Error::input(what).at(format!("row of {id}"))))
+    }
+}
+
+impl<I: Id> Row<'_, I> {
+    fn fault(&self, n_old: usize) -> Option<String> {
+        let named = self.from.iter().chain([&self.main]);
+        if let Some(beyond) = named.into_iter().find(|old| old.place() >= n_old) {
+            return Some(format!("names the old id {beyond}, but there were {n_old}"));
+        }
+        let sum: f64 = self.shares.iter().sum();
+        let positive = self.shares.iter().all(|&share| share > 0.0);
+        (!positive || (sum - 1.0).abs() > SUM || sum.is_nan())
+            .then(|| format!("has shares {:?}, which must be positive and sum to 1", self.shares))
+    }
+}
+
+/// Gives the largest share what rounding left over, so that the sum is 1 to the last digit.
+fn settle(shares: &mut [f64]) {
+    let largest = (1..shares.len()).fold(0, |best, i| if shares[i] > shares[best] { i } else { best });
+    let others: f64 = (0..shares.len()).filter(|&i| i != largest).map(|i| shares[i]).sum();
+    shares[largest] = 1.0 - others;
+}

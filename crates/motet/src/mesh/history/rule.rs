@@ -1,0 +1,99 @@
+//! What becomes of a field's values where the mesh changed.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::mesh::{Field, Values};
+
+/// What becomes of a field's values where the mesh changed. Where it did not, they go over bit for bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// Points: linear in each old tet. Fields that are linear in space stay so to the last digits, others between the values
+    /// they had.
+    Interpolate,
+    /// Cells: the mean over what a new tet overlaps. The integral over each region stays (up to its
+    /// [`deviation`](super::RegionLedger::deviation)), constants stay to the bit, other values between those they came from.
+    Conserve,
+    /// The value of the old thing with the largest share: ids, names, directions, which have no mean.
+    Inherit,
+    /// The array is left out.
+    Drop,
+}
+
+impl Rule {
+    /// What a point array gets when nobody says otherwise: floats are interpolated; whole numbers, texts and directions
+    /// inherited.
+    pub fn of_points(field: &Field) -> Self {
+        if has_mean(field) && !is_direction(field) { Self::Interpolate } else { Self::Inherit }
+    }
+
+    /// What a cell array gets when nobody says otherwise: floats are conserved; whole numbers, texts and directions
+    /// inherited.
+    pub fn of_cells(field: &Field) -> Self {
+        if has_mean(field) && !is_direction(field) { Self::Conserve } else { Self::Inherit }
+    }
+}
+
+/// Rules for arrays by their names; arrays that are not named get [`Rule::of_points`] and [`Rule::of_cells`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Rules {
+    /// For point arrays.
+    pub points: BTreeMap<String, Rule>,
+    /// For cell arrays.
+    pub cells: BTreeMap<String, Rule>,
+}
+
+/// Whether a mean of two of its values is a value again.
+pub(super) fn has_mean(field: &Field) -> bool {
+    matches!(field.values, Values::F32(_) | Values::F64(_))
+}
+
+/// Parts of the names under which the heart community keeps directions in tissue.
+const DIRECTION_NAMES: &[&str] = &["fibre", "fiber", "sheet", "direction"];
+/// How far from 1 the squared length of a unit vector may be, written in single precision or with five digits.
+const UNIT: f64 = 1e-4;
+
+/// Whether the rows are directions: so named, or vectors that all have the length 1 (or 0, where there is no direction).
+/// A mean of directions is shorter than they are, and of opposite ones nothing at all.
+fn is_direction(field: &Field) -> bool {
+    let name = field.name.to_lowercase();
+    field.components.is_multiple_of(3)
+        && (DIRECTION_NAMES.iter().any(|part| name.contains(part)) || has_unit_rows(field))
+}
+
+fn has_unit_rows(field: &Field) -> bool {
+    let squared =
+        |row: usize| (0..3).filter_map(|k| field.values.get_f64(3 * row + k)).map(|x| x * x).sum::<f64>();
+    let mut lengths = (0..field.n_rows()).map(squared).filter(|&l| l != 0.0).peekable();
+    field.components == 3 && lengths.peek().is_some() && lengths.all(|l| (l - 1.0).abs() < UNIT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floats_have_means_and_whole_numbers_texts_and_directions_have_none() {
+        let pressure = Field::scalars("pressure", vec![1.0f32, 2.0]);
+        assert_eq!(Rule::of_points(&pressure), Rule::Interpolate);
+        assert_eq!(Rule::of_cells(&pressure), Rule::Conserve);
+        let velocity = Field::vectors("velocity", &[[1.0, 2.0, 3.0], [0.0; 3]]);
+        assert_eq!(Rule::of_points(&velocity), Rule::Interpolate);
+        let inherited = [
+            Field::scalars("region", vec![1, 2]),
+            Field::scalars("part", vec!["a".to_owned()]),
+            Field::vectors("Fibers", &[[2.0, 0.0, 0.0]]),
+            Field::vectors("e1", &[[0.6, 0.8, 0.0], [0.0; 3], [0.0, 0.0, -1.0]]),
+        ];
+        for field in inherited {
+            assert_eq!(Rule::of_points(&field), Rule::Inherit, "{}", field.name);
+            assert_eq!(Rule::of_cells(&field), Rule::Inherit, "{}", field.name);
+        }
+        // A field at rest has no direction; a scalar named so has none either.
+        assert_eq!(Rule::of_points(&Field::vectors("velocity", &[[0.0; 3]])), Rule::Interpolate);
+        assert_eq!(Rule::of_points(&Field::scalars("fiber_stretch", vec![1.0])), Rule::Interpolate);
+    }
+}

@@ -1,0 +1,270 @@
+//! Remeshing of everything that a file holds: cells of other kinds stay, arrays are carried.
+
+use std::time::Instant;
+
+use crate::base::{CellId, Csr, Error, Id, Result, Threads, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::dot;
+use crate::kernel::{Extract, NEW};
+use crate::mesh::history::{History, Origins, Rules};
+use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart, Values};
+use crate::remesh::{Options, Report, remesh};
+use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
+
+/// A whole mesh after remeshing, where each part of it was before, and what was done.
+#[derive(Debug)]
+pub struct MeshOutcome {
+    /// The mesh: cells that stayed in the order that they had, then triangles that came, then tets that came.
+    pub mesh: Mesh,
+    /// Where each vertex and cell came from; carries any array of the mesh before, of any time level.
+    pub history: History,
+    /// What was done. Its `tet`s are ids of cells: `before` of the mesh before, all others of the new one.
+    pub report: Report,
+}
+
+/// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. What stayed stays to the bit: points, cells, rows of arrays.
+/// Vertices of cells of other kinds neither move nor go. Where `GlobalNodeID` and `GlobalElementID` number points and tets, new ones get new numbers.
+///
+/// # Errors
+/// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when a rule fits no array.
+pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
+    let begin = Instant::now();
+    let part = TetPart::of(mesh)?;
+    let taken_out = begin.elapsed().as_secs_f64();
+    let outcome = remesh(&part.mesh, options).map_err(|error| at_cell(error, &part))?;
+    let mut report = outcome.report;
+
+    let begin = Instant::now();
+    let joined = Joined::of(mesh, &part, &outcome.extract);
+    let assembled = begin.elapsed().as_secs_f64();
+    let history = history(mesh, &part, &outcome.extract, &joined, threads)?;
+    let mut new = Mesh::new(outcome.extract.mesh.points, joined.cells);
+    history.transfer(mesh, &mut new, rules)?;
+    number_anew(&mut new, &outcome.extract.vertex_to_old, &joined.cell_to_old);
+
+    report.seconds.join += taken_out;
+    report.seconds.extract += assembled;
+    report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
+    tell_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
+    Ok(MeshOutcome { mesh: new, history, report })
+}
+
+/// The cells of the new mesh, and which of the old ones each was.
+struct Joined {
+    cells: Cells,
+    /// [`Id::NONE`] for those that came.
+    cell_to_old: Vec<CellId>,
+    /// The cell that each tet of the new tets is.
+    tet_to_cell: Vec<CellId>,
+    /// The new triangles that came: the cell that each is, its place among the triangles.
+    came_triangles: Vec<(CellId, usize)>,
+    /// Old triangles that are no more, by their place.
+    gone_triangles: Vec<usize>,
+}
+
+impl Joined {
+    fn of(old: &Mesh, part: &TetPart, extract: &Extract) -> Self {
+        let mut stay = Stay::of(old, part, extract);
+        let n_cells = old.cells.len() + extract.came.len();
+        let mut joined = Self {
+            cells: Cells::new(),
+            cell_to_old: Vec::with_capacity(n_cells),
+            tet_to_cell: Vec::with_capacity(extract.mesh.tets.len()),
+            came_triangles: Vec::new(),
+            gone_triangles: std::mem::take(&mut stay.gone_triangles),
+        };
+        let mut faces = old.cells.polyhedron_faces().iter();
+        for (cell, kind, vertices) in old.cells.iter().filter(|(cell, _, _)| !stay.is_gone[cell.index()]) {
+            if kind == CellKind::TETRA {
+                joined.tet_to_cell.push(CellId::new(joined.cells.len()));
+            }
+            joined.cell_to_old.push(cell);
+            let vertices = vertices.iter().map(|&v| stay.vertex(v));
+            if kind == CellKind::POLYHEDRON {
+                joined
+                    .cells
+                    .push_polyhedron(vertices, faces.next().map_or_else(Csr::default, |f| stay.faces(f)));
+            } else {
+                joined.cells.push(kind, vertices);
+            }
+        }
+        for &i in &stay.came_triangles {
+            joined.came_triangles.push((CellId::new(joined.cells.len()), i));
+            joined.push_new(CellKind::TRIANGLE, &turned_as_before(i, part, extract));
+        }
+        for tet in &extract.mesh.tets[extract.mesh.tets.len() - extract.came.len()..] {
+            joined.tet_to_cell.push(CellId::new(joined.cells.len()));
+            joined.push_new(CellKind::TETRA, tet);
+        }
+        joined
+    }
+
+    fn push_new(&mut self, kind: CellKind, vertices: &[VertexId]) {
+        self.cells.push(kind, vertices.iter().copied());
+        self.cell_to_old.push(Id::NONE);
+    }
+}
+
+/// What stayed of the old mesh, and under which number.
+struct Stay {
+    is_gone: Vec<bool>,
+    old_to_vertex: Vec<u32>,
+    gone_triangles: Vec<usize>,
+    came_triangles: Vec<usize>,
+}
+
+impl Stay {
+    fn of(old: &Mesh, part: &TetPart, extract: &Extract) -> Self {
+        let mut is_gone = vec![false; old.cells.len()];
+        extract.gone_tets.iter().for_each(|t| is_gone[part.tet_to_cell[t.index()].index()] = true);
+        let mut stay = Self {
+            is_gone,
+            old_to_vertex: extract.old_to_vertex(old.points.len()),
+            gone_triangles: Vec::new(),
+            came_triangles: Vec::new(),
+        };
+        stay.find_triangles(part, extract);
+        stay
+    }
+
+    /// Triangles with the vertices that they had are those that stayed: they come first, in their order.
+    fn find_triangles(&mut self, part: &TetPart, extract: &Extract) {
+        let (before, after) = (&part.mesh.triangles, &extract.mesh.triangles);
+        let mut stays = vec![false; before.len()];
+        for (i, &old) in extract.triangle_to_old.iter().enumerate() {
+            let is_same = |t: usize| before[t].map(|v| self.vertex(v)) == after[i];
+            match old as usize {
+                t if self.came_triangles.is_empty() && is_same(t) => stays[t] = true,
+                _ => self.came_triangles.push(i),
+            }
+        }
+        self.gone_triangles = (0..before.len()).filter(|&t| !stays[t]).collect();
+        for &t in &self.gone_triangles {
+            self.is_gone[part.triangle_to_cell[t].index()] = true;
+        }
+    }
+
+    fn vertex(&self, old: VertexId) -> VertexId {
+        VertexId(self.old_to_vertex[old.index()])
+    }
+
+    fn faces(&self, faces: &Csr<VertexId>) -> Csr<VertexId> {
+        let mut new = Csr::default();
+        faces.iter().for_each(|face| new.push(face.iter().map(|&v| self.vertex(v))));
+        new
+    }
+}
+
+/// The vertices of a triangle that came, so that it faces as the one does that it is a part of.
+fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3] {
+    let [a, b, c] = extract.mesh.triangles[i];
+    let before = part.mesh.triangles[extract.triangle_to_old[i] as usize];
+    let is = area_vector([a, b, c].map(|v| extract.mesh.points[v.index()]));
+    let was = area_vector(before.map(|v| part.mesh.points[v.index()]));
+    if dot(is, was) < 0.0 { [a, c, b] } else { [a, b, c] }
+}
+
+/// Where everything came from.
+fn history(
+    old: &Mesh,
+    part: &TetPart,
+    extract: &Extract,
+    joined: &Joined,
+    threads: &Threads,
+) -> Result<History> {
+    let mut vertex_to_old: Vec<VertexId> = extract.vertex_to_old.iter().map(|&v| VertexId(v)).collect();
+    let mut changed_vertices = Vec::with_capacity(extract.changed_vertices.len());
+    for &vertex in &extract.changed_vertices {
+        let was = std::mem::replace(&mut vertex_to_old[vertex.index()], Id::NONE);
+        changed_vertices.push(ChangedVertex { vertex, was: (was != Id::NONE).then_some(was) });
+    }
+    let (before, after) = (&part.mesh, &extract.mesh);
+    let old_tet = |t: usize| (part.tet_to_cell[t], before.tets[t], before.regions[t]);
+    let new_tet = |t: usize| (joined.tet_to_cell[t], after.tets[t], after.regions[t]);
+    let old_triangle = |&t: &usize| (part.triangle_to_cell[t], before.triangles[t], before.patches[t]);
+    let new_triangle = |&(cell, t): &(CellId, usize)| (cell, after.triangles[t], after.patches[t]);
+    let n_kept = after.tets.len() - extract.came.len();
+    let traced = trace(
+        &LocalChange {
+            old_points: &old.points,
+            new_points: &after.points,
+            removed_tets: &labelled(extract.gone_tets.iter().map(|t| old_tet(t.index()))),
+            new_tets: &labelled((n_kept..after.tets.len()).map(new_tet)),
+            removed_triangles: &labelled(joined.gone_triangles.iter().map(old_triangle)),
+            new_triangles: &labelled(joined.came_triangles.iter().map(new_triangle)),
+            changed_vertices: &changed_vertices,
+        },
+        threads,
+    )?;
+    Ok(History {
+        vertices: Origins::new(old.points.len(), vertex_to_old, traced.vertices)?,
+        cells: Origins::new(old.cells.len(), joined.cell_to_old.clone(), traced.cells)?,
+        ledger: traced.ledger,
+    })
+}
+
+fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], i32)>) -> Vec<Labelled<N>> {
+    cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
+}
+
+/// Arrays whose numbers tell points and cells apart: SimVascular's. An inherited number would stand there twice.
+const NODE_ID: &str = "GlobalNodeID";
+const ELEMENT_ID: &str = "GlobalElementID";
+
+/// Gives new points and new tets numbers of their own, after the largest.
+fn number_anew(mesh: &mut Mesh, vertex_to_old: &[u32], cell_to_old: &[CellId]) {
+    let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;
+    if let Some(ids) = mesh.point_data.iter_mut().find(|f| is_named(f, NODE_ID)) {
+        let new = (0..vertex_to_old.len()).filter(|&v| vertex_to_old[v] == NEW);
+        number(&mut ids.values, new);
+    }
+    if let Some(ids) = mesh.cell_data.iter_mut().find(|f| is_named(f, ELEMENT_ID)) {
+        let is_new = |c: &usize| cell_to_old[*c] == Id::NONE && mesh.cells.kinds()[*c] == CellKind::TETRA;
+        number(&mut ids.values, (0..cell_to_old.len()).filter(is_new));
+    }
+}
+
+fn number(ids: &mut Values, rows: impl Iterator<Item = usize>) {
+    macro_rules! number {
+        ($($variant:ident)*) => {
+            match ids {
+                $(Values::$variant(ids) => {
+                    let mut largest = ids.iter().copied().max().unwrap_or_default();
+                    for row in rows {
+                        largest = largest.saturating_add(1);
+                        ids[row] = largest;
+                    }
+                })*
+                _ => {}
+            }
+        };
+    }
+    number!(I32 U32 I64 U64);
+}
+
+/// Puts ids of cells in place of those of tets.
+fn tell_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
+    let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
+    report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
+    report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));
+    report.left.iter_mut().for_each(|left| left.tet = cell(new, left.tet));
+}
+
+/// An error whose place is a tet or a triangle, with the cell that it is in its place.
+fn at_cell(error: Error, part: &TetPart) -> Error {
+    let cell = error.place().and_then(|place| {
+        let (what, id) = place.split_once(' ')?;
+        let to_cell = match what {
+            "tet" => &part.tet_to_cell,
+            "triangle" => &part.triangle_to_cell,
+            _ => return None,
+        };
+        to_cell.get(id.parse::<usize>().ok()?)
+    });
+    let Some(cell) = cell else { return error };
+    let told = Error::new(error.kind(), error.what()).at(format!("cell {cell}"));
+    match error.remedy_text() {
+        Some(remedy) => told.remedy(remedy),
+        None => told,
+    }
+}

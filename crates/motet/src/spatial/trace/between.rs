@@ -1,0 +1,114 @@
+//! The whole history between two meshes, from what is known to be the same.
+
+use super::{ChangedVertex, Labelled, LocalChange, trace};
+use crate::base::{CellId, Error, Id, Result, Threads, VertexId};
+use crate::mesh::history::{History, Origins};
+use crate::mesh::{CellKind, Labels, Mesh};
+
+/// The history from `old` to `new`. `vertex_to_old` and `cell_to_old` have for each vertex and each cell of `new` the id it
+/// had in `old`, or [`Id::NONE`] where it is new.
+///
+/// Vertices with the same id at another place are moved; tets that have one count as changed, other cells do not. New tets and triangles are
+/// traced within the regions and patches that the meshes have in their arrays; new cells of other kinds cannot be.
+///
+/// # Errors
+/// When the lists do not fit the meshes, for a new cell of another kind, and as [`trace`] has it.
+pub fn between(
+    old: &Mesh,
+    new: &Mesh,
+    vertex_to_old: &[VertexId],
+    cell_to_old: &[CellId],
+    threads: &Threads,
+) -> Result<History> {
+    check(vertex_to_old, new.points.len(), old.points.len(), "vertex")?;
+    check(cell_to_old, new.cells.len(), old.cells.len(), "cell")?;
+    let mut vertices = vertex_to_old.to_vec();
+    let mut cells = cell_to_old.to_vec();
+    let changed_vertices = changed_vertices(old, new, &mut vertices);
+    let is_changed: Vec<bool> = vertices.iter().map(|&v| v == Id::NONE).collect();
+    for (cell, tet) in new.cells.tets() {
+        if tet.iter().any(|v| is_changed[v.index()]) {
+            cells[cell.index()] = Id::NONE;
+        }
+    }
+    let mut goes = vec![true; old.cells.len()];
+    cells.iter().filter(|&&c| c != Id::NONE).for_each(|c| goes[c.index()] = false);
+    let comes: Vec<bool> = cells.iter().map(|&c| c == Id::NONE).collect();
+    check_kinds(new, &comes)?;
+    let traced = trace(
+        &LocalChange {
+            old_points: &old.points,
+            new_points: &new.points,
+            removed_tets: &labelled(old, &goes, CellKind::TETRA, old.regions()),
+            new_tets: &labelled(new, &comes, CellKind::TETRA, new.regions()),
+            removed_triangles: &labelled(old, &goes, CellKind::TRIANGLE, old.patches()),
+            new_triangles: &labelled(new, &comes, CellKind::TRIANGLE, new.patches()),
+            changed_vertices: &changed_vertices,
+        },
+        threads,
+    )?;
+    Ok(History {
+        vertices: Origins::new(old.points.len(), vertices, traced.vertices)?,
+        cells: Origins::new(old.cells.len(), cells, traced.cells)?,
+        ledger: traced.ledger,
+    })
+}
+
+/// The vertices that are new or elsewhere; they get no old id in `to_old`. One that is elsewhere but in no tet stays what
+/// it was, since there is nothing to interpolate in.
+fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [VertexId]) -> Vec<ChangedVertex> {
+    let mut has_tet = vec![false; new.points.len()];
+    new.cells.tets().for_each(|(_, tet)| tet.iter().for_each(|v| has_tet[v.index()] = true));
+    let mut changed = Vec::new();
+    for (i, was) in to_old.iter_mut().enumerate() {
+        let vertex = VertexId::new(i);
+        if *was == Id::NONE {
+            changed.push(ChangedVertex { vertex, was: None });
+        } else if has_tet[i] && new.points[i] != old.points[was.index()] {
+            changed.push(ChangedVertex { vertex, was: Some(*was) });
+            *was = Id::NONE;
+        }
+    }
+    changed
+}
+
+/// The cells of one kind where `picked` holds, with their labels.
+fn labelled<const N: usize>(
+    mesh: &Mesh,
+    picked: &[bool],
+    kind: CellKind,
+    labels: Option<Labels>,
+) -> Vec<Labelled<N>> {
+    let of_kind = mesh.cells.iter().filter(|(cell, k, _)| *k == kind && picked[cell.index()]);
+    let with_label = |(cell, _, vertices): (CellId, CellKind, &[VertexId])| {
+        let label = labels.as_ref().map_or(0, |l| l.ids[cell.index()]);
+        vertices.first_chunk::<N>().map(|&vertices| Labelled { cell, vertices, label })
+    };
+    of_kind.filter_map(with_label).collect()
+}
+
+fn check<I: Id>(to_old: &[I], n_new: usize, n_old: usize, what: &str) -> Result<()> {
+    if to_old.len() != n_new {
+        return Err(Error::input(format!(
+            "{} old ids were given for the {n_new} {what} ids of the new mesh",
+            to_old.len()
+        )));
+    }
+    match to_old.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
+        None => Ok(()),
+        Some(i) => Err(Error::input(format!("was {}, but the old mesh has {n_old}", to_old[i]))
+            .at(format!("{what} {i}"))),
+    }
+}
+
+fn check_kinds(new: &Mesh, comes: &[bool]) -> Result<()> {
+    let can = |kind: CellKind| kind == CellKind::TETRA || kind == CellKind::TRIANGLE;
+    match new.cells.iter().find(|(cell, kind, _)| comes[cell.index()] && !can(*kind)) {
+        None => Ok(()),
+        Some((cell, kind, _)) => {
+            Err(Error::input(format!("is a new {}, but only tets and triangles can be traced", kind.label()))
+                .at(format!("cell {cell}"))
+                .remedy("say which old cell it comes from"))
+        }
+    }
+}

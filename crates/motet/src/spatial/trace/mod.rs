@@ -1,0 +1,112 @@
+//! Where what is new in a mesh came from: found by geometry, in time with what changed.
+//!
+//! | new | comes from |
+//! |---|---|
+//! | a vertex, or a moved one | the vertices of the removed tet that holds its place, with its weights there |
+//! | a tet | the removed tets of its region that it overlaps, with their parts of its volume |
+//! | a triangle | the removed triangle of its patch that is nearest to its centre |
+//!
+//! The parts of volumes are those of the supermesh, the common refinement of old and new tets (Farrell and Maddison 2011,
+//! *Conservative interpolation between volume meshes by local Galerkin projection*); of it only the volumes are needed.
+//! [`between`] makes the whole history of two meshes, [`trace`] the rows of what changed alone.
+
+mod between;
+mod tets;
+mod triangles;
+mod vertices;
+
+pub use between::between;
+
+use crate::base::{CellId, Point, Result, Threads, VertexId};
+use crate::mesh::history::{Ledger, Rows};
+
+/// A tet with its region, or a triangle with its patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Labelled<const N: usize> {
+    /// Its id among all cells of its mesh.
+    pub cell: CellId,
+    /// Its vertices, in either orientation.
+    pub vertices: [VertexId; N],
+    /// Its region or patch; 0 where it has none.
+    pub label: i32,
+}
+
+/// A vertex of the new mesh that has no equal in the old one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChangedVertex {
+    /// Its id in the new mesh.
+    pub vertex: VertexId,
+    /// Its id in the old mesh, for a vertex that was moved: whole numbers and texts stay with it.
+    pub was: Option<VertexId>,
+}
+
+/// What went and what came. In any order; nothing twice.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LocalChange<'a> {
+    /// All points of the old mesh.
+    pub old_points: &'a [Point],
+    /// All points of the new mesh.
+    pub new_points: &'a [Point],
+    /// Tets that went, or have a vertex that was moved; ids of the old mesh. They may be inverted or flat.
+    pub removed_tets: &'a [Labelled<4>],
+    /// Tets that came in their place; ids of the new mesh.
+    pub new_tets: &'a [Labelled<4>],
+    /// Triangles that went; ids of the old mesh.
+    pub removed_triangles: &'a [Labelled<3>],
+    /// Triangles that came; ids of the new mesh.
+    pub new_triangles: &'a [Labelled<3>],
+    /// Vertices that came or were moved.
+    pub changed_vertices: &'a [ChangedVertex],
+}
+
+/// The rows of what changed, for [`Origins::new`](crate::mesh::history::Origins::new), and how volumes fit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Traced {
+    /// A row for each changed vertex.
+    pub vertices: Rows<VertexId>,
+    /// A row for each new tet and triangle.
+    pub cells: Rows<CellId>,
+    /// Volumes, region by region; vertices outside.
+    pub ledger: Ledger,
+}
+
+/// Finds where everything new came from. The same for any number of threads.
+///
+/// A vertex outside of all removed tets takes the values of their nearest place, a tet that overlaps none of its region those of
+/// the nearest one; the ledger has both. Volumes of inverted tets count as positive.
+///
+/// # Errors
+/// When something new has nothing to come from: no tet of its region, no triangle, no tet at all was removed; and
+/// when a new vertex has coordinates that are no numbers.
+///
+/// Panics when a vertex id is beyond the points.
+pub fn trace(change: &LocalChange<'_>, threads: &Threads) -> Result<Traced> {
+    let removed = tets::Removed::new(change.old_points, change.removed_tets);
+    let (tet_rows, regions) = tets::trace(change, &removed, threads)?;
+    let vertices = vertices::trace(change, &removed, threads)?;
+    let mut cell_rows = tet_rows;
+    cell_rows.extend(triangles::trace(change)?);
+    cell_rows.sort_by_key(|row| row.0);
+    let mut cells = Rows::new();
+    for (cell, parts, main) in cell_rows {
+        cells.push(cell, &parts, main);
+    }
+    let ledger =
+        Ledger { regions, n_outside: vertices.n_outside, farthest_outside: vertices.farthest_outside };
+    Ok(Traced { vertices: vertices.rows, cells, ledger })
+}
+
+/// A new cell, the old cells it comes from with their shares (of any sum), and the main one.
+type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
+
+/// What a thread takes in one go: a tet has some dozens of overlaps to compute.
+const CHUNK: usize = 64;
+
+/// `of` each item, in their order.
+fn map<T: Sync, U: Send>(items: &[T], threads: &Threads, of: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
+    use rayon::prelude::*;
+    match threads.pool() {
+        Some(pool) => pool.install(|| items.par_iter().with_min_len(CHUNK).map(of).collect()),
+        None => items.iter().map(of).collect(),
+    }
+}

@@ -1,0 +1,123 @@
+//! New tets: the parts of the removed tets in them.
+
+use std::collections::BTreeMap;
+
+use super::{CellRow, Labelled, LocalChange, map};
+use crate::base::{Error, Point, Result, Threads};
+use crate::geometry::overlap::Solid;
+use crate::geometry::tet;
+use crate::geometry::vector::{dot, sub};
+use crate::mesh::history::RegionLedger;
+use crate::spatial::BoxTree;
+use crate::spatial::boxes::around;
+
+/// An overlap below this part of the smaller tet is rounding: they touch.
+const TOUCH: f64 = 1e-14;
+/// A tet of which no more than this part is covered lies outside.
+const OUTSIDE: f64 = 1e-12;
+
+/// The tets that went, ready for searching.
+pub(super) struct Removed<'a> {
+    pub(super) tets: &'a [Labelled<4>],
+    pub(super) solids: Vec<Solid>,
+    pub(super) tree: BoxTree,
+}
+
+impl<'a> Removed<'a> {
+    pub(super) fn new(points: &[Point], tets: &'a [Labelled<4>]) -> Self {
+        let solids: Vec<Solid> = tets.iter().map(|t| solid(points, t)).collect();
+        let boxes: Vec<_> = solids.iter().map(|s| around(s.corners())).collect();
+        Self { tets, solids, tree: BoxTree::new(&boxes) }
+    }
+
+    /// The place of the removed tet nearest to `p`, of one region or of any.
+    pub(super) fn nearest(&self, p: Point, region: Option<i32>) -> Option<(usize, [f64; 4])> {
+        let measure = |i: u32| {
+            let i = i as usize;
+            let corners = self.solids[i].corners();
+            let serves = region.is_none_or(|region| region == self.tets[i].label);
+            serves.then(|| tet::closest(corners, p)).map(|weights| {
+                let offset = sub(tet::at(corners, weights), p);
+                (dot(offset, offset), weights)
+            })
+        };
+        self.tree.nearest(p, measure).map(|(_, i, weights)| (i as usize, weights))
+    }
+}
+
+fn solid(points: &[Point], tet: &Labelled<4>) -> Solid {
+    Solid::new(tet.vertices.map(|v| points[v.index()]))
+}
+
+/// The volumes that one new tet has in common with removed ones, by their places; and the main one.
+struct Parts {
+    volume: f64,
+    overlaps: Vec<(usize, f64)>,
+    main: usize,
+}
+
+/// The row of each new tet, and the volumes of each region.
+pub(super) fn trace(
+    change: &LocalChange<'_>,
+    removed: &Removed<'_>,
+    threads: &Threads,
+) -> Result<(Vec<CellRow>, Vec<RegionLedger>)> {
+    let found = map(change.new_tets, threads, |tet| parts(change, removed, tet));
+    let found: Vec<Parts> = found.into_iter().collect::<Result<_>>()?;
+    let regions = ledger(change, removed, &found);
+    let cell = |i: usize| removed.tets[i].cell;
+    let rows = change.new_tets.iter().zip(found).map(|(tet, parts)| {
+        let shares = parts.overlaps.iter().map(|&(i, volume)| (cell(i), volume)).collect();
+        (tet.cell, shares, cell(parts.main))
+    });
+    Ok((rows.collect(), regions))
+}
+
+fn parts(change: &LocalChange<'_>, removed: &Removed<'_>, tet: &Labelled<4>) -> Result<Parts> {
+    let solid = solid(change.new_points, tet);
+    let mut candidates = Vec::new();
+    removed.tree.touching(around(solid.corners()), &mut candidates);
+    let mut overlaps: Vec<(usize, f64)> = Vec::new();
+    for i in candidates.into_iter().map(|i| i as usize).filter(|&i| removed.tets[i].label == tet.label) {
+        let other = &removed.solids[i];
+        let volume = solid.overlap(other);
+        if volume > TOUCH * solid.volume().min(other.volume()) {
+            overlaps.push((i, volume));
+        }
+    }
+    let covered: f64 = overlaps.iter().map(|o| o.1).sum();
+    let volume = solid.volume();
+    if covered > OUTSIDE * volume {
+        let largest = overlaps.iter().fold((0, 0.0), |best, &o| if o.1 > best.1 { o } else { best });
+        return Ok(Parts { volume, overlaps, main: largest.0 });
+    }
+    let nearest = removed.nearest(tet::centroid(solid.corners()), Some(tet.label));
+    let (main, _) = nearest.ok_or_else(|| nothing_near(tet))?;
+    Ok(Parts { volume, overlaps: vec![(main, 1.0)], main })
+}
+
+fn nothing_near(tet: &Labelled<4>) -> Error {
+    Error::input(format!("is new in region {}, but no tet of that region went", tet.label))
+        .at(format!("cell {}", tet.cell))
+        .remedy(
+            "values never cross from one region to another: give the tets that it replaces, with its region",
+        )
+}
+
+fn ledger(change: &LocalChange<'_>, removed: &Removed<'_>, found: &[Parts]) -> Vec<RegionLedger> {
+    let mut regions: BTreeMap<i32, RegionLedger> = BTreeMap::new();
+    let mut taken = vec![0.0; removed.tets.len()];
+    for (tet, parts) in change.new_tets.iter().zip(found) {
+        regions.entry(tet.label).or_default().volume_after += parts.volume;
+        let covered: f64 = parts.overlaps.iter().map(|o| o.1).sum();
+        for &(i, overlap) in &parts.overlaps {
+            taken[i] += parts.volume * (overlap / covered);
+        }
+    }
+    for ((tet, solid), taken) in removed.tets.iter().zip(&removed.solids).zip(taken) {
+        let entry = regions.entry(tet.label).or_default();
+        entry.volume_before += solid.volume();
+        entry.deviation += (taken - solid.volume()).abs();
+    }
+    regions.into_iter().map(|(region, entry)| RegionLedger { region, ..entry }).collect()
+}

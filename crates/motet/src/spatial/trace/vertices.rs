@@ -1,0 +1,79 @@
+//! New and moved vertices: their weights in the removed tets that held their places.
+
+use super::tets::Removed;
+use super::{ChangedVertex, LocalChange, map};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::tet;
+use crate::geometry::vector::{distance, norm, sub};
+use crate::mesh::history::Rows;
+use crate::spatial::boxes::around;
+
+/// What lies beyond a tet by less than this part of its box lies on it.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The rows of vertices, and what lay outside.
+pub(super) struct Vertices {
+    pub(super) rows: Rows<VertexId>,
+    pub(super) n_outside: usize,
+    pub(super) farthest_outside: f64,
+}
+
+/// Where one place lies: in or near which removed tet, with which weights, and how far outside.
+struct Place {
+    tet: usize,
+    weights: [f64; 4],
+    outside: f64,
+}
+
+pub(super) fn trace(change: &LocalChange<'_>, removed: &Removed<'_>, threads: &Threads) -> Result<Vertices> {
+    let mut vertices = change.changed_vertices.to_vec();
+    vertices.sort_unstable_by_key(|v| v.vertex);
+    let places = map(&vertices, threads, |v| place(removed, change.new_points[v.vertex.index()], v.vertex));
+    let mut found = Vertices { rows: Rows::new(), n_outside: 0, farthest_outside: 0.0 };
+    for (&ChangedVertex { vertex, was }, place) in vertices.iter().zip(places) {
+        let Place { tet, weights, outside } = place?;
+        let corners = removed.tets[tet].vertices;
+        let largest = (1..4).fold(0, |best, i| if weights[i] > weights[best] { i } else { best });
+        let parts = [0, 1, 2, 3].map(|i| (corners[i], weights[i]));
+        found.rows.push(vertex, &parts, was.unwrap_or(corners[largest]));
+        found.n_outside += usize::from(outside > 0.0);
+        found.farthest_outside = found.farthest_outside.max(outside);
+    }
+    Ok(found)
+}
+
+fn place(removed: &Removed<'_>, p: Point, vertex: VertexId) -> Result<Place> {
+    if let Some(tet) = holder(removed, p) {
+        let weights = tet::closest(removed.solids[tet].corners(), p);
+        return Ok(Place { tet, weights, outside: 0.0 });
+    }
+    let Some((tet, weights)) = removed.nearest(p, None) else {
+        let n = removed.tets.len();
+        return Err(Error::input(format!(
+            "is new at {p:?}, which is nowhere near any of the {n} tets that went"
+        ))
+        .at(format!("vertex {vertex}"))
+        .remedy("give the tets that its tets replace"));
+    };
+    let corners = removed.solids[tet].corners();
+    let [low, high] = around(corners);
+    let beyond = distance(tet::at(corners, weights), p);
+    let outside = if beyond > ROUND_OFF * norm(sub(high, low)) { beyond } else { 0.0 };
+    Ok(Place { tet, weights, outside })
+}
+
+/// The first removed tet that holds `p`; one that is inverted only where no other does.
+fn holder(removed: &Removed<'_>, p: Point) -> Option<usize> {
+    let mut candidates = Vec::new();
+    removed.tree.touching([p, p], &mut candidates);
+    let holds = |i: &usize| tet::holds(removed.solids[*i].corners(), p);
+    let holders = candidates.into_iter().map(|i| i as usize).filter(holds);
+    let mut inverted = None;
+    for i in holders {
+        if removed.solids[i].is_positive() {
+            return Some(i);
+        }
+        inverted = inverted.or(Some(i));
+    }
+    inverted
+}
