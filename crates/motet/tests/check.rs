@@ -203,6 +203,15 @@ fn surfaces_that_are_open_turned_over_or_non_manifold() {
 }
 
 #[test]
+fn the_middle_nodes_of_lagrange_cells_are_no_corners() {
+    let sides: [&[u32]; 4] =
+        [&[0, 2, 1, 6, 5, 4], &[0, 1, 3, 4, 8, 7], &[1, 2, 3, 5, 9, 8], &[2, 0, 3, 6, 7, 9]];
+    let mut points = vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    points.extend([[1., 0., 0.], [1., 1., 0.], [0., 1., 0.], [0., 0., 1.], [1., 0., 1.], [0., 1., 1.]]);
+    assert_eq!(found(&mesh(&points, &sides.map(|side| (CellKind::LAGRANGE_TRIANGLE, side)))), []);
+}
+
+#[test]
 fn parts_are_counted_and_the_display_names_places() {
     let mut points = CUBE.to_vec();
     points.extend(CUBE.map(|p| p.map(|x| x + 10.0)));

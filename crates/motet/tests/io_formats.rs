@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use motet::Mesh;
-use motet::base::{Point, VertexId};
+use motet::base::{Csr, Point, VertexId};
 use motet::io::{Encoding, Format, Input, Notes, WriteOptions, formats, read, read_as, read_noted, write};
 use motet::mesh::{CellKind, Cells, Field, Values};
 use proptest::prelude::*;
@@ -734,6 +734,29 @@ fn a_face_of_another_volume_is_told() {
     fs::remove_dir_all(folder.path().join("mesh-surfaces")).unwrap();
     let error = read(folder.path()).unwrap_err().to_string();
     assert!(error.contains("there is no face (*.vtp)"), "{error}");
+}
+
+#[test]
+fn polyhedra_go_into_a_simvascular_folder_and_are_no_faces() {
+    let mut cells = Cells::new();
+    let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|face| face.map(VertexId));
+    let mut rings = Csr::default();
+    faces.into_iter().for_each(|ring| rings.push(ring));
+    cells.push(CellKind::TRIANGLE, faces[1]);
+    cells.push_polyhedron([0, 1, 2, 3].map(VertexId), rings.clone());
+    let points = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut mesh = Mesh::new(points, cells);
+    mesh.set_cell_field(Field::scalars("patch", vec![5i32, 0]));
+    let parent = tempfile::tempdir().unwrap();
+    let folder = parent.path().join("folder");
+    write(parent.path().join("folder/"), &mesh, &WriteOptions::default()).unwrap();
+    let back = read(&folder).unwrap();
+    assert_eq!(back.cells.kinds(), [CellKind::POLYHEDRON, CellKind::TRIANGLE]);
+    assert_eq!(back.cells.polyhedron_faces(), [rings]);
+    let face = fs::read_dir(folder.join("mesh-surfaces")).unwrap().next().unwrap().unwrap().path();
+    fs::copy(folder.join("mesh-complete.mesh.vtu"), &face).unwrap();
+    let error = read(&folder).unwrap_err().to_string();
+    assert!(error.contains("has volume cells, which no face has"), "{error}");
 }
 
 #[test]

@@ -272,29 +272,17 @@ fn every_vertex_hangs_on_four_nodes_whose_mean_it_is() {
     }
 }
 
-/// Every tetrahedral mesh of the data folder, where there is one.
+/// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
 fn data_meshes() -> Vec<(String, Mesh)> {
+    let names = include_str!("real_tet_meshes.txt").lines();
     let folder = std::env::var("MOTET_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
-    let names = [
-        "tetmeshes/pescio_AbdominalAorticAneurysm.msh",
-        "tetmeshes/sv_ale_pipe/lumen.vtu",
-        "tetmeshes/sv_ale_pipe/wall.vtu",
-        "tetmeshes/sv_boundary_layer_pipe/lumen.vtu",
-        "tetmeshes/ambit_pipe_fsi/pipe_fsi_domain.vtu",
-        "moving_wall/ambit_la_lv/lalv_domain_with_aledisp.vtu",
-        "bad_tets/stellar_house2.node",
-        "bad_tets/polyfem_microstructure_P1.msh",
-        "bad_tets/polyfem_screw.msh",
-        "copyleft/lifev_aorta_fluid_30K.mesh",
-        "copyleft/dolfin_aneurysm.xml.gz",
-    ];
     let folder = std::path::Path::new(&folder);
     if !folder.exists() {
         println!("skipped: no data in {}", folder.display());
         return Vec::new();
     }
-    names.iter().map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
+    names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
 }
 
 #[test]
@@ -738,6 +726,17 @@ fn what_cannot_be_moved_is_refused_with_a_reason() {
     driven[3][2] = f64::NAN;
     let error = mover.step(&driven, &mut out, &Threads::single()).unwrap_err().to_string();
     assert!(error.contains("no finite number"), "{error}");
+}
+
+#[test]
+fn a_patch_may_hold_a_lagrange_cell_of_any_length() {
+    let mut mesh = solid(2, CellKind::TETRA);
+    let first = mesh.cells.len();
+    mesh.cells.push(CellKind::LAGRANGE_TRIANGLE, [0].map(VertexId));
+    mesh.cells.push(CellKind::LAGRANGE_TRIANGLE, [0, 1, 3, 9, 10, 12].map(VertexId));
+    let set = FacetSet::of_cells(&mesh, "patch", |cell| cell >= first);
+    assert_eq!(set.rings.iter().map(<[_]>::len).collect::<Vec<_>>(), [1, 3]);
+    assert_eq!(set.vertices, [0, 1, 3, 9, 10, 12].map(VertexId));
 }
 
 #[test]

@@ -109,3 +109,10 @@ pub struct Format {
     /// How it is written.
     pub write: Option<Write>,
 }
+
+impl Format {
+    /// Whether a mesh in this format is a folder of files.
+    pub fn is_folder(&self) -> bool {
+        self.endings == ["/"]
+    }
+}

@@ -12,6 +12,7 @@ mod node_order;
 mod obj;
 mod polygonal;
 mod polyhedra;
+mod reading;
 mod registry;
 mod replace;
 mod scalar;
@@ -26,6 +27,7 @@ mod text;
 mod vtkxml;
 
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
-pub use registry::{can_write, formats, read, read_as, read_noted, write};
+pub use reading::read_as;
+pub use registry::{can_write, formats, read, read_noted, write};
 pub use replace::{replace, replace_all};
 pub use series::{SeriesWriter, parse_series, read_series};

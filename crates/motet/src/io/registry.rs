@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, ErrorKind, Result};
-use crate::io::format::{Format, Input, Notes, WriteOptions};
+use crate::io::format::{Format, Notes, WriteOptions};
+use crate::io::reading::read_file;
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{dolfin, legacy, medit, msh, obj, simvascular, stl, tetgen, vtkxml};
 use crate::mesh::Mesh;
@@ -82,9 +83,9 @@ fn refuse_full_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// The format of a folder: one whose endings have `/`.
+/// The format of a folder.
 fn folder_format(path: &Path) -> Result<&'static Format> {
-    FORMATS.iter().find(|f| f.endings.contains(&"/")).ok_or_else(|| {
+    FORMATS.iter().find(|f| f.is_folder()).ok_or_else(|| {
         Error::input("is a folder, not a mesh file").in_file(path).remedy("name one of the files in it")
     })
 }
@@ -104,52 +105,9 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
-    if let Some(tail) = vtkxml::Tail::of(path) {
-        let mesh = vtkxml::read_tail(&tail, &notes);
-        return Ok((checked(mesh, path)?, notes.into_vec()));
-    }
-    let (format, bytes) = if path.is_dir() {
-        (folder_format(path)?, Vec::new())
-    } else {
-        (by_ending(path)?, std::fs::read(path).map_err(|e| Error::io(path, &e))?)
-    };
-    let mesh = read_as(format, &Input { path, bytes: &bytes, notes: &notes })?;
+    let format = if path.is_dir() { folder_format(path)? } else { by_ending(path)? };
+    let mesh = read_file(format, path, &notes)?;
     Ok((mesh, notes.into_vec()))
-}
-
-/// Reads `input` in the given format.
-///
-/// # Errors
-/// As [`read`].
-pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
-    let Some(read) = format.read else {
-        return Err(Error::new(ErrorKind::Input, format!("{} files can only be written", format.name))
-            .in_file(input.path));
-    };
-    if !format.endings.contains(&"/") {
-        refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
-    }
-    checked(read(input), input.path)
-}
-
-/// What a reader returned, found to hold together; errors with the file and a remedy.
-fn checked(mesh: Result<Mesh>, path: &Path) -> Result<Mesh> {
-    let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
-    let mesh = mesh.map_err(told)?;
-    mesh.validate().map_err(told)?;
-    Ok(mesh)
-}
-
-/// Refuses what lies in place of a mesh, whatever the format.
-fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
-    if bytes.is_empty() {
-        return Err(Error::input("is empty (0 bytes)").remedy("get the file again"));
-    }
-    if bytes.starts_with(b"version https://git-lfs.github.com/spec/") {
-        return Err(Error::input("is a pointer of Git LFS, not the file itself")
-            .remedy("fetch the file: git lfs pull"));
-    }
-    Ok(())
 }
 
 /// Writes a mesh in the format that the ending tells. The file appears whole or
@@ -171,7 +129,7 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         return replace_with(path, |sink| vtkxml::write_to(mesh, options, sink));
     }
     let written = write(mesh, options).map_err(|e| e.in_file(path))?;
-    if format.endings.contains(&"/") {
+    if format.is_folder() {
         refuse_full_folder(path)?;
         replace_folder(path, &written.files)?;
         return Ok(written.lost);

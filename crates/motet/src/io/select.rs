@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::base::VertexId;
-use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh};
+use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, corners};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
 pub(super) fn keep_cells<'m>(
@@ -22,21 +22,32 @@ pub(super) fn keep_cells<'m>(
     if lost.is_empty() {
         return (Cow::Borrowed(mesh), lost);
     }
+    (Cow::Owned(of_kinds(mesh, holds)), lost)
+}
+
+/// The mesh with those cells whose kind `holds`, and with all its points.
+pub(super) fn of_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
     let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| holds(mesh.cells.kinds()[i])).collect();
     let mut cells = Cells::new();
+    let mut faces = mesh.cells.polyhedron_faces().iter();
     for (_, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| holds(*kind)) {
-        cells.push(kind, vertices.iter().copied());
+        let vertices = vertices.iter().copied();
+        match kind {
+            // All polyhedra are of one kind: each is kept, and so their faces stay in step.
+            CellKind::POLYHEDRON => {
+                cells.push_polyhedron(vertices, faces.next().cloned().unwrap_or_default())
+            }
+            _ => cells.push(kind, vertices),
+        }
     }
-    let cell_data = mesh.cell_data.iter().map(|f| f.pick(kept.iter().copied())).collect();
-    let kept = Mesh {
+    Mesh {
         points: mesh.points.clone(),
         cells,
         point_data: mesh.point_data.clone(),
-        cell_data,
+        cell_data: mesh.cell_data.iter().map(|f| f.pick(kept.iter().copied())).collect(),
         field_data: mesh.field_data.clone(),
         label_names: mesh.label_names.clone(),
-    };
-    (Cow::Owned(kept), lost)
+    }
 }
 
 /// For a format of surfaces alone: the mesh itself where it has cells of
@@ -48,35 +59,43 @@ pub(super) fn surface_of<'m>(mesh: &'m Mesh, format: &str) -> (Cow<'m, Mesh>, Ve
     }
     let mut boundary = Boundary::of(&mesh.cells);
     boundary.turn_outward(&mesh.cells, &mesh.points);
-    let used = &boundary.vertices;
-    let place = |v: &VertexId| VertexId::new(used.partition_point(|u| u < v));
-    let mut cells = Cells::new();
-    for (kind, vertices) in boundary.kinds.iter().zip(boundary.facets.iter()) {
-        let (kind, n_corners) = match *kind {
-            CellKind::POLYGON => (CellKind::POLYGON, vertices.len()),
-            CellKind::TRIANGLE | CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE => {
-                (CellKind::TRIANGLE, 3)
-            }
-            _ => (CellKind::QUAD, 4),
+    let facets = boundary.kinds.iter().zip(boundary.facets.iter()).map(|(kind, vertices)| {
+        let ring = corners(*kind, vertices);
+        let kind = match (*kind, ring.len()) {
+            (CellKind::POLYGON, _) => CellKind::POLYGON,
+            (_, 3) => CellKind::TRIANGLE,
+            _ => CellKind::QUAD,
         };
-        cells.push(kind, vertices[..n_corners].iter().map(place));
-    }
-    let surface = Mesh {
-        points: used.iter().map(|v| mesh.points[v.index()]).collect(),
-        cells,
-        point_data: mesh
-            .point_data
-            .iter()
-            .map(|f| f.pick(boundary.vertices.iter().map(|v| v.index())))
-            .collect(),
-        cell_data: mesh.cell_data.iter().map(|f| f.pick(boundary.cells.iter().map(|c| c.index()))).collect(),
-        field_data: mesh.field_data.clone(),
-        label_names: mesh.label_names.clone(),
-    };
+        (kind, ring)
+    });
+    let cell_rows: Vec<usize> = boundary.cells.iter().map(|c| c.index()).collect();
+    let mut surface = facets_alone(mesh, &boundary.vertices, facets, &cell_rows);
+    surface.field_data.clone_from(&mesh.field_data);
+    surface.label_names.clone_from(&mesh.label_names);
     let note = format!(
         "{format} has surfaces only: the boundary of the volume cells is written, their inside is left out"
     );
     (Cow::Owned(surface), vec![note])
+}
+
+/// Facets over the points `used` of a mesh, which stand in rising order; arrays of cells come from `cell_rows`.
+pub(super) fn facets_alone<'m>(
+    mesh: &Mesh,
+    used: &[VertexId],
+    facets: impl IntoIterator<Item = (CellKind, &'m [VertexId])>,
+    cell_rows: &[usize],
+) -> Mesh {
+    let place = |v: &VertexId| VertexId::new(used.partition_point(|u| u < v));
+    let mut cells = Cells::new();
+    facets.into_iter().for_each(|(kind, vertices)| cells.push(kind, vertices.iter().map(place)));
+    let point_rows: Vec<usize> = used.iter().map(|v| v.index()).collect();
+    Mesh {
+        points: point_rows.iter().map(|&i| mesh.points[i]).collect(),
+        cells,
+        point_data: mesh.point_data.iter().map(|f| f.pick(point_rows.iter().copied())).collect(),
+        cell_data: mesh.cell_data.iter().map(|f| f.pick(cell_rows.iter().copied())).collect(),
+        ..Mesh::default()
+    }
 }
 
 /// A sentence on arrays that a format has no place for; none where there are none.

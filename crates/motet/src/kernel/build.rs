@@ -11,28 +11,27 @@ use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 
 impl Complex {
-    /// The complex of a mesh, and which of its tets were numbered the other way round (empty: none).
+    /// The complex of a mesh. Tets are turned the way most are; see `orientation`.
     ///
     /// # Errors
     /// When an array does not fit ([`TetMesh::validate`]), when more than two tets share a facet, a triangle is no facet of a
     /// tet, or the mesh is one-sided; the place is the first such tet or triangle.
-    pub fn new(mesh: TetMesh) -> Result<(Self, Vec<bool>)> {
+    pub fn new(mesh: &TetMesh) -> Result<Self> {
         mesh.validate()?;
         if mesh.tets.len() >= MAX_TETS as usize {
             return Err(Error::input(format!("{} tets are more than {MAX_TETS}", mesh.tets.len()))
                 .remedy("split the mesh"));
         }
-        let TetMesh { points, mut tets, regions, triangles, patches, fixed_vertices, mut fixed_edges } = mesh;
-        let mut joined = Joined::of(&tets, &regions, &triangles, &patches)?;
-        let mut rough = rough_eas(&points, &tets);
-        let mut is_turned = Vec::new();
+        let TetMesh { points, regions, triangles, patches, .. } = mesh;
+        let mut tets = mesh.tets.clone();
+        let mut joined = Joined::of(&tets, regions, triangles, patches)?;
+        let mut rough = rough_eas(points, &tets);
+        let mut n_turned = 0;
         if rough.iter().any(|&q| q <= 0.0) {
-            is_turned = orient(&mut tets, &joined.across(), &points)?;
-            if is_turned.contains(&true) {
-                joined = Joined::of(&tets, &regions, &triangles, &patches)?;
-                rough = rough_eas(&points, &tets);
-            } else {
-                is_turned.clear();
+            n_turned = orient(&mut tets, &joined.across(), points)?;
+            if n_turned > 0 {
+                joined = Joined::of(&tets, regions, triangles, patches)?;
+                rough = rough_eas(points, &tets);
             }
         }
         let n_tets = tets.len();
@@ -40,29 +39,34 @@ impl Complex {
         for (t, tet) in tets.iter().enumerate() {
             tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
         }
+        let mut fixed_edges = mesh.fixed_edges.clone();
         fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
         fixed_edges.sort_unstable();
         let mut complex = Self {
             holds: vec![Hold::Free; points.len()],
             vertex_is_new: vec![false; points.len()],
-            points,
+            vertex_came: vec![false; points.len()],
+            points: points.clone(),
             vertex_to_tet,
             is_new: vec![false; tets.len()],
             tets,
             links: joined.links,
-            regions,
+            regions: regions.clone(),
             qualities: vec![UNMEASURED; n_tets],
             rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
             free_tets: Vec::new(),
             free_walls: Vec::new(),
+            is_locked: Vec::new(),
             fixed_edges,
             keeps_surface: true,
+            mostly_turned: 2 * n_turned > n_tets,
+            gone_triangles: Vec::new(),
             journal: Journal::default(),
         };
-        complex.hold_walls(&fixed_vertices);
-        Ok((complex, is_turned))
+        complex.hold_walls(&mesh.fixed_vertices);
+        Ok(complex)
     }
 
     /// Vertices of walls are held by the surface, fixed ones and those without a tet altogether.
@@ -116,7 +120,7 @@ impl Joined {
                     let triangle = triangles.first().copied().unwrap_or(NO_TRIANGLE);
                     let sides = [half(0), if uses.len() == 2 { half(1) } else { HalfFacet::NONE }];
                     let patch = patches.get(triangle as usize).copied().unwrap_or(0);
-                    joined.add_wall(Wall { sides, patch, triangle });
+                    joined.add_wall(Wall { sides, patch, triangle, is_new: false });
                 }
                 // A triangle that is no facet stays as it is; its vertices are held by whoever hands it over.
                 [] => {}

@@ -33,6 +33,8 @@ pub enum Reject {
     Vertex(VertexId),
     /// A vertex that is held would move or go.
     Held(VertexId),
+    /// A tet that is locked would go.
+    Locked(TetId),
     /// An edge that must stay would go.
     Edge([VertexId; 2]),
 }
@@ -50,6 +52,7 @@ impl fmt::Display for Reject {
             Self::Region(facet) => write!(f, "tets would change their region at {facet:?}"),
             Self::Vertex(v) => write!(f, "vertex {v} would be lost"),
             Self::Held(v) => write!(f, "vertex {v} is held"),
+            Self::Locked(tet) => write!(f, "tet {tet} is locked"),
             Self::Edge(edge) => write!(f, "the edge {edge:?} would be lost"),
         }
     }
@@ -76,6 +79,8 @@ pub(super) enum Joint {
     InnerWall([FillFacet; 2], WallId),
     /// A wall that comes, with one or two tets of the fill.
     NewWall(FillFacet, Option<FillFacet>, NewWall),
+    /// A wall that comes on a tet outside, with a tet of the fill on its other side or nothing.
+    Bared(HalfFacet, Option<FillFacet>, NewWall),
 }
 
 /// A tet of the fill, by its place, and one of its facets.
@@ -127,6 +132,9 @@ impl Complex {
         // Not "at most": so that what is no number is refused.
         if !(after > bar) {
             return Err(Reject::Quality { before: bar, after });
+        }
+        if let Some(&tet) = change.cavity.iter().find(|&&t| self.is_locked(t)) {
+            return Err(Reject::Locked(tet));
         }
         self.check_vertices(change)?;
         for tet in &change.fill {
@@ -258,6 +266,17 @@ impl Complex {
             ] => {
                 two_sides(x, y)?;
                 Joint::NewWall(part(x), Some(part(y)), change.walls[*wall as usize])
+            }
+            [Use { role: Outer(_, outside), .. }, Use { role: NewWall(wall), .. }] => {
+                Joint::Bared(*outside, None, change.walls[*wall as usize])
+            }
+            [
+                x @ Use { role: Outer(_, outside), .. },
+                Use { role: NewWall(wall), .. },
+                y @ Use { role: Fill(..), .. },
+            ] => {
+                same_side(x, y)?;
+                Joint::Bared(*outside, Some(part(y)), change.walls[*wall as usize])
             }
             _ => return Err(self.refusal(uses)),
         };

@@ -1,11 +1,11 @@
 //! The only code that writes connectivity.
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::change::{Fill, VertexChange};
+use crate::kernel::change::{Fill, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
 use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
-use crate::kernel::link::{HalfFacet, Link, Wall, WallId};
+use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 
 impl Complex {
     /// Makes a change. `came` gets the ids of the tets of the fill, in their order.
@@ -49,6 +49,7 @@ impl Complex {
                 self.points[vertex.index()] = point;
                 self.holds[vertex.index()] = hold;
                 self.vertex_is_new[vertex.index()] = true;
+                self.vertex_came[vertex.index()] = true;
             }
             VertexChange::Move(vertex, point) => {
                 self.note_vertex(vertex);
@@ -63,7 +64,12 @@ impl Complex {
             let i = v.index();
             Entry::Vertex(
                 v,
-                VertexRecord { point: c.points[i], hold: c.holds[i], is_new: c.vertex_is_new[i] },
+                VertexRecord {
+                    point: c.points[i],
+                    hold: c.holds[i],
+                    is_new: c.vertex_is_new[i],
+                    came: c.vertex_came[i],
+                },
             )
         });
     }
@@ -126,12 +132,14 @@ impl Complex {
             Joint::InnerWall(sides, wall) => {
                 self.set_wall(wall, Wall { sides: sides.map(half), ..self.walls[wall.index()] });
             }
-            Joint::NewWall(x, y, new) => {
-                let sides = [half(x), y.map_or(HalfFacet::NONE, half)];
-                let id = self.take_wall_slot();
-                self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle });
-            }
+            Joint::NewWall(x, y, new) => self.add_wall([half(x), y.map_or(HalfFacet::NONE, half)], new),
+            Joint::Bared(outside, x, new) => self.add_wall([outside, x.map_or(HalfFacet::NONE, half)], new),
         }
+    }
+
+    fn add_wall(&mut self, sides: [HalfFacet; 2], new: NewWall) {
+        let id = self.take_wall_slot();
+        self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
     }
 
     /// Writes a wall, and the links of the tets at it.
@@ -148,7 +156,11 @@ impl Complex {
 
     fn free_wall(&mut self, id: WallId) {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
-        self.walls[id.index()] = Wall::FREE;
+        let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
+        if !wall.is_new && wall.triangle != NO_TRIANGLE {
+            self.gone_triangles.push(wall.triangle);
+            self.note(|_| Entry::GoneTriangle);
+        }
         self.free_walls.push(id);
         self.note(|_| Entry::FreedWall);
     }
@@ -189,6 +201,7 @@ impl Complex {
         self.points.push([0.0; 3]);
         self.holds.push(Hold::Free);
         self.vertex_is_new.push(true);
+        self.vertex_came.push(true);
         self.vertex_to_tet.push(NO_TET);
         VertexId::new(self.points.len() - 1)
     }

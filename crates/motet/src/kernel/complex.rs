@@ -39,14 +39,22 @@ pub struct Complex {
     pub(super) is_new: Vec<bool>,
     /// Whether a vertex is not one of the first mesh, or has moved.
     pub(super) vertex_is_new: Vec<bool>,
+    /// Whether a vertex is not one of the first mesh.
+    pub(super) vertex_came: Vec<bool>,
     pub(super) walls: Vec<Wall>,
     pub(super) free_vertices: Vec<VertexId>,
     pub(super) free_tets: Vec<TetId>,
     pub(super) free_walls: Vec<WallId>,
+    /// Tets that no change may touch; empty where there is none.
+    pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
+    /// Whether most tets of the first mesh are numbered the other way round.
+    pub(super) mostly_turned: bool,
+    /// Triangles of the first mesh that are no walls any more.
+    pub(super) gone_triangles: Vec<u32>,
     pub(super) journal: Journal,
 }
 
@@ -72,6 +80,11 @@ impl Complex {
     /// How many vertex ids there are, free ones included.
     pub fn n_vertex_slots(&self) -> usize {
         self.points.len()
+    }
+
+    /// How many vertices belong to a tet.
+    pub fn n_used_vertices(&self) -> usize {
+        self.vertex_to_tet.iter().filter(|&&t| t != NO_TET).count()
     }
 
     /// The tets that there are, in rising order.
@@ -210,6 +223,20 @@ impl Complex {
     /// Whether walls, and the vertices on them, must stay as they are: so it is at first.
     pub fn keeps_surface(&self) -> bool {
         self.keeps_surface
+    }
+
+    /// Lets no change touch a tet any more.
+    pub fn lock(&mut self, tet: TetId) {
+        if self.is_locked.is_empty() {
+            self.is_locked = vec![false; self.tets.len()];
+        }
+        self.is_locked[tet.index()] = true;
+    }
+
+    /// Whether no change may touch a tet.
+    #[inline]
+    pub fn is_locked(&self, tet: TetId) -> bool {
+        self.is_locked.get(tet.index()).is_some_and(|&locked| locked)
     }
 
     /// Lets changes change walls, and move and remove the vertices on them that are not fixed.

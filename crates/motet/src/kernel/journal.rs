@@ -21,6 +21,7 @@ pub(super) enum Entry {
     FreedTet,
     FreedVertex,
     FreedWall,
+    GoneTriangle,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +38,7 @@ pub(super) struct VertexRecord {
     pub(super) point: Point,
     pub(super) hold: Hold,
     pub(super) is_new: bool,
+    pub(super) came: bool,
 }
 
 /// The entries, while it is open.
@@ -94,6 +96,7 @@ impl Complex {
                 self.points[v.index()] = record.point;
                 self.holds[v.index()] = record.hold;
                 self.vertex_is_new[v.index()] = record.is_new;
+                self.vertex_came[v.index()] = record.came;
             }
             Entry::Wall(w, wall) => self.walls[w.index()] = wall,
             Entry::Link(t, i, link) => self.links[t.index()][usize::from(i)] = link,
@@ -109,6 +112,7 @@ impl Complex {
                 self.points.truncate(n);
                 self.holds.truncate(n);
                 self.vertex_is_new.truncate(n);
+                self.vertex_came.truncate(n);
                 self.vertex_to_tet.truncate(n);
             }
             Entry::WallSlots(n) => self.walls.truncate(n),
@@ -118,6 +122,7 @@ impl Complex {
             Entry::FreedTet => drop(self.free_tets.pop()),
             Entry::FreedVertex => drop(self.free_vertices.pop()),
             Entry::FreedWall => drop(self.free_walls.pop()),
+            Entry::GoneTriangle => drop(self.gone_triangles.pop()),
         }
     }
 }

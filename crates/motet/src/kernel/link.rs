@@ -64,13 +64,16 @@ pub struct Wall {
     pub patch: i32,
     /// The triangle of the first mesh that it is, or is a part of; [`NO_TRIANGLE`] where there was none.
     pub triangle: u32,
+    /// Whether it is not one of the first mesh.
+    pub is_new: bool,
 }
 
 /// A wall that is no triangle of the mesh.
 pub(crate) const NO_TRIANGLE: u32 = u32::MAX;
 
 impl Wall {
-    pub(super) const FREE: Self = Self { sides: [HalfFacet::NONE; 2], patch: 0, triangle: NO_TRIANGLE };
+    pub(super) const FREE: Self =
+        Self { sides: [HalfFacet::NONE; 2], patch: 0, triangle: NO_TRIANGLE, is_new: false };
 
     /// The side that is not `side`.
     #[inline(always)]

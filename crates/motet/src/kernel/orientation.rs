@@ -8,13 +8,13 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::tet::{FACETS, volume_6};
 use crate::kernel::link::HalfFacet;
 
-/// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns which it turned.
+/// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns how many it turned.
 /// `across` has the facet behind each facet.
 pub(super) fn orient(
     tets: &mut [[VertexId; 4]],
     across: &[[HalfFacet; 4]],
     points: &[Point],
-) -> Result<Vec<bool>> {
+) -> Result<usize> {
     let mut is_turned = vec![false; tets.len()];
     let mut is_seen = vec![false; tets.len()];
     let mut part = Vec::new();
@@ -55,10 +55,8 @@ pub(super) fn orient(
             part.iter().for_each(|&t| is_turned[t] = !is_turned[t]);
         }
     }
-    for (tet, _) in tets.iter_mut().zip(&is_turned).filter(|(_, turned)| **turned) {
-        tet.swap(2, 3);
-    }
-    Ok(is_turned)
+    tets.iter_mut().zip(&is_turned).filter(|(_, turned)| **turned).for_each(|(tet, _)| tet.swap(2, 3));
+    Ok(is_turned.iter().filter(|turned| **turned).count())
 }
 
 fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {

@@ -2,6 +2,7 @@
 
 use crate::base::{TetId, VertexId};
 use crate::kernel::complex::{Complex, NO_TET};
+use crate::kernel::link::{Behind, WallId};
 
 /// The tets round an edge `ab`, in order, with the vertices opposite the edge.
 ///
@@ -20,8 +21,8 @@ pub struct Shell {
     pub ring: Vec<VertexId>,
     /// Whether the tets go all the way round.
     pub is_closed: bool,
-    /// How many of the facets at the edge are walls; an open shell has two at least.
-    pub n_walls: usize,
+    /// Which of the facets at the edge are walls, by the places of their third vertices in the ring; those of an open shell's ends are.
+    pub walls: Vec<usize>,
 }
 
 /// For vertices at places `i` and `j` of a positive tet, the other places `k` and `l` such that (i, j, k, l) is positive.
@@ -48,13 +49,14 @@ impl Shell {
         // The boundary was met: round the other way to where it begins, and once more from there.
         let first = Self::first(complex, start, a, b);
         self.clear();
+        self.walls.push(0);
         self.turn(complex, first, a, b);
     }
 
     fn clear(&mut self) {
         self.tets.clear();
         self.ring.clear();
-        self.n_walls = 0;
+        self.walls.clear();
         self.is_closed = false;
     }
 
@@ -67,18 +69,24 @@ impl Shell {
             let vertices = complex.vertices(tet);
             self.tets.push(tet);
             self.ring.push(vertices[k]);
+            // The facet ahead is that of the next ring vertex, of the first one at last.
             let is_wall = complex.is_wall(tet, k);
-            self.n_walls += usize::from(is_wall);
+            if is_wall {
+                self.walls.push(self.ring.len());
+            }
             let next = complex.across(tet, k);
             if next.is_none() {
                 self.ring.push(vertices[l]);
-                self.n_walls += 1;
                 return false;
             }
             tet = next.tet();
 
             if tet == start {
                 self.is_closed = true;
+                if self.walls.last() == Some(&self.ring.len()) {
+                    self.walls.pop();
+                    self.walls.insert(0, 0);
+                }
                 return true;
             }
         }
@@ -97,10 +105,24 @@ impl Shell {
         }
     }
 
+    /// The wall at a place of [`Self::walls`], by one of its tets and the facet of that.
+    pub fn wall_at(&self, complex: &Complex, place: usize) -> WallId {
+        // Tet i has the ring vertices i and i + 1; its facet to either lies opposite the other.
+        let (tet, opposite) = match place {
+            0 => (0, 1 % self.ring.len()),
+            _ => (place - 1, place - 1),
+        };
+        let tet = self.tets[tet];
+        match complex.behind(tet, complex.place(tet, self.ring[opposite])) {
+            Behind::Wall(wall) => wall,
+            Behind::Tet(_) => unreachable!("places of walls are noted as such"),
+        }
+    }
+
     /// Whether the edge lies inside one region, with no wall at it.
     #[inline]
     pub fn is_free(&self) -> bool {
-        self.n_walls == 0
+        self.walls.is_empty()
     }
 }
 

@@ -60,7 +60,7 @@ impl Boundary {
         let facets = Facets::of(cells);
         for i in 0..self.len() {
             if cell_volume(&facets, self.cells[i], points) < 0.0 {
-                let n_corners = n_corners(self.kinds[i], self.facets.list(i).len());
+                let n_corners = corners(self.kinds[i], self.facets.list(i)).len();
                 turn(self.facets.list_mut(i), n_corners);
             }
         }
@@ -79,14 +79,18 @@ fn used_once(facets: &Facets) -> Vec<FacetUse> {
     alone
 }
 
-/// How many of the `n` vertices of a facet are corners.
-pub(crate) fn n_corners(kind: CellKind, n: usize) -> usize {
-    match kind {
-        CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE => 3,
-        CellKind::QUADRATIC_QUAD | CellKind::BIQUADRATIC_QUAD | CellKind::QUADRATIC_LINEAR_QUAD => 4,
-        CellKind::QUADRATIC_POLYGON => n / 2,
-        _ => n,
-    }
+/// Those vertices of a surface cell or facet that are corners. A Lagrange cell may have fewer than it needs.
+pub(crate) fn corners(kind: CellKind, vertices: &[VertexId]) -> &[VertexId] {
+    let n = match kind {
+        CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE | CellKind::LAGRANGE_TRIANGLE => 3,
+        CellKind::QUADRATIC_QUAD
+        | CellKind::BIQUADRATIC_QUAD
+        | CellKind::QUADRATIC_LINEAR_QUAD
+        | CellKind::LAGRANGE_QUADRILATERAL => 4,
+        CellKind::QUADRATIC_POLYGON => vertices.len() / 2,
+        _ => vertices.len(),
+    };
+    &vertices[..n.min(vertices.len())]
 }
 
 /// Reverses a ring of corners, its first corner staying; middles follow their edges.

@@ -17,11 +17,12 @@ mod summary;
 mod surface;
 pub mod tet_facets;
 mod tet_mesh;
+mod tet_part;
 mod triangulate;
 mod volume;
 
 pub use boundary::Boundary;
-pub(crate) use boundary::n_corners;
+pub(crate) use boundary::corners;
 pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use exchange::{Mesh, bounds};
@@ -33,5 +34,6 @@ pub use summary::{
 };
 pub use surface::Surface;
 pub use tet_mesh::TetMesh;
+pub use tet_part::TetPart;
 pub use triangulate::triangulate;
 pub use volume::{cell_volume, cell_volumes, cone_volume};

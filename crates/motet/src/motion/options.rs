@@ -1,7 +1,7 @@
 //! What a mover is told beside the mesh: which facets are walls, what stays rigid, what slides.
 
 use crate::base::{Csr, VertexId};
-use crate::mesh::{Boundary, CellKind, Mesh};
+use crate::mesh::{Boundary, CellKind, Mesh, corners};
 
 /// How a mesh is to be moved. The default moves every inner vertex by the graph
 /// of the boundary alone.
@@ -121,9 +121,7 @@ impl FacetSet {
                 CellKind::TRIANGLE_STRIP => {
                     vertices.windows(3).for_each(|t| set.rings.push(t.iter().map(|&v| vertex(v))));
                 }
-                _ => {
-                    set.rings.push(vertices[..n_corners(kind, vertices.len())].iter().map(|&v| vertex(v)));
-                }
+                _ => set.rings.push(corners(kind, vertices).iter().map(|&v| vertex(v))),
             }
         }
         set.vertices.sort_unstable();
@@ -142,18 +140,5 @@ impl FacetSet {
     /// Whether it holds no facet.
     pub fn is_empty(&self) -> bool {
         self.rings.is_empty()
-    }
-}
-
-/// How many of the `n` vertices of a surface cell are corners.
-fn n_corners(kind: CellKind, n: usize) -> usize {
-    match kind {
-        CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE | CellKind::LAGRANGE_TRIANGLE => 3,
-        CellKind::QUADRATIC_QUAD
-        | CellKind::BIQUADRATIC_QUAD
-        | CellKind::QUADRATIC_LINEAR_QUAD
-        | CellKind::LAGRANGE_QUADRILATERAL => 4,
-        CellKind::QUADRATIC_POLYGON => n / 2,
-        _ => n,
     }
 }

@@ -1,7 +1,7 @@
 //! A vertex drawn along an edge into its other end.
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::{Change, Complex, VertexChange};
+use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, NewWall, VertexChange};
 
 /// Proposes to draw `gone` into `kept`. `star` are the tets of `gone`. `false` when a tet would not be better than `bar`.
 pub fn collapse(
@@ -15,6 +15,7 @@ pub fn collapse(
     change.clear();
     change.vertex = VertexChange::Remove(gone);
     change.cavity.extend_from_slice(star);
+    walls(complex, star, gone, kept, change);
     for &tet in star {
         let mut vertices = complex.vertices(tet);
         if vertices.contains(&kept) {
@@ -27,4 +28,22 @@ pub fn collapse(
         }
     }
     true
+}
+
+/// The walls of `gone` that are not at the edge go over to `kept`.
+fn walls(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, change: &mut Change) {
+    if complex.hold(gone) == Hold::Free {
+        return;
+    }
+    for half in star.iter().flat_map(|&t| (0..4).map(move |i| HalfFacet::new(t, i))) {
+        let Behind::Wall(id) = complex.behind(half.tet(), half.facet()) else { continue };
+        let wall = complex.wall(id);
+        let mut vertices = complex.facet(half);
+        // A wall between two regions has tets of the star on both sides.
+        if wall.sides[0] != half || !vertices.contains(&gone) || vertices.contains(&kept) {
+            continue;
+        }
+        vertices.iter_mut().filter(|v| **v == gone).for_each(|v| *v = kept);
+        change.walls.push(NewWall { vertices, patch: wall.patch, triangle: wall.triangle });
+    }
 }

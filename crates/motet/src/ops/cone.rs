@@ -2,32 +2,40 @@
 
 use crate::base::VertexId;
 use crate::geometry::tet::FACETS;
-use crate::kernel::{Behind, Change, Complex};
+use crate::kernel::{Change, Complex};
 
 /// Fills the cavity of `change` with tets from `apex` to each facet of its boundary that does not have it. `false` when one of
 /// them is not better than `bar`, or a wall lies within the cavity.
 pub fn cone(complex: &Complex, apex: VertexId, bar: f64, change: &mut Change) -> bool {
+    cone_on_edge(complex, apex, None, bar, change)
+}
+
+/// The same for an apex that lies on an edge: facets of the edge get no tet, and may be walls.
+pub(super) fn cone_on_edge(
+    complex: &Complex,
+    apex: VertexId,
+    edge: Option<[VertexId; 2]>,
+    bar: f64,
+    change: &mut Change,
+) -> bool {
     change.fill.clear();
     for i in 0..change.cavity.len() {
         let tet = change.cavity[i];
         let vertices = complex.vertices(tet);
         for (place, facet) in FACETS.into_iter().enumerate() {
-            let is_inside = match complex.behind(tet, place) {
-                Behind::Tet(half) => change.cavity.contains(&half.tet()),
-                Behind::Wall(wall) => {
-                    let other = complex.wall(wall).sides.iter().any(|side| {
-                        !side.is_none() && side.tet() != tet && change.cavity.contains(&side.tet())
-                    });
-                    if other {
-                        return false;
-                    }
-                    false
-                }
-            };
-            let [a, b, c] = facet.map(|corner| vertices[corner]);
-            if is_inside || a == apex || b == apex || c == apex {
+            let facet = facet.map(|corner| vertices[corner]);
+            if edge.is_some_and(|edge| edge.iter().all(|v| facet.contains(v))) {
                 continue;
             }
+            let behind = complex.across(tet, place);
+            let is_inside = !behind.is_none() && change.cavity.contains(&behind.tet());
+            if is_inside && complex.is_wall(tet, place) {
+                return false;
+            }
+            if is_inside || facet.contains(&apex) {
+                continue;
+            }
+            let [a, b, c] = facet;
             change.push(complex, [a, c, b, apex], complex.region(tet));
             if !(change.fill[change.fill.len() - 1].quality > bar) {
                 return false;

@@ -6,7 +6,7 @@
 //! 3-2 and 4-4 are its cases for rings of three and four.
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::{Change, Complex, Shell};
+use crate::kernel::{Change, Complex, NewWall, Shell};
 
 /// Rings with more vertices are left alone: triangulations become many, and good ones rare.
 const LARGEST_RING: usize = 10;
@@ -20,7 +20,8 @@ pub struct EdgeRemoval {
 }
 
 impl EdgeRemoval {
-    /// Proposes to remove the edge from `a` to `b`, which `start` has. `false` when there is no way better than `bar`, or a wall has the edge.
+    /// Proposes to remove the edge from `a` to `b`, which `start` has. Where the surface may change, an edge that two walls of one patch meet at
+    /// is removed, too: the edge between the other two vertices of the walls takes its place. `false` when there is no way better than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
@@ -30,23 +31,69 @@ impl EdgeRemoval {
         change: &mut Change,
     ) -> bool {
         self.shell.walk(complex, start, a, b);
-        let m = self.shell.ring.len();
-        if !self.shell.is_free() || !(3..=LARGEST_RING).contains(&m) || complex.is_fixed_edge(a, b) {
+        if complex.is_fixed_edge(a, b) {
             return false;
         }
         change.clear();
-        if !self.tabulate(complex, [a, b], bar) {
+        change.cavity.extend_from_slice(&self.shell.tets);
+        let m = self.shell.ring.len();
+        match self.shell.walls[..] {
+            [] if m >= 3 => self.fill(complex, [a, b], (0, m), bar, change),
+            [i, j] if !complex.keeps_surface() => {
+                self.swap_walls(complex, [a, b], [i, j], change)
+                    && self.fill(complex, [a, b], (i, j - i + 1), bar, change)
+                    && (!self.shell.is_closed || self.fill(complex, [a, b], (j, m - j + i + 1), bar, change))
+            }
+            _ => false,
+        }
+    }
+
+    /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches.
+    fn swap_walls(
+        &self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        places: [usize; 2],
+        change: &mut Change,
+    ) -> bool {
+        let [first, second] = places.map(|place| complex.wall(self.shell.wall_at(complex, place)));
+        let [p, q] = places.map(|place| self.shell.ring[place]);
+        for (end, wall) in [(a, first), (b, second)] {
+            change.walls.push(NewWall { vertices: [end, p, q], patch: wall.patch, triangle: wall.triangle });
+        }
+        first.patch == second.patch
+    }
+
+    /// Fills the part of the ring that begins at a place and has so many vertices. Nothing comes between two.
+    fn fill(
+        &mut self,
+        complex: &Complex,
+        edge: [VertexId; 2],
+        (start, n): (usize, usize),
+        bar: f64,
+        change: &mut Change,
+    ) -> bool {
+        if n > LARGEST_RING {
             return false;
         }
-        change.cavity.extend_from_slice(&self.shell.tets);
-        self.build(complex, [a, b], (0, m - 1), change);
-        true
+        let m = self.shell.ring.len();
+        let mut ring = [VertexId(0); LARGEST_RING];
+        for i in 0..n {
+            ring[i] = self.shell.ring[(start + i) % m];
+        }
+        if n < 3 {
+            return true;
+        }
+        let region = complex.region(self.shell.tets[start % self.shell.tets.len()]);
+        self.tabulate(complex, edge, &ring[..n], bar) && {
+            self.build(complex, edge, &ring[..n], region, (0, n - 1), change);
+            true
+        }
     }
 
     /// Fills the table; whether the whole ring has a filling better than `bar`.
-    fn tabulate(&mut self, complex: &Complex, [a, b]: [VertexId; 2], bar: f64) -> bool {
-        let Self { shell, best } = self;
-        let ring = &shell.ring;
+    fn tabulate(&mut self, complex: &Complex, [a, b]: [VertexId; 2], ring: &[VertexId], bar: f64) -> bool {
+        let best = &mut self.best;
         let m = ring.len();
         let [pa, pb] = [complex.point(a), complex.point(b)];
         let mut points = [[0.0; 3]; LARGEST_RING];
@@ -80,18 +127,23 @@ impl EdgeRemoval {
         best[m - 1].0 > bar
     }
 
-    fn build(&self, complex: &Complex, edge: [VertexId; 2], (i, j): (usize, usize), change: &mut Change) {
+    fn build(
+        &self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        ring: &[VertexId],
+        region: i32,
+        (i, j): (usize, usize),
+        change: &mut Change,
+    ) {
         if j < i + 2 {
             return;
         }
-        let m = self.shell.ring.len();
-        let k = usize::from(self.best[i * m + j].1);
-        let [a, b] = edge;
-        let [p, q, r] = [i, k, j].map(|place| self.shell.ring[place]);
-        let region = complex.region(self.shell.tets[0]);
+        let k = usize::from(self.best[i * ring.len() + j].1);
+        let [p, q, r] = [i, k, j].map(|place| ring[place]);
         change.push(complex, [p, q, r, b], region);
         change.push(complex, [p, r, q, a], region);
-        self.build(complex, edge, (i, k), change);
-        self.build(complex, edge, (k, j), change);
+        self.build(complex, [a, b], ring, region, (i, k), change);
+        self.build(complex, [a, b], ring, region, (k, j), change);
     }
 }

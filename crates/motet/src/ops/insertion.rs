@@ -38,7 +38,7 @@ impl Insertion {
                 let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
                 ([a, c, b, point], 3)
             });
-            let point = self.smoothing.best_place(complex, rim, point, enough);
+            let point = self.smoothing.best_place(complex, rim, point, enough, Some);
             self.fill(complex, point, change);
             change.worst() > bar && !self.loses_a_vertex(complex, change)
         }

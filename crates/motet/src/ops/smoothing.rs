@@ -45,12 +45,21 @@ impl Smoothing {
         [bar, enough]: [f64; 2],
         change: &mut Change,
     ) -> bool {
-        let point = self.best_place(
-            complex,
-            star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex))),
-            complex.point(vertex),
-            enough,
-        );
+        self.propose_on(complex, star, vertex, [bar, enough], Some, change)
+    }
+
+    /// The same for a vertex that is not free: `project` draws each place onto what holds it, or says that there is no such place.
+    pub fn propose_on(
+        &mut self,
+        complex: &Complex,
+        star: &[TetId],
+        vertex: VertexId,
+        [bar, enough]: [f64; 2],
+        project: impl Fn(Point) -> Option<Point>,
+        change: &mut Change,
+    ) -> bool {
+        let corners = star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex)));
+        let point = self.best_place(complex, corners, complex.point(vertex), enough, project);
         change.clear();
         change.vertex = VertexChange::Move(vertex, point);
         change.cavity.extend_from_slice(star);
@@ -70,6 +79,7 @@ impl Smoothing {
         star: impl Iterator<Item = ([Point; 4], usize)>,
         start: Point,
         enough: f64,
+        project: impl Fn(Point) -> Option<Point>,
     ) -> Point {
         self.tets.clear();
         let mut size = 0.0f64;
@@ -95,11 +105,12 @@ impl Smoothing {
             let mut length = (2.0 * gain / slope).min(0.5 * size / slope.sqrt());
             let mut found = None;
             for _ in 0..=MOST_HALVINGS {
-                let trial = add(place, scale(direction, length));
-                let quality = self.worst_at(complex, trial, worst);
-                if quality > worst {
-                    found = Some((trial, quality));
-                    break;
+                if let Some(trial) = project(add(place, scale(direction, length))) {
+                    let quality = self.worst_at(complex, trial, worst);
+                    if quality > worst {
+                        found = Some((trial, quality));
+                        break;
+                    }
                 }
                 length *= 0.5;
             }

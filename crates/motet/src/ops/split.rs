@@ -1,16 +1,32 @@
 //! Edges divided by a vertex: one edge, two crossed ones, or one at a vertex that is already there.
 
 use crate::base::{Point, TetId, VertexId};
-use crate::kernel::{Change, Complex, Hold, Shell, VertexChange};
+use crate::kernel::{Change, Complex, Hold, NewWall, Shell, VertexChange};
 use crate::ops::cone;
+use crate::ops::cone::cone_on_edge;
 
-/// Proposes a new vertex at `point` on the edge whose shell is given. `false` when a tet would not be better than `bar`, or a wall
-/// has the edge.
-pub fn split_edge(complex: &Complex, shell: &Shell, point: Point, bar: f64, change: &mut Change) -> bool {
+/// Proposes a new vertex at `point` on the edge `ab` whose shell is given, held by `hold`; walls at the edge are split with it. `false` when a tet would
+/// not be better than `bar`.
+pub fn split_edge(
+    complex: &Complex,
+    shell: &Shell,
+    [a, b]: [VertexId; 2],
+    (point, hold): (Point, Hold),
+    bar: f64,
+    change: &mut Change,
+) -> bool {
     change.clear();
-    change.vertex = VertexChange::Insert(point, Hold::Free);
+    let middle = complex.next_vertex();
+    change.vertex = VertexChange::Insert(point, hold);
     change.cavity.extend_from_slice(&shell.tets);
-    shell.is_free() && cone(complex, complex.next_vertex(), bar, change)
+    for &place in &shell.walls {
+        let wall = complex.wall(shell.wall_at(complex, place));
+        for end in [a, b] {
+            let vertices = [end, middle, shell.ring[place]];
+            change.walls.push(NewWall { vertices, patch: wall.patch, triangle: wall.triangle });
+        }
+    }
+    cone_on_edge(complex, middle, Some([a, b]), bar, change)
 }
 
 /// Proposes a new vertex at `point` between two edges that pass each other closely, in place of what lies round both: the same as to

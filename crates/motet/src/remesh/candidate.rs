@@ -3,6 +3,7 @@
 use crate::base::TetId;
 use crate::kernel::{Change, Complex};
 use crate::remesh::report::Operation;
+use crate::remesh::surface::Surface;
 
 /// Changes are offered one by one; the best that the kernel accepts stays.
 #[derive(Debug, Default)]
@@ -42,7 +43,13 @@ impl Candidate {
 
     /// Takes the proposal if it is better than the best so far. Of those that reach the target, the one that touches the fewest tets of the first
     /// mesh is best; of the others the one with the highest worst quality.
-    pub(super) fn offer(&mut self, complex: &Complex, operation: Operation, target: f64) {
+    pub(super) fn offer(
+        &mut self,
+        complex: &Complex,
+        surface: Option<&Surface>,
+        operation: Operation,
+        target: f64,
+    ) {
         let worst = self.proposal.worst();
         let n_touched = self.proposal.cavity.iter().filter(|&&t| complex.is_original(t)).count();
         let is_better = match self.score {
@@ -57,7 +64,10 @@ impl Candidate {
         let n_bad = self.proposal.fill.iter().filter(|tet| is_bad(tet.quality)).count();
         let n_bad_before = || self.proposal.cavity.iter().filter(|&&t| is_bad(complex.quality(t))).count();
         let is_better = is_better && (n_bad == 0 || n_bad <= n_bad_before());
-        if is_better && complex.check(&self.proposal).is_ok() {
+        if is_better
+            && surface.is_none_or(|s| s.accepts(complex, &self.proposal))
+            && complex.check(&self.proposal).is_ok()
+        {
             std::mem::swap(&mut self.proposal, &mut self.best);
             self.score = Some(Score { worst, n_touched });
             self.operation = operation;

@@ -1,56 +1,30 @@
 //! Floor 6: bad tets found, classified, repaired, and only those.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | find | `run` | EAS below a limit; four tets at a time, a closer look only where that leaves a doubt |
+//! | reconnect | `repair` | edges removed by dynamic programming, facets removed: the paper's stage one |
+//! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
+//! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
+//! | choose | `candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
+//! | surface | `surface` | kept to the bit, or within a distance of what it was |
+//! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
+//! | explain | `left` | which tet is left, where, why |
+//!
+//! Every change goes through [`kernel`](crate::kernel): the worst quality of what it touches rises, or it is not made. The method is that of Moyle and
+//! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
 
 mod candidate;
 pub mod classify;
+mod layers;
+mod left;
 mod options;
 mod repair;
 mod report;
+mod run;
+mod surface;
 
-use std::time::Instant;
-
-use crate::base::{Result, TetId};
-use crate::kernel::Complex;
-use crate::mesh::TetMesh;
-
-pub use options::{Goal, Options};
-pub use report::{Operation, Report};
-
-/// A mesh after remeshing, and what was done.
-#[derive(Debug)]
-pub struct Outcome {
-    /// The complex.
-    pub complex: Complex,
-    /// What was done.
-    pub report: Report,
-}
-
-/// Repairs the bad tets of a mesh.
-///
-/// # Errors
-/// When the mesh is not one: see [`Complex::new`].
-pub fn remesh(mesh: TetMesh, options: &Options) -> Result<Outcome> {
-    let start = Instant::now();
-    let (complex, _) = Complex::new(mesh)?;
-    let mut report = Report { seconds: [start.elapsed().as_secs_f64(), 0.0], ..Report::default() };
-    let start = Instant::now();
-    let bad = complex.below(options.min_eas);
-    note(&complex, &bad, 0, &mut report);
-    let mut repair = repair::Repair::new(complex, options.min_eas);
-    let left = repair.run(bad, options.rounds);
-    report.operations = repair.operations;
-    let complex = repair.complex;
-    note(&complex, &left, 1, &mut report);
-    report.kept = complex.tets().filter(|&t| complex.is_original(t)).count();
-    report.seconds[1] = start.elapsed().as_secs_f64();
-    Ok(Outcome { complex, report })
-}
-
-fn note(complex: &Complex, bad: &[TetId], when: usize, report: &mut Report) {
-    let by_type = if when == 0 { &mut report.found } else { &mut report.left };
-    for &tet in bad {
-        by_type[classify::classify(complex.corners(tet)).number()] += 1;
-    }
-    report.tets[when] = complex.n_tets();
-    report.worst_eas[when] = complex.worst().map_or(0.0, |w| w.1);
-    report.inverted[when] = bad.iter().filter(|&&t| complex.quality(t) <= 0.0).count();
-}
+pub use left::{Left, Reason};
+pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
+pub use report::{Counts, Operation, Report, Seconds, State, Worst};
+pub use run::{Outcome, remesh};

@@ -7,15 +7,34 @@ pub struct Options {
     pub min_eas: f64,
     /// How far to go. Default: [`Goal::Repair`].
     pub goal: Goal,
-    /// At most so many rounds over the bad tets. Default: 12.
+    /// What may happen to the surface. Default: [`SurfaceRule::Keep`].
+    pub surface: SurfaceRule,
+    /// Whether tets of boundary layers stay as they are: thin, but well shaped when stretched to the width of the wall's facets. Default: true.
+    pub keep_layers: bool,
+    /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { min_eas: 0.2, goal: Goal::Repair, rounds: 12 }
+        Self { min_eas: 0.2, goal: Goal::Repair, surface: SurfaceRule::Keep, keep_layers: true, rounds: 20 }
     }
 }
+
+/// What may happen to walls: the boundary, interfaces between regions, labelled facets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SurfaceRule {
+    /// They stay as they are, to the bit.
+    Keep,
+    /// They may change within a distance of where they were, features and borders of patches kept.
+    Adapt {
+        /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's largest extent.
+        distance: Option<f64>,
+    },
+}
+
+/// How far the surface may stray, as a part of the mesh's largest extent, where nobody said.
+pub const DEFAULT_DISTANCE: f64 = 1e-3;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

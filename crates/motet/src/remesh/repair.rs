@@ -2,15 +2,24 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, scale};
+use crate::geometry::vector::{add, distance, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
-use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_onto};
+use crate::ops::{
+    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
+};
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
-use crate::remesh::report::Operation;
+use crate::remesh::report::{Counts, Operation};
+use crate::remesh::surface::{CREASES, Surface, patch_of};
 
-/// What is asked of the tets round those that nothing helps, time after time.
-const WIDER: [f64; 3] = [0.3, 0.35, 0.4];
+/// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
+const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
+
+/// How often in a row edges are split without fewer bad tets in the end.
+const MOST_IN_VAIN: usize = 5;
+
+/// The targets of [`Repair::best`].
+const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
 
 /// What is tried for a tet, one after the other until it is no longer bad.
 const STAGES: [fn(&mut Repair, TetId); 5] =
@@ -22,7 +31,8 @@ const FIRST_STAGES: usize = 2;
 /// What is repaired, and the room that it takes.
 pub(super) struct Repair {
     pub(super) complex: Complex,
-    pub(super) operations: [usize; 8],
+    pub(super) operations: Counts,
+    surface: Option<Surface>,
     target: f64,
     n_stages: usize,
     candidate: Candidate,
@@ -37,10 +47,11 @@ pub(super) struct Repair {
 }
 
 impl Repair {
-    pub(super) fn new(complex: Complex, target: f64) -> Self {
+    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64) -> Self {
         Self {
             complex,
-            operations: [0; 8],
+            operations: Counts::default(),
+            surface,
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
@@ -72,11 +83,104 @@ impl Repair {
             if is_on {
                 continue;
             }
-            let Some(target) = asked.next() else { break };
-            self.improve_around(&bad, *target);
+            let Some(more) = asked.next() else { break };
+            self.improve_around(&bad, self.target + more);
         }
         self.sort(&mut bad);
         bad
+    }
+
+    /// Repairs what is left once more, with fewer creases held as features.
+    pub(super) fn soften(&mut self, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        if let Some(surface) = &mut self.surface {
+            surface.hold_features(&mut self.complex, CREASES[1]);
+        }
+        let left = self.run(left, rounds);
+        self.divide(left, rounds)
+    }
+
+    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
+    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
+    /// of the surface, which are too long for where they are.
+    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        let mut best = (left.clone(), self.complex.mark(), self.operations);
+        let mut n_in_vain = 0;
+        while !left.is_empty() && n_in_vain < MOST_IN_VAIN {
+            let mut bad = Vec::new();
+            for &tet in &left {
+                if self.is_bad(tet) {
+                    self.split_longest(tet);
+                }
+                bad.append(&mut self.came_bad);
+            }
+            bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
+            left = self.run(bad, rounds);
+            n_in_vain += 1;
+            if left.len() < best.0.len() {
+                best = (left.clone(), self.complex.mark(), self.operations);
+                n_in_vain = 0;
+            }
+        }
+        self.complex.undo(best.1);
+        self.operations = best.2;
+        self.complex.forget();
+        best.0
+    }
+
+    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
+    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
+    fn split_longest(&mut self, mut tet: TetId) {
+        loop {
+            let (edge, length) = self.longest_edge(tet);
+            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
+            match self.shells[0].tets.iter().copied().find(longer) {
+                Some(next) => tet = next,
+                None => return self.split_unjudged(edge),
+            }
+        }
+    }
+
+    fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
+        let vertices = self.complex.vertices(tet);
+        let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let length = distance(self.complex.point(a), self.complex.point(b));
+            if length > longest.1 {
+                longest = ([a, b], length);
+            }
+        }
+        longest
+    }
+
+    /// Splits the edge whose shell was walked last, if every tet stays positive.
+    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
+        let [a, b] = edge;
+        let shell = &self.shells[0];
+        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !shell.is_free() {
+            return;
+        }
+        let hold = self.hold_on(edge);
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let mut came = Vec::new();
+        let proposal = &mut self.candidate.proposal;
+        if split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal) {
+            if let Ok(checked) = self.complex.check_against(proposal, 0.0) {
+                self.complex.commit(checked, &mut came);
+                self.operations.add(Operation::SplitEdge);
+            }
+        }
+        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+    }
+
+    /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
+    pub(super) fn best(&mut self, rounds: usize) {
+        for target in BEST {
+            self.target = target.max(self.target);
+            self.n_stages = FIRST_STAGES;
+            let bad = self.below(self.target);
+            self.run(bad, rounds);
+        }
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
@@ -116,8 +220,15 @@ impl Repair {
         bad.dedup();
     }
 
+    /// The tets below a quality that may be changed.
+    pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
+        let mut below = self.complex.below(quality);
+        below.retain(|&t| !self.complex.is_locked(t));
+        below
+    }
+
     fn is_bad(&self, tet: TetId) -> bool {
-        self.complex.is_alive(tet) && self.complex.quality(tet) < self.target
+        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
     }
 
     /// Makes the best change for one bad tet; whether there was one.
@@ -130,7 +241,7 @@ impl Repair {
             }
         }
         let Some((operation, came)) = self.candidate.commit(&mut self.complex) else { return false };
-        self.operations[operation as usize] += 1;
+        self.operations.add(operation);
         let (complex, target) = (&self.complex, self.target);
         self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
         true
@@ -141,7 +252,7 @@ impl Repair {
     }
 
     fn offer(&mut self, operation: Operation) {
-        self.candidate.offer(&self.complex, operation, self.target);
+        self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
     }
 
     /// Stage one of the paper: its edges removed, and its facets.
@@ -149,6 +260,12 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
             let bar = self.bar(tet);
+            if self.surface.is_some() {
+                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+                if self.hold_on(edge) == Hold::Edge {
+                    continue;
+                }
+            }
             if self.edge_removal.propose(&self.complex, tet, edge, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::EdgeRemoval);
             }
@@ -158,6 +275,16 @@ impl Repair {
             if self.face_removal.propose(&self.complex, tet, facet, bar, &mut self.candidate.proposal) {
                 self.offer(Operation::FaceRemoval);
             }
+        }
+    }
+
+    /// What holds a vertex on the edge whose shell was walked last.
+    fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
+        let shell = &self.shells[0];
+        match &self.surface {
+            _ if shell.is_free() => Hold::Free,
+            Some(surface) if surface.is_smooth(&self.complex, edge, shell) => Hold::Surface,
+            _ => Hold::Edge,
         }
     }
 
@@ -216,7 +343,7 @@ impl Repair {
     }
 
     fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
-        if self.complex.hold(gone) != Hold::Free {
+        if !self.may_go(tet, gone, kept) {
             return;
         }
         self.star.gather(&self.complex, gone);
@@ -226,10 +353,27 @@ impl Repair {
         }
     }
 
+    /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
+    fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
+        let hold = self.complex.hold(gone);
+        let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
+        else {
+            return hold == Hold::Free;
+        };
+        let shell = &mut self.shells[0];
+        shell.walk(&self.complex, tet, gone, kept);
+        !shell.walls.is_empty()
+            && (hold == Hold::Surface || !surface.is_smooth(&self.complex, [gone, kept], shell))
+    }
+
     /// Its vertices moved.
     fn smooth(&mut self, tet: TetId) {
         for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free {
+            let hold = self.complex.hold(vertex);
+            if hold == Hold::Surface && self.surface.is_some() {
+                self.slide(tet, vertex);
+            }
+            if hold != Hold::Free {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
@@ -246,6 +390,42 @@ impl Repair {
         }
     }
 
+    /// A vertex of it moved along the surface.
+    fn slide(&mut self, tet: TetId, vertex: VertexId) {
+        self.star.gather(&self.complex, vertex);
+        let limits = [self.bar(tet), self.target];
+        let Some(surface) = &self.surface else { return };
+        let Some(patch) = patch_of(&self.complex, &self.star.tets, vertex) else { return };
+        let project = |point: Point| surface.project(patch, point);
+        let (complex, star) = (&self.complex, &self.star.tets);
+        if self.smoothing.propose_on(complex, star, vertex, limits, project, &mut self.candidate.proposal) {
+            self.offer(Operation::Smoothing);
+        }
+    }
+
+    /// Its edges on the surface split.
+    fn split_surface(&mut self, tet: TetId) {
+        if self.surface.is_none() {
+            return;
+        }
+        let vertices = self.complex.vertices(tet);
+        for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let [a, b] = edge;
+            let bar = self.bar(tet);
+            let shell = &mut self.shells[0];
+            shell.walk(&self.complex, tet, a, b);
+            if shell.walls.is_empty() || self.complex.is_fixed_edge(a, b) {
+                continue;
+            }
+            let hold = self.hold_on(edge);
+            let shell = &self.shells[0];
+            let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+            if split_edge(&self.complex, shell, edge, (middle, hold), bar, &mut self.candidate.proposal) {
+                self.offer(Operation::SplitEdge);
+            }
+        }
+    }
+
     /// Its edges collapsed, either way.
     fn collapse_any(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
@@ -258,6 +438,7 @@ impl Repair {
 
     /// A vertex put into its middle, into the middle of its edges, of its facets.
     fn insert(&mut self, tet: TetId) {
+        self.split_surface(tet);
         let corners = self.complex.corners(tet);
         self.insert_at(tet, &[tet], centroid(corners));
         let vertices = self.complex.vertices(tet);

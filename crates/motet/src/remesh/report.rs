@@ -2,6 +2,12 @@
 
 use serde::Serialize;
 
+use crate::base::{Point, TetId};
+use crate::geometry::tet::centroid;
+use crate::kernel::Complex;
+use crate::remesh::classify::classify;
+use crate::remesh::left::Left;
+
 /// An operation that repaired something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -25,37 +31,119 @@ pub enum Operation {
     Insertion,
 }
 
-impl Operation {
-    /// All of them.
-    pub const ALL: [Self; 8] = [
-        Self::EdgeRemoval,
-        Self::FaceRemoval,
-        Self::SplitCrossed,
-        Self::SplitOnto,
-        Self::Collapse,
-        Self::SplitEdge,
-        Self::Smoothing,
-        Self::Insertion,
-    ];
+/// How often each operation was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[allow(missing_docs, reason = "they are the variants of Operation")]
+pub struct Counts {
+    pub edge_removal: usize,
+    pub face_removal: usize,
+    pub split_crossed: usize,
+    pub split_onto: usize,
+    pub collapse: usize,
+    pub split_edge: usize,
+    pub smoothing: usize,
+    pub insertion: usize,
+}
+
+impl Counts {
+    pub(super) fn add(&mut self, operation: Operation) {
+        *match operation {
+            Operation::EdgeRemoval => &mut self.edge_removal,
+            Operation::FaceRemoval => &mut self.face_removal,
+            Operation::SplitCrossed => &mut self.split_crossed,
+            Operation::SplitOnto => &mut self.split_onto,
+            Operation::Collapse => &mut self.collapse,
+            Operation::SplitEdge => &mut self.split_edge,
+            Operation::Smoothing => &mut self.smoothing,
+            Operation::Insertion => &mut self.insertion,
+        } += 1;
+    }
+}
+
+/// The worst tet of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// Which tet.
+    pub tet: u32,
+    /// Its EAS.
+    pub eas: f64,
+    /// Its centre.
+    pub place: Point,
+}
+
+/// How a mesh is at one time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct State {
+    /// How many vertices tets have.
+    pub vertices: usize,
+    /// How many tets there are.
+    pub tets: usize,
+    /// How many are bad.
+    pub bad: usize,
+    /// How many of the bad are of each type: I to IV, other.
+    pub types: [usize; 5],
+    /// How many are flat or inverted.
+    pub inverted: usize,
+    /// The worst tet; `None` where there is none.
+    pub worst: Option<Worst>,
+}
+
+impl State {
+    /// `bad` are all that are bad, flat and inverted ones among them; `id` tells which tet each is to the reader.
+    pub(super) fn of(complex: &Complex, bad: &[TetId], id: impl Fn(TetId) -> TetId) -> Self {
+        let mut types = [0; 5];
+        bad.iter().for_each(|&t| types[classify(complex.corners(t)).number()] += 1);
+        let worst = complex.worst();
+        Self {
+            vertices: complex.n_used_vertices(),
+            tets: complex.n_tets(),
+            bad: bad.len(),
+            types,
+            inverted: bad.iter().filter(|&&t| complex.quality(t) <= 0.0).count(),
+            worst: worst.map(|(t, eas)| Worst { tet: id(t).0, eas, place: centroid(complex.corners(t)) }),
+        }
+    }
+}
+
+/// Seconds by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Checking the arrays, joining the tets, a rough look at their quality.
+    pub join: f64,
+    /// Finding the bad and repairing them.
+    pub repair: f64,
+    /// The new arrays.
+    pub extract: f64,
+    /// The history.
+    pub history: f64,
 }
 
 /// What was found, what was done, what is left.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Bad tets by type (I to IV, other) before.
-    pub found: [usize; 5],
-    /// Bad tets by type after.
-    pub left: [usize; 5],
-    /// How often each operation was made, in the order of [`Operation::ALL`].
-    pub operations: [usize; 8],
-    /// Tets before and after.
-    pub tets: [usize; 2],
-    /// Tets of the first mesh that are still there, to the bit.
+    /// A tet below this EAS counts as bad.
+    pub min_eas: f64,
+    /// The mesh as it came.
+    pub before: State,
+    /// The mesh as it is.
+    pub after: State,
+    /// How often each operation was made.
+    pub operations: Counts,
+    /// How many tets are as they came, to the bit.
     pub kept: usize,
-    /// Worst EAS before and after.
-    pub worst_eas: [f64; 2],
-    /// Inverted or flat tets before and after.
-    pub inverted: [usize; 2],
-    /// Seconds: joining the tets and measuring them, repairing.
-    pub seconds: [f64; 2],
+    /// The same as a part of the tets that came.
+    pub kept_share: f64,
+    /// Bad tets that are left, worst first.
+    pub left: Vec<Left>,
+    /// Tets of boundary layers that would count as bad, and stay.
+    pub layers: usize,
+    /// Seconds by stage.
+    pub seconds: Seconds,
+}
+
+impl Report {
+    /// Whether nothing bad is left.
+    pub fn is_complete(&self) -> bool {
+        self.after.bad == 0
+    }
 }

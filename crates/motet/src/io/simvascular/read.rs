@@ -16,9 +16,10 @@ use std::path::{Path, PathBuf};
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::Input;
-use crate::io::registry::read_noted;
+use crate::io::reading::read_file;
 use crate::io::simvascular::{FACE_ID, NODE_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
+use crate::io::vtkxml;
 use crate::mesh::{Field, Mesh, Values};
 
 /// The files of one folder.
@@ -30,12 +31,7 @@ struct Layout {
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let layout = Layout::of(input.path)?;
-    let take = |path: &Path| {
-        let (mesh, notes) = read_noted(path)?;
-        notes.into_iter().for_each(|note| input.notes.add(note));
-        Ok::<_, Error>(mesh)
-    };
-    let mut mesh = take(&layout.volume)?;
+    let mut mesh = read_file(&vtkxml::VTU, &layout.volume, input.notes)?;
     let by_id = node_ids(&mesh).map(|ids| Tags::new(&ids, NODE_ID)).transpose();
     let by_id = by_id.map_err(|e| e.in_file(&layout.volume))?;
     let by_point = ByPoint::new(&mesh);
@@ -47,7 +43,12 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let mut labels = vec![0; mesh.cells.len()];
     let mut faces = Vec::new();
     for (name, path) in &layout.faces {
-        let face = take(path)?;
+        let face = read_file(&vtkxml::VTP, path, input.notes)?;
+        if face.cells.dim() == Some(3) {
+            return Err(Error::input("has volume cells, which no face has")
+                .in_file(path)
+                .remedy("write the surface alone"));
+        }
         let vertices = match (&by_id, node_ids(&face)) {
             (Some(tags), Some(ids)) => found_by_id(tags, &ids),
             _ => by_point.find_all(&face),

@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::{WriteOptions, Written};
+use crate::io::select::{facets_alone, of_kinds};
 use crate::io::simvascular::read::node_ids;
 use crate::io::simvascular::{ELEMENT_ID, FACE_ID, NODE_ID, REGION_ID, SURFACES, VOLUME};
 use crate::io::tags::Tags;
 use crate::io::vtkxml;
-use crate::mesh::{Boundary, Cells, Field, Labels, Mesh, Values};
+use crate::mesh::{Boundary, Field, Labels, Mesh, Values, corners};
 
 pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let of_dim = |dim| -> Vec<usize> {
@@ -31,11 +32,11 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let numbered = Numbered::new(mesh, &volume_cells);
     let mut written = Written::default();
     let volume = numbered.volume(&volume_cells);
-    add(&mut written, VOLUME.into(), (vtkxml::VTU.write, &volume), options)?;
+    add(&mut written, VOLUME.into(), vtkxml::write_vtu(&volume, options)?);
     let mut unknown = 0;
     let face = |written: &mut Written, path: String, cells: &[usize]| -> Result<usize> {
         let (face, inside) = numbered.face(cells, &labels);
-        add(written, path, (vtkxml::VTP.write, &face), options)?;
+        add(written, path, vtkxml::write_vtp(&face, options)?);
         Ok(inside)
     };
     for (name, cells) in &faces {
@@ -64,18 +65,10 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(written)
 }
 
-/// Adds the file that a writer of one file makes.
-fn add(
-    written: &mut Written,
-    path: String,
-    (write, mesh): (Option<crate::io::format::Write>, &Mesh),
-    options: &WriteOptions,
-) -> Result<()> {
-    let Some(write) = write else { return Err(Error::input(format!("{path} cannot be written"))) };
-    let one = write(mesh, options)?;
-    written.lost.extend(one.lost);
-    written.files.extend(one.files.into_iter().map(|(_, bytes)| (path.clone(), bytes)));
-    Ok(())
+/// Adds the one file that a writer made.
+fn add(written: &mut Written, path: String, made: Written) {
+    written.lost.extend(made.lost);
+    written.files.extend(made.files.into_iter().map(|(_, bytes)| (path.clone(), bytes)));
 }
 
 /// The patch of each cell, and the cells of each patch by a name that can be a file's.
@@ -123,15 +116,14 @@ impl<'m> Numbered<'m> {
         volume_cells.iter().zip(ids).for_each(|(&i, id)| element_ids[i] = id);
         let boundary = Boundary::of(&mesh.cells);
         let keys = boundary.facets.iter().zip(&boundary.kinds).zip(&boundary.cells);
-        let behind = keys.map(|((facet, kind), cell)| {
-            let n = crate::mesh::n_corners(*kind, facet.len());
-            (key(&facet[..n]), element_ids[cell.index()])
-        });
+        let behind =
+            keys.map(|((facet, kind), cell)| (key(corners(*kind, facet)), element_ids[cell.index()]));
         Self { mesh, node_ids, behind: behind.collect(), element_ids }
     }
 
     fn volume(&self, volume_cells: &[usize]) -> Mesh {
-        let mut volume = self.part(&(0..self.mesh.points.len()).collect::<Vec<_>>(), volume_cells);
+        let mut volume = of_kinds(self.mesh, |kind| kind.dim() == Some(3));
+        volume.set_point_field(Field::scalars(NODE_ID, self.node_ids.clone()));
         let ids = volume_cells.iter().map(|&i| self.element_ids[i]).collect();
         volume.set_cell_field(Field::scalars(ELEMENT_ID, integers(ids)));
         if volume.cell_field(REGION_ID).is_none() {
@@ -142,44 +134,27 @@ impl<'m> Numbered<'m> {
                 volume_cells.iter().map(region).collect::<Vec<_>>(),
             ));
         }
-        volume.field_data.clone_from(&self.mesh.field_data);
-        volume.label_names.regions.clone_from(&self.mesh.label_names.regions);
+        volume.label_names.patches.clear();
         volume
     }
 
     /// The surface of some cells, and how many of them are no facets of the boundary.
     fn face(&self, cells: &[usize], labels: &Labels) -> (Mesh, usize) {
-        let vertices = |i: &usize| self.mesh.cells.connectivity().list(*i);
-        let mut used: Vec<usize> = cells.iter().flat_map(vertices).map(|v| v.index()).collect();
+        let facet = |&i: &usize| (self.mesh.cells.kinds()[i], self.mesh.cells.connectivity().list(i));
+        let mut used: Vec<VertexId> = cells.iter().map(facet).flat_map(|(_, v)| v).copied().collect();
         used.sort_unstable();
         used.dedup();
-        let mut face = self.part(&used, cells);
-        let behind = |i: &usize| {
-            let kind = self.mesh.cells.kinds()[*i];
-            let corners = &vertices(i)[..crate::mesh::n_corners(kind, vertices(i).len())];
-            self.behind.get(&key(corners)).copied().unwrap_or(0)
-        };
-        let behind: Vec<i64> = cells.iter().map(behind).collect();
+        let mut face = facets_alone(self.mesh, &used, cells.iter().map(facet), cells);
+        face.set_point_field(
+            Field::scalars(NODE_ID, self.node_ids.clone()).pick(used.iter().map(|v| v.index())),
+        );
+        let behind = |(kind, vertices)| self.behind.get(&key(corners(kind, vertices))).copied().unwrap_or(0);
+        let behind: Vec<i64> = cells.iter().map(facet).map(behind).collect();
         let inside = behind.iter().filter(|&&id| id == 0).count();
         face.set_cell_field(Field::scalars(ELEMENT_ID, integers(behind)));
         let face_ids: Vec<i32> = cells.iter().map(|&i| labels.ids[i]).collect();
         face.set_cell_field(Field::scalars(FACE_ID, face_ids));
         (face, inside)
-    }
-
-    /// Some points and cells, with their arrays.
-    fn part(&self, points: &[usize], part: &[usize]) -> Mesh {
-        let place = |v: &VertexId| VertexId::new(points.partition_point(|&u| u < v.index()));
-        let mut cells = Cells::new();
-        for &i in part {
-            cells.push(self.mesh.cells.kinds()[i], self.mesh.cells.connectivity().list(i).iter().map(place));
-        }
-        let mut mesh = Mesh::new(points.iter().map(|&i| self.mesh.points[i]).collect(), cells);
-        mesh.point_data = self.mesh.point_data.iter().map(|f| f.pick(points.iter().copied())).collect();
-        mesh.cell_data = self.mesh.cell_data.iter().map(|f| f.pick(part.iter().copied())).collect();
-        let ids = Field::scalars(NODE_ID, self.node_ids.clone());
-        mesh.set_point_field(ids.pick(points.iter().copied()));
-        mesh
     }
 }
 

@@ -33,19 +33,20 @@ use crate::io::format::{Format, Input, Notes};
 use crate::mesh::Mesh;
 
 pub(super) use tail::Tail;
-pub(super) use vtu::write_to;
+pub(super) use vtp::write as write_vtp;
+pub(super) use vtu::{write as write_vtu, write_to};
 
 /// Unstructured grids: cells of any kind.
 pub(super) const VTU: Format = Format {
     name: "VTK XML unstructured grid",
     endings: &[".vtu"],
     read: Some(read),
-    write: Some(vtu::write),
+    write: Some(write_vtu),
 };
 
 /// Polygonal data: vertices, lines, polygons, strips.
 pub(super) const VTP: Format =
-    Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(vtp::write) };
+    Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(write_vtp) };
 
 /// Kinds of VTK XML files that are known, so that they can be refused with advice.
 pub(super) const OTHERS: Format = Format {

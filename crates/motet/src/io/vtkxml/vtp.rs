@@ -128,7 +128,7 @@ fn left_out_by_kind(mut kinds: Vec<CellKind>) -> Vec<String> {
         .collect()
 }
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let sections = Sections::of(&mesh.cells)?;
     let (label_cells, label_names) = label_fields(mesh);
     let cell_data: Vec<Field> =

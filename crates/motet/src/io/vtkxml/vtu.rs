@@ -99,7 +99,7 @@ fn cells_with_polyhedra(
     Ok(cells)
 }
 
-pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     let mut bytes = Vec::new();
     let lost = write_to(mesh, options, &mut bytes)?;
     Ok(Written { lost, ..Written::one(bytes) })

@@ -6,7 +6,7 @@ use crate::base::{CellId, Point, VertexId};
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::geometry::vector::is_finite;
 use crate::mesh::adjacency::Facets;
-use crate::mesh::boundary::n_corners;
+use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
@@ -67,10 +67,8 @@ fn measure(
         (CellKind::TETRA, &[a, b, c, d]) => Some((3, orientation([a, b, c, d].map(|v| points[v.index()])))),
         _ if dim == 3 => Some((3, sign(cell_volume(facets, cell, points) + 0.0))),
         (CellKind::TRIANGLE_STRIP, _) => None,
-        _ => {
-            let ring = &vertices[..n_corners(kind, vertices.len())];
-            Some((2, if is_line(ring, points) { Ordering::Equal } else { Ordering::Greater }))
-        }
+        _ if is_line(corners(kind, vertices), points) => Some((2, Ordering::Equal)),
+        _ => Some((2, Ordering::Greater)),
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::base::{CellId, VertexId};
 use crate::mesh::adjacency::Facets;
-use crate::mesh::boundary::n_corners;
+use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::check::hanging;
 use crate::mesh::check::points::Canonical;
@@ -67,14 +67,13 @@ fn pairs<T: Ord + Copy>(mut keyed: Vec<(Vec<VertexId>, T)>) -> Vec<(T, T)> {
 /// Boundary facets whose corners lie where those of another do: a crack.
 fn unmerged(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Defect {
     let mut defect = Defect::none(DefectKind::UnmergedFacet);
-    let corners =
-        |i: usize| &boundary.facets.list(i)[..n_corners(boundary.kinds[i], boundary.facets.list(i).len())];
-    let on_a_double = |i: &usize| corners(*i).iter().any(|&v| canonical.is_doubled(v));
+    let ring = |i: usize| corners(boundary.kinds[i], boundary.facets.list(i));
+    let on_a_double = |i: &usize| ring(*i).iter().any(|&v| canonical.is_doubled(v));
     let candidates = (0..boundary.len()).filter(on_a_double);
     let keyed =
-        candidates.map(|i| (sorted(corners(i).iter().map(|&v| canonical.first(v)).collect()), i)).collect();
+        candidates.map(|i| (sorted(ring(i).iter().map(|&v| canonical.first(v)).collect()), i)).collect();
     for (i, j) in pairs(keyed) {
-        defect.add(|| Example::new(&[boundary.cells[i], boundary.cells[j]], corners(i), &mesh.points));
+        defect.add(|| Example::new(&[boundary.cells[i], boundary.cells[j]], ring(i), &mesh.points));
     }
     defect
 }

@@ -21,7 +21,7 @@ mod parts;
 mod points;
 
 use crate::base::{CellId, Csr, VertexId};
-use crate::mesh::boundary::n_corners;
+use crate::mesh::boundary::corners;
 use crate::mesh::{Boundary, CellKind, Mesh};
 
 pub use defect::{Defect, DefectKind, Example};
@@ -85,7 +85,7 @@ impl SurfaceFacets {
     pub(crate) fn from_cells<'a>(cells: impl Iterator<Item = (CellId, CellKind, &'a [VertexId])>) -> Self {
         let mut facets = Self { rings: Csr::default(), cells: Vec::new(), of_volume: false };
         for (cell, kind, vertices) in cells.filter(|(_, kind, _)| kind.dim() == Some(2)) {
-            let mut ring = vertices[..n_corners(kind, vertices.len())].to_vec();
+            let mut ring = corners(kind, vertices).to_vec();
             match kind {
                 CellKind::PIXEL => ring.swap(2, 3),
                 CellKind::TRIANGLE_STRIP => {

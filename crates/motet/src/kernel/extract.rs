@@ -1,0 +1,131 @@
+//! Plain arrays again, and what each of their rows was before.
+
+use crate::base::{Point, TetId, VertexId};
+use crate::kernel::complex::Complex;
+use crate::kernel::link::NO_TRIANGLE;
+use crate::mesh::TetMesh;
+
+/// Says that there was nothing before.
+pub const NEW: u32 = u32::MAX;
+
+/// A mesh after changes, beside the one before.
+///
+/// What stayed keeps its order, and its bits: tets that nothing touched come first, as they were, then those that came. Vertices that came
+/// stand in the places of those that went, then at the end.
+#[derive(Clone, Debug, Default)]
+pub struct Extract {
+    /// The mesh.
+    pub mesh: TetMesh,
+    /// For each tet the one it was before, or [`NEW`].
+    pub tet_to_old: Vec<u32>,
+    /// For each vertex the one it was before, or [`NEW`].
+    pub vertex_to_old: Vec<u32>,
+    /// For each triangle the one it was before, or a part of.
+    pub triangle_to_old: Vec<u32>,
+    /// The tets of the complex that came, in the order in which they stand at the end of the mesh.
+    pub came: Vec<TetId>,
+    /// Tets of the mesh before that are no more, in rising order.
+    pub gone_tets: Vec<TetId>,
+    /// Vertices of the mesh after that came or moved, in rising order.
+    pub changed_vertices: Vec<VertexId>,
+}
+
+impl Extract {
+    /// Which tet of the mesh a tet of the complex is.
+    pub fn tet(&self, tet: TetId) -> TetId {
+        let n_kept = self.tet_to_old.len() - self.came.len();
+        let place = self.came.binary_search(&tet).map(|i| n_kept + i);
+        TetId::new(place.or_else(|_| self.tet_to_old[..n_kept].binary_search(&tet.0)).unwrap_or_default())
+    }
+
+    /// Where each vertex of the mesh before is now; [`NEW`] for those that are no more.
+    pub fn old_to_vertex(&self, n_old: usize) -> Vec<u32> {
+        let mut old_to_vertex = vec![NEW; n_old];
+        for (new, &old) in (0..).zip(&self.vertex_to_old).filter(|(_, old)| **old != NEW) {
+            old_to_vertex[old as usize] = new;
+        }
+        old_to_vertex
+    }
+}
+
+impl Complex {
+    /// The mesh that `first` has become, of which this was made.
+    pub fn extract(&self, first: &TetMesh) -> Extract {
+        let mut extract = Extract::default();
+        let old_to_new = self.extract_vertices(first.points.len(), &mut extract);
+        let new_id = |v: VertexId| if old_to_new.is_empty() { v } else { old_to_new[v.index()] };
+        let n_first = first.tets.len();
+        let is_kept = |t: &usize| !self.is_new[*t];
+        let tets = &mut extract.mesh.tets;
+        tets.reserve_exact(self.n_tets());
+        for t in (0..n_first).filter(is_kept) {
+            tets.push(first.tets[t].map(new_id));
+            extract.mesh.regions.push(self.regions[t]);
+            extract.tet_to_old.push(t as u32);
+        }
+        for t in self.tets().filter(|&t| !self.is_original(t)) {
+            let mut tet = self.vertices(t).map(new_id);
+            if self.mostly_turned {
+                tet.swap(2, 3);
+            }
+            tets.push(tet);
+            extract.mesh.regions.push(self.region(t));
+            extract.tet_to_old.push(NEW);
+            extract.came.push(t);
+        }
+        extract.gone_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
+        self.extract_triangles(first, new_id, &mut extract);
+        extract.mesh.fixed_vertices = first.fixed_vertices.iter().map(|&v| new_id(v)).collect();
+        extract.mesh.fixed_edges = first.fixed_edges.iter().map(|edge| edge.map(new_id)).collect();
+        extract
+    }
+
+    /// The points without those that went; where each is now, unless none went.
+    fn extract_vertices(&self, n_first: usize, extract: &mut Extract) -> Vec<VertexId> {
+        let mut is_gone = vec![false; if self.free_vertices.is_empty() { 0 } else { self.points.len() }];
+        self.free_vertices.iter().for_each(|v| is_gone[v.index()] = true);
+        let mut old_to_new = Vec::new();
+        let mut points: Vec<Point> = Vec::with_capacity(self.points.len() - self.free_vertices.len());
+        for v in 0..self.points.len() {
+            let new_id = VertexId::new(points.len());
+            if !is_gone.is_empty() {
+                old_to_new.push(new_id);
+                if is_gone[v] {
+                    continue;
+                }
+            }
+            points.push(self.points[v]);
+            // One that moved is still the vertex that it was, one that took the place of another is not.
+            extract.vertex_to_old.push(if v < n_first && !self.vertex_came[v] { v as u32 } else { NEW });
+            if self.vertex_is_new[v] {
+                extract.changed_vertices.push(new_id);
+            }
+        }
+        extract.mesh.points = points;
+        old_to_new
+    }
+
+    /// Triangles whose walls are as they were, in their order, then those that came.
+    fn extract_triangles(
+        &self,
+        first: &TetMesh,
+        new_id: impl Fn(VertexId) -> VertexId,
+        extract: &mut Extract,
+    ) {
+        let mut push = |vertices: [VertexId; 3], patch: i32, old: u32| {
+            extract.mesh.triangles.push(vertices.map(&new_id));
+            extract.mesh.patches.push(patch);
+            extract.triangle_to_old.push(old);
+        };
+        let mut is_gone = vec![false; if self.keeps_surface { 0 } else { first.triangles.len() }];
+        self.gone_triangles.iter().for_each(|&t| is_gone[t as usize] = true);
+        for (t, &vertices) in first.triangles.iter().enumerate() {
+            if !is_gone.get(t).copied().unwrap_or(false) {
+                push(vertices, first.patches[t], t as u32);
+            }
+        }
+        for (_, wall) in self.walls().filter(|(_, wall)| wall.is_new && wall.triangle != NO_TRIANGLE) {
+            push(self.facet(wall.sides[0]), wall.patch, wall.triangle);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The input surface, and how far the mesh's surface may stray from it.
+//!
+//! Every patch has a tree over its triangles as they came. A change of walls is accepted when each wall that comes or moves lies within the distance allowed of its own
+//! patch, looked at in its corners, the middles of its edges and its centre, and faces the same way as what it lies on; and when what a vertex
+//! leaves behind lies as near to the walls that come.
+
+use std::collections::BTreeMap;
+
+use crate::base::{Point, VertexId};
+use crate::geometry::triangle::{area_vector, closest};
+use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChange, Wall};
+use crate::spatial::NearestTriangle;
+
+/// Walls that meet at a sharper angle make a feature: cosine of the angle between their normals. 30 degrees at first; where that leaves bad
+/// tets 60, so that what is but a coarse image of something curved may change within the distance allowed.
+pub(super) const CREASES: [f64; 2] = [0.866, 0.5];
+/// A feature goes straight on through a vertex if it bends by less: cosine of 45 degrees.
+const STRAIGHT: f64 = 0.707;
+/// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
+const TURNED: f64 = 0.707;
+
+/// The walls of the first mesh, patch by patch.
+pub(super) struct Surface {
+    patches: BTreeMap<i32, Patch>,
+    distance: f64,
+    crease: f64,
+    /// Vertices of the first mesh that were fixed before any feature was looked for.
+    is_fixed: Vec<bool>,
+}
+
+struct Patch {
+    tree: NearestTriangle,
+    normals: Vec<Point>,
+}
+
+impl Surface {
+    /// The surface of a complex that nothing has changed yet; walls may stray from it by `distance`.
+    pub(super) fn of(complex: &Complex, distance: f64) -> Self {
+        let mut triangles: BTreeMap<i32, Vec<[VertexId; 3]>> = BTreeMap::new();
+        for (_, wall) in complex.walls() {
+            triangles.entry(wall.patch).or_default().push(complex.facet(wall.sides[0]));
+        }
+        let points: Vec<Point> =
+            (0..complex.n_vertex_slots()).map(|v| complex.point(VertexId::new(v))).collect();
+        let patch = |triangles: Vec<[VertexId; 3]>| Patch {
+            normals: triangles.iter().map(|t| area_vector(t.map(|v| points[v.index()]))).collect(),
+            tree: NearestTriangle::new(&points, &triangles),
+        };
+        let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
+        let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();
+        Self { patches, distance, crease: CREASES[0], is_fixed }
+    }
+
+    /// Where a vertex on walls of one patch would come to lie that is drawn to `point`.
+    pub(super) fn project(&self, patch: i32, point: Point) -> Option<Point> {
+        self.patches.get(&patch)?.tree.closest(point).map(|found| found.point)
+    }
+
+    /// Whether the walls that a change brings or moves stay near the surface.
+    pub(super) fn accepts(&self, complex: &Complex, change: &Change) -> bool {
+        let moved = match change.vertex {
+            VertexChange::Move(v, _) if complex.hold(v) != Hold::Free => Some(v),
+            _ => None,
+        };
+        if change.walls.is_empty() && moved.is_none() {
+            return true;
+        }
+        let mut walls: Vec<(i32, [Point; 3])> =
+            change.walls.iter().map(|wall| (wall.patch, change.corners(complex, wall.vertices))).collect();
+        if let Some(moved) = moved {
+            let of_moved = walls_of(complex, &change.cavity).into_iter();
+            let of_moved = of_moved.map(|(wall, vertices)| (wall.patch, vertices));
+            let of_moved = of_moved.filter(|(_, vertices)| vertices.contains(&moved));
+            walls.extend(of_moved.map(|(patch, vertices)| (patch, change.corners(complex, vertices))));
+        }
+        walls.iter().all(|&(patch, triangle)| self.lies_on(patch, triangle))
+            && self.covers(complex, change, &walls)
+    }
+
+    fn lies_on(&self, patch: i32, triangle: [Point; 3]) -> bool {
+        let Some(patch) = self.patches.get(&patch) else { return false };
+        let normal = area_vector(triangle);
+        let [a, b, c] = triangle;
+        let middle = |p: Point, q: Point| scale(add(p, q), 0.5);
+        let centre = scale(add(add(a, b), c), 1.0 / 3.0);
+        let near = |p: Point| patch.tree.closest_within(p, self.distance);
+        let Some(below) = near(centre) else { return false };
+        let facing = patch.normals[below.triangle];
+        // Walls have no side of their own: either way round will do.
+        let cosine = dot(normal, facing).abs() / (norm(normal) * norm(facing));
+        cosine > TURNED
+            && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
+    }
+
+    /// Whether what a vertex leaves behind lies near the walls that come.
+    fn covers(&self, complex: &Complex, change: &Change, walls: &[(i32, [Point; 3])]) -> bool {
+        let left = match change.vertex {
+            VertexChange::Move(v, _) | VertexChange::Remove(v) => complex.point(v),
+            _ => return true,
+        };
+        walls.iter().any(|&(_, triangle)| {
+            let foot = crate::geometry::triangle::at(triangle, closest(triangle, left));
+            norm(sub(foot, left)) <= self.distance
+        })
+    }
+}
+
+/// The walls at some tets, each once, with their vertices.
+fn walls_of<'a>(complex: &'a Complex, tets: &[crate::base::TetId]) -> Vec<(&'a Wall, [VertexId; 3])> {
+    let mut walls = Vec::new();
+    for half in tets.iter().flat_map(|&t| (0..4).map(move |i| HalfFacet::new(t, i))) {
+        if let Behind::Wall(id) = complex.behind(half.tet(), half.facet()) {
+            walls.push((id, half));
+        }
+    }
+    walls.sort_unstable();
+    walls.dedup_by_key(|wall| wall.0);
+    walls.into_iter().map(|(id, half)| (complex.wall(id), complex.facet(half))).collect()
+}
+
+/// The patch of the walls of a vertex, if it is but one.
+pub(super) fn patch_of(complex: &Complex, star: &[crate::base::TetId], vertex: VertexId) -> Option<i32> {
+    let mut patches =
+        walls_of(complex, star).into_iter().filter(|(_, v)| v.contains(&vertex)).map(|w| w.0.patch);
+    let first = patches.next()?;
+    patches.all(|patch| patch == first).then_some(first)
+}
+
+impl Surface {
+    /// Whether the walls at an edge are a smooth part of one patch.
+    pub(super) fn is_smooth(&self, complex: &Complex, [a, b]: [VertexId; 2], shell: &Shell) -> bool {
+        let [i, j] = shell.walls[..] else { return false };
+        let [first, second] = [i, j].map(|place| complex.wall(shell.wall_at(complex, place)));
+        let [p, q] = [i, j].map(|place| complex.point(shell.ring[place]));
+        let [a, b] = [a, b].map(|v| complex.point(v));
+        // Turned so that they agree where the surface is flat.
+        let (m, n) = (area_vector([a, b, p]), area_vector([b, a, q]));
+        first.patch == second.patch && dot(m, n) > self.crease * norm(m) * norm(n)
+    }
+
+    /// Finds features and corners, where walls meet at a sharper angle than `crease`, and holds the vertices on them.
+    pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: f64) {
+        self.crease = crease;
+        for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
+            let is_fixed = self.is_fixed.get(v.index()).copied().unwrap_or(false);
+            if complex.hold(v) > Hold::Surface && !is_fixed {
+                complex.set_hold(v, Hold::Surface);
+            }
+        }
+        let mut edges: Vec<([VertexId; 2], Point, i32, VertexId)> = Vec::new();
+        for (_, wall) in complex.walls() {
+            let [a, b, c] = complex.facet(wall.sides[0]);
+            let normal = area_vector([a, b, c].map(|v| complex.point(v)));
+            for (edge, third) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+                edges.push(([edge[0].min(edge[1]), edge[0].max(edge[1])], normal, wall.patch, third));
+            }
+        }
+        edges.sort_unstable_by_key(|edge| (edge.0, edge.3));
+        // The ways in which features leave each vertex.
+        let mut ways: Vec<(VertexId, Point)> = Vec::new();
+        for walls in edges.chunk_by(|x, y| x.0 == y.0) {
+            let [a, b] = walls[0].0;
+            let is_smooth = match walls {
+                [x, y] => {
+                    let [m, n] = [x.3, y.3].map(|third| area_vector([a, b, third].map(|v| complex.point(v))));
+                    x.2 == y.2 && -dot(m, n) > self.crease * norm(m) * norm(n)
+                }
+                _ => false,
+            };
+            if !is_smooth {
+                let way = sub(complex.point(b), complex.point(a));
+                let way = scale(way, 1.0 / norm(way));
+                ways.push((a, way));
+                ways.push((b, scale(way, -1.0)));
+            }
+        }
+        ways.sort_by_key(|way| way.0);
+        for of_vertex in ways.chunk_by(|x, y| x.0 == y.0) {
+            let hold = match of_vertex {
+                [(_, x), (_, y)] if -dot(*x, *y) > STRAIGHT => Hold::Edge,
+                _ => Hold::Fixed,
+            };
+            let vertex = of_vertex[0].0;
+            complex.set_hold(vertex, complex.hold(vertex).max(hold));
+        }
+        hold_touching(complex);
+    }
+}
+
+/// Vertices at which parts of the mesh touch without sharing a facet stay.
+fn hold_touching(complex: &mut Complex) {
+    let mut counts = vec![0u32; complex.n_vertex_slots()];
+    complex.tets().flat_map(|t| complex.vertices(t)).for_each(|v| counts[v.index()] += 1);
+    let mut star = crate::kernel::Star::default();
+    for v in (0..counts.len()).map(VertexId::new) {
+        if matches!(complex.hold(v), Hold::Surface | Hold::Edge) {
+            star.gather(complex, v);
+            if star.tets.len() != counts[v.index()] as usize {
+                complex.set_hold(v, Hold::Fixed);
+            }
+        }
+    }
+}
