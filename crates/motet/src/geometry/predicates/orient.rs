@@ -97,6 +97,40 @@ pub(crate) fn with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
     (determinant, if largest < LARGEST { FILTER * permanent + UNDERFLOW } else { f64::INFINITY })
 }
 
+/// The plane through three points, made ready for many fourth ones.
+pub(crate) struct Plane {
+    a: Point,
+    normal: Point,
+    /// What the permanent has where the determinant has the normal.
+    magnitude: Point,
+}
+
+impl Plane {
+    #[inline]
+    pub(crate) fn new([a, b, c]: [Point; 3]) -> Self {
+        let [bx, by, bz] = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
+        let [cx, cy, cz] = [c[0] - a[0], c[1] - a[1], c[2] - a[2]];
+        let (x1, x2) = (by * cz, bz * cy);
+        let (y1, y2) = (bz * cx, bx * cz);
+        let (z1, z2) = (bx * cy, by * cx);
+        Self {
+            a,
+            normal: [x1 - x2, y1 - y2, z1 - z2],
+            magnitude: [x1.abs() + x2.abs(), y1.abs() + y2.abs(), z1.abs() + z2.abs()],
+        }
+    }
+
+    /// [`with_bound`] for these three points and `d`, by the same operations; the bound is infinite or NaN where they overflow.
+    #[inline]
+    pub(crate) fn with_bound(&self, d: Point) -> (f64, f64) {
+        let [dx, dy, dz] = [d[0] - self.a[0], d[1] - self.a[1], d[2] - self.a[2]];
+        let determinant = self.normal[0] * dx + self.normal[1] * dy + self.normal[2] * dz;
+        let permanent =
+            self.magnitude[0] * dx.abs() + self.magnitude[1] * dy.abs() + self.magnitude[2] * dz.abs();
+        (determinant, FILTER * permanent + UNDERFLOW)
+    }
+}
+
 /// Determinant in pairs and a bound of its error, that of its last rounding included.
 pub(crate) fn in_pairs_with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
     let (_, permanent, largest) = filtered(a, b, c, d);
