@@ -45,6 +45,9 @@ pub(crate) struct RemeshArgs {
     /// A tet below this EAS is bad
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Repair")]
     pub(crate) min_eas: f64,
+    /// A tet with a dihedral angle below this, in degrees, is bad, too: raises --min-eas to what makes sure of the angle
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = dihedral, help_heading = "Repair")]
+    min_dihedral: f64,
     /// What may happen to the boundary, to interfaces of regions and to surface cells
     #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
     pub(crate) surface: Surface,
@@ -123,6 +126,7 @@ impl RemeshArgs {
         };
         Ok(Options {
             min_eas: self.min_eas,
+            min_dihedral_deg: self.min_dihedral,
             goal: match self.goal {
                 Goal::Repair => remesh::Goal::Repair,
                 Goal::Best => remesh::Goal::Best,
@@ -164,6 +168,13 @@ fn eas(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(eas) if 0.0 < eas && eas < 1.0 => Ok(eas),
         _ => Err("an EAS between 0 (flat) and 1 (regular) is expected, such as 0.2".into()),
+    }
+}
+
+fn dihedral(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degrees) if (0.0..70.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 0 to 70 degrees is expected: the regular tet has 70.5".into()),
     }
 }
 
