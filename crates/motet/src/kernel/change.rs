@@ -10,7 +10,7 @@ pub struct Fill {
     pub vertices: [VertexId; 4],
     /// Its region.
     pub region: i32,
-    /// Its quality, as [`Change::measure`] gives it.
+    /// Its quality, as [`Complex::measure`] gives it.
     pub quality: f64,
 }
 
@@ -71,6 +71,12 @@ impl Change {
     pub fn push(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32) {
         let quality = complex.measure(self.corners(complex, vertices));
         self.fill.push(Fill { vertices, region, quality });
+    }
+
+    /// The same; whether the tet is better than `bar`.
+    pub fn push_above(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32, bar: f64) -> bool {
+        self.push(complex, vertices, region);
+        self.fill.last().is_some_and(|tet| tet.quality > bar)
     }
 
     /// Where vertices are to be.

@@ -132,8 +132,7 @@ impl Complex {
     /// The first reason not to make it.
     pub fn check_against<'a>(&self, change: &'a Change, bar: f64) -> Result<Checked<'a>, Reject> {
         let after = change.worst();
-        // Not "at most": so that what is no number is refused.
-        if !(after > bar) {
+        if after <= bar {
             return Err(Reject::Quality { before: bar, after });
         }
         if let Some(&tet) = change.cavity.iter().find(|&&t| self.is_locked(t)) {

@@ -62,7 +62,7 @@ pub struct Wall {
     pub sides: [HalfFacet; 2],
     /// Its patch; 0 without a label.
     pub patch: i32,
-    /// The triangle of the first mesh that it is, or is a part of; [`NO_TRIANGLE`] where there was none.
+    /// The triangle of the first mesh that it is, or is a part of; `u32::MAX` where there was none.
     pub triangle: u32,
     /// Whether it is not one of the first mesh.
     pub is_new: bool,

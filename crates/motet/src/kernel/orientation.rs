@@ -32,8 +32,7 @@ pub(super) fn orient(
             i += 1;
             let signed = volume_6(tets[t].map(|v| points[v.index()]));
             volume += if is_turned[t] { -signed } else { signed };
-            for f in 0..4 {
-                let other = across[t][f];
+            for (f, &other) in across[t].iter().enumerate() {
                 if other.is_none() {
                     continue;
                 }

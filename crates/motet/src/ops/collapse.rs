@@ -22,8 +22,7 @@ pub fn collapse(
             continue;
         }
         vertices[complex.place(tet, gone)] = kept;
-        change.push(complex, vertices, complex.region(tet));
-        if !(change.fill[change.fill.len() - 1].quality > bar) {
+        if !change.push_above(complex, vertices, complex.region(tet), bar) {
             return false;
         }
     }

@@ -36,8 +36,7 @@ pub(super) fn cone_on_edge(
                 continue;
             }
             let [a, b, c] = facet;
-            change.push(complex, [a, c, b, apex], complex.region(tet));
-            if !(change.fill[change.fill.len() - 1].quality > bar) {
+            if !change.push_above(complex, [a, c, b, apex], complex.region(tet), bar) {
                 return false;
             }
         }

@@ -78,8 +78,8 @@ impl EdgeRemoval {
         }
         let m = self.shell.ring.len();
         let mut ring = [VertexId(0); LARGEST_RING];
-        for i in 0..n {
-            ring[i] = self.shell.ring[(start + i) % m];
+        for (i, vertex) in ring[..n].iter_mut().enumerate() {
+            *vertex = self.shell.ring[(start + i) % m];
         }
         if n < 3 {
             return true;
@@ -108,11 +108,11 @@ impl EdgeRemoval {
                 let mut found = (bar, u8::MAX);
                 for k in i + 1..j {
                     let sides = best[i * m + k].0.min(best[k * m + j].0);
-                    if !(sides > found.0) {
+                    if sides <= found.0 {
                         continue;
                     }
                     let above = complex.measure([points[i], points[k], points[j], pb]);
-                    if !(above > found.0) {
+                    if above <= found.0 {
                         continue;
                     }
                     let below = complex.measure([points[i], points[j], points[k], pa]);

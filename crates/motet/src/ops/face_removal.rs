@@ -10,6 +10,8 @@ use crate::kernel::{Behind, Change, Complex};
 
 /// At most so many facets go at once.
 const MOST_FACES: usize = 8;
+/// And none is farther from the first.
+const MOST_DEPTH: usize = 4;
 
 /// Room for the search, used again and again.
 #[derive(Clone, Debug, Default)]
@@ -46,7 +48,7 @@ impl FaceRemoval {
         self.rim.clear();
         self.cavity.extend([face.at_a, face.at_b]);
         for edge in [[p, q], [q, r], [r, p]] {
-            if !(self.at_edge(complex, [a, b], face, edge, bar, 0) > bar) {
+            if self.at_edge(complex, [a, b], face, edge, bar, 0) <= bar {
                 return false;
             }
         }
@@ -70,22 +72,21 @@ impl FaceRemoval {
     ) -> f64 {
         let stop = complex.measure([a, b, p, q].map(|v| complex.point(v)));
         let (n_tets, n_edges) = (self.cavity.len(), self.rim.len());
-        if n_tets / 2 < MOST_FACES && depth < 4 {
-            if let Some((next, w)) = Self::beside(complex, [a, b], face, [p, q]) {
-                if !self.cavity.contains(&next.at_a) && !self.cavity.contains(&next.at_b) {
-                    self.cavity.extend([next.at_a, next.at_b]);
-                    let bar = stop.max(bar);
-                    let mut worst = self.at_edge(complex, [a, b], next, [p, w], bar, depth + 1);
-                    if worst > bar {
-                        worst = worst.min(self.at_edge(complex, [a, b], next, [w, q], bar, depth + 1));
-                    }
-                    if worst > bar {
-                        return worst;
-                    }
-                    self.cavity.truncate(n_tets);
-                    self.rim.truncate(n_edges);
-                }
+        let may_go_on = n_tets / 2 < MOST_FACES && depth < MOST_DEPTH;
+        let next = if may_go_on { Self::beside(complex, [a, b], face, [p, q]) } else { None };
+        let is_new = |face: &Face| !self.cavity.contains(&face.at_a) && !self.cavity.contains(&face.at_b);
+        if let Some((next, w)) = next.filter(|(face, _)| is_new(face)) {
+            self.cavity.extend([next.at_a, next.at_b]);
+            let bar = stop.max(bar);
+            let mut worst = self.at_edge(complex, [a, b], next, [p, w], bar, depth + 1);
+            if worst > bar {
+                worst = worst.min(self.at_edge(complex, [a, b], next, [w, q], bar, depth + 1));
             }
+            if worst > bar {
+                return worst;
+            }
+            self.cavity.truncate(n_tets);
+            self.rim.truncate(n_edges);
         }
         self.rim.push([p, q]);
         stop

@@ -64,8 +64,7 @@ impl Smoothing {
         change.vertex = VertexChange::Move(vertex, point);
         change.cavity.extend_from_slice(star);
         for &tet in star {
-            change.push(complex, complex.vertices(tet), complex.region(tet));
-            if !(change.fill[change.fill.len() - 1].quality > bar) {
+            if !change.push_above(complex, complex.vertices(tet), complex.region(tet), bar) {
                 return false;
             }
         }
@@ -99,7 +98,7 @@ impl Smoothing {
             let direction = self.direction(complex, place, worst, size);
             let slope = dot(direction, direction);
             // Along the direction the worst rises by its square, if nothing else gets in the way.
-            if !(slope * size * size > 1e-6) {
+            if slope * size * size <= 1e-6 {
                 break;
             }
             let mut length = (2.0 * gain / slope).min(0.5 * size / slope.sqrt());
@@ -189,7 +188,7 @@ fn shortest_in_hull(vectors: &[Point]) -> Point {
         };
         let way = sub(farthest, shortest);
         let (ahead, whole) = (-dot(shortest, way), dot(way, way));
-        if !(ahead > 1e-9 * whole) {
+        if ahead <= 1e-9 * whole {
             break;
         }
         shortest = add(shortest, scale(way, (ahead / whole).min(1.0)));

@@ -72,7 +72,7 @@ pub fn classify(tet: [Point; 4]) -> Defect {
     let lengths = EDGES.map(|[i, j]| norm(sub(tet[j], tet[i])));
     let mean = lengths.iter().sum::<f64>() / 6.0;
     let shortest = (1..6).fold(0, |s, e| if lengths[e] < lengths[s] { e } else { s });
-    if !(lengths[shortest] >= SHORTEST_EDGE * mean) {
+    if lengths[shortest] < SHORTEST_EDGE * mean {
         return Defect::ShortEdge { edge: shortest };
     }
     let near = |(distance, _): &(f64, Defect), limit: f64| *distance < limit * mean;

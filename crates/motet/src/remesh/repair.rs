@@ -174,11 +174,10 @@ impl Repair {
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let mut came = Vec::new();
         let proposal = &mut self.candidate.proposal;
-        if split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal) {
-            if let Ok(checked) = self.complex.check_against(proposal, 0.0) {
-                self.complex.commit(checked, &mut came);
-                self.operations.add(Operation::SplitEdge);
-            }
+        let is_positive = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal);
+        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_positive) {
+            self.complex.commit(checked, &mut came);
+            self.operations.add(Operation::SplitEdge);
         }
         self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
     }

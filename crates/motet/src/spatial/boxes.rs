@@ -230,7 +230,7 @@ mod tests {
             // Of the lower corners of every other box.
             let measure = |id: u32| {
                 let d = sub(boxes[id as usize][0], p);
-                (id % 2 == 0).then_some((d[0] * d[0] + d[1] * d[1] + d[2] * d[2], id))
+                id.is_multiple_of(2).then_some((d[0] * d[0] + d[1] * d[1] + d[2] * d[2], id))
             };
             let nearest = tree.nearest(p, measure).map(|n| (n.0, n.1));
             let expected = (0..boxes.len() as u32).filter_map(measure);

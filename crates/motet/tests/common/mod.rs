@@ -11,7 +11,7 @@ use motet::geometry::tet::centroid;
 use motet::mesh::TetMesh;
 
 /// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
-pub fn data_meshes() -> Vec<(String, Mesh)> {
+pub(crate) fn data_meshes() -> Vec<(String, Mesh)> {
     let names = include_str!("../real_tet_meshes.txt").lines();
     let folder = std::env::var("MOTET_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
@@ -24,28 +24,28 @@ pub fn data_meshes() -> Vec<(String, Mesh)> {
 }
 
 /// A stream of numbers without end (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number generators*).
-pub struct Numbers(pub u64);
+pub(crate) struct Numbers(pub(crate) u64);
 
 impl Numbers {
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ z >> 31
     }
 
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.next() % n as u64) as usize
     }
 
     /// In [0, 1).
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
 /// Random points in a box, triangulated; two regions, 3 and 7, with a jagged interface, and some labelled facets.
-pub fn random_mesh(n: usize, seed: u64) -> TetMesh {
+pub(crate) fn random_mesh(n: usize, seed: u64) -> TetMesh {
     let mut numbers = Numbers(seed);
     let mut points: Vec<Point> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| x as f64)).collect();
     points.extend((0..n).map(|_| [(); 3].map(|()| numbers.unit())));
