@@ -2,7 +2,7 @@
 
 use motet::base::{Point, VertexId};
 use motet::mesh::TetMesh;
-use motet::remesh::{Options, Reason, SurfaceRule, remesh};
+use motet::remesh::{Options, Reason, Report, remesh};
 
 use super::measure::{features, length, on_patches, quality, volumes};
 use super::meshes::{Stack, prepared};
@@ -93,6 +93,7 @@ pub struct Step {
     pub bad_before: usize,
     pub inverted_before: usize,
     pub bad: usize,
+    pub report: Report,
     /// Of these, between walls that meet at too sharp an angle for any tet; on a wall with such an angle; others.
     pub reasons: [usize; 3],
     pub worst: f64,
@@ -100,8 +101,13 @@ pub struct Step {
 }
 
 /// Distorts the cube in `n` steps and brings it back in as many, repairing after each.
-pub fn cycle(mesh: &mut TetMesh, distortion: &Distortion, n: usize, mut see: impl FnMut(&Step, &TetMesh)) {
-    let options = Options { surface: SurfaceRule::Adapt { distance: None }, ..Options::default() };
+pub fn cycle(
+    mesh: &mut TetMesh,
+    distortion: &Distortion,
+    n: usize,
+    adapt: &Options,
+    mut see: impl FnMut(&Step, &TetMesh),
+) {
     let part_at = |step: usize| (n - step.abs_diff(n)) as f64 / n as f64;
     for step in 1..=2 * n {
         let [old, part] = [step - 1, step].map(part_at);
@@ -109,7 +115,7 @@ pub fn cycle(mesh: &mut TetMesh, distortion: &Distortion, n: usize, mut see: imp
             *p = distortion.map(distortion.back(*p, old), part);
         }
         let before = quality(mesh);
-        let outcome = remesh(mesh, &options).expect("it is a mesh");
+        let outcome = remesh(mesh, adapt).expect("it is a mesh");
         *mesh = outcome.extract.mesh;
         let after = quality(mesh);
         let mut reasons = [0; 3];
@@ -129,6 +135,7 @@ pub fn cycle(mesh: &mut TetMesh, distortion: &Distortion, n: usize, mut see: imp
             reasons,
             worst: after.worst,
             state: state(mesh, distortion, part),
+            report: outcome.report,
         };
         see(&step, mesh);
     }

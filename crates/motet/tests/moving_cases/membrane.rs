@@ -23,10 +23,10 @@ pub struct Bending {
 }
 
 impl Bending {
-    /// How far a point of the membrane is from its place at rest after some steps.
+    /// The z of the membrane after some steps.
     fn height(&self, [x, y, _]: Point, step: usize) -> f64 {
         let phase = 2.0 * PI * (step % self.n_steps) as f64 / self.n_steps as f64;
-        self.amplitude * 0.5 * (1.0 - phase.cos()) * (PI * x).sin() * (PI * y).sin()
+        LEVEL + self.amplitude * 0.5 * (1.0 - phase.cos()) * (PI * x).sin() * (PI * y).sin()
     }
 }
 
@@ -98,7 +98,7 @@ fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
     for v in membrane_vertices(mesh) {
         let p = mesh.points[v.index()];
         if !is_on_box(p) {
-            told[v.index()] = Some([0.0, 0.0, bending.height(p, step + 1) - bending.height(p, step)]);
+            told[v.index()] = Some([0.0, 0.0, bending.height(p, step + 1) - p[2]]);
         }
     }
     let displacement = harmonic(mesh, &told);
@@ -107,7 +107,12 @@ fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
 }
 
 /// Goes through a cycle, repairing after each step: with the surface kept, and where that leaves bad tets with a surface that adapts.
-pub fn cycle(mesh: &mut TetMesh, bending: &Bending, mut see: impl FnMut(usize, &TetMesh)) -> Cycle {
+pub fn cycle(
+    mesh: &mut TetMesh,
+    bending: &Bending,
+    keep: &Options,
+    mut see: impl FnMut(usize, &TetMesh),
+) -> Cycle {
     let mut cycle = Cycle {
         most_bad: 0,
         most_inverted: 0,
@@ -116,13 +121,13 @@ pub fn cycle(mesh: &mut TetMesh, bending: &Bending, mut see: impl FnMut(usize, &
         worst: f64::INFINITY,
         state: state(mesh),
     };
-    let adapt = Options { surface: SurfaceRule::Adapt { distance: None }, ..Options::default() };
+    let adapt = Options { surface: SurfaceRule::Adapt { distance: None }, ..keep.clone() };
     for step in 0..bending.n_steps {
         let moved = moved(mesh, bending, step);
         let before = quality(&moved);
         cycle.most_bad = cycle.most_bad.max(before.bad);
         cycle.most_inverted = cycle.most_inverted.max(before.inverted);
-        *mesh = remesh(&moved, &Options::default()).expect("it is a mesh").extract.mesh;
+        *mesh = remesh(&moved, keep).expect("it is a mesh").extract.mesh;
         if quality(mesh).bad > 0 {
             cycle.n_adapted += 1;
             *mesh = remesh(mesh, &adapt).expect("it is a mesh").extract.mesh;

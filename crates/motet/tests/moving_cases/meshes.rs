@@ -6,7 +6,7 @@ use motet::geometry::tet::FACETS;
 use motet::geometry::vector::{norm, scale, sub};
 use motet::mesh::TetMesh;
 use motet::mesh::tet_facets::for_each_tet_facet;
-use motet::remesh::{Options, remesh};
+use motet::remesh::remesh;
 
 use super::scatter::{Numbers, Scatter};
 
@@ -164,5 +164,5 @@ fn divide(scatter: &mut Scatter, size: &dyn Fn(Point) -> f64, from: Point, to: P
 
 /// Rid of slivers, and no more: what any generator of meshes does before it hands one out.
 pub fn prepared(mesh: &TetMesh) -> TetMesh {
-    remesh(mesh, &Options::default()).expect("it is a mesh").extract.mesh
+    remesh(mesh, &super::keep()).expect("it is a mesh").extract.mesh
 }
