@@ -1,0 +1,202 @@
+//! The cases of the paper on dynamic remeshing, in numbers.
+//!
+//! `remesh_cases channel | membrane | shear | twist [N]`, N the number of cycles (channel: of steps of 0.1)
+
+#[path = "../tests/moving_cases/mod.rs"]
+#[allow(dead_code, unreachable_pub, reason = "tests share it, and use other parts of it")]
+mod moving_cases;
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use motet::mesh::TetMesh;
+use motet::remesh::remesh;
+use moving_cases::channel::{repaired_as_it_moves, stretched};
+use moving_cases::cube::{self, Distortion, cube_mesh};
+use moving_cases::measure::{boundary, labelled, quality, volumes};
+use moving_cases::membrane::{self, Bending, Cycle, membrane_mesh};
+use moving_cases::meshes::{Channel, INNER, prepared};
+use moving_cases::{adapt, keep};
+
+fn describe(name: &str, mesh: &TetMesh) {
+    let q = quality(mesh);
+    println!(
+        "{name}: {} points, {} tets, {} bad, {} inverted, worst EAS {:.4}",
+        mesh.points.len(),
+        mesh.tets.len(),
+        q.bad,
+        q.inverted,
+        q.worst
+    );
+}
+
+/// Bad tets that motion left in the paper's mesh, figure 11.
+const PAPER: [&str; 4] = ["1", "66", "265", "598"];
+/// The way between two of the table's rows: one that leads to about as many.
+const STRIDE: f64 = 0.22;
+
+fn channel(n_steps: usize) {
+    let channel = Channel {
+        low: [0.0, -1.0, -1.0],
+        high: [6.0, 1.0, 1.0],
+        centre: [1.5, 0.0, 0.0],
+        radius: 0.5,
+        sizes: [0.1, 0.2],
+        growth: 0.15,
+    };
+    let start = Instant::now();
+    let raw = channel.mesh(1);
+    describe("Delaunay", &raw);
+    let mesh = prepared(&raw);
+    describe("prepared", &mesh);
+    println!("made in {:.1} s\n", start.elapsed().as_secs_f64());
+
+    let shifts: Vec<f64> = (0..6).map(|i| STRIDE * i as f64).collect();
+    println!("from the first place                | then repaired, surface kept");
+    println!(
+        "shift  paper   bad inverted    worst |   bad    worst   kept    tets  surface   volume  seconds"
+    );
+    for (i, state) in stretched(&mesh, &shifts).iter().enumerate() {
+        let outcome = remesh(&state.mesh, &keep()).expect("it is a mesh");
+        let after = &outcome.extract.mesh;
+        let q = quality(after);
+        let is_same = boundary(&state.mesh) == boundary(after) && labelled(&state.mesh) == labelled(after);
+        let [before_volume, after_volume] = [&state.mesh, after].map(|m| volumes(m)[&1]);
+        println!(
+            "{:5.3} {:>6} {:5} {:8} {:8.4} | {:5} {:8.4} {:6.4} {:7} {:>8} {:8.1e} {:8.3}",
+            state.shift,
+            PAPER.get(i).unwrap_or(&""),
+            state.quality.bad,
+            state.quality.inverted,
+            state.quality.worst,
+            q.bad,
+            q.worst,
+            outcome.report.kept_share,
+            after.tets.len(),
+            if is_same { "same" } else { "CHANGED" },
+            (after_volume / before_volume - 1.0).abs(),
+            outcome.report.seconds.join + outcome.report.seconds.repair + outcome.report.seconds.extract,
+        );
+    }
+
+    println!("\nrepaired after every step\nshift   bad inverted    worst |   bad    worst   kept    tets");
+    repaired_as_it_moves(&mesh, 0.1, n_steps, &keep(), |step| {
+        let [before, after] = [&step.moved, &step.repaired].map(quality);
+        println!(
+            "{:5.3} {:5} {:8} {:8.4} | {:5} {:8.4} {:6.4} {:7}",
+            step.shift,
+            before.bad,
+            before.inverted,
+            before.worst,
+            after.bad,
+            after.worst,
+            step.report.kept_share,
+            step.repaired.tets.len(),
+        );
+    });
+}
+
+fn membrane(n_cycles: usize) {
+    let mut mesh = membrane_mesh(0.1, 1);
+    describe("prepared", &mesh);
+    let bending = Bending { amplitude: 0.45, n_steps: 40 };
+    println!(
+        "cycle     bad inverted  adapted  left    worst    tets    volume 1    volume 2  membrane         area features      length    flat"
+    );
+    let print = |name: usize, cycle: Option<&Cycle>, state: &membrane::State| {
+        match cycle {
+            Some(c) => print!(
+                "{name:5} {:7} {:8} {:8} {:5} {:8.4}",
+                c.most_bad, c.most_inverted, c.n_adapted, c.n_left, c.worst
+            ),
+            None => print!("{name:5} {:7} {:8} {:8} {:5} {:8}", "", "", "", "", ""),
+        }
+        println!(
+            " {:7} {:11.8} {:11.8} {:9} {:12.9} {:8} {:11.8} {:7.1e}",
+            state.n_tets,
+            state.volumes[&1],
+            state.volumes[&2],
+            state.patches[&INNER].0,
+            state.patches[&INNER].1,
+            state.features.0,
+            state.features.1,
+            state.off_membrane,
+        );
+    };
+    print(0, None, &membrane::state(&mesh));
+    for i in 1..=n_cycles {
+        let cycle = membrane::cycle(&mut mesh, &bending, &keep(), |_, _| {});
+        if i <= 5 || i % 5 == 0 {
+            print(i, Some(&cycle), &cycle.state);
+        }
+    }
+}
+
+fn cube(distortion: Distortion, n_cycles: usize) {
+    let mut mesh = cube_mesh(0.1, 1);
+    describe("prepared", &mesh);
+    println!(
+        "columns: most bad, inverted before repair | left, summed over steps: forced by walls that meet, on a wall's angle, others | worst EAS | ... at the end"
+    );
+    println!(
+        "cycle     bad inverted |  meet angle other     worst    tets    most      volume  off side  off edge  edges  corners"
+    );
+    let n_steps = 20;
+    for i in 1..=n_cycles {
+        let (mut bad, mut inverted, mut most_tets, mut worst) = (0, 0, 0, f64::INFINITY);
+        let mut reasons = [0; 3];
+        let mut last = cube::state(&mesh, &distortion, 0.0);
+        cube::cycle(&mut mesh, &distortion, n_steps, &adapt(), |step, _| {
+            bad = bad.max(step.bad_before);
+            inverted = inverted.max(step.inverted_before);
+            most_tets = most_tets.max(step.state.n_tets);
+            (0..3).for_each(|k| reasons[k] += step.reasons[k]);
+            worst = step.worst.min(worst);
+            last = step.state;
+            if i == 1 {
+                println!(
+                    "  step {:5.3}: {:5} bad {:4} inverted -> {:4} bad {:?} worst {:7.4} {:6} tets off side {:8.1e} off edge {:8.1e}",
+                    step.part,
+                    step.bad_before,
+                    step.inverted_before,
+                    step.bad,
+                    step.reasons,
+                    step.worst,
+                    step.state.n_tets,
+                    step.state.off_side,
+                    step.state.off_edge
+                );
+            }
+        });
+        if i <= 5 || i % 5 == 0 {
+            println!(
+                "{i:5} {bad:7} {inverted:8} | {:5} {:5} {:5} {worst:8.4} {:7} {most_tets:7} {:11.8} {:8.1e} {:8.1e} {:11.8} {}",
+                reasons[0],
+                reasons[1],
+                reasons[2],
+                last.n_tets,
+                last.volume,
+                last.off_side,
+                last.off_edge,
+                last.edges,
+                last.corners
+            );
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let n = |default: usize| arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(default);
+    match arguments.first().map(String::as_str) {
+        Some("channel") => channel(n(30)),
+        Some("membrane") => membrane(n(100)),
+        Some("shear") => cube(Distortion::Shear(80.0), n(100)),
+        Some("twist") => cube(Distortion::Twist(90.0), n(100)),
+        _ => {
+            eprintln!("remesh_cases channel | membrane | shear | twist [N]");
+            return ExitCode::from(2);
+        }
+    }
+    ExitCode::SUCCESS
+}

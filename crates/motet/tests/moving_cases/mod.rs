@@ -1,0 +1,21 @@
+//! The three cases of the paper on dynamic remeshing: a sphere in a channel, a box with a membrane, a cube that is distorted.
+
+pub mod channel;
+pub mod cube;
+pub mod harmonic;
+pub mod measure;
+pub mod membrane;
+pub mod meshes;
+pub mod scatter;
+
+use motet::remesh::{Options, SurfaceRule};
+
+/// Bad tets repaired, the surface kept. None of the meshes has boundary layers: what motion makes thin is not to be spared.
+pub fn keep() -> Options {
+    Options { keep_layers: false, ..Options::default() }
+}
+
+/// The same with a surface that adapts.
+pub fn adapt() -> Options {
+    Options { surface: SurfaceRule::Adapt { distance: None }, ..keep() }
+}
