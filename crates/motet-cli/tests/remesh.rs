@@ -100,6 +100,16 @@ fn a_mesh_is_repaired_and_the_report_is_true() {
 }
 
 #[test]
+fn a_smallest_angle_may_be_asked() {
+    let folder = folder();
+    let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--min-dihedral", "16", "--json"];
+    let told = report(&folder.motet(words).assert().code(0));
+    assert!(told["min_eas"].as_f64().is_some_and(|eas| eas > 0.2), "{told}");
+    let info = report(&folder.motet(["info", "out.vtu", "--json"]).assert().code(0));
+    assert!(info["quality"]["dihedral_deg"]["min"].as_f64().is_some_and(|deg| deg >= 16.0), "{info}");
+}
+
+#[test]
 fn the_table_tells_what_was_found_and_done() {
     let folder = folder();
     let call = folder.motet(["remesh", "shaken.vtu", "-o", "out.vtu"]).assert().code(0);
@@ -224,6 +234,7 @@ fn words_that_mean_nothing_are_refused() {
     assert!(call(&["--distance", "0.1"]).contains("--surface adapt"));
     assert!(call(&["--min-eas", "0"]).contains("between 0"));
     assert!(call(&["--min-eas", "1.5"]).contains("between 0"));
+    assert!(call(&["--min-dihedral", "80"]).contains("70"));
     assert!(call(&["--surface", "bend"]).contains("keep"));
     assert!(call(&["--surface", "adapt", "--distance", "0"]).contains("above 0"));
     assert!(call(&["--carry", "linear"]).contains("ARRAY=drop"));

@@ -42,8 +42,10 @@ fn shake(mesh: &mut TetMesh, part: f64, seed: u64) {
 /// What must hold of every outcome.
 fn hold_to_the_promise(mesh: &TetMesh, outcome: &Outcome, keep: bool) -> Result<(), TestCaseError> {
     let (new, report) = (&outcome.extract.mesh, &outcome.report);
-    Complex::new(new).unwrap().verify().map_err(TestCaseError::fail)?;
-    let qualities: Vec<f64> = (0..new.tets.len()).map(|t| eas(corners(new, t))).collect();
+    // Which turns tets that are numbered the other way round.
+    let complex = Complex::new(new).unwrap();
+    complex.verify().map_err(TestCaseError::fail)?;
+    let qualities: Vec<f64> = complex.tets().map(|t| eas(complex.corners(t))).collect();
     let n_bad = qualities.iter().filter(|&&q| q < report.min_eas).count();
     prop_assert_eq!(n_bad, report.after.bad + report.layers);
     prop_assert_eq!(report.left.len(), report.after.bad);

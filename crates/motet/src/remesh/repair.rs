@@ -194,6 +194,7 @@ impl Repair {
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
     fn round(&mut self, bad: &mut Vec<TetId>) -> bool {
+        bad.retain(|&t| self.is_bad(t));
         self.sort(bad);
         let mut is_on = false;
         for &tet in bad.iter() {

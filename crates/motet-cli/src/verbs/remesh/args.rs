@@ -45,9 +45,10 @@ pub(crate) struct RemeshArgs {
     /// A tet below this EAS is bad
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Repair")]
     pub(crate) min_eas: f64,
-    /// A tet with a dihedral angle below this, in degrees, is bad, too: raises --min-eas to what makes sure of the angle
-    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = dihedral, help_heading = "Repair")]
-    min_dihedral: f64,
+    /// A tet with a dihedral angle below this is bad, too: --min-eas is raised to the EAS that makes
+    /// sure of it, 0.014 a degree
+    #[arg(long, value_name = "DEG", value_parser = degrees, help_heading = "Repair")]
+    pub(crate) min_dihedral: Option<f64>,
     /// What may happen to the boundary, to interfaces of regions and to surface cells
     #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
     pub(crate) surface: Surface,
@@ -126,7 +127,7 @@ impl RemeshArgs {
         };
         Ok(Options {
             min_eas: self.min_eas,
-            min_dihedral_deg: self.min_dihedral,
+            min_dihedral_deg: self.min_dihedral.unwrap_or(0.0),
             goal: match self.goal {
                 Goal::Repair => remesh::Goal::Repair,
                 Goal::Best => remesh::Goal::Best,
@@ -171,10 +172,10 @@ fn eas(text: &str) -> Result<f64, String> {
     }
 }
 
-fn dihedral(text: &str) -> Result<f64, String> {
+fn degrees(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(degrees) if (0.0..70.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 0 to 70 degrees is expected: the regular tet has 70.5".into()),
+        Ok(degrees) if 0.0 < degrees && degrees < 70.0 => Ok(degrees),
+        _ => Err("degrees between 0 and 70 are expected (a regular tet has 70.5)".into()),
     }
 }
 
@@ -204,6 +205,7 @@ mod tests {
     fn words_mean_what_the_help_says() {
         assert_eq!(eas("0.25"), Ok(0.25));
         assert_eq!(distance("1e-3"), Ok(1e-3));
+        assert_eq!(degrees("14.1"), Ok(14.1));
         assert_eq!(carry("a=b=drop"), Ok(("a=b".to_owned(), Carry::Drop)));
     }
 
@@ -212,6 +214,7 @@ mod tests {
         for text in ["0", "1", "-0.2", "nan", "x"] {
             assert!(eas(text).is_err(), "{text}");
         }
+        assert!(degrees("70.6").is_err() && degrees("0").is_err());
         assert!(distance("0").is_err() && distance("inf").is_err());
         assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
     }

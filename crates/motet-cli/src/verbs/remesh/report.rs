@@ -146,7 +146,7 @@ impl Report {
             self.mesh.display(),
             count(self.before.points),
             count(self.before.tets),
-            self.min_eas
+            short(self.min_eas)
         ));
         if self.before.bad > 0 {
             console.say(self.type_table());
@@ -160,7 +160,10 @@ impl Report {
             percent(self.untouched)
         ));
         if self.layers > 0 {
-            console.say(format_args!("kept as boundary layers: {} thin tets", count(self.layers)));
+            console.say(format_args!(
+                "kept as boundary layers: {} thin tets, not counted as bad",
+                count(self.layers)
+            ));
         }
         self.tell_left(console);
         console.say(format_args!("wrote {}", self.output.display()));
