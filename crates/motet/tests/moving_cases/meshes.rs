@@ -144,7 +144,7 @@ impl Stack {
 
     fn patch(&self, wall: [Point; 3]) -> i32 {
         let lies_on = |side: usize| {
-            let plane = if side % 2 == 0 { self.low } else { self.high };
+            let plane = if side.is_multiple_of(2) { self.low } else { self.high };
             wall.iter().all(|p| p[side / 2] == plane[side / 2])
         };
         (0..6).find(|&side| lies_on(side)).map_or(INNER, |side| side as i32 + 1)
