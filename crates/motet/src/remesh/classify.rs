@@ -173,12 +173,14 @@ mod tests {
     /// What the limits are parts of: how often a tet that was made of a type is told to be of it.
     #[test]
     fn the_mean_edge_tells_the_types_best() {
-        let units: [(&str, fn([f64; 6]) -> f64); 3] = [
-            ("shortest", |l| l.into_iter().fold(f64::INFINITY, f64::min)),
-            ("mean", |l| l.iter().sum::<f64>() / 6.0),
-            ("longest", |l| l.into_iter().fold(0.0, f64::max)),
+        type Unit = fn([f64; 6]) -> f64;
+        let units: [Unit; 3] = [
+            |l| l.into_iter().fold(f64::INFINITY, f64::min),
+            |l| l.iter().sum::<f64>() / 6.0,
+            |l| l.into_iter().fold(0.0, f64::max),
         ];
-        let told = units.map(|(name, unit)| {
+        let told = [0, 1, 2].map(|u| {
+            let (name, unit) = (["shortest", "mean", "longest"][u], units[u]);
             let mut state = 1;
             let (mut right, mut all) = ([0usize; 4], [0usize; 4]);
             for i in 0..40_000 {
