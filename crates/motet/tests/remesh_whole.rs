@@ -147,7 +147,7 @@ fn what_stays_stays_and_arrays_keep_what_they_mean() {
 }
 
 fn assert_carried(old: &Mesh, outcome: &MeshOutcome) {
-    let MeshOutcome { mesh: new, history, report } = outcome;
+    let MeshOutcome { mesh: new, history, report, .. } = outcome;
     assert!(report.before.inverted == 0 && report.after.bad < report.before.bad / 4, "{report:?}");
     assert!(!history.cells.changed().is_empty());
     assert_kept(old, outcome);
@@ -278,7 +278,7 @@ fn cells_of_other_kinds_stay_with_their_points() {
     let old = box_and_others();
     for options in [Options::default(), adapt()] {
         let outcome = remeshed(&old, &options);
-        let MeshOutcome { mesh: new, history, report } = &outcome;
+        let MeshOutcome { mesh: new, history, report, .. } = &outcome;
         assert!(report.before.bad > report.after.bad);
         assert_kept(&old, &outcome);
         // Of the triangles the last two, which are no facet or a second one.
@@ -311,7 +311,7 @@ fn cells_of_other_kinds_stay_with_their_points() {
 #[test]
 fn a_good_mesh_comes_back_as_it_is() {
     let old = shaken_box(0.05, false);
-    let MeshOutcome { mesh, history, report } = remeshed(&old, &Options::default());
+    let MeshOutcome { mesh, history, report, .. } = remeshed(&old, &Options::default());
     assert_eq!(mesh, old);
     assert_eq!((report.before.bad, report.kept_share), (0, 1.0));
     assert!(history.cells.changed().is_empty() && history.vertices.changed().is_empty());
@@ -371,4 +371,23 @@ fn a_conforming_mesh_stays_conforming() {
     assert!(is_conforming(&check(&old)));
     let defects = check(&new);
     assert!(is_conforming(&defects), "{defects:?}");
+}
+
+#[test]
+fn tets_numbered_the_other_way_round_stay_so() {
+    let mut old = shaken_box(0.35, false);
+    let mut cells = Cells::new();
+    for (_, kind, vertices) in old.cells.iter() {
+        let mut vertices = vertices.to_vec();
+        vertices.swap(0, 1);
+        cells.push(kind, vertices);
+    }
+    let straight = remeshed(&old, &Options::default());
+    old.cells = cells;
+    let outcome = remeshed(&old, &Options::default());
+    assert!(outcome.is_turned && !straight.is_turned);
+    assert_kept(&old, &outcome);
+    assert_eq!(outcome.report.before.types, straight.report.before.types);
+    assert_eq!((outcome.report.after.bad, outcome.report.after.inverted), (0, 0));
+    assert!(outcome.mesh.cells.tets().all(|(_, t)| tet::volume(corners(&outcome.mesh, t)) < 0.0));
 }

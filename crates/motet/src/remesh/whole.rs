@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::base::{CellId, Csr, Error, Id, Result, Threads, VertexId};
+use crate::geometry::tet::volume;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::dot;
 use crate::kernel::{Extract, NEW};
@@ -20,6 +21,8 @@ pub struct MeshOutcome {
     pub history: History,
     /// What was done. Its `tet`s are ids of cells: `before` of the mesh before, all others of the new one.
     pub report: Report,
+    /// Whether most tets are numbered the other way round, before and after: the report speaks of them as if they were not.
+    pub is_turned: bool,
 }
 
 /// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. What stayed stays to the bit: points, cells, rows of arrays.
@@ -46,7 +49,8 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     report.seconds.extract += assembled;
     report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
     tell_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
-    Ok(MeshOutcome { mesh: new, history, report })
+    let is_turned = is_turned(&new);
+    Ok(MeshOutcome { mesh: new, history, report, is_turned })
 }
 
 /// The cells of the new mesh, and which of the old ones each was.
@@ -248,6 +252,16 @@ fn tell_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
     report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
     report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));
     report.left.iter_mut().for_each(|left| left.tet = cell(new, left.tet));
+}
+
+fn is_turned(mesh: &Mesh) -> bool {
+    let is_negative = |tet: [VertexId; 4]| volume(tet.map(|v| mesh.points[v.index()])) < 0.0;
+    let (mut n_tets, mut n_negative) = (0usize, 0usize);
+    for (_, tet) in mesh.cells.tets() {
+        n_tets += 1;
+        n_negative += usize::from(is_negative(tet));
+    }
+    2 * n_negative > n_tets
 }
 
 /// An error whose place is a tet or a triangle, with the cell that it is in its place.

@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let rules = args.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
     bar.inc(1);
-    let MeshOutcome { mut mesh, history, report } = outcome;
+    let MeshOutcome { mut mesh, history, report, is_turned } = outcome;
     if args.quality {
         mesh.set_cell_field(mesh.tet_field("eas", eas));
     }
@@ -46,6 +46,12 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
+    if is_turned {
+        console.warn(format_args!(
+            "{}: most tets are numbered the other way round, and stay so; other programs, and `motet info`, may call them inverted",
+            args.mesh.display()
+        ));
+    }
     let mut told = Report::new(args, [&old, &mesh], &report, &history);
     told.end([read, write, begin.elapsed().as_secs_f64()], notes, lost);
     told.tell(console);

@@ -146,7 +146,7 @@ impl Report {
             self.mesh.display(),
             count(self.before.points),
             count(self.before.tets),
-            short(self.min_eas)
+            (self.min_eas * 1e4).round() / 1e4
         ));
         if self.before.bad > 0 {
             console.say(self.type_table());
