@@ -8,7 +8,7 @@ use motet::geometry::tet::{EDGES, centroid};
 use motet::kernel::{Change, Complex, HalfFacet, Hold, Reject, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
 use motet::ops::{
-    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
+    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
 };
 use proptest::prelude::*;
 
@@ -48,7 +48,7 @@ impl Editor {
             3 => split_edge(complex, first, [a, b], (middle, Hold::Free), 0.0, change),
             4 => split_crossed(complex, [first, second], centroid(complex.corners(tet)), 0.0, change),
             5 => split_onto(complex, first, c, 0.0, change),
-            6 => self.smoothing.propose(complex, star, a, [0.0, 0.5], change),
+            6 => self.smoothing.propose(complex, star, a, [0.0, 0.5], &Anywhere, change),
             _ => self.insertion.propose(complex, &[tet], centroid(complex.corners(tet)), [0.0, 0.5], change),
         }
     }

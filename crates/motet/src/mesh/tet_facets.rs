@@ -1,8 +1,8 @@
 //! Which tets share which facet, in a mesh of nothing but tets: the ground of every walk from tet to tet.
 //!
-//! Facets lie in buckets by their lowest vertex, some twenty in each. A bucket is not sorted: each of its facets looks for its like among those
-//! behind it, eight bytes to a comparison and no branch but the last, in half the time of sorting. Only a bucket with many is
-//! sorted, since the search takes time with the square of its size.
+//! Facets lie in buckets by their lowest vertex, some twenty in each. A bucket is not sorted: a small hash table tells of each of its facets whether
+//! its like has been seen, in a third of the time of looking for it among those behind and a sixth of the time of sorting. Only a bucket with
+//! too many for the table is sorted.
 
 use crate::base::{TetId, VertexId};
 
@@ -20,7 +20,7 @@ pub struct Sharing<'a> {
 /// A facet of a tet that names a vertex twice does not count. Panics past 2^29 tets and triangles.
 pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], mut see: impl FnMut(Sharing)) {
     assert!(tets.len() + triangles.len() < 1 << 29, "too many tets to number their facets");
-    let mut buckets = Buckets::fill(tets, triangles);
+    let buckets = Buckets::fill(tets, triangles);
     let n_tets = tets.len() as u32;
     let (mut of_tets, mut of_triangles) = (Vec::new(), Vec::new());
     buckets.for_each_run(|run| {
@@ -84,14 +84,16 @@ impl Buckets {
         Self { offsets, keys, ids }
     }
 
-    fn for_each_run(&mut self, mut see: impl FnMut(&[u32])) {
-        let mut run = Vec::new();
+    fn for_each_run(&self, mut see: impl FnMut(&[u32])) {
+        let mut pairing = Pairing::default();
         let mut sorted = Vec::new();
+        let mut run = Vec::new();
         for bucket in self.offsets.windows(2) {
             let bucket = bucket[0] as usize..bucket[1] as usize;
-            let (keys, ids) = (&mut self.keys[bucket.clone()], &self.ids[bucket]);
+            let (keys, ids) = (&self.keys[bucket.clone()], &self.ids[bucket]);
             if keys.len() <= LARGEST_UNSORTED {
-                each_unsorted_run(keys, ids, &mut run, &mut see);
+                pairing.find(keys);
+                pairing.for_each_run(ids, &mut run, &mut see);
                 continue;
             }
             sorted.clear();
@@ -106,28 +108,70 @@ impl Buckets {
     }
 }
 
-/// Marks a facet that has been seen with an earlier one: no key, for its vertices would be equal.
-const SEEN: u64 = u64::MAX;
+const N_SLOTS: usize = 256;
+const NOTHING: u8 = u8::MAX;
 
-#[inline(always)]
-fn each_unsorted_run(keys: &mut [u64], ids: &[u32], run: &mut Vec<u32>, see: &mut impl FnMut(&[u32])) {
-    for i in 0..keys.len() {
-        let key = keys[i];
-        if key == SEEN {
-            continue;
+/// Which facets of a bucket are the same, by their places in it.
+struct Pairing {
+    /// By hash: the last facet seen of one key.
+    slots: [u8; N_SLOTS],
+    /// The first facet of each key.
+    firsts: [u8; LARGEST_UNSORTED],
+    n_firsts: usize,
+    /// The next facet with the key of each; one place more, where what comes first is noted.
+    next: [u8; LARGEST_UNSORTED + 1],
+}
+
+impl Default for Pairing {
+    fn default() -> Self {
+        Self {
+            slots: [NOTHING; N_SLOTS],
+            firsts: [NOTHING; LARGEST_UNSORTED],
+            n_firsts: 0,
+            next: [NOTHING; LARGEST_UNSORTED + 1],
         }
-        run.clear();
-        run.push(ids[i]);
-        let mut start = i + 1;
-        // One like it is the rule, none or more are rare.
-        while let Some(found) = keys[start..].iter().position(|&other| other == key) {
-            let j = start + found;
-            run.push(ids[j]);
-            keys[j] = SEEN;
-            start = j + 1;
-        }
-        see(run);
     }
+}
+
+impl Pairing {
+    /// Nobody can tell beforehand whether a facet is the first of its key: what follows from that is done without a branch.
+    #[inline(always)]
+    fn find(&mut self, keys: &[u64]) {
+        self.slots.fill(NOTHING);
+        self.n_firsts = 0;
+        for (i, &key) in keys.iter().enumerate() {
+            let mut slot = hash(key);
+            let mut last = self.slots[slot];
+            while last != NOTHING && keys[usize::from(last)] != key {
+                slot = (slot + 1) % N_SLOTS;
+                last = self.slots[slot];
+            }
+            self.slots[slot] = i as u8;
+            self.next[i] = NOTHING;
+            self.next[usize::from(last).min(LARGEST_UNSORTED)] = i as u8;
+            self.firsts[self.n_firsts] = i as u8;
+            self.n_firsts += usize::from(last == NOTHING);
+        }
+    }
+
+    #[inline(always)]
+    fn for_each_run(&self, ids: &[u32], run: &mut Vec<u32>, see: &mut impl FnMut(&[u32])) {
+        for &first in &self.firsts[..self.n_firsts] {
+            run.clear();
+            let mut place = first;
+            while place != NOTHING {
+                run.push(ids[usize::from(place)]);
+                place = self.next[usize::from(place)];
+            }
+            see(run);
+        }
+    }
+}
+
+/// Multiplied by 2^64 over the golden ratio (Knuth 1998, volume 3, 6.4).
+#[inline(always)]
+fn hash(key: u64) -> usize {
+    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as usize
 }
 
 /// Lowest vertex, key and id of each facet.

@@ -7,7 +7,7 @@
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
 use crate::kernel::{Behind, Change, Complex, Hold, VertexChange};
-use crate::ops::Smoothing;
+use crate::ops::{Anywhere, Smoothing};
 
 /// The cavity has at most so many tets.
 const LARGEST_CAVITY: usize = 40;
@@ -38,7 +38,7 @@ impl Insertion {
                 let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
                 ([a, c, b, point], 3)
             });
-            let point = self.smoothing.best_place(complex, rim, point, enough, Some);
+            let point = self.smoothing.best_place(complex, rim, point, enough, &Anywhere);
             self.fill(complex, point, change);
             change.worst() > bar && !self.loses_a_vertex(complex, change)
         }

@@ -25,5 +25,5 @@ pub use cone::cone;
 pub use edge_removal::EdgeRemoval;
 pub use face_removal::FaceRemoval;
 pub use insertion::Insertion;
-pub use smoothing::Smoothing;
+pub use smoothing::{Anywhere, Smoothing, Track};
 pub use split::{split_crossed, split_edge, split_onto};

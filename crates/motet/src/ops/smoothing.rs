@@ -19,6 +19,31 @@ const SMALLEST_GAIN: f64 = 1e-3;
 /// Gradients are differences over this part of the size of the star.
 const DIFFERENCE: f64 = 1e-6;
 
+/// Where a vertex may go.
+pub trait Track {
+    /// Where it comes to lie when it is drawn to `point`; `None` when there is no such place.
+    fn draw(&self, point: Point) -> Option<Point>;
+
+    /// What it can follow of a direction.
+    fn along(&self, direction: Point) -> Point;
+}
+
+/// Nothing holds the vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Anywhere;
+
+impl Track for Anywhere {
+    #[inline(always)]
+    fn draw(&self, point: Point) -> Option<Point> {
+        Some(point)
+    }
+
+    #[inline(always)]
+    fn along(&self, direction: Point) -> Point {
+        direction
+    }
+}
+
 /// Room for the star, used again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing {
@@ -35,31 +60,19 @@ struct Corner {
 }
 
 impl Smoothing {
-    /// Proposes a better place for a vertex whose tets are `star`: one where the worst quality is `enough`, or as high as it gets. `false` when
-    /// there is none better than `bar`.
+    /// Proposes a better place on its track for a vertex whose tets are `star`: one where the worst quality is `enough`, or as high as it gets. `false`
+    /// when there is none better than `bar`.
     pub fn propose(
         &mut self,
         complex: &Complex,
         star: &[TetId],
         vertex: VertexId,
         [bar, enough]: [f64; 2],
-        change: &mut Change,
-    ) -> bool {
-        self.propose_on(complex, star, vertex, [bar, enough], Some, change)
-    }
-
-    /// The same for a vertex that is not free: `project` draws each place onto what holds it, or says that there is no such place.
-    pub fn propose_on(
-        &mut self,
-        complex: &Complex,
-        star: &[TetId],
-        vertex: VertexId,
-        [bar, enough]: [f64; 2],
-        project: impl Fn(Point) -> Option<Point>,
+        track: &impl Track,
         change: &mut Change,
     ) -> bool {
         let corners = star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex)));
-        let point = self.best_place(complex, corners, complex.point(vertex), enough, project);
+        let point = self.best_place(complex, corners, complex.point(vertex), enough, track);
         change.clear();
         change.vertex = VertexChange::Move(vertex, point);
         change.cavity.extend_from_slice(star);
@@ -78,7 +91,7 @@ impl Smoothing {
         star: impl Iterator<Item = ([Point; 4], usize)>,
         start: Point,
         enough: f64,
-        project: impl Fn(Point) -> Option<Point>,
+        track: &impl Track,
     ) -> Point {
         self.tets.clear();
         let mut size = 0.0f64;
@@ -95,7 +108,7 @@ impl Smoothing {
             if worst >= enough {
                 break;
             }
-            let direction = self.direction(complex, place, worst, size);
+            let direction = self.direction(complex, place, worst, size, track);
             let slope = dot(direction, direction);
             // Along the direction the worst rises by its square, if nothing else gets in the way.
             if slope * size * size <= 1e-6 {
@@ -104,7 +117,7 @@ impl Smoothing {
             let mut length = (2.0 * gain / slope).min(0.5 * size / slope.sqrt());
             let mut found = None;
             for _ in 0..=MOST_HALVINGS {
-                if let Some(trial) = project(add(place, scale(direction, length))) {
+                if let Some(trial) = track.draw(add(place, scale(direction, length))) {
                     let quality = self.worst_at(complex, trial, worst);
                     if quality > worst {
                         found = Some((trial, quality));
@@ -149,7 +162,14 @@ impl Smoothing {
     }
 
     /// The shortest vector in the convex hull of the gradients of the nearly worst.
-    fn direction(&mut self, complex: &Complex, place: Point, worst: f64, size: f64) -> Point {
+    fn direction(
+        &mut self,
+        complex: &Complex,
+        place: Point,
+        worst: f64,
+        size: f64,
+        track: &impl Track,
+    ) -> Point {
         self.gradients.clear();
         let step = DIFFERENCE * size;
         for tet in self.tets.iter().filter(|t| t.quality <= worst + NEARLY) {
@@ -159,7 +179,7 @@ impl Smoothing {
                 beside[axis] += step;
                 gradient[axis] = (tet.at(complex, beside) - tet.quality) / step;
             }
-            self.gradients.push(gradient);
+            self.gradients.push(track.along(gradient));
         }
         shortest_in_hull(&self.gradients)
     }

@@ -10,7 +10,7 @@ use crate::ops::{
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::report::{Counts, Operation};
-use crate::remesh::surface::{CREASES, Surface, patch_of};
+use crate::remesh::surface::{CREASES, Surface, SurfaceTrack};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
@@ -377,40 +377,26 @@ impl Repair {
             && (hold == Hold::Surface || !surface.is_smooth(&self.complex, [gone, kept], shell))
     }
 
-    /// Its vertices moved.
+    /// Its vertices moved: anywhere, or where the surface may change along the surface and along features.
     fn smooth(&mut self, tet: TetId) {
         for vertex in self.complex.vertices(tet) {
             let hold = self.complex.hold(vertex);
-            if hold == Hold::Surface && self.surface.is_some() {
-                self.slide(tet, vertex);
-            }
-            if hold != Hold::Free {
+            if hold == Hold::Fixed || hold != Hold::Free && self.surface.is_none() {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
+            let track = match &self.surface {
+                Some(surface) if hold != Hold::Free => {
+                    surface.track(&self.complex, &self.star.tets, vertex, &mut self.shells[0])
+                }
+                _ => Some(SurfaceTrack::Anywhere),
+            };
+            let Some(track) = track else { continue };
             let limits = [self.bar(tet), self.target];
-            if self.smoothing.propose(
-                &self.complex,
-                &self.star.tets,
-                vertex,
-                limits,
-                &mut self.candidate.proposal,
-            ) {
+            let (complex, star) = (&self.complex, &self.star.tets);
+            if self.smoothing.propose(complex, star, vertex, limits, &track, &mut self.candidate.proposal) {
                 self.offer(Operation::Smoothing);
             }
-        }
-    }
-
-    /// A vertex of it moved along the surface.
-    fn slide(&mut self, tet: TetId, vertex: VertexId) {
-        self.star.gather(&self.complex, vertex);
-        let limits = [self.bar(tet), self.target];
-        let Some(surface) = &self.surface else { return };
-        let Some(patch) = patch_of(&self.complex, &self.star.tets, vertex) else { return };
-        let project = |point: Point| surface.project(patch, point);
-        let (complex, star) = (&self.complex, &self.star.tets);
-        if self.smoothing.propose_on(complex, star, vertex, limits, project, &mut self.candidate.proposal) {
-            self.offer(Operation::Smoothing);
         }
     }
 

@@ -6,10 +6,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{Point, VertexId};
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::segment;
 use crate::geometry::triangle::{area_vector, closest};
-use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
 use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChange, Wall};
+use crate::ops::Track;
 use crate::spatial::NearestTriangle;
 
 /// Walls that meet at a sharper angle make a feature: cosine of the angle between their normals. 30 degrees at first; where that leaves bad
@@ -50,11 +52,6 @@ impl Surface {
         let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
         let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();
         Self { patches, distance, crease: CREASES[0], is_fixed }
-    }
-
-    /// Where a vertex on walls of one patch would come to lie that is drawn to `point`.
-    pub(super) fn project(&self, patch: i32, point: Point) -> Option<Point> {
-        self.patches.get(&patch)?.tree.closest(point).map(|found| found.point)
     }
 
     /// Whether the walls that a change brings or moves stay near the surface.
@@ -107,7 +104,7 @@ impl Surface {
 }
 
 /// The walls at some tets, each once, with their vertices.
-fn walls_of<'a>(complex: &'a Complex, tets: &[crate::base::TetId]) -> Vec<(&'a Wall, [VertexId; 3])> {
+fn walls_of<'a>(complex: &'a Complex, tets: &[TetId]) -> Vec<(&'a Wall, [VertexId; 3])> {
     let mut walls = Vec::new();
     for half in tets.iter().flat_map(|&t| (0..4).map(move |i| HalfFacet::new(t, i))) {
         if let Behind::Wall(id) = complex.behind(half.tet(), half.facet()) {
@@ -119,12 +116,89 @@ fn walls_of<'a>(complex: &'a Complex, tets: &[crate::base::TetId]) -> Vec<(&'a W
     walls.into_iter().map(|(id, half)| (complex.wall(id), complex.facet(half))).collect()
 }
 
-/// The patch of the walls of a vertex, if it is but one.
-pub(super) fn patch_of(complex: &Complex, star: &[crate::base::TetId], vertex: VertexId) -> Option<i32> {
-    let mut patches =
-        walls_of(complex, star).into_iter().filter(|(_, v)| v.contains(&vertex)).map(|w| w.0.patch);
-    let first = patches.next()?;
-    patches.all(|patch| patch == first).then_some(first)
+/// Where a vertex may go that a surface may hold.
+pub(super) enum SurfaceTrack<'a> {
+    /// Wherever it likes.
+    Anywhere,
+    /// Along a patch, whose normal there is given.
+    Patch(&'a NearestTriangle, Point),
+    /// Along a feature, as far as the next vertices on it: where they are, and the vertex between.
+    Feature([Point; 3]),
+}
+
+impl Track for SurfaceTrack<'_> {
+    fn draw(&self, point: Point) -> Option<Point> {
+        match self {
+            Self::Anywhere => Some(point),
+            Self::Patch(tree, _) => tree.closest(point).map(|found| found.point),
+            &Self::Feature([before, at, behind]) => {
+                let feet = [before, behind].map(|end| {
+                    let foot = add(at, scale(sub(end, at), segment::closest([at, end], point)));
+                    (distance(point, foot), foot)
+                });
+                feet.into_iter().min_by(|x, y| x.0.total_cmp(&y.0)).map(|foot| foot.1)
+            }
+        }
+    }
+
+    fn along(&self, direction: Point) -> Point {
+        match *self {
+            Self::Anywhere => direction,
+            Self::Patch(_, normal) => sub(direction, onto(direction, normal)),
+            Self::Feature([before, _, behind]) => onto(direction, sub(behind, before)),
+        }
+    }
+}
+
+/// The part of a direction that points the way of another.
+fn onto(direction: Point, way: Point) -> Point {
+    let length = dot(way, way);
+    if length > 0.0 { scale(way, dot(direction, way) / length) } else { [0.0; 3] }
+}
+
+impl Surface {
+    /// Where a vertex may go that is held by the surface or by a feature, and whose tets are `star`; `None` where it is to stay.
+    pub(super) fn track(
+        &self,
+        complex: &Complex,
+        star: &[TetId],
+        vertex: VertexId,
+        shell: &mut Shell,
+    ) -> Option<SurfaceTrack<'_>> {
+        let mut walls = walls_of(complex, star);
+        walls.retain(|(_, vertices)| vertices.contains(&vertex));
+        if complex.hold(vertex) == Hold::Surface {
+            let patch = walls.first()?.0.patch;
+            let is_one = walls.iter().all(|wall| wall.0.patch == patch);
+            let tree = &self.patches.get(&patch).filter(|_| is_one)?.tree;
+            return Some(SurfaceTrack::Patch(tree, mean_normal(complex, &walls)));
+        }
+        let mut others: Vec<(VertexId, TetId)> = Vec::new();
+        for (wall, vertices) in walls {
+            others.extend(vertices.into_iter().filter(|&v| v != vertex).map(|v| (v, wall.sides[0].tet())));
+        }
+        others.sort_unstable();
+        others.dedup_by_key(|other| other.0);
+        others.retain(|&(other, tet)| {
+            shell.walk(complex, tet, vertex, other);
+            !self.is_smooth(complex, [vertex, other], shell)
+        });
+        match others[..] {
+            [(a, _), (b, _)] => Some(SurfaceTrack::Feature([a, vertex, b].map(|v| complex.point(v)))),
+            _ => None,
+        }
+    }
+}
+
+/// The mean normal of some walls, weighed by their areas; which of the two ways does not matter.
+fn mean_normal(complex: &Complex, walls: &[(&Wall, [VertexId; 3])]) -> Point {
+    let mut sum = [0.0; 3];
+    for (_, vertices) in walls {
+        let normal = area_vector(vertices.map(|v| complex.point(v)));
+        // Walls have no side of their own: turned to agree with those before.
+        sum = if dot(sum, normal) < 0.0 { sub(sum, normal) } else { add(sum, normal) };
+    }
+    sum
 }
 
 impl Surface {
