@@ -61,6 +61,7 @@ impl Complex {
             free_walls: Vec::new(),
             is_locked: Vec::new(),
             fixed_edges,
+            spared: Vec::new(),
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,
             gone_triangles: Vec::new(),

@@ -49,6 +49,8 @@ pub struct Complex {
     pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
+    /// Qualities that count as good; see [`Complex::spare`].
+    pub(super) spared: Vec<f64>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
     /// Whether a tet of the first mesh was flat or inverted: then tets may overlap.
@@ -62,6 +64,11 @@ pub struct Complex {
 
 /// The quality of a tet of the first mesh that nobody has measured.
 pub(super) const UNMEASURED: f64 = f64::NAN;
+
+/// The quality of tets that are spared.
+const SPARED: f64 = 1.0;
+/// Qualities that differ by no more than this part count as the same.
+const SAME: f64 = 1e-9;
 
 /// No tet.
 pub(crate) const NO_TET: TetId = TetId(u32::MAX);
@@ -104,6 +111,12 @@ impl Complex {
     #[inline]
     pub fn is_used(&self, vertex: VertexId) -> bool {
         self.vertex_to_tet[vertex.index()] != NO_TET
+    }
+
+    /// Whether a vertex is not one of the first mesh.
+    #[inline]
+    pub fn has_come(&self, vertex: VertexId) -> bool {
+        self.vertex_came[vertex.index()]
     }
 
     /// The vertices of a tet: positive, unless it came inverted.
@@ -166,7 +179,23 @@ impl Complex {
     /// The measure that everything here is judged by: EAS.
     #[inline]
     pub fn measure(&self, tet: [Point; 4]) -> f64 {
-        eas(tet)
+        let quality = eas(tet);
+        if self.is_spared(quality) { SPARED } else { quality }
+    }
+
+    /// From now on tets count as good whose quality is one of these, to within [`SAME`]. For those that walls force upon a tet between them:
+    /// nothing raises it, and as the worst of every cavity round it it would forbid whatever helps the others. None: no tet is spared any more.
+    ///
+    /// Cannot be taken back by [`Self::undo`].
+    pub fn spare(&mut self, qualities: Vec<f64>) {
+        self.spared = qualities;
+        self.qualities.fill(UNMEASURED);
+        self.forget();
+    }
+
+    #[inline]
+    fn is_spared(&self, quality: f64) -> bool {
+        self.spared.iter().any(|spared| (quality - spared).abs() <= SAME * spared.abs())
     }
 
     /// Whether a tet is one of the first mesh, with its vertices where they were.

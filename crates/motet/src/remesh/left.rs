@@ -10,6 +10,7 @@ use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{cross, dot, norm, sub};
 use crate::kernel::{Complex, Hold, Shell};
 use crate::remesh::classify::{DEFECT_NAMES, classify};
+use crate::remesh::surface::Surface;
 
 /// A bad tet that is left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -93,21 +94,14 @@ pub(super) fn explain(
 }
 
 fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell) -> Reason {
-    let corners = complex.corners(tet);
-    for facet in (0..4).filter(|&i| complex.is_wall(tet, i)) {
-        let (degrees, best_eas) = best_on_wall(FACETS[facet].map(|i| corners[i]));
-        if best_eas < min_eas {
-            return Reason::WallAngle { degrees, best_eas };
-        }
+    let least = |bounds: &mut dyn Iterator<Item = (f64, f64)>| {
+        bounds.filter(|b| b.1 < min_eas).min_by(|x, y| x.1.total_cmp(&y.1))
+    };
+    if let Some((degrees, best_eas)) = least(&mut wall_bounds(complex, tet).map(|wall| wall.bound)) {
+        return Reason::WallAngle { degrees, best_eas };
     }
-    for [i, j] in EDGES {
-        let vertices = complex.vertices(tet);
-        shell.walk(complex, tet, vertices[i], vertices[j]);
-        if let Some((degrees, best_eas)) =
-            best_between_walls(complex, tet, shell, [i, j]).filter(|b| b.1 < min_eas)
-        {
-            return Reason::WallsMeet { degrees, best_eas };
-        }
+    if let Some((degrees, best_eas)) = least(&mut edge_bounds(complex, tet, shell).into_iter()) {
+        return Reason::WallsMeet { degrees, best_eas };
     }
     match complex.vertices(tet).into_iter().all(|v| complex.hold(v) != Hold::Free) {
         true => Reason::AllHeld,
@@ -115,15 +109,73 @@ fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell) -> Rea
     }
 }
 
-/// The angle of a triangle that is farthest from 60 degrees, and what it leaves of the EAS.
-fn best_on_wall([a, b, c]: [Point; 3]) -> (f64, f64) {
-    let angle = |p: Point, q: Point, r: Point| {
-        let (u, v) = (sub(q, p), sub(r, p));
-        norm(cross(u, v)).atan2(dot(u, v)).to_degrees()
-    };
+/// How near the quality of a tet has to be to what walls allow to be forced by them.
+const FORCED: f64 = 1e-6;
+
+/// The qualities of those of some tets that are as good as the walls at them allow, in rising order. Where the `surface` may change, the angle of a
+/// wall forces nothing but between two features.
+pub(super) fn forced(complex: &Complex, surface: Option<&Surface>, tets: &[TetId]) -> Vec<f64> {
+    let mut shell = Shell::default();
+    let mut forced = Vec::new();
+    for &tet in tets {
+        let quality = complex.quality(tet);
+        let is_reached = |best: f64| quality > 0.0 && best - quality < FORCED;
+        let vertices = complex.vertices(tet);
+        let mut is_firm = |[at, p, q]: [usize; 3]| {
+            surface.is_none_or(|surface| {
+                [p, q].into_iter().all(|end| {
+                    let edge = [vertices[at], vertices[end]];
+                    shell.walk(complex, tet, edge[0], edge[1]);
+                    !surface.is_smooth(complex, edge, &shell)
+                })
+            })
+        };
+        if wall_bounds(complex, tet).any(|wall| is_reached(wall.bound.1) && is_firm(wall.corner))
+            || edge_bounds(complex, tet, &mut shell).into_iter().any(|bound| is_reached(bound.1))
+        {
+            forced.push(quality);
+        }
+    }
+    forced.sort_by(f64::total_cmp);
+    forced.dedup();
+    forced
+}
+
+/// What the angle of a wall leaves to a tet on it.
+struct WallBound {
+    /// The angle in degrees, and the highest EAS.
+    bound: (f64, f64),
+    /// Where in the tet the angle is, and the places of the other two vertices.
+    corner: [usize; 3],
+}
+
+/// For each wall that a tet has the angle that decides: the one farthest from 60 degrees.
+fn wall_bounds(complex: &Complex, tet: TetId) -> impl Iterator<Item = WallBound> {
+    let corners = complex.corners(tet);
     let quality = |degrees: f64| if degrees < 60.0 { degrees / 60.0 } else { (180.0 - degrees) / 120.0 };
-    let angles = [angle(a, b, c), angle(b, c, a), angle(c, a, b)].map(|degrees| (degrees, quality(degrees)));
-    angles.into_iter().min_by(|x, y| x.1.total_cmp(&y.1)).unwrap_or_default()
+    let of_wall = move |i: usize| {
+        let [a, b, c] = FACETS[i];
+        let bounds = [[a, b, c], [b, c, a], [c, a, b]].map(|corner| {
+            let [p, q, r] = corner.map(|place| corners[place]);
+            let (u, v) = (sub(q, p), sub(r, p));
+            let degrees = norm(cross(u, v)).atan2(dot(u, v)).to_degrees();
+            WallBound { bound: (degrees, quality(degrees)), corner }
+        });
+        bounds.into_iter().min_by(|x, y| x.bound.1.total_cmp(&y.bound.1))
+    };
+    let walls: Vec<usize> = (0..4).filter(|&i| complex.is_wall(tet, i)).collect();
+    walls.into_iter().filter_map(of_wall)
+}
+
+/// The angle at which walls meet on both sides of a tet, in degrees, and the highest EAS of a tet between, for each of its edges where they do.
+fn edge_bounds(complex: &Complex, tet: TetId, shell: &mut Shell) -> Vec<(f64, f64)> {
+    let vertices = complex.vertices(tet);
+    let mut bounds = Vec::new();
+    for [i, j] in EDGES {
+        shell.walk(complex, tet, vertices[i], vertices[j]);
+        bounds.extend(best_between_walls(complex, tet, shell, [i, j]));
+    }
+    bounds
 }
 
 /// The angle between the walls on both sides of a tet at one of its edges, and what it leaves of the EAS: a tet there has no

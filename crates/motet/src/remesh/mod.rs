@@ -6,6 +6,8 @@
 //! | reconnect | `repair` | edges removed by dynamic programming, facets removed: the paper's stage one |
 //! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
 //! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
+//! | divide | `divide` | what nothing helps is divided, as long as that leaves fewer |
+//! | thin | `thin` | vertices that came and lie close to others go again where they are not needed |
 //! | choose | `candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
 //! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
@@ -17,6 +19,7 @@
 
 mod candidate;
 pub mod classify;
+mod divide;
 mod layers;
 mod left;
 mod options;
@@ -24,6 +27,7 @@ mod repair;
 mod report;
 mod run;
 mod surface;
+mod thin;
 mod whole;
 
 pub use left::{Left, Reason};

@@ -50,6 +50,24 @@ pub enum SurfaceRule {
         /// How far a wall may stray, in the unit of the mesh; `None`: [`DEFAULT_DISTANCE`] of the mesh's largest extent.
         distance: Option<f64>,
     },
+    /// The same, but of features only borders of patches are kept where nothing else helps: creases and corners are held by the distance alone. For
+    /// surfaces whose features are noise.
+    Loose {
+        /// As for [`Self::Adapt`].
+        distance: Option<f64>,
+    },
+}
+
+impl SurfaceRule {
+    /// How far a wall may stray, given the mesh's largest extent; `None` where it may not.
+    pub(super) fn distance(self, extent: impl FnOnce() -> f64) -> Option<f64> {
+        match self {
+            Self::Keep => None,
+            Self::Adapt { distance } | Self::Loose { distance } => {
+                Some(distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()))
+            }
+        }
+    }
 }
 
 /// How far the surface may stray, as a part of the mesh's largest extent, where nobody said.

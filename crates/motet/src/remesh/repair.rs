@@ -2,26 +2,20 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, distance, scale};
+use crate::geometry::vector::{add, scale};
 use crate::kernel::{Behind, Complex, Hold, Shell, Star};
 use crate::ops::{
     EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
 };
 use crate::remesh::candidate::Candidate;
 use crate::remesh::classify::{Defect, classify};
+use crate::remesh::left::forced;
+use crate::remesh::options::SurfaceRule;
 use crate::remesh::report::{Counts, Operation};
-use crate::remesh::surface::{CREASES, Surface, SurfaceTrack};
+use crate::remesh::surface::{Crease, Surface, SurfaceTrack};
 
 /// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
 const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
-
-/// How often in a row edges are split without fewer bad tets in the end.
-const MOST_IN_VAIN: usize = 5;
-
-/// What is left must shrink to this part of itself, or the round was in vain.
-const PROGRESS: f64 = 0.95;
-/// No more edges are split once there are so many times as many tets.
-const MOST_GROWTH: usize = 3;
 
 /// The targets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
@@ -33,22 +27,44 @@ const STAGES: [fn(&mut Repair, TetId); 5] =
 /// inserted no longer do once their neighbours are repaired.
 const FIRST_STAGES: usize = 2;
 
+/// What is made of the bad tets that the first rounds leave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Pass {
+    /// The rounds once more.
+    Again,
+    /// What nothing helps is divided.
+    Divide,
+    /// Both, with no feature where walls meet at less than this angle.
+    Soften(Crease),
+}
+
+/// The passes in which the surface may change as a rule says: one after the other as long as bad tets are left.
+pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
+    const ALL: [Pass; 5] =
+        [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
+    match surface {
+        SurfaceRule::Keep => &ALL[..1],
+        SurfaceRule::Adapt { .. } => &ALL[..4],
+        SurfaceRule::Loose { .. } => &ALL,
+    }
+}
+
 /// What is repaired, and the room that it takes.
 pub(super) struct Repair {
     pub(super) complex: Complex,
     pub(super) operations: Counts,
-    surface: Option<Surface>,
-    target: f64,
+    pub(super) surface: Option<Surface>,
+    pub(super) target: f64,
     n_stages: usize,
-    candidate: Candidate,
+    pub(super) candidate: Candidate,
     edge_removal: EdgeRemoval,
     face_removal: FaceRemoval,
     smoothing: Smoothing,
     insertion: Insertion,
-    star: Star,
-    shells: [Shell; 2],
+    pub(super) star: Star,
+    pub(super) shells: [Shell; 2],
     /// Tets that came and are bad.
-    came_bad: Vec<TetId>,
+    pub(super) came_bad: Vec<TetId>,
 }
 
 impl Repair {
@@ -97,89 +113,30 @@ impl Repair {
         bad
     }
 
-    /// Repairs what is left once more, with fewer creases held as features.
-    pub(super) fn soften(&mut self, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
-        if let Some(surface) = &mut self.surface {
-            surface.hold_features(&mut self.complex, CREASES[1]);
+    /// Makes one pass over the bad tets that are left; those that are left then.
+    pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
+            surface.hold_features(&mut self.complex, crease);
         }
-        let left = self.run(left, rounds);
-        self.divide(left, rounds)
+        let left = if pass == Pass::Divide { left } else { self.run(left, rounds) };
+        if pass == Pass::Again { left } else { self.divide(left, rounds) }
     }
 
-    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
-    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
-    /// of the surface, which are too long for where they are.
-    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
-        let mut best = (left.clone(), self.complex.mark(), self.operations);
-        let mut n_in_vain = 0;
-        let most_tets = MOST_GROWTH * self.complex.n_tets();
-        while !left.is_empty() && n_in_vain < MOST_IN_VAIN && self.complex.n_tets() < most_tets {
-            let mut bad = Vec::new();
-            for &tet in &left {
-                if self.is_bad(tet) {
-                    self.split_longest(tet);
-                }
-                bad.append(&mut self.came_bad);
-            }
-            bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
-            left = self.run(bad, rounds);
-            n_in_vain += 1;
-            if left.len() < best.0.len() {
-                if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
-                    n_in_vain = 0;
-                }
-                best = (left.clone(), self.complex.mark(), self.operations);
-            }
+    /// Makes a pass over what is left while tets that are as good as the walls at them allow count as good: these can get no better, and
+    /// would hold up what lies beside them. What is left then, these included.
+    pub(super) fn beside_forced(
+        &mut self,
+        left: &[TetId],
+        pass: impl Fn(&mut Self, Vec<TetId>) -> Vec<TetId>,
+    ) -> Vec<TetId> {
+        let forced = forced(&self.complex, self.surface.as_ref(), left);
+        if forced.is_empty() {
+            return pass(self, left.to_vec());
         }
-        self.complex.undo(best.1);
-        self.operations = best.2;
-        self.complex.forget();
-        best.0
-    }
-
-    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
-    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
-    fn split_longest(&mut self, mut tet: TetId) {
-        loop {
-            let (edge, length) = self.longest_edge(tet);
-            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
-            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
-            match self.shells[0].tets.iter().copied().find(longer) {
-                Some(next) => tet = next,
-                None => return self.split_unjudged(edge),
-            }
-        }
-    }
-
-    fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
-        let vertices = self.complex.vertices(tet);
-        let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
-        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
-            let length = distance(self.complex.point(a), self.complex.point(b));
-            if length > longest.1 {
-                longest = ([a, b], length);
-            }
-        }
-        longest
-    }
-
-    /// Splits the edge whose shell was walked last, if every tet stays positive.
-    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
-        let [a, b] = edge;
-        let shell = &self.shells[0];
-        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !shell.is_free() {
-            return;
-        }
-        let hold = self.hold_on(edge);
-        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let mut came = Vec::new();
-        let proposal = &mut self.candidate.proposal;
-        let is_positive = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal);
-        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_positive) {
-            self.complex.commit(checked, &mut came);
-            self.operations.add(Operation::SplitEdge);
-        }
-        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+        self.complex.spare(forced);
+        pass(self, left.to_vec());
+        self.complex.spare(Vec::new());
+        self.below(self.target)
     }
 
     /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
@@ -231,14 +188,15 @@ impl Repair {
         bad.dedup();
     }
 
-    /// The tets below a quality that may be changed.
+    /// The tets below a quality that may be changed, worst first.
     pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
         let mut below = self.complex.below(quality);
         below.retain(|&t| !self.complex.is_locked(t));
+        self.sort(&mut below);
         below
     }
 
-    fn is_bad(&self, tet: TetId) -> bool {
+    pub(super) fn is_bad(&self, tet: TetId) -> bool {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
     }
 
@@ -290,7 +248,7 @@ impl Repair {
     }
 
     /// What holds a vertex on the edge whose shell was walked last.
-    fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
+    pub(super) fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
         let shell = &self.shells[0];
         match &self.surface {
             _ if shell.is_free() => Hold::Free,
@@ -365,7 +323,7 @@ impl Repair {
     }
 
     /// Whether what holds a vertex lets it be drawn into another: along the surface, along a feature.
-    fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
+    pub(super) fn may_go(&mut self, tet: TetId, gone: VertexId, kept: VertexId) -> bool {
         let hold = self.complex.hold(gone);
         let Some(surface) = self.surface.as_ref().filter(|_| hold != Hold::Free && hold != Hold::Fixed)
         else {

@@ -7,10 +7,10 @@ use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds};
 use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
-use crate::remesh::options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
-use crate::remesh::repair::Repair;
+use crate::remesh::options::{Goal, Options};
+use crate::remesh::repair::{Repair, passes};
 use crate::remesh::report::{Report, State};
-use crate::remesh::surface::{CREASES, Surface};
+use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
@@ -38,11 +38,13 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     report.before = State::of(&complex, &bad, |t| t);
     let mut repair = Repair::new(complex, surface, min_eas);
     let mut left = repair.run(bad, options.rounds);
-    if !left.is_empty() && options.surface != SurfaceRule::Keep {
-        left = repair.divide(left, options.rounds);
+    for pass in passes(options.surface) {
         if !left.is_empty() {
-            left = repair.soften(left, options.rounds);
+            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds));
         }
+    }
+    if repair.thin() {
+        left = repair.below(min_eas);
     }
     if options.goal == Goal::Best {
         repair.best(options.rounds);
@@ -79,13 +81,12 @@ fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) 
 
 /// The surface, where it may change.
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
-    let SurfaceRule::Adapt { distance } = options.surface else { return None };
-    let extent = || {
+    let distance = options.surface.distance(|| {
         let [low, high] = bounds(&mesh.points).unwrap_or_default();
         (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
-    };
-    let mut surface = Surface::of(complex, distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()));
-    surface.hold_features(complex, CREASES[0]);
+    })?;
+    let mut surface = Surface::of(complex, distance);
+    surface.hold_features(complex, Crease::SHARP);
     complex.adapt_surface();
     Some(surface)
 }

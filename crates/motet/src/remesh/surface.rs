@@ -14,9 +14,19 @@ use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChang
 use crate::ops::Track;
 use crate::spatial::NearestTriangle;
 
-/// Walls that meet at a sharper angle make a feature: cosine of the angle between their normals. 30 degrees at first; where that leaves bad
-/// tets 60, so that what is but a coarse image of something curved may change within the distance allowed.
-pub(super) const CREASES: [f64; 2] = [0.866, 0.5];
+/// Walls that meet at a sharper angle make a feature: the cosine of the angle between their normals.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub(super) struct Crease(f64);
+
+impl Crease {
+    /// 30 degrees.
+    pub(super) const SHARP: Self = Self(0.866);
+    /// 60 degrees, where the first leaves bad tets: what is but a coarse image of something curved may change within the distance allowed.
+    pub(super) const BLUNT: Self = Self(0.5);
+    /// Whatever the angle, no feature; borders of patches still are.
+    pub(super) const NONE: Self = Self(-2.0);
+}
+
 /// A feature goes straight on through a vertex if it bends by less: cosine of 45 degrees.
 const STRAIGHT: f64 = 0.707;
 /// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
@@ -26,7 +36,7 @@ const TURNED: f64 = 0.707;
 pub(super) struct Surface {
     patches: BTreeMap<i32, Patch>,
     distance: f64,
-    crease: f64,
+    crease: Crease,
     /// Vertices of the first mesh that were fixed before any feature was looked for.
     is_fixed: Vec<bool>,
 }
@@ -51,7 +61,7 @@ impl Surface {
         };
         let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
         let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();
-        Self { patches, distance, crease: CREASES[0], is_fixed }
+        Self { patches, distance, crease: Crease::SHARP, is_fixed }
     }
 
     /// Whether the walls that a change brings or moves stay near the surface.
@@ -86,7 +96,7 @@ impl Surface {
         let facing = patch.normals[below.triangle];
         // Walls have no side of their own: either way round will do.
         let cosine = dot(normal, facing).abs() / (norm(normal) * norm(facing));
-        cosine > TURNED
+        (cosine > TURNED || self.crease == Crease::NONE)
             && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
     }
 
@@ -210,11 +220,11 @@ impl Surface {
         let [a, b] = [a, b].map(|v| complex.point(v));
         // Turned so that they agree where the surface is flat.
         let (m, n) = (area_vector([a, b, p]), area_vector([b, a, q]));
-        first.patch == second.patch && dot(m, n) > self.crease * norm(m) * norm(n)
+        first.patch == second.patch && dot(m, n) > self.crease.0 * norm(m) * norm(n)
     }
 
     /// Finds features and corners, where walls meet at a sharper angle than `crease`, and holds the vertices on them.
-    pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: f64) {
+    pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: Crease) {
         self.crease = crease;
         for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
             let is_fixed = self.is_fixed.get(v.index()).copied().unwrap_or(false);
@@ -238,7 +248,7 @@ impl Surface {
             let is_smooth = match walls {
                 [x, y] => {
                     let [m, n] = [x.3, y.3].map(|third| area_vector([a, b, third].map(|v| complex.point(v))));
-                    x.2 == y.2 && -dot(m, n) > self.crease * norm(m) * norm(n)
+                    x.2 == y.2 && -dot(m, n) > self.crease.0 * norm(m) * norm(n)
                 }
                 _ => false,
             };

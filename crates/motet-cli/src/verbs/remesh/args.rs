@@ -86,6 +86,8 @@ pub(crate) enum Surface {
     Keep,
     /// It may change within --distance; creases, corners and borders of patches stay
     Adapt,
+    /// The same, but creases and corners may change, too, within --distance, where nothing else helps
+    Loose,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -118,6 +120,7 @@ impl RemeshArgs {
         let surface = match (self.surface, self.distance) {
             (Surface::Keep, None) => SurfaceRule::Keep,
             (Surface::Adapt, distance) => SurfaceRule::Adapt { distance },
+            (Surface::Loose, distance) => SurfaceRule::Loose { distance },
             (Surface::Keep, Some(_)) => {
                 return Err(Error::options(
                     "--distance says how far a surface may stray, and this one is kept",

@@ -1,0 +1,94 @@
+//! Tets that nothing else helps are divided, as long as that leaves fewer of them.
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, distance, scale};
+use crate::ops::split_edge;
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+
+/// How often in a row edges are split without fewer bad tets in the end.
+const MOST_IN_VAIN: usize = 5;
+
+/// What is left must shrink to this part of itself, or the round was in vain.
+const PROGRESS: f64 = 0.95;
+/// No more edges are split once there are so many times as many tets.
+const MOST_GROWTH: usize = 3;
+
+impl Repair {
+    /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
+    /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
+    /// of the surface, which are too long for where they are.
+    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+        let mut best = (left.clone(), self.complex.mark(), self.operations);
+        let mut n_in_vain = 0;
+        let most_tets = MOST_GROWTH * self.complex.n_tets();
+        while !left.is_empty() && n_in_vain < MOST_IN_VAIN && self.complex.n_tets() < most_tets {
+            let mut bad = Vec::new();
+            for &tet in &left {
+                if self.is_bad(tet) {
+                    self.split_longest(tet);
+                }
+                bad.append(&mut self.came_bad);
+            }
+            bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
+            left = self.run(bad, rounds);
+            n_in_vain += 1;
+            if left.len() < best.0.len() {
+                if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
+                    n_in_vain = 0;
+                }
+                best = (left.clone(), self.complex.mark(), self.operations);
+            }
+        }
+        self.complex.undo(best.1);
+        self.operations = best.2;
+        self.complex.forget();
+        best.0
+    }
+
+    /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and
+    /// 1997, *New longest-edge algorithms for the refinement and/or improvement of unstructured triangulations*).
+    fn split_longest(&mut self, mut tet: TetId) {
+        loop {
+            let (edge, length) = self.longest_edge(tet);
+            self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+            let longer = |&t: &TetId| self.longest_edge(t).1 > length;
+            match self.shells[0].tets.iter().copied().find(longer) {
+                Some(next) => tet = next,
+                None => return self.split_unjudged(edge),
+            }
+        }
+    }
+
+    fn longest_edge(&self, tet: TetId) -> ([VertexId; 2], f64) {
+        let vertices = self.complex.vertices(tet);
+        let mut longest = ([vertices[0], vertices[1]], f64::NEG_INFINITY);
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let length = distance(self.complex.point(a), self.complex.point(b));
+            if length > longest.1 {
+                longest = ([a, b], length);
+            }
+        }
+        longest
+    }
+
+    /// Splits the edge whose shell was walked last, if every tet stays positive.
+    fn split_unjudged(&mut self, edge: [VertexId; 2]) {
+        let [a, b] = edge;
+        let shell = &self.shells[0];
+        if self.complex.is_fixed_edge(a, b) {
+            return;
+        }
+        let hold = self.hold_on(edge);
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let mut came = Vec::new();
+        let proposal = &mut self.candidate.proposal;
+        let is_positive = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal);
+        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_positive) {
+            self.complex.commit(checked, &mut came);
+            self.operations.add(Operation::SplitEdge);
+        }
+        self.came_bad.extend(came.into_iter().filter(|&t| self.complex.quality(t) < self.target));
+    }
+}

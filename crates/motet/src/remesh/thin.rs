@@ -1,0 +1,74 @@
+//! Vertices that came and lie close to others go again where they are not needed.
+//!
+//! A repair may split an edge that a later one could have done without. Were such vertices left, a mesh that is moved and repaired again and again
+//! would grow faster than need be.
+
+use crate::base::VertexId;
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::distance;
+use crate::kernel::Change;
+use crate::ops::collapse;
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+
+/// A vertex is close to others when its edges have less than this part of the length of those round it. With 0.85 a mesh that is sheared again and again
+/// shrinks by a quarter each time, with 0.7 it grows by a twentieth.
+const CLOSE: f64 = 0.7;
+
+impl Repair {
+    /// Collapses each vertex that came and is close to others, latest first, where that leaves no bad tet; whether there were any.
+    pub(super) fn thin(&mut self) -> bool {
+        let mut came = Vec::new();
+        for vertex in (0..self.complex.n_vertex_slots()).rev().map(VertexId::new) {
+            if self.complex.has_come(vertex) && self.complex.is_used(vertex) && self.closeness(vertex) < CLOSE
+            {
+                self.take_out(vertex, &mut came);
+            }
+        }
+        !came.is_empty()
+    }
+
+    /// The mean length of the edges at a vertex, as a part of that of the edges round it.
+    fn closeness(&mut self, vertex: VertexId) -> f64 {
+        self.star.gather(&self.complex, vertex);
+        let (mut at, mut round) = ((0.0, 0), (0.0, 0));
+        for tet in self.star.tets.iter().map(|&t| self.complex.vertices(t)) {
+            for [a, b] in EDGES.map(|edge| edge.map(|i| tet[i])) {
+                let sum = if a == vertex || b == vertex { &mut at } else { &mut round };
+                *sum = (sum.0 + distance(self.complex.point(a), self.complex.point(b)), sum.1 + 1);
+            }
+        }
+        (at.0 / f64::from(at.1)) / (round.0 / f64::from(round.1))
+    }
+
+    /// Draws a vertex into the neighbour that leaves the best tets.
+    fn take_out(&mut self, vertex: VertexId, came: &mut Vec<crate::base::TetId>) {
+        self.star.gather(&self.complex, vertex);
+        let mut ends: Vec<_> =
+            self.star.tets.iter().flat_map(|&t| self.complex.vertices(t).map(|v| (v, t))).collect();
+        ends.sort_unstable();
+        ends.dedup_by_key(|end| end.0);
+        let mut best = Change::default();
+        let mut bar = self.target.next_down();
+        for (kept, tet) in ends {
+            if kept == vertex || !self.may_go(tet, vertex, kept) {
+                continue;
+            }
+            let proposal = &mut self.candidate.proposal;
+            if collapse(&self.complex, &self.star.tets, vertex, kept, bar, proposal)
+                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, proposal))
+                && self.complex.check_against(proposal, bar).is_ok()
+            {
+                bar = proposal.worst();
+                std::mem::swap(proposal, &mut best);
+            }
+        }
+        if best.fill.is_empty() {
+            return;
+        }
+        if let Ok(checked) = self.complex.check_against(&best, self.target.next_down()) {
+            self.complex.commit(checked, came);
+            self.operations.add(Operation::Collapse);
+        }
+    }
+}
