@@ -1,6 +1,7 @@
 //! The cases of the paper on dynamic remeshing, in numbers.
 //!
-//! `remesh_cases channel | membrane | shear | twist [N]`, N the number of cycles (channel: of steps of 0.1)
+//! `remesh_cases channel | membrane | shear | twist [N]`, N the number of cycles (channel: of steps of 0.1);
+//! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall
 
 #[path = "../tests/moving_cases/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "tests share it, and use other parts of it")]
@@ -96,10 +97,10 @@ fn channel(n_steps: usize) {
     });
 }
 
-fn membrane(n_cycles: usize) {
+fn membrane(n_cycles: usize, amplitude: f64) {
     let mut mesh = membrane_mesh(0.1, 1);
     describe("prepared", &mesh);
-    let bending = Bending { amplitude: 0.45, n_steps: 40 };
+    let bending = Bending { amplitude, n_steps: 40 };
     println!(
         "cycle     bad inverted  adapted  left    worst    tets    volume 1    volume 2  membrane         area features      length    flat"
     );
@@ -124,12 +125,14 @@ fn membrane(n_cycles: usize) {
         );
     };
     print(0, None, &membrane::state(&mesh));
+    let mut n_left = 0;
     for i in 1..=n_cycles {
-        let cycle = membrane::cycle(&mut mesh, &bending, &keep(), |_, _| {});
+        let cycle = membrane::cycle(&mut mesh, &bending, &keep(), |_, mesh| n_left += quality(mesh).bad);
         if i <= 5 || i % 5 == 0 {
             print(i, Some(&cycle), &cycle.state);
         }
     }
+    println!("bad tets left, over all steps of {n_cycles} cycles: {n_left}");
 }
 
 fn cube(distortion: Distortion, n_cycles: usize) {
@@ -142,6 +145,7 @@ fn cube(distortion: Distortion, n_cycles: usize) {
         "cycle     bad inverted |  meet angle other     worst    tets    most      volume  off side  off edge  edges  corners"
     );
     let n_steps = 20;
+    let (mut total, mut n_steps_with_others) = ([0; 3], 0);
     for i in 1..=n_cycles {
         let (mut bad, mut inverted, mut most_tets, mut worst) = (0, 0, 0, f64::INFINITY);
         let mut reasons = [0; 3];
@@ -151,6 +155,8 @@ fn cube(distortion: Distortion, n_cycles: usize) {
             inverted = inverted.max(step.inverted_before);
             most_tets = most_tets.max(step.state.n_tets);
             (0..3).for_each(|k| reasons[k] += step.reasons[k]);
+            (0..3).for_each(|k| total[k] += step.reasons[k]);
+            n_steps_with_others += usize::from(step.reasons[2] > 0);
             worst = step.worst.min(worst);
             last = step.state;
             if i == 1 {
@@ -183,6 +189,14 @@ fn cube(distortion: Distortion, n_cycles: usize) {
             );
         }
     }
+    println!(
+        "bad tets left, over all {} steps: {} between walls that meet, {} on a wall's angle, {} others in {} steps",
+        2 * n_steps * n_cycles,
+        total[0],
+        total[1],
+        total[2],
+        n_steps_with_others
+    );
 }
 
 fn main() -> ExitCode {
@@ -190,7 +204,9 @@ fn main() -> ExitCode {
     let n = |default: usize| arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(default);
     match arguments.first().map(String::as_str) {
         Some("channel") => channel(n(30)),
-        Some("membrane") => membrane(n(100)),
+        Some("membrane") => {
+            membrane(n(100), arguments.get(2).and_then(|a| a.parse().ok()).unwrap_or(0.45));
+        }
         Some("shear") => cube(Distortion::Shear(80.0), n(100)),
         Some("twist") => cube(Distortion::Twist(90.0), n(100)),
         _ => {
