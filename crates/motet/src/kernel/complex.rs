@@ -183,7 +183,7 @@ impl Complex {
         if self.is_spared(quality) { SPARED } else { quality }
     }
 
-    /// From now on tets count as good whose quality is one of these, to within [`SAME`]. For those that walls force upon a tet between them:
+    /// From now on tets count as good whose quality is one of these, up to rounding. For those that walls force upon a tet between them:
     /// nothing raises it, and as the worst of every cavity round it it would forbid whatever helps the others. None: no tet is spared any more.
     ///
     /// Cannot be taken back by [`Self::undo`].
