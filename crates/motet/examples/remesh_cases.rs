@@ -1,6 +1,6 @@
 //! The cases of the paper on dynamic remeshing, in numbers.
 //!
-//! `remesh_cases channel | membrane | shear | twist [N]`, N the number of cycles (channel: of steps of 0.1);
+//! `remesh_cases channel | membrane | shear | twist | transfer [N]`, N the number of cycles (channel: of steps of 0.1);
 //! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall
 
 #[path = "../tests/moving_cases/mod.rs"]
@@ -17,6 +17,7 @@ use moving_cases::cube::{self, Distortion, cube_mesh};
 use moving_cases::measure::{boundary, labelled, quality, volumes};
 use moving_cases::membrane::{self, Bending, Cycle, membrane_mesh};
 use moving_cases::meshes::{Channel, INNER, prepared};
+use moving_cases::transfer::{self, Loaded, Repairs};
 use moving_cases::{adapt, keep};
 
 fn describe(name: &str, mesh: &TetMesh) {
@@ -199,6 +200,63 @@ fn cube(distortion: Distortion, n_cycles: usize) {
     );
 }
 
+/// A row after some cycles of a case that carries fields.
+fn tell_fields(cycle: usize, loaded: &Loaded) {
+    if cycle > 5 && !cycle.is_multiple_of(10) {
+        return;
+    }
+    let t = &loaded.tally;
+    print!(
+        "{cycle:5} {:6} {:8} {:4} | {:8.1e} {:8.1e} {:8.1e} {:8.1e} |",
+        loaded.mesh.cells.len(),
+        t.n_new_tets,
+        t.n_inverted,
+        t.drift,
+        t.linear,
+        t.linear_outside,
+        t.off_constant
+    );
+    let tell = |r: &Repairs| {
+        print!(
+            "{:5} {:5} {:8.1e} {:8.1e} {:8.1e} {:8.1e} {:5} {:8.1e} |",
+            r.n, r.n_left, r.drift, r.beyond, r.allowed, r.deviation, r.n_outside, r.farthest_outside
+        );
+    };
+    tell(&t.kept);
+    tell(&t.adapted);
+    println!();
+}
+
+fn transfer(n_cycles: usize) {
+    println!(
+        "columns: new tets of all repairs, steps with inverted tets; of integrals over regions the drift from their first values, relative \
+         to the integral of absolute values; errors of the linear field, relative to its range (out: where vertices lie outside of \
+         the old tets, less what the way explains); error of the constant. Then of repairs with the surface kept, and with one \
+         that adapts: how many, bad tets left; drifts without sign, the most that one was beyond the ledger's deviation, what that \
+         allows; deviation by volume; vertices outside, and the farthest. Sums but for beyond and farthest."
+    );
+    let head = || {
+        let repairs = " reps  left    drift   beyond  allowed deviated   out farthest |";
+        println!("cycle  cells new tets inv. |    drift   linear      out constant |{repairs}{repairs}");
+    };
+    let adapt = adapt();
+    for (name, then) in [("kept", None), ("kept, and adapting where that leaves bad tets", Some(&adapt))] {
+        let begin = Instant::now();
+        println!("\nmembrane, surface {name}, 40 steps a cycle");
+        head();
+        let bending = Bending { amplitude: 0.45, n_steps: 40 };
+        transfer::bend(&mut Loaded::new(&membrane_mesh(0.1, 1), 1), &bending, then, n_cycles, tell_fields);
+        println!("{:.0} s", begin.elapsed().as_secs_f64());
+    }
+    for distortion in [Distortion::Shear(60.0), Distortion::Twist(90.0), Distortion::Twist(180.0)] {
+        let begin = Instant::now();
+        println!("\n{distortion:?}, 40 steps a cycle");
+        head();
+        transfer::distort(&mut Loaded::new(&cube_mesh(0.1, 1), 1), &distortion, 20, n_cycles, tell_fields);
+        println!("{:.0} s", begin.elapsed().as_secs_f64());
+    }
+}
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let n = |default: usize| arguments.get(1).and_then(|n| n.parse().ok()).unwrap_or(default);
@@ -209,8 +267,9 @@ fn main() -> ExitCode {
         }
         Some("shear") => cube(Distortion::Shear(80.0), n(100)),
         Some("twist") => cube(Distortion::Twist(90.0), n(100)),
+        Some("transfer") => transfer(n(100)),
         _ => {
-            eprintln!("remesh_cases channel | membrane | shear | twist [N]");
+            eprintln!("remesh_cases channel | membrane | shear | twist | transfer [N]");
             return ExitCode::from(2);
         }
     }

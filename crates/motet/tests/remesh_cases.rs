@@ -11,6 +11,7 @@ use moving_cases::keep;
 use moving_cases::measure::{assert_valid, boundary, labelled, quality, volumes};
 use moving_cases::membrane::{self, Bending, membrane_mesh};
 use moving_cases::meshes::{Channel, INNER, Stack, prepared};
+use moving_cases::transfer::{self, Loaded, Tally};
 
 fn small_channel() -> TetMesh {
     let channel = Channel {
@@ -171,4 +172,43 @@ fn a_cube_sheared_beyond_what_any_tet_can_follow_comes_back_whole() {
 #[test]
 fn a_twisted_cube_comes_back_whole() {
     distort(Distortion::Twist(90.0), 16, 2, assert_no_bad);
+}
+
+/// Linear fields stay linear, constants stay to the bit, integrals change by no more than what the ledger says.
+fn assert_carried(tally: &Tally) {
+    assert!(tally.n_new_tets > 100, "{tally:?}");
+    assert!(tally.linear < 1e-12 && tally.linear_outside < 1e-12, "{tally:?}");
+    assert_eq!(tally.off_constant, 0.0);
+    assert!(tally.kept.beyond < 1e-13 && tally.adapted.beyond < 1e-13, "{tally:?}");
+    assert!(tally.drift <= tally.kept.drift + tally.adapted.drift + 1e-12, "{tally:?}");
+}
+
+#[test]
+fn what_tets_hold_stays_while_a_membrane_bends_and_comes_back() {
+    let mut loaded = Loaded::new(&membrane_mesh(0.14, 1), 1);
+    let bending = Bending { amplitude: 0.4, n_steps: 32 };
+    transfer::bend(&mut loaded, &bending, None, 3, |_, loaded| {
+        assert_carried(&loaded.tally);
+        assert_eq!(loaded.tally.n_inverted, 0);
+        assert!(loaded.tally.drift < 1e-13, "{:?}", loaded.tally);
+    });
+}
+
+#[test]
+fn what_tets_hold_stays_while_flat_sides_adapt() {
+    let mut loaded = Loaded::new(&cube_mesh(0.2, 1), 1);
+    transfer::distort(&mut loaded, &Distortion::Shear(60.0), 16, 3, |_, loaded| {
+        assert_carried(&loaded.tally);
+        assert!(loaded.tally.drift < 1e-13, "{:?}", loaded.tally);
+    });
+}
+
+#[test]
+fn what_tets_hold_changes_by_what_curved_sides_give_way() {
+    let mut loaded = Loaded::new(&cube_mesh(0.2, 1), 1);
+    transfer::distort(&mut loaded, &Distortion::Twist(160.0), 16, 1, |_, loaded| {
+        assert_carried(&loaded.tally);
+    });
+    let adapted = loaded.tally.adapted;
+    assert!(adapted.deviation > 1e-9 && adapted.drift < adapted.allowed, "{adapted:?}");
 }

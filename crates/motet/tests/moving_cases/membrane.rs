@@ -89,7 +89,7 @@ pub fn state(mesh: &TetMesh) -> State {
 }
 
 /// The mesh after the next step, before repair.
-fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
+pub fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
     let mut told = vec![None; mesh.points.len()];
     for v in mesh.triangles.iter().flatten() {
         told[v.index()] = Some([0.0; 3]);

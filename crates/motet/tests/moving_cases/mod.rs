@@ -7,6 +7,7 @@ pub mod measure;
 pub mod membrane;
 pub mod meshes;
 pub mod scatter;
+pub mod transfer;
 
 use motet::remesh::{Options, SurfaceRule};
 
