@@ -6,6 +6,7 @@ use common::{Folder, stderr, stdout};
 use motet::Mesh;
 use motet::base::{CellId, Id, Point, VertexId};
 use motet::geometry::quality::eas;
+use motet::geometry::tet;
 use motet::io::read;
 use motet::mesh::history::{History, Origin};
 use motet::mesh::shapes::{box_grid, quadratic};
@@ -74,7 +75,7 @@ fn a_mesh_is_repaired_and_the_report_is_true() {
     {
         assert!(!told[key].is_null(), "{key}");
     }
-    for stage in ["read", "join", "repair", "extract", "history", "write", "total"] {
+    for stage in ["read", "join", "repair", "extract", "history", "fields", "write", "total"] {
         assert!(told["seconds"][stage].as_f64().is_some_and(|s| s >= 0.0), "{stage}");
     }
     assert_eq!(told["complete"], true);
@@ -126,6 +127,8 @@ fn the_table_tells_what_was_found_and_done() {
         "worst EAS",
         "inverted",
         "kept to the bit: ",
+        "integral off by",
+        "interpolated",
         "wrote out.vtu",
         "repaired",
     ] {
@@ -205,6 +208,57 @@ fn what_is_not_bad_stays_to_the_bit_and_fields_keep_what_they_mean() {
             .zip(new.cells.kinds())
             .all(|(&id, &kind)| { id == i32::from(kind == CellKind::TETRA) })
     );
+}
+
+/// The integral of a cell array over all tets.
+fn integral(mesh: &Mesh, name: &str) -> f64 {
+    let values = mesh.cell_field(name).unwrap().values.to_f64().unwrap();
+    let volume = |t: [VertexId; 4]| tet::volume(t.map(|v| mesh.points[v.index()])).abs();
+    mesh.cells.tets().map(|(cell, t)| values[cell.index()] * volume(t)).sum()
+}
+
+#[test]
+fn the_report_tells_how_well_arrays_were_carried() {
+    let folder = Folder::new();
+    // Nothing inverted: tets on top of each other hold too much.
+    let mut mesh = shaken(0.3);
+    let mut chance = Chance(0x1234_5678_9abc_def1);
+    mesh.set_cell_field(Field::scalars(
+        "pressure",
+        (0..mesh.cells.len()).map(|_| chance.next()).collect::<Vec<_>>(),
+    ));
+    folder.mesh("shaken.vtu", &mesh);
+    let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--json", "--quality"];
+    let words = words.into_iter().chain(["--carry", "constant=inherit"]);
+    let told = report(&folder.motet(words).assert().code(0));
+    let new = read(folder.path("out.vtu")).unwrap();
+    let fields = told["fields"].as_array().unwrap();
+    let heads: Vec<_> = fields.iter().map(|f| [&f["name"], &f["on"], &f["rule"]]).collect();
+    // Whole numbers have no integrals; the quality was not carried.
+    assert_eq!(
+        heads,
+        [
+            ["linear", "points", "interpolate"],
+            ["constant", "points", "inherit"],
+            ["constant", "cells", "inherit"],
+            ["pressure", "cells", "conserve"]
+        ]
+    );
+    for field in fields {
+        let regions = field["regions"].as_array().unwrap();
+        assert!(regions.len() == 1 && regions[0]["region"] == 1, "{field}");
+        assert!(regions[0]["deviation"].as_f64().is_some_and(|d| d < 1e-13), "{field}");
+        let [before, after] =
+            ["range_before", "range_after"].map(|range| [0, 1].map(|i| field[range][i].as_f64()));
+        assert!(before[0] <= after[0] && after[1] <= before[1], "{field}");
+    }
+    // The linear field over the unit cube, and the array as it was written.
+    let integral_of = |i: usize, when: &str| fields[i]["regions"][0][when][0].as_f64().unwrap();
+    assert!(
+        (integral_of(0, "before") - 0.75).abs() < 1e-12 && (integral_of(0, "after") - 0.75).abs() < 1e-12
+    );
+    assert!((integral_of(3, "before") - integral(&mesh, "pressure")).abs() < 1e-12);
+    assert!((integral_of(3, "after") - integral(&new, "pressure")).abs() < 1e-12);
 }
 
 #[test]

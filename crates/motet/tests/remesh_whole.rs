@@ -9,7 +9,7 @@ use motet::geometry::tet;
 use motet::geometry::triangle::{area, area_vector};
 use motet::geometry::vector::dot;
 use motet::mesh::check::{check, is_conforming};
-use motet::mesh::history::{Origin, Rule, Rules};
+use motet::mesh::history::{On, Origin, Rule, Rules, field_ledger};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Values};
 use motet::remesh::{Goal, MeshOutcome, Options, SurfaceRule, remesh_mesh};
@@ -169,6 +169,38 @@ fn assert_carried(old: &Mesh, outcome: &MeshOutcome) {
     assert_eq!(new.label_names, old.label_names);
     // Whole numbers are those of some old cell; a type stays.
     assert!(matches!(new.cell_field("number").unwrap().values, Values::U16(_)));
+}
+
+#[test]
+fn the_ledger_of_fields_tells_integrals_by_region() {
+    let old = shaken_box(0.35, false);
+    let rules = Rules { points: [("velocity".to_owned(), Rule::Drop)].into(), ..Rules::default() };
+    let outcome = remesh_mesh(&old, &Options::default(), &rules, &Threads::single()).unwrap();
+    let fields = field_ledger(&old, &outcome.mesh, &rules);
+    let heads: Vec<_> = fields.iter().map(|f| (f.name.as_str(), f.on, f.rule)).collect();
+    assert_eq!(
+        heads,
+        [
+            ("constant", On::Points, Rule::Interpolate),
+            ("constant", On::Cells, Rule::Conserve),
+            ("pressure", On::Cells, Rule::Conserve)
+        ]
+    );
+    for field in &fields {
+        let regions: Vec<i32> = field.regions.iter().map(|r| r.region).collect();
+        assert_eq!(regions, [5, 9]);
+        assert!(field.deviation() < 1e-13, "{field:?}");
+        assert!(field.range_after.unwrap()[1] <= field.range_before.unwrap()[1]);
+    }
+    let [before, after] = [&old, &outcome.mesh].map(|mesh| integrals(mesh, "pressure"));
+    for told in &fields[2].regions {
+        assert!(close(before[&told.region][1], told.before[0]), "{told:?}");
+        assert!(close(after[&told.region][1], told.after[0]), "{told:?}");
+    }
+    // Values that did not come from there.
+    let mut other = outcome.mesh.clone();
+    other.set_cell_field(Field::scalars("pressure", vec![0.5; other.cells.len()]));
+    assert!(field_ledger(&old, &other, &rules)[2].deviation() > 0.1);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use motet::geometry::quality::eas;
-use motet::mesh::history::History;
+use motet::mesh::history::{History, field_ledger};
 use motet::remesh::{MeshOutcome, remesh_mesh};
 use motet::{Error, ErrorKind, io};
 
@@ -32,6 +32,9 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
     bar.inc(1);
     let MeshOutcome { mut mesh, history, report, is_turned } = outcome;
+    let begin_fields = Instant::now();
+    let fields = field_ledger(&old, &mesh, &rules);
+    let on_fields = begin_fields.elapsed().as_secs_f64();
     if args.quality {
         mesh.set_cell_field(mesh.tet_field("eas", eas));
     }
@@ -52,8 +55,8 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
             args.mesh.display()
         ));
     }
-    let mut told = Report::new(args, [&old, &mesh], &report, &history);
-    told.end([read, write, begin.elapsed().as_secs_f64()], notes, lost);
+    let mut told = Report::new(args, [&old, &mesh], &report, &history, fields);
+    told.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
     told.tell(console);
     Ok(if report.is_complete() { Outcome::Done } else { Outcome::NotReached })
 }

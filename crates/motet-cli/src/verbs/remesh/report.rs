@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::Point;
-use motet::mesh::history::{History, Ledger};
+use motet::mesh::history::{FieldLedger, History, Ledger, On, Rule};
 use motet::remesh::classify::DEFECT_NAMES;
 use motet::remesh::{self, Counts, Reason};
 use serde::Serialize;
@@ -40,6 +40,8 @@ pub(crate) struct Report {
     left: Vec<Left>,
     /// How well the volumes of old and new tets fit.
     volumes: Ledger,
+    /// How well arrays of real numbers were carried.
+    fields: Vec<FieldLedger>,
     passed_over: Vec<String>,
     lost: Vec<String>,
     seconds: Stages,
@@ -88,6 +90,7 @@ struct Stages {
     repair: f64,
     extract: f64,
     history: f64,
+    fields: f64,
     write: f64,
     total: f64,
 }
@@ -98,6 +101,7 @@ impl Report {
         [old, new]: [&Mesh; 2],
         report: &remesh::Report,
         history: &History,
+        fields: Vec<FieldLedger>,
     ) -> Self {
         let left = |left: &remesh::Left| Left {
             cell: left.tet,
@@ -122,6 +126,7 @@ impl Report {
             layers: report.layers,
             left: report.left.iter().map(left).collect(),
             volumes: history.ledger.clone(),
+            fields,
             passed_over: Vec::new(),
             lost: Vec::new(),
             seconds: Stages { join, repair, extract, history: carried, ..Stages::default() },
@@ -131,11 +136,11 @@ impl Report {
 
     pub(crate) fn end(
         &mut self,
-        [read, write, total]: [f64; 3],
+        [read, fields, write, total]: [f64; 4],
         passed_over: Vec<String>,
         lost: Vec<String>,
     ) {
-        self.seconds = Stages { read, write, total, ..std::mem::take(&mut self.seconds) };
+        self.seconds = Stages { read, fields, write, total, ..std::mem::take(&mut self.seconds) };
         (self.passed_over, self.lost) = (passed_over, lost);
     }
 
@@ -165,17 +170,20 @@ impl Report {
                 count(self.layers)
             ));
         }
+        if !self.fields.is_empty() {
+            console.say(self.field_table());
+        }
         self.tell_left(console);
         console.say(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {
             console.say(format_args!("wrote {}", history.display()));
         }
-        let Stages { read, join, repair, extract, history, write, total } = self.seconds;
-        let [read, join, repair, extract, history, write, total] =
-            [read, join, repair, extract, history, write, total].map(seconds);
+        let Stages { read, join, repair, extract, history, fields, write, total } = self.seconds;
+        let [read, join, repair, extract, history, fields, write, total] =
+            [read, join, repair, extract, history, fields, write, total].map(seconds);
         console.say(format_args!(
-            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, wrote {write}, \
-             all {total}"
+            "read {read}, joined {join}, repaired {repair}, extracted {extract}, arrays carried {history}, told {fields}, \
+             wrote {write}, all {total}"
         ));
     }
 
@@ -229,6 +237,34 @@ impl Report {
         row("worst EAS", &worst(|w| short(w.value)));
         row("in cell", &worst(|w| w.cell.to_string()));
         row("at", &worst(|w| place(w.place)));
+        table
+    }
+
+    /// Arrays of real numbers: how they were carried, between which values they lie, and how far their integrals went.
+    fn field_table(&self) -> Table {
+        let mut table = Table::new(["array", "on", "carried", "before", "after", "integral off by"]);
+        let range =
+            |r: Option<[f64; 2]>| r.map_or("-".to_string(), |[a, b]| format!("{} .. {}", short(a), short(b)));
+        for field in &self.fields {
+            let on = match field.on {
+                On::Points => "points",
+                On::Cells => "cells",
+            };
+            let rule = match field.rule {
+                Rule::Interpolate => "interpolated",
+                Rule::Conserve => "conserved",
+                Rule::Inherit => "inherited",
+                Rule::Drop => "dropped",
+            };
+            table.row([
+                field.name.clone(),
+                on.into(),
+                rule.into(),
+                range(field.range_before),
+                range(field.range_after),
+                format!("{:.0e}", field.deviation()),
+            ]);
+        }
         table
     }
 

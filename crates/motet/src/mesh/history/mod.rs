@@ -9,14 +9,16 @@
 //! | a tet that is new | the old tets it overlaps, with their parts of its volume |
 //! | any other cell that is new | the one cell it inherits from |
 //!
-//! What becomes of a value is its [`Rule`]: interpolated, conserved, inherited or dropped.
+//! What becomes of a value is its [`Rule`]: interpolated, conserved, inherited or dropped. [`field_ledger`] tells how well that went.
 
 mod carry;
+mod fields;
 mod ledger;
 mod origins;
 mod row;
 mod rule;
 
+pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
