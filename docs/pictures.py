@@ -1,4 +1,4 @@
-"""Draws the pictures of the README from the demo's series.
+"""Draws the pictures of the README.
 
     ./test --setup                                        (once: the Python packages)
     cargo run --release -- demo motet-demo
@@ -6,7 +6,14 @@
 
 A cut through the box at the first and at the last step: the cells behind the plane y = 0, coloured by their
 equi-angle quality.
+
+    cargo run --release -p motet --example remesh_cases sphere target/moved.vtu
+    cargo run --release -- remesh target/moved.vtu -o target/repaired.vtu --history target/history.json
+    target/venv/bin/python docs/pictures.py target/moved.vtu target/repaired.vtu target/history.json
+
+The bad tets of a mesh and the tets that came in their place (writes docs/remesh.png).
 """
+import json
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
@@ -58,25 +65,87 @@ def ball(mesh):
     return surface.extract_cells(~on_wall).extract_surface(algorithm="dataset_surface")
 
 
+def lit(mesh, panel=PANEL):
+    """An empty scene with the lights for a mesh."""
+    plotter = pv.Plotter(off_screen=True, window_size=panel, lighting="none")
+    plotter.set_background("white")
+    centre, size = np.array(mesh.center), mesh.length / np.sqrt(3.0)
+    for place, strength in (((-0.8, -1.6, 1.4), 0.8), ((1.2, -1.0, 0.1), 0.3)):
+        plotter.add_light(pv.Light(position=centre + 3 * size * np.array(place), focal_point=centre, intensity=strength))
+    return plotter
+
+
+def shot(plotter):
+    """What the camera sees."""
+    plotter.enable_anti_aliasing("ssaa")
+    image = Image.fromarray(plotter.screenshot(return_img=True))
+    plotter.close()
+    return image
+
+
 def panel(mesh):
     """One cut, seen from the front."""
-    plotter = pv.Plotter(off_screen=True, window_size=PANEL, lighting="none")
-    plotter.set_background("white")
+    plotter = lit(mesh)
     behind = mesh.extract_cells(mesh.cell_centers().points[:, 1] > 0.0)
     plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_edges=True, edge_color=INK, line_width=1.0,
                      edge_opacity=0.35, ambient=0.6, diffuse=0.45, specular=0.0, show_scalar_bar=False)
     plotter.add_mesh(ball(mesh), color="#e8ecf0", smooth_shading=True, ambient=0.3, diffuse=0.75, specular=0.12,
                      specular_power=8)
     centre, size = np.array(mesh.center), mesh.length / np.sqrt(3.0)
-    for place, strength in (((-0.8, -1.6, 1.4), 0.8), ((1.2, -1.0, 0.1), 0.3)):
-        plotter.add_light(pv.Light(position=centre + 3 * size * np.array(place), focal_point=centre, intensity=strength))
     plotter.camera_position = [centre + size * np.array([-0.5, -2.2, 0.62]), centre + size * np.array([0.01, 0.1, -0.02]),
                                (0.0, 0.0, 1.0)]
     plotter.camera.view_angle = 27.5
-    plotter.enable_anti_aliasing("ssaa")
-    image = Image.fromarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
+    return shot(plotter)
+
+
+CUT_PANEL = (550, 430)
+BAD = "#d5352c"
+NEW = "#1d9bb8"
+# Chosen cells up to here before the cut are shown too.
+STANDS_OUT = -0.1
+
+
+def cut_panel(mesh, chosen, colour):
+    """The cells behind the plane y = 0 in pale, the chosen ones among them solid; a few of these stand out before the others."""
+    plotter = lit(mesh, CUT_PANEL)
+    depth = mesh.cell_centers().points[:, 1]
+    plotter.add_mesh(mesh.extract_cells((depth > 0.0) & ~chosen), color="#f1f3f5", show_edges=True, edge_color=INK, line_width=1.0,
+                     edge_opacity=0.3, ambient=0.75, diffuse=0.28)
+    plotter.add_mesh(mesh.extract_cells((depth > STANDS_OUT) & chosen), color=colour, show_edges=True, edge_color=INK,
+                     line_width=1.2, edge_opacity=0.7, ambient=0.5, diffuse=0.55)
+    plotter.add_mesh(ball(mesh), color="#b9c6d2", smooth_shading=True, ambient=0.3, diffuse=0.75, specular=0.12,
+                     specular_power=8)
+    centre = np.array(mesh.center)
+    plotter.camera_position = [centre + np.array([-0.5, -6.5, 1.3]), centre + np.array([0.0, 0.0, -0.04]), (0.0, 0.0, 1.0)]
+    plotter.camera.view_angle = 20.2
+    return shot(plotter)
+
+
+def draw_repair(moved, repaired, history):
+    """Bad tets before, new tets after."""
+    before, after = tets(moved), tets(repaired)
+    none = 2**32 - 1
+    kept = np.array(json.loads(Path(history).read_text())["cells"]["kept"])
+    kinds = pv.read(repaired).celltypes
+    bad = before["EAS"] < 0.2
+    came = kept[kinds == pv.CellType.TETRA] == none
+    width, height = CUT_PANEL
+    sheet = Image.new("RGB", (2 * width, height + 40), "white")
+    draw = ImageDraw.Draw(sheet)
+    panels = [(before, bad, BAD, f"before: {bad.sum():,} of {before.n_cells:,} tets are bad"),
+              (after, came, NEW, f"after: {np.count_nonzero(after['EAS'] < 0.2) or 'none'} left, {came.sum():,} tets are new")]
+    for column, (mesh, chosen, colour, text) in enumerate(panels):
+        sheet.paste(cut_panel(mesh, chosen, colour), (column * width, 0))
+        middle = column * width + width // 2
+        half = draw.textlength(text, font=font(17)) / 2
+        draw.rectangle([middle - half - 14, height + 5, middle - half, height + 19], fill=colour, outline=INK)
+        draw.text((middle + 11, height + 2), text, fill=INK, font=font(17), anchor="ma")
+    save(sheet, HERE / "remesh.png")
+
+
+def save(sheet, path):
+    sheet.quantize(256, kmeans=2, dither=Image.Dither.NONE).save(path, optimize=True)
+    print(f"{path}: {path.stat().st_size // 1024} kB")
 
 
 def font(size):
@@ -96,6 +165,8 @@ def colour_bar(draw, left, top, width):
 
 
 def main():
+    if len(sys.argv) == 4:
+        return draw_repair(*sys.argv[1:])
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     files = series(Path(sys.argv[1]))
@@ -110,9 +181,7 @@ def main():
         draw.text((column * width + width // 2, height + 6), f"step {i}: worst {mesh['EAS'].min():.2f}, {bad:,} of {mesh.n_cells:,} below 0.2",
                   fill=INK, font=font(17), anchor="ma")
     colour_bar(draw, width - 180, height + 44, 360)
-    path = HERE / "demo.png"
-    sheet.quantize(256, kmeans=2, dither=Image.Dither.NONE).save(path, optimize=True)
-    print(f"{path}: {path.stat().st_size // 1024} kB")
+    save(sheet, HERE / "demo.png")
 
 
 if __name__ == "__main__":

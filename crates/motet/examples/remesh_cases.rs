@@ -1,7 +1,8 @@
 //! The cases of the paper on dynamic remeshing, in numbers.
 //!
 //! `remesh_cases channel | membrane | shear | twist | transfer [N]`, N the number of cycles (channel: of steps of 0.1);
-//! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall
+//! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall;
+//! `sphere FILE` writes a mesh of the channel after motion, for docs/pictures.py
 
 #[path = "../tests/moving_cases/mod.rs"]
 #[allow(dead_code, unreachable_pub, reason = "tests share it, and use other parts of it")]
@@ -96,6 +97,29 @@ fn channel(n_steps: usize) {
             step.repaired.tets.len(),
         );
     });
+}
+
+/// How far the sphere of the picture has moved.
+const SHIFT: f64 = 0.66;
+
+fn sphere(file: &str) -> ExitCode {
+    let channel = Channel {
+        low: [-1.1, -1.0, -1.0],
+        high: [1.7, 1.0, 1.0],
+        centre: [0.0; 3],
+        radius: 0.5,
+        sizes: [0.08, 0.17],
+        growth: 0.15,
+    };
+    let states = stretched(&prepared(&channel.mesh(1)), &[SHIFT]);
+    describe("moved", &states[0].mesh);
+    match motet::io::write(file, &transfer::whole(&states[0].mesh), &motet::io::WriteOptions::default()) {
+        Ok(_) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
 }
 
 fn membrane(n_cycles: usize, amplitude: f64) {
@@ -268,8 +292,9 @@ fn main() -> ExitCode {
         Some("shear") => cube(Distortion::Shear(80.0), n(100)),
         Some("twist") => cube(Distortion::Twist(90.0), n(100)),
         Some("transfer") => transfer(n(100)),
+        Some("sphere") if arguments.len() == 2 => return sphere(&arguments[1]),
         _ => {
-            eprintln!("remesh_cases channel | membrane | shear | twist | transfer [N]");
+            eprintln!("remesh_cases channel | membrane | shear | twist | transfer [N], sphere FILE");
             return ExitCode::from(2);
         }
     }

@@ -89,22 +89,27 @@ fn linear(p: Point) -> f64 {
 /// How steep that is.
 const SLOPE: f64 = 7.5;
 
+/// Tets and triangles as a mesh that files can hold.
+pub fn whole(tets: &TetMesh) -> Mesh {
+    let mut cells = Cells::new();
+    tets.tets.iter().for_each(|t| cells.push(CellKind::TETRA, *t));
+    tets.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    let nothing = |n: usize| std::iter::repeat_n(0, n);
+    let regions = tets.regions.iter().copied().chain(nothing(tets.triangles.len()));
+    let patches = nothing(tets.tets.len()).chain(tets.patches.iter().copied());
+    let [regions, patches] = [regions.collect::<Vec<i32>>(), patches.collect()];
+    let mut mesh = Mesh::new(tets.points.clone(), cells);
+    mesh.set_cell_field(Field::scalars("region", regions));
+    mesh.set_cell_field(Field::scalars("patch", patches));
+    mesh
+}
+
 impl Loaded {
     pub fn new(tets: &TetMesh, seed: u64) -> Self {
         let mut numbers = Numbers(seed);
-        let mut cells = Cells::new();
-        tets.tets.iter().for_each(|t| cells.push(CellKind::TETRA, *t));
-        tets.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
-        let n = cells.len();
-        let mut mesh = Mesh::new(tets.points.clone(), cells);
-        let labels = |ours: &[i32], before: usize| {
-            let mut ids = vec![0; n];
-            ids[before..before + ours.len()].copy_from_slice(ours);
-            ids
-        };
-        let id_regions = labels(&tets.regions, 0);
-        mesh.set_cell_field(Field::scalars("region", id_regions.clone()));
-        mesh.set_cell_field(Field::scalars("patch", labels(&tets.patches, tets.tets.len())));
+        let mut mesh = whole(tets);
+        let n = mesh.cells.len();
+        let id_regions = mesh.regions().expect("it has regions").ids;
         // Far apart in the regions, so that nothing can cross unseen.
         let density = id_regions.iter().map(|&r| numbers.between(0.5, 1.5) * if r == 1 { 1.0 } else { 1e3 });
         mesh.set_cell_field(Field::scalars("density", density.collect::<Vec<f64>>()));
