@@ -60,7 +60,7 @@ impl Repair {
                 self.n_stages = n_stages;
                 self.round(&mut bad);
             }
-            let short = self.with_sizing(|repair, sizing| repair.edges(&mut sizing.field, |r| r < SHORT));
+            let short = self.with_sizing(|repair, sizing| repair.short_edges(&mut sizing.field));
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
             }
@@ -141,15 +141,21 @@ impl Repair {
     /// Collapses edges that are too short, the shortest first, where that brings no edge that is too long and no tet that is bad and worse than
     /// the worst that was there; how many there were.
     fn collapse_short(&mut self, sizing: &mut Sizing) -> usize {
-        let mut n_collapsed = 0;
+        let (mut n_collapsed, mut came) = (0, Vec::new());
+        // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
+        let mut has_news = vec![true; self.complex.n_vertex_slots()];
         loop {
-            let mut short = self.edges(&mut sizing.field, |ratio| ratio < SHORT);
-            short.sort_unstable();
+            let short = self.short_edges(&mut sizing.field);
+            let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
-            for &edge in &short {
+            for &edge in short.iter().filter(|edge| edge.ends.iter().any(|v| had_news[v.index()])) {
                 // One that was collapsed has taken others with it.
                 let Some(tet) = self.tet_at(edge) else { continue };
-                n_now += usize::from(self.collapse_to_size(tet, edge.ends, &mut sizing.field));
+                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut came) {
+                    n_now += 1;
+                    let vertices = came.iter().flat_map(|&t| self.complex.vertices(t));
+                    vertices.for_each(|v| has_news[v.index()] = true);
+                }
             }
             n_collapsed += n_now;
             if n_now as f64 <= ENOUGH * short.len() as f64 {
@@ -158,8 +164,27 @@ impl Repair {
         }
     }
 
+    /// Edges that are too short and may be collapsed, the shortest first.
+    fn short_edges(&self, field: &mut SizeField) -> Vec<Edge> {
+        let mut short = self.edges(field, |ratio| ratio < SHORT);
+        let may_go = |v: &VertexId| match self.complex.hold(*v) {
+            Hold::Free => true,
+            Hold::Surface | Hold::Edge => self.surface.is_some(),
+            Hold::Fixed => false,
+        };
+        short.retain(|edge| edge.ends.iter().any(may_go));
+        short.sort_unstable();
+        short
+    }
+
     /// Collapses an edge the better of the two ways, if one is allowed.
-    fn collapse_to_size(&mut self, tet: TetId, [a, b]: [VertexId; 2], field: &mut SizeField) -> bool {
+    fn collapse_to_size(
+        &mut self,
+        tet: TetId,
+        [a, b]: [VertexId; 2],
+        field: &mut SizeField,
+        came: &mut Vec<TetId>,
+    ) -> bool {
         let mut best: Option<(f64, Change)> = None;
         for [gone, kept] in [[a, b], [b, a]] {
             if !self.may_go(tet, gone, kept) {
@@ -179,7 +204,7 @@ impl Repair {
         }
         let Some((worst, change)) = best else { return false };
         let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
-        self.complex.commit(checked, &mut Vec::new());
+        self.complex.commit(checked, came);
         self.operations.add(Operation::Collapse);
         true
     }
