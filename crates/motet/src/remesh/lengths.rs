@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::base::VertexId;
+use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Complex, Hold};
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
@@ -16,7 +16,7 @@ pub struct Lengths {
     pub too_long: usize,
     /// How many are shorter than [`SHORT`](crate::remesh::SHORT).
     pub too_short: usize,
-    /// How many of the too long are held: at a surface that is kept, or edges of cells of other kinds.
+    /// How many of the too long are held: at a surface that is kept, of boundary layers that are kept, or of cells of other kinds.
     pub too_long_held: usize,
     /// How many of the too short are held so.
     pub too_short_held: usize,
@@ -30,7 +30,8 @@ pub struct Lengths {
 
 impl Lengths {
     pub(super) fn of(complex: &Complex, field: &mut SizeField) -> Self {
-        let mut edges = edges(complex);
+        let mut edges = edges_of(complex, complex.tets());
+        let locked = locked_edges(complex);
         let mut lengths = Self { edges: edges.len(), min: f64::INFINITY, ..Self::default() };
         for edge in edges.drain(..) {
             let ratio = field.of_edge(complex, edge);
@@ -41,6 +42,7 @@ impl Lengths {
                 continue;
             }
             let is_held = complex.is_fixed_edge(edge[0], edge[1])
+                || locked.binary_search(&edge).is_ok()
                 || complex.keeps_surface() && edge.iter().any(|&v| complex.hold(v) != Hold::Free);
             let (n, n_held) = match ratio > LONG {
                 true => (&mut lengths.too_long, &mut lengths.too_long_held),
@@ -55,10 +57,15 @@ impl Lengths {
     }
 }
 
-/// Every edge once, lower vertex first, in rising order.
-fn edges(complex: &Complex) -> Vec<[VertexId; 2]> {
+/// Edges of tets that no change may touch, in rising order.
+pub(super) fn locked_edges(complex: &Complex) -> Vec<[VertexId; 2]> {
+    edges_of(complex, complex.tets().filter(|&t| complex.is_locked(t)))
+}
+
+/// Every edge of some tets once, lower vertex first, in rising order.
+fn edges_of(complex: &Complex, tets: impl Iterator<Item = TetId>) -> Vec<[VertexId; 2]> {
     let of = |tet: [VertexId; 4]| EDGES.map(|[i, j]| [tet[i].min(tet[j]), tet[i].max(tet[j])]);
-    let mut edges: Vec<_> = complex.tets().flat_map(|t| of(complex.vertices(t))).collect();
+    let mut edges: Vec<_> = tets.flat_map(|t| of(complex.vertices(t))).collect();
     edges.sort_unstable();
     edges.dedup();
     edges

@@ -5,7 +5,7 @@
 //! | find | `run` | EAS below a limit; four tets at a time, a closer look only where that leaves a doubt |
 //! | reconnect | `repair` | edges removed by dynamic programming, facets removed: the paper's stage one |
 //! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
-//! | by length | `repair::lengths` | edges far from the local average length collapsed or split: the paper's rule for type IV |
+//! | by length | `repair::lengths` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
 //! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
 //! | divide | `divide` | what nothing helps is divided, as long as that leaves fewer |
 //! | thin | `thin` | vertices that came and lie close to others go again where they are not needed |

@@ -8,6 +8,7 @@ use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
 use crate::ops::{collapse, split_edge};
+use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::{FIRST_STAGES, Repair, STAGES, WIDER};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
@@ -209,7 +210,7 @@ impl Repair {
         true
     }
 
-    /// The edges whose length as a part of their size is such, each once, in the order of their vertices.
+    /// The edges whose length as a part of their size is such, but for those of locked tets; each once, in the order of their vertices.
     fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64) -> bool) -> Vec<Edge> {
         let mut edges = Vec::new();
         for tet in self.complex.tets() {
@@ -224,6 +225,8 @@ impl Repair {
         }
         edges.sort_unstable_by_key(|edge| (edge.ends, edge.tet));
         edges.dedup_by_key(|edge| edge.ends);
+        let locked = locked_edges(&self.complex);
+        edges.retain(|edge| locked.binary_search(&edge.ends).is_err());
         edges
     }
 
