@@ -153,7 +153,8 @@ fn what_cannot_be_repaired_is_told_with_place_and_reason() {
     for left in left {
         let cell = CellId::new(left["cell"].as_u64().unwrap() as usize);
         let tet = [0, 1, 2, 3].map(|i| mesh.points[mesh.cells.vertices(cell)[i].index()]);
-        assert_eq!(left["eas"], eas(tet));
+        // The parser of the test rounds the last digit as it likes.
+        assert!((left["eas"].as_f64().unwrap() - eas(tet)).abs() < 1e-15);
         let place = left["place"].as_array().unwrap();
         assert!((place[0].as_f64().unwrap() - tet.iter().map(|p| p[0]).sum::<f64>() / 4.0).abs() < 1e-12);
         assert!(!left["reason"].is_null() && left["type"].is_string());
