@@ -208,3 +208,29 @@ def test_the_report_on_a_real_mesh_is_true(motet, data, tmp_path, name):
     for left in report["left"]:
         cell = cells[left["cell"]]
         assert np.allclose(new.points[cell].mean(axis=0), left["place"], rtol=1e-12, atol=1e-12)
+
+
+def test_sizes_are_met_and_arrays_go_along(motet, box, tmp_path):
+    size = 0.03 + 0.35 * box.points[:, 0]
+    graded = meshio.Mesh(box.points, box.cells, point_data={**box.point_data, "h": size}, cell_data=box.cell_data)
+    graded.write(tmp_path / "box.vtu")
+    report, old, new, files, history = remeshed(motet, tmp_path / "box.vtu", tmp_path, "--sizes", "h", "--surface", "adapt")
+    assert report["complete"] and verdict_eas(files[1]).min() >= BAD
+    assert_true(report, files)
+    assert_same_volumes(old, new, "CellEntityIds")
+    for state, mesh in (("before", old), ("after", new)):
+        tets = cells_of(mesh)["tetra"]
+        edges = np.unique(np.sort(np.vstack([tets[:, e] for e in ([0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3])]), axis=1), axis=0)
+        lengths = np.linalg.norm(mesh.points[edges[:, 0]] - mesh.points[edges[:, 1]], axis=1)
+        # What was asked for is linear, so it is known everywhere.
+        ratio = lengths / (0.03 + 0.35 * mesh.points[edges, 0].mean(axis=1))
+        told = report["sizes"][state]
+        assert told["edges"] == len(edges)
+        assert np.allclose([told["min"], told["mean"], told["max"]], [ratio.min(), ratio.mean(), ratio.max()], rtol=1e-9, atol=0)
+        if state == "before":
+            assert told["too_long"] == np.count_nonzero(ratio > 1.5) > 0
+            assert told["too_short"] == np.count_nonzero(ratio < 0.5) > 0
+        else:
+            assert told["too_long"] == 0 and ratio.max() <= 1.5 + 1e-9 and np.count_nonzero(ratio < 0.5) < 0.05 * len(ratio)
+    assert np.abs(new.point_data["linear"] - (new.points @ LINEAR + 1)).max() < 1e-12
+    assert np.abs(new.point_data["h"] - (0.03 + 0.35 * new.points[:, 0])).max() < 1e-12

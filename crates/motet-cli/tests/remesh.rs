@@ -378,3 +378,66 @@ fn the_history_tells_of_vertices_that_came_or_moved() {
     let changed = history.vertices.iter().filter(|origin| matches!(origin, Origin::Changed(_))).count();
     assert!(changed > 0);
 }
+
+/// A box of even tets with a point array of sizes.
+fn sized() -> Folder {
+    let folder = Folder::new();
+    let mut mesh = shaken(0.0);
+    let n = mesh.points.len();
+    mesh.set_point_field(Field::scalars(
+        "h",
+        mesh.points.iter().map(|p| 0.1 + 0.2 * p[0]).collect::<Vec<_>>(),
+    ));
+    mesh.set_point_field(Field::vectors("velocity", &vec![[1.0; 3]; n]));
+    let mut off = vec![0.2; n];
+    off[17] = -0.2;
+    mesh.set_point_field(Field::scalars("off", off));
+    folder.mesh("box.vtu", &mesh);
+    folder
+}
+
+#[test]
+fn sizes_may_be_a_number_or_an_array() {
+    let folder = sized();
+    for (sizes, n_tets) in [("0.11", 5_000..15_000), ("h", 1_000..5_000), ("0.6", 20..400)] {
+        let words = ["remesh", "box.vtu", "-o", "out.vtu", "--surface", "adapt", "--sizes", sizes, "--json"];
+        let told = report(&folder.motet(words).assert().code(0));
+        let after = &told["sizes"]["after"];
+        println!("{sizes}: {} tets, {after}", told["after"]["tets"]);
+        assert_eq!((&after["too_long"], &told["after"]["bad"]), (&0.into(), &0.into()));
+        assert!(n_tets.contains(&told["after"]["tets"].as_u64().unwrap()), "{told}");
+        assert!(after["max"].as_f64() <= Some(1.5) && after["min"].as_f64() > Some(0.0));
+        for key in ["edges", "too_short", "too_long_held", "too_short_held"] {
+            assert!(after[key].is_u64(), "{key}");
+        }
+        let new = read(folder.path("out.vtu")).unwrap();
+        let values = new.point_field("linear").unwrap().values.to_f64().unwrap();
+        assert!(values.iter().zip(&new.points).all(|(x, p)| (x - linear(*p)).abs() < 1e-12));
+        assert_eq!(new.cell_field("constant").unwrap().values, vec![0.1; new.cells.len()].into());
+    }
+    let call = folder.motet(["remesh", "box.vtu", "-o", "out.vtu", "--sizes", "0.11"]).assert().code(0);
+    for word in ["longer than 1.5", "shorter than 0.5", "of them held", "edges split"] {
+        assert!(stdout(&call).contains(word), "{}", stdout(&call));
+    }
+    let told = report(&folder.motet(["remesh", "box.vtu", "-o", "out.vtu", "--json"]).assert().code(0));
+    assert!(told["sizes"].is_null());
+}
+
+#[test]
+fn sizes_that_are_none_are_refused() {
+    let folder = sized();
+    for (sizes, code, parts) in [
+        ("0", 2, ["above 0", "point array"]),
+        ("-1", 2, ["above 0", "point array"]),
+        ("nan", 2, ["above 0", "point array"]),
+        ("nothing", 2, ["no point array", "linear, constant, h"]),
+        ("velocity", 3, ["array velocity", "one component"]),
+        ("off", 3, ["point 17", "above 0"]),
+        ("1e-5", 3, ["at most 1.0e7", "times as large"]),
+    ] {
+        let words = ["remesh", "box.vtu", "-o", "out.vtu", &format!("--sizes={sizes}")].map(str::to_owned);
+        let call = folder.motet(words).assert().code(code);
+        assert!(parts.iter().all(|part| stderr(&call).contains(part)), "{sizes}: {}", stderr(&call));
+    }
+    assert_eq!(folder.names(), ["box.vtu"]);
+}

@@ -1,6 +1,6 @@
 //! Repairs the bad tets of a mesh and prints one line of JSON with the median time: what the comparison with other programs runs.
 //!
-//! `remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N]`
+//! `remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H]`
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -8,7 +8,7 @@ use std::time::Instant;
 use motet::geometry::quality::eas;
 use motet::kernel::Complex;
 use motet::mesh::{CellKind, Cells, Mesh, TetMesh, TetPart};
-use motet::remesh::{Goal, Options, SurfaceRule, remesh};
+use motet::remesh::{Goal, Options, Sizes, SurfaceRule, remesh};
 
 fn median(mut seconds: Vec<f64>) -> f64 {
     seconds.sort_by(f64::total_cmp);
@@ -41,6 +41,7 @@ fn run(arguments: &[String]) -> motet::Result<()> {
     if has("--adapt") {
         options.surface = SurfaceRule::Adapt { distance: None };
     }
+    options.sizes = value("--sizes").and_then(|h| h.parse().ok()).map(Sizes::Uniform);
     let n_rounds = value("--rounds").map_or(3, |n| n.parse().unwrap_or(3)).max(1);
     let mesh = TetPart::of(&motet::io::read(&arguments[0])?)?.mesh;
     let (mut seconds, mut joins, mut measures, mut last) = (vec![], vec![], vec![], None);
@@ -68,7 +69,7 @@ fn run(arguments: &[String]) -> motet::Result<()> {
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if arguments.len() < 2 {
-        eprintln!("remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N]");
+        eprintln!("remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H]");
         return ExitCode::from(2);
     }
     match run(&arguments) {

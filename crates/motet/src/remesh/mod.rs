@@ -5,11 +5,13 @@
 //! | find | `run` | EAS below a limit; four tets at a time, a closer look only where that leaves a doubt |
 //! | reconnect | `repair` | edges removed by dynamic programming, facets removed: the paper's stage one |
 //! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
+//! | by length | `repair::lengths` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
 //! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
 //! | divide | `divide` | what nothing helps is divided, as long as that leaves fewer |
 //! | thin | `thin` | vertices that came and lie close to others go again where they are not needed |
 //! | choose | `candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
+//! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
 //! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
@@ -22,16 +24,20 @@ pub mod classify;
 mod divide;
 mod layers;
 mod left;
+mod lengths;
 mod options;
 mod repair;
 mod report;
 mod run;
+mod sizes;
 mod surface;
 mod thin;
 mod whole;
 
 pub use left::{Left, Reason};
+pub use lengths::Lengths;
 pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
-pub use report::{Counts, Operation, Report, Seconds, State, Worst};
+pub use report::{Counts, Operation, Report, Seconds, SizesReport, State, Worst};
 pub use run::{Outcome, remesh};
+pub use sizes::{LONG, SHORT, Sizes};
 pub use whole::{MeshOutcome, remesh_mesh};

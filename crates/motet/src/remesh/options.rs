@@ -1,6 +1,7 @@
 //! What a remesher is told beside the mesh.
 
 use crate::geometry::quality::dihedral::REGULAR;
+use crate::remesh::sizes::Sizes;
 
 /// What is to be repaired, and how.
 #[derive(Clone, Debug)]
@@ -16,6 +17,8 @@ pub struct Options {
     pub surface: SurfaceRule,
     /// Whether tets of boundary layers stay as they are: thin, but well shaped when stretched to the width of the wall's facets. Default: true.
     pub keep_layers: bool,
+    /// How long edges are to be; `None`: as they are. Default: `None`.
+    pub sizes: Option<Sizes>,
     /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
@@ -28,6 +31,7 @@ impl Default for Options {
             goal: Goal::Repair,
             surface: SurfaceRule::Keep,
             keep_layers: true,
+            sizes: None,
             rounds: 20,
         }
     }

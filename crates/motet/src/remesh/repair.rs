@@ -1,5 +1,10 @@
 //! The repair of one bad tet after another, worst first.
 
+mod lengths;
+mod sizing;
+
+pub(super) use sizing::Sizing;
+
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{add, scale};
@@ -21,11 +26,17 @@ const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
 
 /// What is tried for a tet, one after the other until it is no longer bad.
-const STAGES: [fn(&mut Repair, TetId); 5] =
-    [Repair::reconnect, Repair::by_type, Repair::smooth, Repair::collapse_any, Repair::insert];
+const STAGES: [fn(&mut Repair, TetId); 6] = [
+    Repair::reconnect,
+    Repair::by_type,
+    Repair::by_length,
+    Repair::smooth,
+    Repair::collapse_any,
+    Repair::insert,
+];
 /// How many of them the first round tries. Each round that leaves bad tets tries one more: many of those that seem to need a vertex
 /// inserted no longer do once their neighbours are repaired.
-const FIRST_STAGES: usize = 2;
+const FIRST_STAGES: usize = 3;
 
 /// What is made of the bad tets that the first rounds leave.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +65,8 @@ pub(super) struct Repair {
     pub(super) complex: Complex,
     pub(super) operations: Counts,
     pub(super) surface: Option<Surface>,
+    /// Where sizes are asked for.
+    pub(super) sizing: Option<Sizing>,
     pub(super) target: f64,
     n_stages: usize,
     pub(super) candidate: Candidate,
@@ -73,6 +86,7 @@ impl Repair {
             complex,
             operations: Counts::default(),
             surface,
+            sizing: None,
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
@@ -221,6 +235,11 @@ impl Repair {
     }
 
     fn offer(&mut self, operation: Operation) {
+        if let Some(sizing) = &mut self.sizing
+            && !sizing.field.accepts(&self.complex, &self.candidate.proposal)
+        {
+            return;
+        }
         self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
     }
 

@@ -7,6 +7,7 @@ use crate::geometry::tet::centroid;
 use crate::kernel::Complex;
 use crate::remesh::classify::classify;
 use crate::remesh::left::Left;
+use crate::remesh::lengths::Lengths;
 
 /// An operation that repaired something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -105,6 +106,15 @@ impl State {
     }
 }
 
+/// Edges beside the sizes that are asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct SizesReport {
+    /// Of the mesh as it came.
+    pub before: Lengths,
+    /// Of the mesh as it is.
+    pub after: Lengths,
+}
+
 /// Seconds by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Seconds {
@@ -133,6 +143,8 @@ pub struct Report {
     pub kept: usize,
     /// The same as a part of the tets that came.
     pub kept_share: f64,
+    /// Edges beside their sizes, where sizes are asked for.
+    pub sizes: Option<SizesReport>,
     /// Bad tets that are left, worst first.
     pub left: Vec<Left>,
     /// Tets of boundary layers that would count as bad, and stay.
@@ -142,8 +154,9 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether nothing bad is left.
+    /// Whether nothing bad is left, and no edge that is too long and may be split.
     pub fn is_complete(&self) -> bool {
-        self.after.bad == 0
+        let is_long = |s: SizesReport| s.after.too_long > s.after.too_long_held;
+        self.after.bad == 0 && !self.sizes.is_some_and(is_long)
     }
 }

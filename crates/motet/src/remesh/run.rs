@@ -7,9 +7,11 @@ use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds};
 use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
+use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Options};
-use crate::remesh::repair::{Repair, passes};
-use crate::remesh::report::{Report, State};
+use crate::remesh::repair::{Repair, Sizing, passes};
+use crate::remesh::report::{Report, SizesReport, State};
+use crate::remesh::sizes::SizeField;
 use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
@@ -21,14 +23,16 @@ pub struct Outcome {
     pub report: Report,
 }
 
-/// Repairs the bad tets of a mesh, and only those.
+/// Repairs the bad tets of a mesh, and only those; where [`Options::sizes`] are asked for, edges are brought to them, too.
 ///
 /// # Errors
-/// When the mesh is not one: see [`Complex::new`].
+/// When the mesh is not one (see [`Complex::new`]), when a size is none, and when a mesh of the sizes would have far too many tets: more than ten million and
+/// more than 100 times as many as `mesh`, or more than 2^28.
 pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let mut watch = Watch(Instant::now());
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
+    let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     let mut complex = Complex::new(mesh)?;
     let surface = adaptable(&mut complex, mesh, options);
     report.seconds.join = watch.lap();
@@ -36,14 +40,20 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     let mut bad = complex.below(min_eas);
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
+    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh));
+    let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, min_eas);
-    let mut left = repair.run(bad, options.rounds);
+    let mut left = match (field, most_tets) {
+        (Some(field), Some(most_tets)) => repair.bring_to_sizes(Sizing { field, most_tets }, options.rounds),
+        _ => repair.run(bad, options.rounds),
+    };
     for pass in passes(options.surface) {
         if !left.is_empty() {
             left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds));
         }
     }
-    if repair.thin() {
+    // With sizes it is they that say which vertices are close.
+    if repair.sizing.is_none() && repair.thin() {
         left = repair.below(min_eas);
     }
     if options.goal == Goal::Best {
@@ -51,7 +61,10 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
         left = repair.below(min_eas);
     }
     report.operations = repair.operations;
-    let complex = repair.complex;
+    let (complex, sizing) = (repair.complex, repair.sizing);
+    report.sizes = lengths_before
+        .zip(sizing)
+        .map(|(before, mut sizing)| SizesReport { before, after: Lengths::of(&complex, &mut sizing.field) });
     report.seconds.repair = watch.lap();
 
     let extract = complex.extract(mesh);

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use motet::Error;
+use motet::Mesh;
 use motet::mesh::history::{Rule, Rules};
-use motet::remesh::{self, Options, SurfaceRule};
+use motet::remesh::{self, Options, Sizes, SurfaceRule};
 
 use crate::verbs::convert::WritingArgs;
 
@@ -25,15 +26,22 @@ Arrays of real numbers are interpolated on points and averaged over what each ne
 cells, so that integrals stay; whole numbers, names and directions are inherited. GlobalNodeID and
 GlobalElementID of new points and tets are numbers of their own.
 
+With --sizes edges longer than 1.5 times their size are split in their middles and edges shorter
+than 0.5 times it are collapsed, as far as that makes no tet bad; the bad ones are repaired as ever.
+The size of an edge is the mean of those at its ends. On a surface that is kept edges stay as they are.
+
 Examples:
   motet remesh moved.vtu -o repaired.vtu
   motet remesh moved.vtu -o repaired.vtu --surface adapt --distance 0.01
         the wall may give way by a hundredth of a unit where it makes tets bad
   motet remesh scan.msh -o better.vtu --goal best        the worst tets as good as they get
+  motet remesh coarse.vtu -o fine.vtu --sizes 0.3 --surface adapt      edges of about 0.3 everywhere
+  motet remesh scan.vtu -o graded.vtu --sizes h --surface adapt        of about the point array h
   motet remesh moved.vtu -o repaired.vtu --json | jq .left
   motet remesh moved.vtu -o repaired.vtu --carry flags=drop --history repaired.json
 
-Exit status 4: something bad is left; the mesh is written, and it is told what is left and why.")]
+Exit status 4: something bad is left, or an edge too long that is not at a surface that is kept; the
+mesh is written, and it is told what is left and why.")]
 pub(crate) struct RemeshArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]
@@ -56,6 +64,9 @@ pub(crate) struct RemeshArgs {
     /// thousandth of the largest extent]
     #[arg(long, value_name = "D", value_parser = distance, help_heading = "Repair")]
     distance: Option<f64>,
+    /// Bring edges to this length, or each to what a point array says there
+    #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
+    sizes: Option<Asked>,
     /// How far to go
     #[arg(long, value_name = "GOAL", default_value = "repair", help_heading = "Repair")]
     pub(crate) goal: Goal,
@@ -106,6 +117,14 @@ enum Layers {
     Repair,
 }
 
+/// The sizes that are asked for.
+#[derive(Clone, Debug, PartialEq)]
+enum Asked {
+    Length(f64),
+    /// A point array.
+    Array(String),
+}
+
 /// What becomes of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Carry {
@@ -137,12 +156,38 @@ impl RemeshArgs {
             },
             surface,
             keep_layers: self.layers == Layers::Keep,
+            sizes: None,
             rounds: self.rounds as usize,
         })
     }
 
+    /// The sizes that the call asks for, of a mesh that may have an array of them.
+    pub(crate) fn sizes(&self, mesh: &Mesh) -> motet::Result<Option<Sizes>> {
+        let name = match &self.sizes {
+            None => return Ok(None),
+            Some(Asked::Length(h)) => return Ok(Some(Sizes::Uniform(*h))),
+            Some(Asked::Array(name)) => name,
+        };
+        let Some(field) = mesh.point_field(name) else {
+            let known: Vec<&str> = mesh.point_data.iter().map(|f| f.name.as_str()).collect();
+            return Err(Error::options(format!(
+                "--sizes: {name} is no number, and the mesh has no point array of this name"
+            ))
+            .remedy(match known[..] {
+                [] => "give a number above 0: the mesh has no point arrays".to_owned(),
+                _ => format!("give a number above 0 or one of its point arrays: {}", known.join(", ")),
+            }));
+        };
+        match field.values.to_f64().filter(|_| field.components == 1) {
+            Some(sizes) => Ok(Some(Sizes::Vertices(sizes))),
+            None => Err(Error::input("has not one number for each point, which sizes are")
+                .at(format!("array {name}"))
+                .remedy("give --sizes an array of one component")),
+        }
+    }
+
     /// The rules for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
-    pub(crate) fn rules(&self, mesh: &motet::Mesh) -> motet::Result<Rules> {
+    pub(crate) fn rules(&self, mesh: &Mesh) -> motet::Result<Rules> {
         let mut rules = Rules::default();
         for (name, carry) in &self.carry {
             let rule = |mean| match carry {
@@ -189,6 +234,14 @@ fn distance(text: &str) -> Result<f64, String> {
     }
 }
 
+fn sizes(text: &str) -> Result<Asked, String> {
+    match text.parse::<f64>() {
+        Ok(h) if 0.0 < h && h < f64::INFINITY => Ok(Asked::Length(h)),
+        Ok(_) => Err("a number above 0 is expected, or the name of a point array".into()),
+        Err(_) => Ok(Asked::Array(text.to_owned())),
+    }
+}
+
 fn carry(text: &str) -> Result<(String, Carry), String> {
     let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
     let carry = match rule {
@@ -209,6 +262,8 @@ mod tests {
         assert_eq!(eas("0.25"), Ok(0.25));
         assert_eq!(distance("1e-3"), Ok(1e-3));
         assert_eq!(degrees("14.1"), Ok(14.1));
+        assert_eq!(sizes("0.3"), Ok(Asked::Length(0.3)));
+        assert_eq!(sizes("h"), Ok(Asked::Array("h".to_owned())));
         assert_eq!(carry("a=b=drop"), Ok(("a=b".to_owned(), Carry::Drop)));
     }
 
@@ -217,6 +272,7 @@ mod tests {
         for text in ["0", "1", "-0.2", "nan", "x"] {
             assert!(eas(text).is_err(), "{text}");
         }
+        assert!(["0", "-0.3", "nan", "inf"].into_iter().all(|text| sizes(text).is_err()));
         assert!(degrees("70.6").is_err() && degrees("0").is_err());
         assert!(distance("0").is_err() && distance("inf").is_err());
         assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());

@@ -21,7 +21,7 @@ use crate::table::seconds;
 
 pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    let options = args.options()?;
+    let mut options = args.options()?;
     check_outputs(args)?;
     let threads = common.threads()?;
     let bar = console.bar(3, "remeshing");
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
     let rules = args.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
+    options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
     bar.inc(1);
     let MeshOutcome { mut mesh, history, report, is_turned } = outcome;

@@ -6,7 +6,7 @@ use motet::Mesh;
 use motet::base::Point;
 use motet::mesh::history::{FieldLedger, History, Ledger, On, Rule};
 use motet::remesh::classify::DEFECT_NAMES;
-use motet::remesh::{self, Counts, Reason};
+use motet::remesh::{self, Counts, LONG, Lengths, Reason, SHORT, SizesReport};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -37,6 +37,8 @@ pub(crate) struct Report {
     untouched: f64,
     /// Tets of boundary layers that would count as bad, and stayed.
     layers: usize,
+    /// Edges beside the sizes that were asked for; null where none were.
+    sizes: Option<SizesReport>,
     left: Vec<Left>,
     /// How well the volumes of old and new tets fit.
     volumes: Ledger,
@@ -124,6 +126,7 @@ impl Report {
             kept: report.kept,
             untouched: report.kept_share,
             layers: report.layers,
+            sizes: report.sizes,
             left: report.left.iter().map(left).collect(),
             volumes: history.ledger.clone(),
             fields,
@@ -155,9 +158,14 @@ impl Report {
         ));
         if self.before.bad > 0 {
             console.say(self.type_table());
+        }
+        if self.before.bad > 0 || self.sizes.is_some() {
             console.say(self.operation_words());
         }
         console.say(self.state_table());
+        if let Some(sizes) = &self.sizes {
+            console.say(Self::size_table(sizes));
+        }
         console.say(format_args!(
             "kept to the bit: {} of {} tets, {} %",
             count(self.kept),
@@ -268,12 +276,31 @@ impl Report {
         table
     }
 
+    /// Edges beside their sizes.
+    fn size_table(sizes: &SizesReport) -> Table {
+        let mut table = Table::new(["edges, beside their sizes", "before", "after"]);
+        let mut row = |what: &str, of: &dyn Fn(&Lengths) -> String| {
+            table.row([what.to_string(), of(&sizes.before), of(&sizes.after)]);
+        };
+        row("all", &|l| count(l.edges));
+        row(&format!("longer than {LONG}"), &|l| count(l.too_long));
+        row("  of them held", &|l| count(l.too_long_held));
+        row(&format!("shorter than {SHORT}"), &|l| count(l.too_short));
+        row("  of them held", &|l| count(l.too_short_held));
+        row("shortest", &|l| short(l.min));
+        row("mean", &|l| short(l.mean));
+        row("longest", &|l| short(l.max));
+        table
+    }
+
     fn tell_left(&self, console: &Console) {
         if self.complete {
             return;
         }
         let n = if console.is_verbose() { self.left.len() } else { FIRST };
-        console.say("left:");
+        if !self.left.is_empty() {
+            console.say("left:");
+        }
         for left in self.left.iter().take(n) {
             console.say(format_args!(
                 "  cell {} at {}, EAS {}, type {}: {}",
@@ -293,8 +320,13 @@ impl Report {
             true => format!("; the surface holds {}, --surface adapt lets it give way", count(n_held)),
             false => String::new(),
         };
+        let n_long = self.sizes.map_or(0, |s| s.after.too_long - s.after.too_long_held);
+        let long = match n_long {
+            0 => String::new(),
+            n => format!("; {} edges that are not held are too long", count(n)),
+        };
         console.warn(format_args!(
-            "{}: not reached: {} of {} bad tets are left{advice}; what was reached is written",
+            "{}: not reached: {} bad tets are left, there were {}{long}{advice}; what was reached is written",
             self.mesh.display(),
             count(self.after.bad),
             count(self.before.bad)

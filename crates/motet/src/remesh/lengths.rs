@@ -1,0 +1,72 @@
+//! How well edges have the sizes that are asked for.
+
+use serde::Serialize;
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::kernel::{Complex, Hold};
+use crate::remesh::sizes::{LONG, SHORT, SizeField};
+
+/// The edges of a mesh beside their sizes: each length as a part of the mean size at its ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Lengths {
+    /// How many edges tets have.
+    pub edges: usize,
+    /// How many are longer than [`LONG`](crate::remesh::LONG).
+    pub too_long: usize,
+    /// How many are shorter than [`SHORT`](crate::remesh::SHORT).
+    pub too_short: usize,
+    /// How many of the too long are held: at a surface that is kept, of boundary layers that are kept, or of cells of other kinds.
+    pub too_long_held: usize,
+    /// How many of the too short are held so.
+    pub too_short_held: usize,
+    /// The shortest; 0 where there is no edge.
+    pub min: f64,
+    /// The mean over all edges.
+    pub mean: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+impl Lengths {
+    pub(super) fn of(complex: &Complex, field: &mut SizeField) -> Self {
+        let mut edges = edges_of(complex, complex.tets());
+        let locked = locked_edges(complex);
+        let mut lengths = Self { edges: edges.len(), min: f64::INFINITY, ..Self::default() };
+        for edge in edges.drain(..) {
+            let ratio = field.of_edge(complex, edge);
+            lengths.min = lengths.min.min(ratio);
+            lengths.max = lengths.max.max(ratio);
+            lengths.mean += ratio;
+            if (SHORT..=LONG).contains(&ratio) {
+                continue;
+            }
+            let is_held = complex.is_fixed_edge(edge[0], edge[1])
+                || locked.binary_search(&edge).is_ok()
+                || complex.keeps_surface() && edge.iter().any(|&v| complex.hold(v) != Hold::Free);
+            let (n, n_held) = match ratio > LONG {
+                true => (&mut lengths.too_long, &mut lengths.too_long_held),
+                false => (&mut lengths.too_short, &mut lengths.too_short_held),
+            };
+            *n += 1;
+            *n_held += usize::from(is_held);
+        }
+        lengths.min = if lengths.edges == 0 { 0.0 } else { lengths.min };
+        lengths.mean /= lengths.edges.max(1) as f64;
+        lengths
+    }
+}
+
+/// Edges of tets that no change may touch, in rising order.
+pub(super) fn locked_edges(complex: &Complex) -> Vec<[VertexId; 2]> {
+    edges_of(complex, complex.tets().filter(|&t| complex.is_locked(t)))
+}
+
+/// Every edge of some tets once, lower vertex first, in rising order.
+fn edges_of(complex: &Complex, tets: impl Iterator<Item = TetId>) -> Vec<[VertexId; 2]> {
+    let of = |tet: [VertexId; 4]| EDGES.map(|[i, j]| [tet[i].min(tet[j]), tet[i].max(tet[j])]);
+    let mut edges: Vec<_> = tets.flat_map(|t| of(complex.vertices(t))).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

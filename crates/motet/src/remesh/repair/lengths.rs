@@ -1,0 +1,69 @@
+//! The paper's rule for tets of type IV: edges that are short beside those round them collapsed, long ones split.
+//!
+//! Moyle and Ventikos 2008 give the limits, 0.5 and 1.5, as parts of the *local average length*, and not what that is. Here it is the mean length of all edges that
+//! have one of the edge's two vertices, each once, in the mesh as it is: of 25 or so edges, so that it follows a graded mesh. As the paper has it, the rule
+//! asks for no type: every bad tet that the repair by type leaves bad is tried.
+//!
+//! It pays a little where the surface is kept. Without and with it: where a sphere moves along a channel all bad tets are repaired, and 96.63 and 96.77 % of the tets stay as they
+//! were; of 1903 bad in a badly made mesh 1249 and 1247 are left, 59.0 and 59.5 % stay; of a sphere moved in a box all 629 are repaired, 98.981 and 98.975 % stay.
+//! Where the surface adapts it does not: in a cube sheared to 80 degrees and back 117 and 137 bad tets are left, summed over 40 steps, of two badly made meshes 18 and
+//! 20, 21 and 34. So there it is not tried.
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, distance, scale};
+use crate::kernel::Hold;
+use crate::ops::split_edge;
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+use crate::remesh::sizes::{LONG, SHORT};
+
+impl Repair {
+    /// Where the surface is kept: collapses edges of a tet that are shorter than [`SHORT`] of the local average length, and splits those longer than [`LONG`] of it.
+    pub(super) fn by_length(&mut self, tet: TetId) {
+        if self.surface.is_some() {
+            return;
+        }
+        let vertices = self.complex.vertices(tet);
+        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+            let length = distance(self.complex.point(a), self.complex.point(b));
+            let average = self.local_average_length([a, b]);
+            if length < SHORT * average {
+                self.collapse(tet, a, b);
+                self.collapse(tet, b, a);
+            } else if length > LONG * average {
+                self.split_at_middle(tet, [a, b]);
+            }
+        }
+    }
+
+    /// The mean length of the edges that have one of two vertices, each edge once.
+    fn local_average_length(&mut self, ends: [VertexId; 2]) -> f64 {
+        let mut edges: Vec<[VertexId; 2]> = Vec::new();
+        for end in ends {
+            self.star.gather(&self.complex, end);
+            let others = self.star.tets.iter().flat_map(|&t| self.complex.vertices(t));
+            edges.extend(others.filter(|&v| v != end).map(|v| [end.min(v), end.max(v)]));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        let length = |[a, b]: &[VertexId; 2]| distance(self.complex.point(*a), self.complex.point(*b));
+        edges.iter().map(length).sum::<f64>() / edges.len() as f64
+    }
+
+    /// Offers to split an edge of a tet in its middle, if it lies inside.
+    fn split_at_middle(&mut self, tet: TetId, edge: [VertexId; 2]) {
+        let [a, b] = edge;
+        self.shells[0].walk(&self.complex, tet, a, b);
+        let shell = &self.shells[0];
+        if self.complex.is_fixed_edge(a, b) || !shell.is_free() {
+            return;
+        }
+        let bar = self.bar(tet);
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let shell = &self.shells[0];
+        if split_edge(&self.complex, shell, edge, (middle, Hold::Free), bar, &mut self.candidate.proposal) {
+            self.offer(Operation::SplitEdge);
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! Edges brought to the sizes that are asked for: long ones split, short ones collapsed, bad tets repaired, until nothing changes.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, scale};
+use crate::kernel::{Change, Hold};
+use crate::ops::{collapse, split_edge};
+use crate::remesh::lengths::locked_edges;
+use crate::remesh::repair::{FIRST_STAGES, Repair, STAGES, WIDER};
+use crate::remesh::report::Operation;
+use crate::remesh::sizes::{LONG, SHORT, SizeField};
+
+/// Short edges are looked for once more when this part of them has been collapsed.
+const ENOUGH: f64 = 0.02;
+
+/// What sizes are asked for, and how far that may go.
+pub(in crate::remesh) struct Sizing {
+    pub(in crate::remesh) field: SizeField,
+    /// No edge is split once there are so many tets.
+    pub(in crate::remesh) most_tets: usize,
+}
+
+/// An edge, its length as a part of its size, and a tet that has it or had it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Edge {
+    ratio: f64,
+    ends: [VertexId; 2],
+    tet: TetId,
+}
+
+impl Eq for Edge {}
+
+impl PartialOrd for Edge {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Edge {
+    /// The longest is the greatest; of equally long ones that of the lowest vertices.
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.ratio.total_cmp(&other.ratio).then(other.ends.cmp(&self.ends)).then(other.tet.cmp(&self.tet))
+    }
+}
+
+impl Repair {
+    /// Brings edges to their sizes and repairs the bad tets, by turns, until nothing changes; the bad that are left.
+    ///
+    /// A short edge is often kept by a neighbour that is hardly better than bad: where no more can be collapsed, what lies round the short ones is made
+    /// better.
+    pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Vec<TetId> {
+        self.sizing = Some(sizing);
+        let mut asked = WIDER.iter();
+        for _ in 0..rounds {
+            let n_made = self.with_sizing(Self::split_long) + self.with_sizing(Self::collapse_short);
+            let mut bad = self.below(self.target);
+            for n_stages in [FIRST_STAGES, STAGES.len()] {
+                self.n_stages = n_stages;
+                self.round(&mut bad);
+            }
+            let short = self.with_sizing(|repair, sizing| repair.short_edges(&mut sizing.field));
+            if n_made as f64 > ENOUGH * short.len() as f64 {
+                continue;
+            }
+            let Some(more) = asked.next().filter(|_| !short.is_empty()) else { break };
+            let tets: Vec<TetId> = short.iter().map(|edge| edge.tet).collect();
+            self.improve_around(&tets, self.target + more);
+        }
+        let mut left = self.run(self.below(self.target), rounds);
+        // To be bad is worse than to be short.
+        if !left.is_empty() {
+            self.sizing.iter_mut().for_each(|sizing| sizing.field.may_shorten = true);
+            left = self.run(left, rounds);
+        }
+        left
+    }
+
+    fn with_sizing<T: Default>(&mut self, work: impl FnOnce(&mut Self, &mut Sizing) -> T) -> T {
+        let Some(mut sizing) = self.sizing.take() else { return T::default() };
+        let done = work(self, &mut sizing);
+        self.sizing = Some(sizing);
+        done
+    }
+
+    /// Splits edges that are too long in their middles, the longest first, until none is left that may be; how many there were.
+    fn split_long(&mut self, sizing: &mut Sizing) -> usize {
+        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio| ratio > LONG));
+        let (mut n_split, mut change, mut came) = (0, Change::default(), Vec::new());
+        while let Some(edge) = long.pop() {
+            if self.complex.n_tets() > sizing.most_tets {
+                break;
+            }
+            // Nothing but its own split takes an edge away.
+            let Some(tet) = self.tet_at(edge) else { continue };
+            let Some(middle) = self.split(tet, edge.ends, &mut change, &mut came) else { continue };
+            n_split += 1;
+            for &tet in &came {
+                for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
+                    let ends = [middle.min(other), middle.max(other)];
+                    let ratio = sizing.field.of_edge(&self.complex, ends);
+                    if ratio > LONG {
+                        long.push(Edge { ratio, ends, tet });
+                    }
+                }
+            }
+        }
+        n_split
+    }
+
+    /// Splits an edge in its middle if the tets that come are good enough; the new vertex.
+    fn split(
+        &mut self,
+        tet: TetId,
+        ends: [VertexId; 2],
+        change: &mut Change,
+        came: &mut Vec<TetId>,
+    ) -> Option<VertexId> {
+        let [a, b] = ends;
+        self.shells[0].walk(&self.complex, tet, a, b);
+        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !self.shells[0].is_free() {
+            return None;
+        }
+        let hold: Hold = self.hold_on(ends);
+        let point = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let middle = self.complex.next_vertex();
+        // The longest of all edges may always be split. Where longer ones stay, since they are on a surface that is kept, that would make flatter and flatter tets.
+        let bar = match self.surface {
+            Some(_) => 0.0,
+            None => self.complex.worst_of(&self.shells[0].tets).min(self.target).next_down().max(0.0),
+        };
+        let is_above = split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change);
+        let is_near = self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, change));
+        let checked = self.complex.check_against(change, bar).ok().filter(|_| is_above && is_near)?;
+        self.complex.commit(checked, came);
+        self.operations.add(Operation::SplitEdge);
+        Some(middle)
+    }
+
+    /// Collapses edges that are too short, the shortest first, where that brings no edge that is too long and no tet that is bad and worse than
+    /// the worst that was there; how many there were.
+    fn collapse_short(&mut self, sizing: &mut Sizing) -> usize {
+        let (mut n_collapsed, mut came) = (0, Vec::new());
+        // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
+        let mut has_news = vec![true; self.complex.n_vertex_slots()];
+        loop {
+            let short = self.short_edges(&mut sizing.field);
+            let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
+            let mut n_now = 0;
+            for &edge in short.iter().filter(|edge| edge.ends.iter().any(|v| had_news[v.index()])) {
+                // One that was collapsed has taken others with it.
+                let Some(tet) = self.tet_at(edge) else { continue };
+                if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut came) {
+                    n_now += 1;
+                    let vertices = came.iter().flat_map(|&t| self.complex.vertices(t));
+                    vertices.for_each(|v| has_news[v.index()] = true);
+                }
+            }
+            n_collapsed += n_now;
+            if n_now as f64 <= ENOUGH * short.len() as f64 {
+                return n_collapsed;
+            }
+        }
+    }
+
+    /// Edges that are too short and may be collapsed, the shortest first.
+    fn short_edges(&self, field: &mut SizeField) -> Vec<Edge> {
+        let mut short = self.edges(field, |ratio| ratio < SHORT);
+        let may_go = |v: &VertexId| match self.complex.hold(*v) {
+            Hold::Free => true,
+            Hold::Surface | Hold::Edge => self.surface.is_some(),
+            Hold::Fixed => false,
+        };
+        short.retain(|edge| edge.ends.iter().any(may_go));
+        short.sort_unstable();
+        short
+    }
+
+    /// Collapses an edge the better of the two ways, if one is allowed.
+    fn collapse_to_size(
+        &mut self,
+        tet: TetId,
+        [a, b]: [VertexId; 2],
+        field: &mut SizeField,
+        came: &mut Vec<TetId>,
+    ) -> bool {
+        let mut best: Option<(f64, Change)> = None;
+        for [gone, kept] in [[a, b], [b, a]] {
+            if !self.may_go(tet, gone, kept) {
+                continue;
+            }
+            self.star.gather(&self.complex, gone);
+            let bar = self.complex.worst_of(&self.star.tets).min(self.target);
+            let bar = best.as_ref().map_or(bar.max(0.0), |b| b.0.max(bar)).next_down();
+            let mut change = Change::default();
+            if collapse(&self.complex, &self.star.tets, gone, kept, bar, &mut change)
+                && field.lengthens_none(&self.complex, &change)
+                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, &change))
+                && self.complex.check_against(&change, bar).is_ok()
+            {
+                best = Some((change.worst(), change));
+            }
+        }
+        let Some((worst, change)) = best else { return false };
+        let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
+        self.complex.commit(checked, came);
+        self.operations.add(Operation::Collapse);
+        true
+    }
+
+    /// The edges whose length as a part of their size is such, but for those of locked tets; each once, in the order of their vertices.
+    fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64) -> bool) -> Vec<Edge> {
+        let mut edges = Vec::new();
+        for tet in self.complex.tets() {
+            let vertices = self.complex.vertices(tet);
+            for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+                let ends = [a.min(b), a.max(b)];
+                let ratio = field.of_edge(&self.complex, ends);
+                if is_such(ratio) {
+                    edges.push(Edge { ratio, ends, tet });
+                }
+            }
+        }
+        edges.sort_unstable_by_key(|edge| (edge.ends, edge.tet));
+        edges.dedup_by_key(|edge| edge.ends);
+        let locked = locked_edges(&self.complex);
+        edges.retain(|edge| locked.binary_search(&edge.ends).is_err());
+        edges
+    }
+
+    /// A tet that has an edge; `None` where none has it any more.
+    fn tet_at(&mut self, Edge { ends, tet, .. }: Edge) -> Option<TetId> {
+        let has =
+            |t: TetId| self.complex.is_alive(t) && ends.iter().all(|v| self.complex.vertices(t).contains(v));
+        if has(tet) {
+            return Some(tet);
+        }
+        if !self.complex.is_used(ends[0]) {
+            return None;
+        }
+        self.star.gather(&self.complex, ends[0]);
+        self.star.tets.iter().copied().find(|&t| has(t))
+    }
+}

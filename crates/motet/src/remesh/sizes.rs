@@ -1,0 +1,210 @@
+//! The lengths that edges are asked to have: given, checked, known anywhere.
+
+use crate::base::{Error, Point, Result, TetId, VertexId};
+use crate::geometry::tet::{EDGES, volume};
+use crate::geometry::vector::{distance, dot};
+use crate::geometry::weights;
+use crate::kernel::{Change, Complex};
+use crate::mesh::TetMesh;
+use crate::spatial::{Bounds, BoxTree};
+
+/// An edge shorter than this part of its size is too short.
+pub const SHORT: f64 = 0.5;
+/// One longer than this is too long. Its halves, 0.75 and more, are not too short.
+pub const LONG: f64 = 1.5;
+
+/// A mesh of no more tets than this may be asked for of any mesh: about 2 GB.
+const ALWAYS: f64 = 1e7;
+/// Of a larger one so many times as many, ...
+const MOST_GROWTH: f64 = 100.0;
+/// ... and never more: half of what the kernel's ids can tell apart.
+const MOST: f64 = (1u32 << 28) as f64;
+
+/// How long edges are to be. The size of an edge is the mean of the sizes at its two ends.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sizes {
+    /// The same everywhere.
+    Uniform(f64),
+    /// One for each vertex of the mesh; between them linear in its tets.
+    Vertices(Vec<f64>),
+}
+
+impl Sizes {
+    /// How many tets a mesh of these sizes may have at most while it is made; an error where a size is none, or where it would have more.
+    pub(super) fn check(&self, mesh: &TetMesh) -> Result<usize> {
+        let is_size = |h: f64| h > 0.0 && h.is_finite();
+        match self {
+            Self::Uniform(h) if is_size(*h) => {}
+            Self::Uniform(h) => {
+                return Err(Error::options(format!("the size {h} is no length of an edge"))
+                    .remedy("give a number above 0"));
+            }
+            Self::Vertices(sizes) if sizes.len() != mesh.points.len() => {
+                let what = format!("{} sizes for {} points", sizes.len(), mesh.points.len());
+                return Err(Error::input(what).remedy("give a size for each point"));
+            }
+            Self::Vertices(sizes) => {
+                let is_off = |v: &&VertexId| !is_size(sizes[v.index()]);
+                if let Some(v) = mesh.tets.as_flattened().iter().filter(is_off).min() {
+                    let what = format!("the size {} is no length of an edge", sizes[v.index()]);
+                    return Err(Error::input(what)
+                        .at(format!("point {v}"))
+                        .remedy("give every point of a tet a number above 0"));
+                }
+            }
+        }
+        let (root, most) =
+            (self.root_of_n_tets(mesh), (MOST_GROWTH * mesh.tets.len() as f64).clamp(ALWAYS, MOST));
+        let factor = root / most.cbrt();
+        if factor <= 1.0 {
+            // The estimate may be off by a factor.
+            return Ok(2 * most as usize);
+        }
+        let number = |x: f64| if x < 1e6 { format!("{x:.1}") } else { format!("{x:.1e}") };
+        let asked = match root.powi(3) {
+            n if n < 1e15 => format!("about {n:.1e}"),
+            _ => "more than 1e15".to_owned(),
+        };
+        Err(Error::input(format!(
+            "a mesh of these sizes would have {asked} tets, and from {} at most {most:.1e} are made",
+            mesh.tets.len()
+        ))
+        .remedy(format!(
+            "ask for sizes {} times as large; a mesh of those may then be remeshed once more",
+            number(factor + 0.1)
+        )))
+    }
+
+    /// The cube root of about how many tets a mesh of these sizes has: as many as regular ones of that edge length fill its volume.
+    fn root_of_n_tets(&self, mesh: &TetMesh) -> f64 {
+        let size = |v: &VertexId| match self {
+            Self::Uniform(h) => *h,
+            Self::Vertices(sizes) => sizes[v.index()],
+        };
+        // In units of the least, so that no cube overflows.
+        let least = mesh.tets.as_flattened().iter().map(size).fold(f64::INFINITY, f64::min);
+        let in_tet = |tet: &[VertexId; 4]| {
+            let dense: f64 = tet.iter().map(|v| (least / size(v)).powi(3)).sum();
+            6.0 * std::f64::consts::SQRT_2 * volume(tet.map(|v| mesh.points[v.index()])).abs() * dense / 4.0
+        };
+        mesh.tets.iter().map(in_tet).sum::<f64>().cbrt() / least
+    }
+}
+
+/// Sizes at places: those of a mesh that has changed since.
+#[derive(Debug)]
+pub(super) struct SizeField {
+    source: Source,
+    /// The size of each vertex, and where it was then: what comes or moves is asked for anew.
+    known: Vec<(Point, f64)>,
+    /// Whether a change may leave an edge too short.
+    pub(super) may_shorten: bool,
+}
+
+#[derive(Debug)]
+enum Source {
+    Uniform(f64),
+    Tets { tree: BoxTree, corners: Vec<([Point; 4], [f64; 4])> },
+}
+
+impl SizeField {
+    /// Of sizes that have been checked.
+    pub(super) fn new(sizes: &Sizes, mesh: &TetMesh) -> Self {
+        let (source, known) = match sizes {
+            Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
+            Sizes::Vertices(sizes) => {
+                let of = |tet: &[VertexId; 4]| {
+                    (tet.map(|v| mesh.points[v.index()]), tet.map(|v| sizes[v.index()]))
+                };
+                let corners: Vec<_> = mesh.tets.iter().map(of).collect();
+                let boxes: Vec<Bounds> = corners.iter().map(|(tet, _)| around(*tet)).collect();
+                let known = mesh.points.iter().copied().zip(sizes.iter().copied()).collect();
+                (Source::Tets { tree: BoxTree::new(&boxes), corners }, known)
+            }
+        };
+        Self { source, known, may_shorten: false }
+    }
+
+    /// The size at a vertex that is, or is to be, at a point.
+    pub(super) fn at(&mut self, vertex: VertexId, point: Point) -> f64 {
+        let Source::Tets { tree, corners } = &self.source else {
+            let Source::Uniform(h) = self.source else { unreachable!("there are two sources") };
+            return h;
+        };
+        if self.known.len() <= vertex.index() {
+            self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
+        }
+        let known = &mut self.known[vertex.index()];
+        if known.0 != point {
+            *known = (point, interpolated(tree, corners, point));
+        }
+        known.1
+    }
+
+    /// The length of an edge as a part of its size.
+    pub(super) fn ratio(&mut self, ends: [(VertexId, Point); 2]) -> f64 {
+        let [p, q] = ends.map(|(v, p)| self.at(v, p));
+        distance(ends[0].1, ends[1].1) / (0.5 * (p + q))
+    }
+
+    /// The same of an edge of a complex.
+    pub(super) fn of_edge(&mut self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
+        self.ratio(ends.map(|v| (v, complex.point(v))))
+    }
+
+    /// Whether a change brings no edge that is too long or too short, and makes none that is so already more so.
+    pub(super) fn accepts(&mut self, complex: &Complex, change: &Change) -> bool {
+        let low = if self.may_shorten { 0.0 } else { SHORT };
+        self.keeps_within([low, LONG], complex, change)
+    }
+
+    /// Whether a change brings no edge that is too long.
+    pub(super) fn lengthens_none(&mut self, complex: &Complex, change: &Change) -> bool {
+        self.keeps_within([0.0, LONG], complex, change)
+    }
+
+    fn keeps_within(&mut self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {
+        for tet in &change.fill {
+            for ends in EDGES.map(|e| e.map(|i| tet.vertices[i])) {
+                let after = self.ratio(ends.map(|v| (v, change.point(complex, v))));
+                if (low..=high).contains(&after) {
+                    continue;
+                }
+                let had = |t: &TetId| ends.iter().all(|v| complex.vertices(*t).contains(v));
+                if !change.cavity.iter().any(had) {
+                    return false;
+                }
+                let before = self.of_edge(complex, ends);
+                if after > high && after > before || after < low && after < before {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The size at a point: linear in the tet that holds it, the first of those that do; of the nearest where none does.
+fn interpolated(tree: &BoxTree, corners: &[([Point; 4], [f64; 4])], point: Point) -> f64 {
+    let measure = |id: u32| {
+        let (tet, sizes) = corners[id as usize];
+        let weights =
+            weights(tet, point).or_else(|| weights([tet[0], tet[1], tet[3], tet[2]], point).map(swapped))?;
+        let mut off = point;
+        for (corner, weight) in tet.iter().zip(weights) {
+            (0..3).for_each(|k| off[k] -= weight * corner[k]);
+        }
+        let size: f64 = sizes.iter().zip(weights).map(|(h, w)| h * w).sum();
+        Some((dot(off, off), size))
+    };
+    tree.nearest(point, measure).map_or(f64::NAN, |(_, _, size)| size)
+}
+
+fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
+    [a, b, d, c]
+}
+
+fn around(tet: [Point; 4]) -> Bounds {
+    let fold = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| tet.iter().map(|p| p[k]).fold(tet[0][k], f));
+    [fold(f64::min), fold(f64::max)]
+}
