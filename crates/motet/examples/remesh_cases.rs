@@ -2,6 +2,7 @@
 //!
 //! `remesh_cases channel | membrane | shear | twist | transfer [N]`, N the number of cycles (channel: of steps of 0.1);
 //! `membrane [N] [A]`: the membrane comes within 0.5 - A of the wall;
+//! `shear [N] [SIZE]`: with edges brought to a size at each step;
 //! `sphere FILE` writes a mesh of the channel after motion, for docs/pictures.py
 
 #[path = "../tests/moving_cases/mod.rs"]
@@ -12,7 +13,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use motet::mesh::TetMesh;
-use motet::remesh::remesh;
+use motet::remesh::{Options, Sizes, remesh};
 use moving_cases::channel::{repaired_as_it_moves, stretched};
 use moving_cases::cube::{self, Distortion, cube_mesh};
 use moving_cases::measure::{boundary, labelled, quality, volumes};
@@ -160,7 +161,8 @@ fn membrane(n_cycles: usize, amplitude: f64) {
     println!("bad tets left, over all steps of {n_cycles} cycles: {n_left}");
 }
 
-fn cube(distortion: Distortion, n_cycles: usize) {
+fn cube(distortion: Distortion, n_cycles: usize, sizes: Option<Sizes>) {
+    let options = Options { sizes, ..adapt() };
     let mut mesh = cube_mesh(0.1, 1);
     describe("prepared", &mesh);
     println!(
@@ -175,7 +177,7 @@ fn cube(distortion: Distortion, n_cycles: usize) {
         let (mut bad, mut inverted, mut most_tets, mut worst) = (0, 0, 0, f64::INFINITY);
         let mut reasons = [0; 3];
         let mut last = cube::state(&mesh, &distortion, 0.0);
-        cube::cycle(&mut mesh, &distortion, n_steps, &adapt(), |step, _| {
+        cube::cycle(&mut mesh, &distortion, n_steps, &options, |step, _| {
             bad = bad.max(step.bad_before);
             inverted = inverted.max(step.inverted_before);
             most_tets = most_tets.max(step.state.n_tets);
@@ -289,8 +291,11 @@ fn main() -> ExitCode {
         Some("membrane") => {
             membrane(n(100), arguments.get(2).and_then(|a| a.parse().ok()).unwrap_or(0.45));
         }
-        Some("shear") => cube(Distortion::Shear(80.0), n(100)),
-        Some("twist") => cube(Distortion::Twist(90.0), n(100)),
+        Some("shear") => {
+            let size = arguments.get(2).and_then(|size| size.parse().ok());
+            cube(Distortion::Shear(80.0), n(100), size.map(Sizes::Uniform));
+        }
+        Some("twist") => cube(Distortion::Twist(90.0), n(100), None),
         Some("transfer") => transfer(n(100)),
         Some("sphere") if arguments.len() == 2 => return sphere(&arguments[1]),
         _ => {
