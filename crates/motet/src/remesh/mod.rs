@@ -3,13 +3,13 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | find | `run` | EAS below a limit; four tets at a time, a closer look only where that leaves a doubt |
-//! | reconnect | `repair` | edges removed by dynamic programming, facets removed: the paper's stage one |
+//! | reconnect | `repair::stages` | edges removed by dynamic programming, facets removed: the paper's stage one |
 //! | by type | `classify` | the paper's types I to IV, each with its own repair: stage two |
-//! | by length | `repair::lengths` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
-//! | beyond | `repair` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
-//! | divide | `divide` | what nothing helps is divided, as long as that leaves fewer |
-//! | thin | `thin` | vertices that came and lie close to others go again where they are not needed |
-//! | choose | `candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
+//! | by length | `repair::by_length` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
+//! | beyond | `repair::stages` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
+//! | divide | `repair::divide` | what nothing helps is divided, as long as that leaves fewer |
+//! | thin | `repair::thin` | vertices that came and lie close to others go again where they are not needed |
+//! | choose | `repair::candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
 //! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
 //! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
@@ -19,9 +19,7 @@
 //! Every change goes through [`kernel`](crate::kernel): the worst quality of what it touches rises, or it is not made. The method is that of Moyle and
 //! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
 
-mod candidate;
 pub mod classify;
-mod divide;
 mod layers;
 mod left;
 mod lengths;
@@ -31,7 +29,6 @@ mod report;
 mod run;
 mod sizes;
 mod surface;
-mod thin;
 mod whole;
 
 pub use left::{Left, Reason};

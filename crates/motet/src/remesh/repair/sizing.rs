@@ -9,7 +9,8 @@ use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
-use crate::remesh::repair::{FIRST_STAGES, Repair, STAGES, WIDER};
+use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
+use crate::remesh::repair::{Repair, WIDER};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
 

@@ -3,7 +3,7 @@
 //! A repair may split an edge that a later one could have done without. Were such vertices left, a mesh that is moved and repaired again and again
 //! would grow faster than need be.
 
-use crate::base::VertexId;
+use crate::base::{TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::kernel::Change;
@@ -17,7 +17,7 @@ const CLOSE: f64 = 0.7;
 
 impl Repair {
     /// Collapses each vertex that came and is close to others, latest first, where that leaves no bad tet; whether there were any.
-    pub(super) fn thin(&mut self) -> bool {
+    pub(in crate::remesh) fn thin(&mut self) -> bool {
         let mut came = Vec::new();
         for vertex in (0..self.complex.n_vertex_slots()).rev().map(VertexId::new) {
             if self.complex.has_come(vertex) && self.complex.is_used(vertex) && self.closeness(vertex) < CLOSE
@@ -42,7 +42,7 @@ impl Repair {
     }
 
     /// Draws a vertex into the neighbour that leaves the best tets.
-    fn take_out(&mut self, vertex: VertexId, came: &mut Vec<crate::base::TetId>) {
+    fn take_out(&mut self, vertex: VertexId, came: &mut Vec<TetId>) {
         self.star.gather(&self.complex, vertex);
         let mut ends: Vec<_> =
             self.star.tets.iter().flat_map(|&t| self.complex.vertices(t).map(|v| (v, t))).collect();

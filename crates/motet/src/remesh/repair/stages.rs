@@ -1,32 +1,17 @@
-//! The repair of one bad tet after another, worst first.
-
-mod lengths;
-mod sizing;
-
-pub(super) use sizing::Sizing;
+//! What is tried for one bad tet, stage by stage.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{add, scale};
-use crate::kernel::{Behind, Complex, Hold, Shell, Star};
-use crate::ops::{
-    EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_crossed, split_edge, split_onto,
-};
-use crate::remesh::candidate::Candidate;
+use crate::kernel::{Behind, Hold};
+use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
-use crate::remesh::left::forced;
-use crate::remesh::options::SurfaceRule;
-use crate::remesh::report::{Counts, Operation};
-use crate::remesh::surface::{Crease, Surface, SurfaceTrack};
-
-/// How much more than of bad tets is asked of those round the ones that nothing helps, time after time.
-const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
-
-/// The targets of [`Repair::best`].
-const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+use crate::remesh::surface::SurfaceTrack;
 
 /// What is tried for a tet, one after the other until it is no longer bad.
-const STAGES: [fn(&mut Repair, TetId); 6] = [
+pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
     Repair::reconnect,
     Repair::by_type,
     Repair::by_length,
@@ -36,213 +21,9 @@ const STAGES: [fn(&mut Repair, TetId); 6] = [
 ];
 /// How many of them the first round tries. Each round that leaves bad tets tries one more: many of those that seem to need a vertex
 /// inserted no longer do once their neighbours are repaired.
-const FIRST_STAGES: usize = 3;
-
-/// What is made of the bad tets that the first rounds leave.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Pass {
-    /// The rounds once more.
-    Again,
-    /// What nothing helps is divided.
-    Divide,
-    /// Both, with no feature where walls meet at less than this angle.
-    Soften(Crease),
-}
-
-/// The passes in which the surface may change as a rule says: one after the other as long as bad tets are left.
-pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
-    const ALL: [Pass; 5] =
-        [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
-    match surface {
-        SurfaceRule::Keep => &ALL[..1],
-        SurfaceRule::Adapt { .. } => &ALL[..4],
-        SurfaceRule::Loose { .. } => &ALL,
-    }
-}
-
-/// What is repaired, and the room that it takes.
-pub(super) struct Repair {
-    pub(super) complex: Complex,
-    pub(super) operations: Counts,
-    pub(super) surface: Option<Surface>,
-    /// Where sizes are asked for.
-    pub(super) sizing: Option<Sizing>,
-    pub(super) target: f64,
-    n_stages: usize,
-    pub(super) candidate: Candidate,
-    edge_removal: EdgeRemoval,
-    face_removal: FaceRemoval,
-    smoothing: Smoothing,
-    insertion: Insertion,
-    pub(super) star: Star,
-    pub(super) shells: [Shell; 2],
-    /// Tets that came and are bad.
-    pub(super) came_bad: Vec<TetId>,
-}
+pub(super) const FIRST_STAGES: usize = 3;
 
 impl Repair {
-    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64) -> Self {
-        Self {
-            complex,
-            operations: Counts::default(),
-            surface,
-            sizing: None,
-            target,
-            n_stages: FIRST_STAGES,
-            candidate: Candidate::default(),
-            edge_removal: EdgeRemoval::default(),
-            face_removal: FaceRemoval::default(),
-            smoothing: Smoothing::default(),
-            insertion: Insertion::default(),
-            star: Star::default(),
-            shells: Default::default(),
-            came_bad: Vec::new(),
-        }
-    }
-
-    /// Repairs the bad tets, round after round, as long as that gets on; those that are left.
-    ///
-    /// Where it does not get on, what lies round those that are left is made better first: a change that would repair one
-    /// is often held up by a neighbour that is hardly better.
-    pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Vec<TetId> {
-        let mut asked = WIDER.iter();
-        for _ in 0..rounds {
-            let is_on = self.round(&mut bad);
-            if bad.is_empty() {
-                break;
-            }
-            if self.n_stages < STAGES.len() {
-                self.n_stages += 1;
-                continue;
-            }
-            if is_on {
-                continue;
-            }
-            let Some(more) = asked.next() else { break };
-            self.improve_around(&bad, self.target + more);
-        }
-        bad.append(&mut self.came_bad);
-        bad.retain(|&t| self.is_bad(t));
-        self.sort(&mut bad);
-        bad
-    }
-
-    /// Makes one pass over the bad tets that are left; those that are left then.
-    pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
-        if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
-            surface.hold_features(&mut self.complex, crease);
-        }
-        let left = if pass == Pass::Divide { left } else { self.run(left, rounds) };
-        if pass == Pass::Again { left } else { self.divide(left, rounds) }
-    }
-
-    /// Makes a pass over what is left while tets that are as good as the walls at them allow count as good: these can get no better, and
-    /// would hold up what lies beside them. What is left then, these included.
-    pub(super) fn beside_forced(
-        &mut self,
-        left: &[TetId],
-        pass: impl Fn(&mut Self, Vec<TetId>) -> Vec<TetId>,
-    ) -> Vec<TetId> {
-        let forced = forced(&self.complex, self.surface.as_ref(), left);
-        if forced.is_empty() {
-            return pass(self, left.to_vec());
-        }
-        self.complex.spare(forced);
-        pass(self, left.to_vec());
-        self.complex.spare(Vec::new());
-        self.below(self.target)
-    }
-
-    /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
-    pub(super) fn best(&mut self, rounds: usize) {
-        for target in BEST {
-            self.target = target.max(self.target);
-            self.n_stages = FIRST_STAGES;
-            let bad = self.below(self.target);
-            self.run(bad, rounds);
-        }
-    }
-
-    /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
-    fn round(&mut self, bad: &mut Vec<TetId>) -> bool {
-        bad.retain(|&t| self.is_bad(t));
-        self.sort(bad);
-        let mut is_on = false;
-        for &tet in bad.iter() {
-            if self.is_bad(tet) {
-                is_on |= self.repair(tet);
-            }
-        }
-        bad.append(&mut self.came_bad);
-        bad.retain(|&t| self.is_bad(t));
-        is_on
-    }
-
-    /// Improves the tets that share a vertex with a bad one, up to a higher target.
-    fn improve_around(&mut self, bad: &[TetId], target: f64) {
-        let mut around = Vec::new();
-        for &tet in bad {
-            for vertex in self.complex.vertices(tet) {
-                self.star.gather(&self.complex, vertex);
-                around.extend_from_slice(&self.star.tets);
-            }
-        }
-        let usual = std::mem::replace(&mut self.target, target);
-        around.retain(|&t| self.is_bad(t));
-        self.round(&mut around);
-        self.target = usual;
-        around.retain(|&t| self.is_bad(t));
-        self.came_bad.append(&mut around);
-    }
-
-    fn sort(&self, bad: &mut Vec<TetId>) {
-        bad.sort_unstable_by(|&a, &b| {
-            self.complex.quality(a).total_cmp(&self.complex.quality(b)).then(a.cmp(&b))
-        });
-        bad.dedup();
-    }
-
-    /// The tets below a quality that may be changed, worst first.
-    pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
-        let mut below = self.complex.below(quality);
-        below.retain(|&t| !self.complex.is_locked(t));
-        self.sort(&mut below);
-        below
-    }
-
-    pub(super) fn is_bad(&self, tet: TetId) -> bool {
-        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
-    }
-
-    /// Makes the best change for one bad tet; whether there was one.
-    fn repair(&mut self, tet: TetId) -> bool {
-        self.candidate.begin();
-        for stage in &STAGES[..self.n_stages] {
-            stage(self, tet);
-            if self.candidate.reaches(self.target) {
-                break;
-            }
-        }
-        let Some((operation, came)) = self.candidate.commit(&mut self.complex) else { return false };
-        self.operations.add(operation);
-        let (complex, target) = (&self.complex, self.target);
-        self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
-        true
-    }
-
-    fn bar(&self, tet: TetId) -> f64 {
-        self.candidate.bar(self.complex.quality(tet), self.target)
-    }
-
-    fn offer(&mut self, operation: Operation) {
-        if let Some(sizing) = &mut self.sizing
-            && !sizing.field.accepts(&self.complex, &self.candidate.proposal)
-        {
-            return;
-        }
-        self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
-    }
-
     /// Stage one of the paper: its edges removed, and its facets.
     fn reconnect(&mut self, tet: TetId) {
         let vertices = self.complex.vertices(tet);
@@ -330,7 +111,7 @@ impl Repair {
         }
     }
 
-    fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
+    pub(super) fn collapse(&mut self, tet: TetId, gone: VertexId, kept: VertexId) {
         if !self.may_go(tet, gone, kept) {
             return;
         }
