@@ -3,7 +3,7 @@
 //! | module | floor | what it holds |
 //! |---|---|---|
 //! | [`base`] | 0 | typed ids, lists of lists, errors, threads |
-//! | [`geometry`] | 1 | pure functions on points: exact signs, simplices, quality |
+//! | [`geometry`] | 1 | pure functions on points: exact signs, simplices, quality, distances |
 //! | [`mesh`] | 2 | the exchange form: points, cells of any kind, fields, labels, shapes |
 //! | [`io`] | 3 | one file per format, their registry, time series |
 //! | [`spatial`] | 3 | searching: which tet holds a point, which facet is nearest |

@@ -1,0 +1,66 @@
+//! Points seen from one of them, in units of a power of two near the size of all together.
+
+use super::Closest;
+use crate::base::Point;
+use crate::geometry::vector::{dot, scale, sub};
+
+/// Where local coordinates are measured from, and in which unit. The farthest local coordinate lies in [1, 2), unless all
+/// points are one.
+pub(super) struct Frame {
+    pub(super) unit: f64,
+}
+
+impl Frame {
+    /// The points of both primitives relative to the first of `a`. A difference is rounded to within half a unit in its last place, so
+    /// equal points stay equal, and none is off by more than 1.2e-16 of the extent an axis.
+    #[inline(always)]
+    pub(super) fn around<const A: usize, const B: usize>(
+        a: [Point; A],
+        b: [Point; B],
+    ) -> (Self, [Point; A], [Point; B]) {
+        let (from_a, from_b) = (a.map(|p| sub(p, a[0])), b.map(|p| sub(p, a[0])));
+        let mut largest = 0.0;
+        for x in from_a.as_flattened().iter().chain(from_b.as_flattened()) {
+            // Compiled to a plain maximum, other than `f64::max`.
+            largest = if x.abs() > largest { x.abs() } else { largest };
+        }
+        // The power of two below, and its inverse: the exponent alone. Both have to be normal numbers.
+        let exponent = (largest.to_bits() >> 52).clamp(1, 2045);
+        let unit = f64::from_bits(exponent << 52);
+        let per_unit = f64::from_bits((2046 - exponent) << 52);
+        (Self { unit }, from_a.map(|p| scale(p, per_unit)), from_b.map(|p| scale(p, per_unit)))
+    }
+
+    /// Back in the units of the caller.
+    #[inline(always)]
+    pub(super) fn closest<const A: usize, const B: usize>(
+        &self,
+        on_a: [f64; A],
+        on_b: [f64; B],
+        offset: Point,
+    ) -> Closest<A, B> {
+        let distance_squared = dot(offset, offset) * self.unit * self.unit;
+        Closest { distance_squared, on_a, on_b, offset: scale(offset, self.unit) }
+    }
+}
+
+/// The point with these weights of the vertices.
+#[inline(always)]
+pub(super) fn at<const N: usize>(points: &[Point; N], weights: &[f64; N]) -> Point {
+    let mut sum = [0.0; 3];
+    for (p, w) in points.iter().zip(weights) {
+        for (s, x) in sum.iter_mut().zip(p) {
+            *s += w * x;
+        }
+    }
+    sum
+}
+
+/// From the point with weights of `a` to the one with weights of `b`.
+#[inline(always)]
+pub(super) fn offset<const A: usize, const B: usize>(
+    (a, on_a): (&[Point; A], &[f64; A]),
+    (b, on_b): (&[Point; B], &[f64; B]),
+) -> Point {
+    sub(at(b, on_b), at(a, on_a))
+}
