@@ -1,6 +1,6 @@
 //! Nearest triangles: against brute force, and by what closest means.
 
-use motet::base::{Point, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::triangle;
 use motet::geometry::vector::{add, distance, dot, norm, scale, sub};
 use motet::mesh::shapes::{TubeOptions, mixed, sphere_in_box, tube};
@@ -183,4 +183,119 @@ fn surface_cells_of_every_kind_keep_their_area_and_their_side() {
     let mut none = 0;
     triangulate(CellKind::LINE, &[VertexId(0), VertexId(1)], &square, &mut |_| none += 1);
     assert_eq!(none, 0);
+}
+
+/// Triangles with all that can be wrong with them: without area, needles, one on the other, corners that are not finite.
+fn rough_soup() -> impl Strategy<Value = (Vec<Point>, Vec<[VertexId; 3]>)> {
+    let x = prop_oneof![8 => coordinate(), 1 => Just(1e-9)];
+    let wrong = prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY)];
+    let point = prop_oneof![
+        20 => prop::array::uniform3(x),
+        1 => (prop::array::uniform3(coordinate()), 0..3usize, wrong).prop_map(|(mut p, axis, wrong)| {
+            p[axis] = wrong;
+            p
+        }),
+    ];
+    (
+        prop::collection::vec(point, 40),
+        prop::collection::vec(prop::array::uniform3((0u32..40).prop_map(VertexId)), 0..300),
+    )
+}
+
+/// The least squared distance and the first triangle that has it, of those with finite corners.
+fn by_look(points: &[Point], triangles: &[[VertexId; 3]], p: Point) -> Option<(f64, usize)> {
+    let is_finite = |t: &&[VertexId; 3]| t.iter().all(|v| points[v.index()].iter().all(|x| x.is_finite()));
+    let sound: Vec<[VertexId; 3]> = triangles.iter().filter(is_finite).copied().collect();
+    let places: Vec<usize> = (0..triangles.len()).filter(|&t| is_finite(&&triangles[t])).collect();
+    if sound.is_empty() {
+        return None;
+    }
+    let (place, distance_squared) = by_brute_force(points, &sound, p);
+    Some((distance_squared, places[place]))
+}
+
+proptest! {
+    #[test]
+    fn many_answers_are_what_a_look_at_every_triangle_finds_also_after_motions(
+        (points, triangles) in rough_soup(),
+        queries in prop::collection::vec(prop::array::uniform3(-2.0f64..2.0), 0..30),
+        moves in prop::collection::vec((points(40), prop_oneof![Just(1e-3), Just(1.0), Just(100.0)]), 0..4),
+        unit in prop::sample::select(vec![1.0, 1e-6, 1e9, 1e-30]),
+        offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
+        guesses in prop::collection::vec(prop_oneof![0u32..300, Just(u32::MAX)], 30),
+    ) {
+        let placed = |points: &[Point]| -> Vec<Point> {
+            points.iter().map(|p| p.map(|x| (x + offset) * unit)).collect()
+        };
+        let queries = placed(&queries);
+        let mut now = placed(&points);
+        let mut tree = NearestTriangle::new(&now, &triangles);
+        let threads = Threads::new(2).unwrap();
+        let mut guesses = guesses[..queries.len()].to_vec();
+        for step in 0..=moves.len() {
+            let expected: Vec<_> = queries.iter().map(|p| by_look(&now, &triangles, *p)).collect();
+            let one = |c: Option<motet::spatial::Closest>| c.map(|c| (c.distance_squared, c.triangle));
+            let cold = tree.closest_all(&queries, None, &Threads::single());
+            prop_assert_eq!(cold.iter().map(|c| one(*c)).collect::<Vec<_>>(), expected);
+            prop_assert_eq!(&tree.closest_all(&queries, Some(&guesses), &threads), &cold);
+            prop_assert_eq!(&queries.iter().map(|p| tree.closest(*p)).collect::<Vec<_>>(), &cold);
+            guesses = cold.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect();
+            if let Some((by, how_far)) = moves.get(step) {
+                let moved: Vec<Point> = points.iter().zip(by).map(|(p, d)| add(*p, scale(*d, *how_far))).collect();
+                now = placed(&moved);
+                tree.refit(&now);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_large_surface_is_searched_alike_on_any_number_of_threads() {
+    let surface = Surface::of(&sphere_in_box(16, 4));
+    let mut tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    let queries: Vec<Point> =
+        surface.points.iter().map(|p| p.map(|x| 0.9 * x + 0.05 * (7.0 * x).sin())).collect();
+    let one = tree.closest_all(&queries, None, &Threads::single());
+    let two = Threads::new(2).unwrap();
+    assert_eq!(tree.closest_all(&queries, None, &two), one);
+    for (p, found) in queries.iter().zip(&one).step_by(17) {
+        let found = found.unwrap();
+        let expected = by_brute_force(&surface.points, &surface.triangles, *p);
+        assert_eq!((found.triangle, found.distance_squared), expected);
+    }
+    let moved: Vec<Point> = surface.points.iter().map(|p| [p[0] + 0.1 * p[1], p[1], 1.5 * p[2]]).collect();
+    tree.refit(&moved);
+    let anew = NearestTriangle::new(&moved, &surface.triangles);
+    let guesses: Vec<u32> = one.iter().map(|c| c.unwrap().triangle as u32).collect();
+    assert_eq!(tree.closest_all(&queries, Some(&guesses), &two), anew.closest_all(&queries, None, &two));
+}
+
+proptest! {
+    #[test]
+    fn the_nearest_pair_is_what_a_look_at_every_pair_finds(
+        (a, b) in (points(30), points(30)),
+        (s, t) in (prop::collection::vec(prop::array::uniform3((0u32..30).prop_map(VertexId)), 0..90), soup()),
+        apart in prop_oneof![Just(0.0), Just(3.0), Just(1e5)],
+        unit in prop::sample::select(vec![1.0, 1e-6, 1e9]),
+        offset in prop::sample::select(vec![0.0, 1e6]),
+    ) {
+        let a: Vec<Point> = a.iter().map(|p| p.map(|x| (x + offset) * unit)).collect();
+        let b: Vec<Point> = b.iter().map(|p| p.map(|x| (0.01 * x + offset + apart) * unit)).collect();
+        let (one, two) = (NearestTriangle::new(&a, &s), NearestTriangle::new(&b, &t));
+        // Of the corners: any distance of things inside the triangles will do.
+        let squared = |i: u32, j: u32| {
+            let (p, q) = (s[i as usize].map(|v| a[v.index()]), t[j as usize].map(|v| b[v.index()]));
+            let all = p.iter().flat_map(|p| q.iter().map(move |q| dot(sub(*p, *q), sub(*p, *q))));
+            all.fold(f64::INFINITY, f64::min)
+        };
+        let all = (0..s.len() as u32).flat_map(|i| (0..t.len() as u32).map(move |j| (squared(i, j), i, j)));
+        let expected = all.min_by(|x, y| x.partial_cmp(y).unwrap());
+        let found = one.closest_pair(&two, f64::INFINITY, |i, j, _| Some(squared(i, j)));
+        prop_assert_eq!(found, expected);
+        if let Some((least, ..)) = expected {
+            let again = one.closest_pair(&two, least, |i, j, bound| Some(squared(i, j)).filter(|d| *d <= bound));
+            prop_assert_eq!(again, expected);
+            prop_assert_eq!(one.closest_pair(&two, least * 0.99, |i, j, _| Some(squared(i, j))), expected.filter(|e| e.0 == 0.0));
+        }
+    }
 }

@@ -1,0 +1,176 @@
+//! The triangle nearest to a point, by a tree of boxes over a surface.
+
+mod eights;
+mod lanes;
+mod packed;
+mod pairs;
+mod search;
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::base::{Point, Threads, VertexId};
+use packed::Packed;
+
+/// The answer to a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// The triangle, by its place in the list that the tree was built from.
+    pub triangle: usize,
+    /// Weights of its vertices that give the closest point: each in [0, 1], 1 in sum.
+    pub weights: [f64; 3],
+    /// The closest point.
+    pub point: Point,
+    /// Its squared distance from where the search started.
+    pub distance_squared: f64,
+}
+
+/// Finds the point of a surface closest to any other.
+///
+/// No tolerance anywhere, so it works alike in metres and in millimetres: every answer is, to the bit, the one that a look at all
+/// triangles with [`triangle::closest`](crate::geometry::triangle::closest) gives.
+/// Triangles without area count as segments or points; those with a corner that
+/// is not finite are left out. Of triangles equally near the first one is found.
+///
+/// For a surface that moves, build once and [`refit`](Self::refit).
+#[derive(Clone, Debug)]
+pub struct NearestTriangle {
+    tree: Packed,
+}
+
+/// As a guess: none.
+const NO_GUESS: u32 = u32::MAX;
+
+/// Queries that are asked one after the other, each with the answer before as its guess.
+const RUN: usize = 256;
+
+impl NearestTriangle {
+    /// Builds the tree, in a time that is linear in the number of triangles.
+    ///
+    /// Panics when a triangle names a point beyond `points`.
+    pub fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
+        Self { tree: Packed::new(points, triangles) }
+    }
+
+    /// Takes over points that moved, of the same triangles: a fraction of the time of [`new`](Self::new).
+    /// Answers stay exact however far points go; a motion that leaves no neighbours together makes searches slow.
+    ///
+    /// Panics when a triangle names a point beyond `points`.
+    pub fn refit(&mut self, points: &[Point]) {
+        self.tree.fit(points);
+    }
+
+    /// Bytes that the tree takes.
+    pub fn memory(&self) -> usize {
+        self.tree.memory()
+    }
+
+    /// The point of the surface closest to `p`; `None` when there is no
+    /// triangle, `p` is not finite or the distance has no finite square.
+    pub fn closest(&self, p: Point) -> Option<Closest> {
+        self.closest_within(p, f64::INFINITY)
+    }
+
+    /// The same, looking no farther than `distance`: `None` when everything is beyond.
+    pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
+        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance })
+    }
+
+    /// What [`closest`](Self::closest) says of each of many points.
+    ///
+    /// `guesses` are triangles near the points, one for each, best those of the last answers; no answer depends on
+    /// them, nor on the number of threads. Guesses beyond the triangles count as none, and then the last answer is the guess for the next point.
+    /// Points are asked in an order in which neighbours follow each other, so that what a search reads is still at hand.
+    ///
+    /// Panics when there are guesses, but not one for each point.
+    pub fn closest_all(
+        &self,
+        points: &[Point],
+        guesses: Option<&[u32]>,
+        threads: &Threads,
+    ) -> Vec<Option<Closest>> {
+        let order = match guesses {
+            None => packed::along_curve(points),
+            Some(guesses) => {
+                assert_eq!(points.len(), guesses.len(), "a guess for each point");
+                self.tree.along_places(guesses)
+            }
+        };
+        let runs = order.chunks(RUN).map(|order| Run { tree: &self.tree, points, guesses, order });
+        let mut found = vec![None; points.len()];
+        let mut put = |order: &[u32], answers: Vec<Option<Closest>>| {
+            order.iter().zip(answers).for_each(|(&i, answer)| found[i as usize] = answer);
+        };
+        let arch = Arch::new();
+        match threads.pool() {
+            None => runs.for_each(|run| put(run.order, arch.dispatch(run))),
+            Some(pool) => {
+                let runs: Vec<_> = runs.collect();
+                let answers: Vec<_> =
+                    pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect());
+                order.chunks(RUN).zip(answers).for_each(|(order, answers)| put(order, answers));
+            }
+        }
+        found
+    }
+
+    /// The nearest pair of a triangle of this surface and one of another: the squared distance and the two triangles; of pairs equally near the
+    /// first one. `None` when no pair is within the root of `start`.
+    ///
+    /// `pair(i, j, bound)` says the squared distance of triangle `i` of this surface from triangle `j` of the other, or `None` where
+    /// that is above `bound`. It is asked for those pairs alone whose boxes are near enough. A good `start`, such as the squared distance of
+    /// any pair of points of the two surfaces, saves most of them.
+    pub fn closest_pair(
+        &self,
+        other: &Self,
+        start: f64,
+        pair: impl FnMut(u32, u32, f64) -> Option<f64>,
+    ) -> Option<(f64, u32, u32)> {
+        Arch::new().dispatch(pairs::Pairs { from: &self.tree, to: &other.tree, reach: start, pair })
+    }
+}
+
+/// One search, and many, compiled for the instructions that the machine has.
+struct One<'a> {
+    tree: &'a Packed,
+    p: Point,
+    reach: f64,
+}
+
+impl WithSimd for One<'_> {
+    type Output = Option<Closest>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        search::nearest(self.tree, simd, self.p, self.reach, NO_GUESS)
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Run<'a> {
+    tree: &'a Packed,
+    points: &'a [Point],
+    guesses: Option<&'a [u32]>,
+    /// Which of the points.
+    order: &'a [u32],
+}
+
+impl WithSimd for Run<'_> {
+    type Output = Vec<Option<Closest>>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut last = NO_GUESS;
+        let mut found = Vec::with_capacity(self.order.len());
+        for &i in self.order {
+            let guess = match self.guesses {
+                Some(guesses) if self.tree.knows(guesses[i as usize]) => guesses[i as usize],
+                _ => last,
+            };
+            let closest = search::nearest(self.tree, simd, self.points[i as usize], f64::INFINITY, guess);
+            last = closest.map_or(last, |closest| closest.triangle as u32);
+            found.push(closest);
+        }
+        found
+    }
+}

@@ -1,0 +1,340 @@
+//! Triangles packed by eights along a Hilbert curve, and boxes by eights above them.
+//!
+//! Sorting along the curve takes the place of halving: three linear passes. The tree needs no links, since box `i` of a level
+//! lies around boxes or triangles `8 i` to `8 i + 7` of the level below (packed R-trees: Kamel and Faloutsos 1993, *On packing R-trees*).
+//! When points move, the same passes from the leaves to the root make it fit again.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::eights::{Boxes, Triangles, TurnedBoxes, larger, smaller};
+use crate::base::{Point, VertexId};
+use crate::geometry::vector::{add, is_finite, scale, sub};
+use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
+
+/// What to take from coordinates, and by what to multiply then, so that all lie between -1 and 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    centre: Point,
+    pub(super) scale: f64,
+    /// The largest coordinate, without the sign.
+    pub(super) largest: f64,
+}
+
+impl Frame {
+    /// The scale is a power of two, so that multiplying does not round.
+    fn around(points: &[Point]) -> Self {
+        let finite = points.iter().copied().filter(|p| is_finite(*p));
+        let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        let (low, high) = finite.fold(start, |(low, high), p| {
+            ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
+        });
+        let half = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
+        let centre = [0, 1, 2].map(|k| 0.5 * low[k] + 0.5 * high[k]);
+        let centre = if is_finite(centre) { centre } else { [0.0; 3] };
+        let exponent = (half.log2().ceil() as i32).clamp(-1000, 1023);
+        let ends = low.into_iter().chain(high).filter(|x| x.is_finite());
+        let largest = ends.fold(0.0, |most: f64, x| most.max(x.abs()));
+        Self { centre, scale: 2f64.powi(-exponent), largest }
+    }
+
+    /// In units of the frame; what is far off is brought to its border at 2^30, which is no farther from anything inside.
+    #[inline(always)]
+    pub(super) fn of(&self, p: Point) -> [f32; 3] {
+        const FAR: f64 = 1_073_741_824.0;
+        let x = scale(sub(p, self.centre), self.scale);
+        [x[0].clamp(-FAR, FAR) as f32, x[1].clamp(-FAR, FAR) as f32, x[2].clamp(-FAR, FAR) as f32]
+    }
+}
+
+impl Frame {
+    /// Where a place in units of the frame is.
+    #[inline(always)]
+    pub(super) fn back(&self, x: [f32; 3]) -> Point {
+        add(scale(x.map(f64::from), 1.0 / self.scale), self.centre)
+    }
+}
+
+/// The tree. A triangle is known by its *place* along the curve; leaf `i` has places `8 i` to `8 i + 7`.
+#[derive(Clone, Debug)]
+pub(super) struct Packed {
+    pub(super) frame: Frame,
+    /// The caller's ids of the triangles, by place.
+    pub(super) ids: Vec<u32>,
+    /// And the other way round.
+    pub(super) id_to_place: Vec<u32>,
+    /// By place; vertices are numbered as the curve meets them first, so that neighbours lie together.
+    triangles: Vec<[u32; 3]>,
+    points: Vec<Point>,
+    /// The caller's ids of the points.
+    vertices: Vec<VertexId>,
+    /// One more than the caller's largest id.
+    n_points: usize,
+    pub(super) leaves: Vec<Triangles>,
+    /// Which triangles of a leaf have finite corners.
+    pub(super) is_sound: Vec<u8>,
+    /// Around the leaves.
+    pub(super) turned: Vec<TurnedBoxes>,
+    /// From the root down to those around eight leaves each.
+    pub(super) boxes: Vec<Boxes>,
+    /// Where in `boxes` each level starts, from the lowest up.
+    levels: Vec<usize>,
+    /// What is the first in each of `boxes`, counting all `boxes`, then `turned`, then leaves.
+    pub(super) first_within: Vec<u32>,
+    /// Points in units of the frame; kept, since memory that was written before is cheaper.
+    framed: Vec<[f32; 3]>,
+}
+
+impl Packed {
+    pub(super) fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
+        let ids = by_centre(points, triangles);
+        let mut id_to_place = vec![0; ids.len()];
+        for (&id, place) in ids.iter().zip(0..) {
+            id_to_place[id as usize] = place;
+        }
+        let n_points = triangles.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
+        let mut number = vec![0; n_points];
+        let mut vertices = Vec::with_capacity(n_points.min(ids.len()));
+        let mut own = Vec::with_capacity(ids.len());
+        for &id in &ids {
+            let mut triangle = [0; 3];
+            for (own, v) in triangle.iter_mut().zip(triangles[id as usize]) {
+                // One more than the number; 0 where there is none yet.
+                let number = &mut number[v.index()];
+                if *number == 0 {
+                    vertices.push(v);
+                    *number = vertices.len() as u32;
+                }
+                *own = *number - 1;
+            }
+            own.push(triangle);
+        }
+        let n_leaves = ids.len().div_ceil(8);
+        let n_turned = n_leaves.div_ceil(8);
+        let (levels, n_boxes) = levels(n_turned);
+        let mut tree = Self {
+            frame: Frame::around(&[]),
+            ids,
+            id_to_place,
+            triangles: own,
+            points: Vec::with_capacity(vertices.len()),
+            framed: Vec::with_capacity(vertices.len()),
+            vertices,
+            n_points,
+            leaves: vec![Triangles::NONE; n_leaves],
+            is_sound: vec![0; n_leaves],
+            turned: vec![TurnedBoxes::EMPTY; n_turned],
+            boxes: vec![Boxes::EMPTY; n_boxes],
+            first_within: first_within(&levels, n_boxes),
+            levels,
+        };
+        tree.fit(points);
+        tree
+    }
+
+    /// Takes over points that moved.
+    pub(super) fn fit(&mut self, points: &[Point]) {
+        assert!(points.len() >= self.n_points, "{} points, not {}", points.len(), self.n_points);
+        self.points.clear();
+        self.points.extend(self.vertices.iter().map(|v| points[v.index()]));
+        self.frame = Frame::around(&self.points);
+        let frame = self.frame;
+        self.framed.clear();
+        self.framed
+            .extend(self.points.iter().map(|p| if is_finite(*p) { frame.of(*p) } else { [f32::NAN; 3] }));
+        Arch::new().dispatch(FitLeaves(self));
+        for level in 1..self.levels.len() {
+            let (start, below) = (self.levels[level], self.levels[level - 1]);
+            for i in 0..self.n_at(level - 1) {
+                let around = self.boxes[below + i].around();
+                self.boxes[start + i / 8].set(i % 8, around);
+            }
+        }
+    }
+
+    /// How many boxes of eight a level has.
+    fn n_at(&self, level: usize) -> usize {
+        let end = if level == 0 { self.boxes.len() } else { self.levels[level - 1] };
+        end - self.levels[level]
+    }
+
+    /// The box around the leaf.
+    #[inline(always)]
+    fn fit_leaf(&mut self, leaf: usize) -> ([f32; 3], [f32; 3]) {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let mut is_sound = 0;
+        let triangles = &self.triangles[8 * leaf..self.triangles.len().min(8 * leaf + 8)];
+        let out = &mut self.leaves[leaf].corners;
+        for (lane, triangle) in triangles.iter().enumerate() {
+            let corners = triangle.map(|v| self.framed[v as usize]);
+            for k in 0..3 {
+                for axis in 0..3 {
+                    out[k][axis][lane] = corners[k][axis];
+                }
+            }
+            if corners.as_flattened().iter().any(|x| x.is_nan()) {
+                for k in 0..3 {
+                    for axis in 0..3 {
+                        out[k][axis][lane] = f32::NAN;
+                    }
+                }
+                continue;
+            }
+            is_sound |= 1 << lane;
+            for [x, y, z] in corners {
+                low = [smaller(x, low[0]), smaller(y, low[1]), smaller(z, low[2])];
+                high = [larger(x, high[0]), larger(y, high[1]), larger(z, high[2])];
+            }
+        }
+        self.is_sound[leaf] = is_sound;
+        (low, high)
+    }
+
+    /// Eight boxes with sides along the axes and the node of the first one, or the leaf that a node is. For the boxes around leaves these are
+    /// made anew, which only searches that ask seldom can afford.
+    #[inline(always)]
+    pub(super) fn within(&self, node: u32) -> Result<(Boxes, u32), usize> {
+        let (node, n_boxes) = (node as usize, self.boxes.len());
+        if node < n_boxes {
+            return Ok((self.boxes[node], self.first_within[node]));
+        }
+        let n_above = n_boxes + self.turned.len();
+        if node >= n_above {
+            return Err(node - n_above);
+        }
+        let first = 8 * (node - n_boxes);
+        let mut boxes = Boxes::EMPTY;
+        for leaf in first..self.leaves.len().min(first + 8) {
+            boxes.set(leaf - first, self.leaves[leaf].boxes().around());
+        }
+        Ok((boxes, (n_above + first) as u32))
+    }
+
+    pub(super) fn knows(&self, id: u32) -> bool {
+        (id as usize) < self.ids.len()
+    }
+
+    /// Numbers of the triangles in the order of their places; those that are none come last.
+    pub(super) fn along_places(&self, triangles: &[u32]) -> Vec<u32> {
+        let place =
+            |&id: &u32| self.id_to_place.get(id as usize).map_or(u64::from(u32::MAX), |&place| place.into());
+        sorted_by_key(triangles.iter().map(place))
+    }
+
+    /// Bytes.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&self.ids[..])
+            + size_of_val(&self.id_to_place[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.points[..])
+            + size_of_val(&self.vertices[..])
+            + size_of_val(&self.leaves[..])
+            + size_of_val(&self.is_sound[..])
+            + size_of_val(&self.boxes[..])
+            + size_of_val(&self.turned[..])
+            + size_of_val(&self.framed[..])
+    }
+
+    #[inline(always)]
+    pub(super) fn corners(&self, place: usize) -> [Point; 3] {
+        let [a, b, c] = self.triangles[place];
+        [self.points[a as usize], self.points[b as usize], self.points[c as usize]]
+    }
+}
+
+struct FitLeaves<'a>(&'a mut Packed);
+
+impl WithSimd for FitLeaves<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let tree = self.0;
+        for i in 0..tree.turned.len() {
+            let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+            for leaf in 8 * i..tree.leaves.len().min(8 * i + 8) {
+                let around = tree.fit_leaf(leaf);
+                tree.turned[i].set(simd, leaf % 8, &tree.leaves[leaf], tree.is_sound[leaf]);
+                for axis in 0..3 {
+                    low[axis] = smaller(around.0[axis], low[axis]);
+                    high[axis] = larger(around.1[axis], high[axis]);
+                }
+            }
+            tree.boxes[tree.levels[0] + i / 8].set(i % 8, (low, high));
+        }
+    }
+}
+
+/// Where each level starts, from the lowest up, with the root first in memory; and how many boxes of eight there are.
+fn levels(n_turned: usize) -> (Vec<usize>, usize) {
+    let mut counts = vec![n_turned.div_ceil(8)];
+    while counts[counts.len() - 1] > 1 {
+        counts.push(counts[counts.len() - 1].div_ceil(8));
+    }
+    let mut n = 0;
+    let mut starts: Vec<usize> = counts.iter().rev().map(|&count| (n, n += count).0).collect();
+    starts.reverse();
+    (starts, n)
+}
+
+/// What is the first in each of the boxes.
+fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
+    let mut first = vec![0; n_boxes];
+    let mut start_below = n_boxes;
+    let mut end = n_boxes;
+    for &start in levels {
+        for i in start..end {
+            first[i] = (start_below + 8 * (i - start)) as u32;
+        }
+        (start_below, end) = (start, start);
+    }
+    first
+}
+
+/// Ids of the triangles in the order in which a Hilbert curve meets their centres.
+fn by_centre(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
+    let centre = |t: &[VertexId; 3]| {
+        // Before the sum, which might be too large.
+        let [a, b, c] = t.map(|v| scale(points[v.index()], 1.0 / 3.0));
+        add(add(a, b), c)
+    };
+    let centres: Vec<Point> = triangles.iter().map(centre).collect();
+    along_curve(&centres)
+}
+
+/// Numbers of the points along a Hilbert curve through the finite ones.
+pub(super) fn along_curve(points: &[Point]) -> Vec<u32> {
+    assert!(points.len() < 1 << (64 - KEY_BITS), "{} are too many", points.len());
+    let (corner, extent) = cube(points.iter().copied().filter(|p| is_finite(*p)));
+    let curve = Curve::new(corner, extent);
+    sorted_by_key(points.iter().map(|p| curve.key(*p)))
+}
+
+/// Numbers in the order of keys of at most [`KEY_BITS`].
+fn sorted_by_key(keys: impl Iterator<Item = u64>) -> Vec<u32> {
+    let keyed = keys.zip(0u64..).map(|(key, id)| key << (64 - KEY_BITS) | id).collect();
+    radix_sorted(keyed).into_iter().map(|x| (x & ((1 << (64 - KEY_BITS)) - 1)) as u32).collect()
+}
+
+/// Sorts by the upper [`KEY_BITS`], least digits first; equal keys stay in order.
+fn radix_sorted(mut keyed: Vec<u64>) -> Vec<u64> {
+    const DIGIT: u32 = 11;
+    if keyed.len() < 4096 {
+        keyed.sort_unstable();
+        return keyed;
+    }
+    let mut other = vec![0; keyed.len()];
+    for pass in 0..KEY_BITS.div_ceil(DIGIT) {
+        let digit = |x: u64| (x >> (64 - KEY_BITS + pass * DIGIT)) as usize & ((1 << DIGIT) - 1);
+        let mut starts = [0usize; 1 << DIGIT];
+        keyed.iter().for_each(|&x| starts[digit(x)] += 1);
+        let mut sum = 0;
+        starts.iter_mut().for_each(|s| sum += std::mem::replace(s, sum));
+        for &x in &keyed {
+            let place = &mut starts[digit(x)];
+            other[*place] = x;
+            *place += 1;
+        }
+        std::mem::swap(&mut keyed, &mut other);
+    }
+    keyed
+}
