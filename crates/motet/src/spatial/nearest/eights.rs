@@ -74,8 +74,8 @@ impl Boxes {
 
 /// Eight boxes, each turned so that it lies flat around its triangles: `low <= turn x <= high`. One without an inside holds nothing.
 ///
-/// Seen askew, a flat piece of a surface fills a thick box with sides along the axes. Turned boxes around the leaves leave 2 of 8 of
-/// them to be looked into.
+/// Seen askew, a flat piece of a surface fills a thick box with sides along the axes. For a point near a tube, 3 leaves are looked
+/// into; with such boxes it would be 8.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct TurnedBoxes {

@@ -45,7 +45,7 @@ const NO_GUESS: u32 = u32::MAX;
 const RUN: usize = 256;
 
 impl NearestTriangle {
-    /// Builds the tree, in a time that is linear in the number of triangles.
+    /// Builds the tree. `n log n`.
     ///
     /// Panics when a triangle names a point beyond `points`.
     pub fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
