@@ -220,7 +220,7 @@ proptest! {
         (points, triangles) in rough_soup(),
         queries in prop::collection::vec(prop::array::uniform3(-2.0f64..2.0), 0..30),
         moves in prop::collection::vec((points(40), prop_oneof![Just(1e-3), Just(1.0), Just(100.0)]), 0..4),
-        unit in prop::sample::select(vec![1.0, 1e-6, 1e9, 1e-30]),
+        unit in prop::sample::select(vec![1.0, 1e-6, 1e9, 1e-30, 1e-170]),
         offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
         guesses in prop::collection::vec(prop_oneof![0u32..300, Just(u32::MAX)], 30),
     ) {

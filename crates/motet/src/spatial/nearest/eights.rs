@@ -12,8 +12,8 @@ const U: f64 = 1.0 / 16_777_216.0;
 
 /// How far a lower bound can be above the distance, over 1 + the largest coordinate of the point. Coordinates are rounded:
 /// `sqrt(3) U` for the point and for the surface. A triangle: three scalar products of vectors up to
-/// `3 sqrt(3)` long in all, 5 U of that, `26 U`. A turned box: 3 U of `sqrt(3)` for the point and as much for its sides, `18 U` along the three
-/// axes.
+/// `3 sqrt(3)` long in all, 5 U of that, `26 U`. A turned box: 3 U of `sqrt(3)` for the point and as much for its
+/// sides, `18 U` along the three axes.
 pub(super) const ROUNDING: f64 = 32.0 * U;
 
 /// How much larger the square of a lower bound can be by rounding.
@@ -108,8 +108,11 @@ impl TurnedBoxes {
     #[inline(always)]
     pub(super) fn set<S: Simd>(&mut self, simd: S, lane: usize, triangles: &Triangles, is_sound: u8) {
         let turn = triangles.turn(is_sound);
-        for axis in 0..3 {
-            let row = splat(simd, turn[axis]);
+        for (axis, row) in turn.into_iter().enumerate() {
+            for (k, &x) in row.iter().enumerate() {
+                self.turn[axis][k][lane] = x;
+            }
+            let row = splat(simd, row);
             let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
             for i in 0..parts::<S>() {
                 let mut least = Lanes::splat(simd, f32::INFINITY);
@@ -124,9 +127,6 @@ impl TurnedBoxes {
             }
             self.sides.low[axis][lane] = low.into_iter().fold(f32::INFINITY, smaller);
             self.sides.high[axis][lane] = high.into_iter().fold(f32::NEG_INFINITY, larger);
-            for k in 0..3 {
-                self.turn[axis][k][lane] = turn[axis][k];
-            }
         }
     }
 }

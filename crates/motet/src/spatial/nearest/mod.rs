@@ -79,7 +79,8 @@ impl NearestTriangle {
     /// What [`closest`](Self::closest) says of each of many points.
     ///
     /// `guesses` are triangles near the points, one for each, best those of the last answers; no answer depends on
-    /// them, nor on the number of threads. Guesses beyond the triangles count as none, and then the last answer is the guess for the next point.
+    /// them, nor on the number of threads. Guesses beyond the triangles count as none: then the last answer is
+    /// the guess for the next point.
     /// Points are asked in an order in which neighbours follow each other, so that what a search reads is still at hand.
     ///
     /// Panics when there are guesses, but not one for each point.

@@ -2,7 +2,7 @@
 //!
 //! Triangles are put into an order in which neighbours follow each other. The tree then needs no links, since box `i` of a level
 //! lies around boxes or triangles `8 i` to `8 i + 7` of the level below (packed R-trees: Kamel and Faloutsos 1993, *On packing R-trees*).
-//! When points move, one pass from the leaves to the root make it fit again.
+//! When points move, one pass from the leaves to the root makes it fit again.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -44,9 +44,7 @@ impl Frame {
         let x = scale(sub(p, self.centre), self.scale);
         [x[0].clamp(-FAR, FAR) as f32, x[1].clamp(-FAR, FAR) as f32, x[2].clamp(-FAR, FAR) as f32]
     }
-}
 
-impl Frame {
     /// Where a place in units of the frame is.
     #[inline(always)]
     pub(super) fn back(&self, x: [f32; 3]) -> Point {
@@ -172,11 +170,7 @@ impl Packed {
                 }
             }
             if corners.as_flattened().iter().any(|x| x.is_nan()) {
-                for k in 0..3 {
-                    for axis in 0..3 {
-                        out[k][axis][lane] = f32::NAN;
-                    }
-                }
+                out.as_flattened_mut().iter_mut().for_each(|eight| eight[lane] = f32::NAN);
                 continue;
             }
             is_sound |= 1 << lane;
@@ -189,8 +183,8 @@ impl Packed {
         (low, high)
     }
 
-    /// Eight boxes with sides along the axes and the node of the first one, or the leaf that a node is. For the boxes around leaves these are
-    /// made anew, which only searches that ask seldom can afford.
+    /// Eight boxes with sides along the axes and the node of the first one, or the leaf that a node is. The boxes of
+    /// leaves are made anew, which only searches that ask seldom can afford.
     #[inline(always)]
     pub(super) fn within(&self, node: u32) -> Result<(Boxes, u32), usize> {
         let (node, n_boxes) = (node as usize, self.boxes.len());
@@ -282,8 +276,8 @@ fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
     let mut start_below = n_boxes;
     let mut end = n_boxes;
     for &start in levels {
-        for i in start..end {
-            first[i] = (start_below + 8 * (i - start)) as u32;
+        for (i, first) in first[start..end].iter_mut().enumerate() {
+            *first = (start_below + 8 * i) as u32;
         }
         (start_below, end) = (start, start);
     }

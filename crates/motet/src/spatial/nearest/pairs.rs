@@ -7,6 +7,7 @@ use pulp::{Simd, WithSimd};
 use super::eights::{Boxes, ROUNDING, ROUNDING_OF_SQUARE};
 use super::lanes::at_most;
 use super::packed::{Frame, Packed};
+use super::search::{ROUNDING_OF_EXACT, UNDERFLOW};
 
 /// A box of `f64` beyond `f32` has no place in sums of squares.
 const MOST: f64 = 1e38;
@@ -65,7 +66,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     fn bound(&self, around: [[f32; 3]; 2]) -> f32 {
         let (from, to) = (&self.from.frame, &self.to.frame);
         let size = around.iter().flatten().fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
-        let exact = 32.0 * f64::EPSILON * (from.largest + to.largest) * to.scale;
+        let exact = (ROUNDING_OF_EXACT * (from.largest + to.largest) + UNDERFLOW) * to.scale;
         let rounding = ROUNDING * (1.0 + size + to.scale / from.scale) + exact;
         let reach = self.reach.sqrt() * to.scale + rounding;
         let bound = reach * reach * (1.0 + 2.0 * ROUNDING_OF_SQUARE);

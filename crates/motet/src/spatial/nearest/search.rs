@@ -15,7 +15,10 @@ const OPEN: usize = 8 * 12;
 
 /// Rounding of exact distances, over the largest coordinates: `triangle::closest` is off by less than ten units in the last place
 /// of those. With it, what the tree leaves out cannot be what a look at every triangle finds.
-const ROUNDING_OF_EXACT: f64 = 32.0 * f64::EPSILON;
+pub(super) const ROUNDING_OF_EXACT: f64 = 32.0 * f64::EPSILON;
+
+/// Distances below this may have no square, and are all alike then.
+pub(super) const UNDERFLOW: f64 = 1e-150;
 
 /// A part of the tree, and a lower bound of its squared distance.
 struct Node(u32, f32);
@@ -59,7 +62,7 @@ pub(super) fn nearest<S: Simd>(tree: &Packed, simd: S, p: Point, reach: f64, gue
     let largest = |x: f64, y: f64| if x > y { x } else { y };
     let size = largest(largest(p[0].abs(), p[1].abs()), p[2].abs());
     let framed_size = framed.iter().fold(0.0, |most, x| largest(f64::from(x.abs()), most));
-    let exact = ROUNDING_OF_EXACT * (size + tree.frame.largest) * tree.frame.scale;
+    let exact = (ROUNDING_OF_EXACT * (size + tree.frame.largest) + UNDERFLOW) * tree.frame.scale;
     let rounding = ROUNDING * (1.0 + framed_size) + exact;
     let mut search = Search { tree, simd, p, framed, rounding, reach, bound: 0.0, best: None };
     search.set_bound();
@@ -162,7 +165,7 @@ impl<S: Simd> Search<'_, S> {
                 return;
             }
             let place = 8 * leaf + lane;
-            if !self.best.as_ref().is_some_and(|b| b.triangle == self.tree.ids[place] as usize) {
+            if self.best.as_ref().is_none_or(|b| b.triangle != self.tree.ids[place] as usize) {
                 self.look_at(place);
             }
         }
