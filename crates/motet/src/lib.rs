@@ -12,10 +12,12 @@
 //! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
 //! | [`remesh`] | 6 | bad tets found, classified, repaired, and only those |
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
+//! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
 
 pub mod base;
+pub mod contact;
 pub mod delaunay;
 pub mod geometry;
 pub mod io;

@@ -17,6 +17,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("delaunay", 6),
     ("remesh", 6),
     ("motion", 7),
+    ("contact", 7),
 ];
 
 fn floor(module: &str) -> Option<u32> {
