@@ -7,7 +7,8 @@ use motet::base::Point;
 use motet::geometry::distance::{
     Closest, Feature, point_segment, point_triangle, segment_segment, segment_triangle, triangle_triangle,
 };
-use motet::geometry::vector::{add, distance, norm, scale, sub};
+use motet::geometry::triangle;
+use motet::geometry::vector::{add, distance, dot, norm, scale, sub};
 use num_traits::Zero;
 use oracle::Grid;
 use proptest::prelude::*;
@@ -110,6 +111,13 @@ fn feature(weights: &[f64]) -> Feature {
     }
 }
 
+/// By the weights alone that `triangle::closest` gives.
+fn plain(p: Point, triangle: [Point; 3]) -> Closest<1, 3> {
+    let on_b = triangle::closest(triangle, p);
+    let offset = at(&triangle.map(|x| sub(x, p)), &on_b);
+    Closest { distance_squared: dot(offset, offset), on_a: [1.0], on_b, offset }
+}
+
 fn triangles(g: [Grid; 6]) -> [[Point; 3]; 2] {
     [[g[0], g[1], g[2]].map(float), [g[3], g[4], g[5]].map(float)]
 }
@@ -133,8 +141,31 @@ proptest! {
         let [j, k] = [(i + 1) % 3, (i + 2) % 3];
         check(point_segment::closest(q[i], [p[j], p[k]]), [b[i]], [a[j], a[k]])?;
         check(point_triangle::closest(q[i], p), [b[i]], a)?;
+        check(plain(q[i], p), [b[i]], a)?;
         check(segment_segment::closest([p[i], p[j]], [q[k], q[i]]), [a[i], a[j]], [b[k], b[i]])?;
         check(triangle_triangle::closest(p, q), a, b)?;
+    }
+
+    #[test]
+    fn weights_on_a_triangle_know_no_unit_and_no_origin(g in pair(), power in -480..400i32, axis in 0..3usize) {
+        let [a, b] = triangles(g);
+        let found = triangle::closest(a, b[0]);
+        let by = |p: Point| scale(p, 2f64.powi(power));
+        let exact = oracle::distance(&[g[3]], &[g[0], g[1], g[2]]);
+        let extent = extent(&[a[0], a[1], a[2], b[0]]);
+        // Other units may take the other way to the point, so it need not have the same bits.
+        let weights = triangle::closest(a.map(by), by(b[0]));
+        let d = norm(at(&a.map(|x| sub(x, b[0])), &weights));
+        prop_assert!((d - exact).abs() <= PROMISED * extent, "{d} {exact}");
+        if extent > 2f64.powi(40) {
+            return Ok(());
+        }
+        // No coordinate is rounded.
+        let far = |mut p: Point| {
+            p[axis] += 2f64.powi(50);
+            p
+        };
+        prop_assert_eq!(triangle::closest(a.map(far), far(b[0])), found);
     }
 
     #[test]
@@ -309,15 +340,12 @@ fn how_good_it_is() {
     for _ in 0..N {
         let g = pair().new_tree(&mut runner).expect("pairs are easy to make").current();
         let ([p, q], [a, b]) = (triangles(g), [[g[0], g[1], g[2]], [g[3], g[4], g[5]]]);
-        let plain = distance(at(&p, &motet::geometry::triangle::closest(p, q[0])), q[0]);
-        let plain =
-            (plain - oracle::distance(&[b[0]], &a)).abs() / extent(&[p[0], p[1], p[2], q[0]]).max(1.0);
         let off = [
             check(point_segment::closest(q[0], [p[0], p[1]]), [b[0]], [a[0], a[1]]),
             check(point_triangle::closest(q[0], p), [b[0]], a),
             check(segment_segment::closest([p[0], p[1]], [q[0], q[1]]), [a[0], a[1]], [b[0], b[1]]),
             check(triangle_triangle::closest(p, q), a, b),
-            Ok(plain),
+            check(plain(q[0], p), [b[0]], a),
         ];
         for (k, off) in off.into_iter().enumerate() {
             let off = off.expect("good enough");
@@ -366,6 +394,7 @@ fn how_long_it_takes() {
         point_segment::closest(pairs[i][0][0], [pairs[i][1][0], pairs[i][1][1]]).distance_squared
     });
     time("point_triangle", &|i| point_triangle::closest(pairs[i][0][0], pairs[i][1]).distance_squared);
+    time("triangle::closest", &|i| triangle::closest(pairs[i][1], pairs[i][0][0])[0]);
     time("segment_segment", &|i| {
         let [a, b] = pairs[i];
         segment_segment::closest([a[0], a[1]], [b[0], b[1]]).distance_squared

@@ -2,12 +2,14 @@
 
 pub mod distance;
 pub(crate) mod fused;
+mod needle;
 pub mod overlap;
 pub mod predicates;
 pub mod quality;
 pub mod segment;
 pub mod tet;
 pub mod triangle;
+mod unit;
 pub mod vector;
 mod weights;
 

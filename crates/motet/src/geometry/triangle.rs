@@ -1,7 +1,9 @@
 //! The triangle: area vector, centre, and the point of it closest to another.
 
+use std::ops::Range;
+
 use crate::base::Point;
-use crate::geometry::segment;
+use crate::geometry::needle;
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 
 /// Half the cross product: as long as the triangle is large, along its normal
@@ -29,35 +31,40 @@ pub fn at([a, b, c]: [Point; 3], weights: [f64; 3]) -> Point {
     add(add(scale(a, weights[0]), scale(b, weights[1])), scale(c, weights[2]))
 }
 
-/// Below this squared sine of the angle between its sides a triangle is a needle,
-/// whose normal rounding may turn. A fast path only: either side of it gives the closest point.
-const NEEDLE: f64 = 1e-8;
+/// A triangle is well shaped when its height is more than a tenth of its longest edge (here both are squared). Then the plain
+/// formulas lose at most one digit; in needles, of 20,000 triangles with a point near or on them, they were off by up to 4e-4 of the extent.
+const WELL_SHAPED: f64 = 0.01;
+/// Squares of areas, which are fourth powers of lengths, are plain numbers between these; their sums and products lose no digits.
+const FOURTH_POWERS: Range<f64> = 1e-280..1e280;
 
-/// Weights of the vertices, each in [0, 1] and 1 in sum, that give the point of
-/// the triangle closest to `p`.
+/// Weights of the vertices, each in [0, 1] and 1 in sum up to rounding, that give the point of
+/// the triangle closest to `p`; exactly 0 off the vertex or edge that holds it.
 ///
-/// The nearest of four candidates: the foot of the perpendicular, where it lies
-/// inside, and the closest point of each edge. No tolerance, hence the same at
-/// any unit; where a needle spoils the foot, the edges are as close to it as the
-/// needle is thin; a triangle without area is its edges.
+/// The foot of the perpendicular, where it lies inside, else the nearest of the closest points of the edges. The distance
+/// is right to some 1e-15 of the *extent*, the size of triangle and point together, for any shape ([`needle`] says why), in any
+/// unit and however far off the origin lies. A triangle without area is its edges.
 #[inline]
 pub fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
     let [a, b, c] = triangle;
-    let (ab, ac) = (sub(b, a), sub(c, a));
-    let normal = cross(ab, ac);
-    let foot = foot(triangle, normal, p);
-    let is_needle = dot(normal, normal) < NEEDLE * dot(ab, ab) * dot(ac, ac);
-    match foot {
-        Some(weights) if !is_needle => weights,
-        _ => closest_of(triangle, foot, p),
+    let edges = [sub(b, a), sub(c, b), sub(a, c)];
+    let squares = [dot(edges[0], edges[0]), dot(edges[1], edges[1]), dot(edges[2], edges[2])];
+    let larger = |x: f64, y: f64| if x > y { x } else { y };
+    let longest_squared = larger(larger(squares[0], squares[1]), squares[2]);
+    let normal = cross(edges[0], sub(c, a));
+    let square = dot(normal, normal);
+    let is_well_shaped =
+        FOURTH_POWERS.contains(&square) && square > WELL_SHAPED * longest_squared * longest_squared;
+    if !is_well_shaped {
+        return needle::closest(triangle, p);
     }
+    let from_p = [sub(a, p), sub(b, p), sub(c, p)];
+    foot(from_p, normal).unwrap_or_else(|| on_edges(from_p, edges, squares))
 }
 
-/// Weights of the foot of the perpendicular from `p`; `None` when it lies outside.
+/// Weights of the foot of the perpendicular from the origin; `None` when it lies outside.
 #[inline(always)]
-fn foot([a, b, c]: [Point; 3], normal: Point, p: Point) -> Option<[f64; 3]> {
-    let (pa, pb, pc) = (sub(a, p), sub(b, p), sub(c, p));
-    let parts = [dot(normal, cross(pb, pc)), dot(normal, cross(pc, pa)), dot(normal, cross(pa, pb))];
+fn foot([a, b, c]: [Point; 3], normal: Point) -> Option<[f64; 3]> {
+    let parts = [dot(normal, cross(b, c)), dot(normal, cross(c, a)), dot(normal, cross(a, b))];
     if parts[0] < 0.0 || parts[1] < 0.0 || parts[2] < 0.0 {
         return None;
     }
@@ -66,23 +73,19 @@ fn foot([a, b, c]: [Point; 3], normal: Point, p: Point) -> Option<[f64; 3]> {
     weights.iter().all(|w| (0.0..=1.0).contains(w)).then_some(weights)
 }
 
-/// The nearest of the foot, if there is one, and the closest points of the edges.
+/// Weights of the point of the edges closest to the origin. Edge `i` runs from vertex `i` to the next.
 #[inline(always)]
-fn closest_of(triangle: [Point; 3], foot: Option<[f64; 3]>, p: Point) -> [f64; 3] {
-    let distance_squared = |weights: [f64; 3]| {
-        let offset = sub(at(triangle, weights), p);
-        dot(offset, offset)
-    };
-    let mut best = foot.unwrap_or([1.0, 0.0, 0.0]);
-    let mut least = distance_squared(best);
+fn on_edges(triangle: [Point; 3], edges: [Point; 3], squares: [f64; 3]) -> [f64; 3] {
+    let (mut best, mut least) = ([1.0, 0.0, 0.0], f64::INFINITY);
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        let t = segment::closest([triangle[i], triangle[j]], p);
-        let mut weights = [0.0; 3];
-        weights[i] = 1.0 - t;
-        weights[j] = t;
-        let distance_squared = distance_squared(weights);
+        // Well-shaped triangles have edges with a length.
+        let t = (-dot(edges[i], triangle[i]) / squares[i]).clamp(0.0, 1.0);
+        let point = add(scale(triangle[i], 1.0 - t), scale(triangle[j], t));
+        let distance_squared = dot(point, point);
         if distance_squared < least {
-            (best, least) = (weights, distance_squared);
+            least = distance_squared;
+            best = [0.0; 3];
+            (best[i], best[j]) = (1.0 - t, t);
         }
     }
     best

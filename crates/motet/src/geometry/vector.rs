@@ -49,3 +49,12 @@ pub fn norm(a: Point) -> f64 {
 pub fn distance(a: Point, b: Point) -> f64 {
     norm(sub(a, b))
 }
+
+/// The part of `v` at right angles to `along`, projected twice: once leaves errors of the size of `v`, which may be more than
+/// the part itself ("twice is enough", Kahan in Parlett 1980, *The symmetric eigenvalue problem*, 6-9). NaN where `along` has no length.
+#[inline(always)]
+pub fn across(v: Point, along: Point) -> Point {
+    let per_length = 1.0 / dot(along, along);
+    let once = sub(v, scale(along, dot(v, along) * per_length));
+    sub(once, scale(along, dot(once, along) * per_length))
+}

@@ -2,6 +2,7 @@
 
 use super::Closest;
 use crate::base::Point;
+use crate::geometry::unit::unit_of;
 use crate::geometry::vector::{dot, scale, sub};
 
 /// Where local coordinates are measured from, and in which unit. The farthest local coordinate lies in [1, 2), unless all
@@ -19,15 +20,8 @@ impl Frame {
         b: [Point; B],
     ) -> (Self, [Point; A], [Point; B]) {
         let (from_a, from_b) = (a.map(|p| sub(p, a[0])), b.map(|p| sub(p, a[0])));
-        let mut largest = 0.0;
-        for x in from_a.as_flattened().iter().chain(from_b.as_flattened()) {
-            // Compiled to a plain maximum, other than `f64::max`.
-            largest = if x.abs() > largest { x.abs() } else { largest };
-        }
-        // The power of two below, and its inverse: the exponent alone. Both have to be normal numbers.
-        let exponent = (largest.to_bits() >> 52).clamp(1, 2045);
-        let unit = f64::from_bits(exponent << 52);
-        let per_unit = f64::from_bits((2046 - exponent) << 52);
+        let coordinates = from_a.as_flattened().iter().chain(from_b.as_flattened());
+        let (unit, per_unit) = unit_of(coordinates);
         (Self { unit }, from_a.map(|p| scale(p, per_unit)), from_b.map(|p| scale(p, per_unit)))
     }
 

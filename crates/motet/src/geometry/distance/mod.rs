@@ -10,8 +10,9 @@
 //! a power of two near the extent, so nothing depends on the unit of length, nor on where the origin lies; sizes from 1e-150 to
 //! 1e150 will do. Coordinates must be finite.
 //!
-//! **Why needles and parallel edges do no harm.** The point within a face (or the pair of points within two edges) is found by
-//! projecting on one direction and on what is at right angles to it, projected twice (the Gram-Schmidt process; Giraud,
+//! **Why needles and parallel edges do no harm.** The point within a face is found as [`triangle::closest`](super::triangle::closest)
+//! finds it, and the pair of points within two edges in the same way: by projecting on one direction and on what is at right
+//! angles to it, projected twice (the Gram-Schmidt process; Giraud,
 //! Langou and Rozloznik 2005). Rounding may then shift the weights by much, but only along directions in which the
 //! points hardly move: the *place* in the plane of both directions is right to some roundings of the extent. If the weights
 //! fall outside although the true ones do not, then on the way from the true place to the computed one a border is crossed; so
@@ -118,13 +119,4 @@ impl Feature {
             _ => Self::Vertex((0..weights.len()).find(held).unwrap_or(0) as u8),
         }
     }
-}
-
-/// The part of `v` at right angles to `along`, projected twice: once leaves errors of the size of `v`, which may be more than
-/// the part itself ("twice is enough", Kahan in Parlett 1980, *The symmetric eigenvalue problem*, 6-9). NaN where `along` has no length.
-#[inline(always)]
-fn across(v: Point, along: Point) -> Point {
-    let per_length = 1.0 / dot(along, along);
-    let once = sub(v, scale(along, dot(v, along) * per_length));
-    sub(once, scale(along, dot(once, along) * per_length))
 }

@@ -1,10 +1,10 @@
 //! Two segments: how near they come, and whether they meet, exactly.
 
 use super::frame::{Frame, offset};
-use super::{Closest, across, point_segment};
+use super::{Closest, point_segment};
 use crate::base::Point;
 use crate::geometry::predicates::orient3d;
-use crate::geometry::vector::{add, dot, scale, sub};
+use crate::geometry::vector::{across, add, dot, scale, sub};
 
 /// The closest points of two segments: the nearest of the pair within both, where there is one, and of the four pairs of an end with
 /// its closest point on the other segment. Parallel segments and those without length have a pair of the last kind. A

@@ -1,9 +1,10 @@
 //! Two triangles: how near they come, whether they meet, exactly, and a search that stops where they are not near enough.
 
 use super::frame::{Frame, offset};
-use super::{Closest, point_triangle, segment_segment, segment_triangle};
+use super::{Closest, segment_segment, segment_triangle};
 use crate::base::Point;
 use crate::geometry::predicates::orient3d;
+use crate::geometry::triangle;
 use crate::geometry::vector::{add, dot, is_finite, sub};
 
 /// Edge `i` runs from the first to the second vertex, opposite vertex `i`.
@@ -90,8 +91,8 @@ impl Search {
     fn run(&mut self, bound: f64) -> bool {
         let vertex = |i: usize| [0, 1, 2].map(|k| if k == i { 1.0 } else { 0.0 });
         for i in 0..3 {
-            self.offer(vertex(i), point_triangle::weights(self.a[i], self.b));
-            self.offer(point_triangle::weights(self.b[i], self.a), vertex(i));
+            self.offer(vertex(i), triangle::closest(self.b, self.a[i]));
+            self.offer(triangle::closest(self.a, self.b[i]), vertex(i));
             if self.is_over(bound) {
                 return self.apart <= bound + ROUNDING;
             }

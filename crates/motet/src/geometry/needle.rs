@@ -1,0 +1,52 @@
+//! The point closest to another of a triangle that is long and thin, or has no area, or a size whose powers leave the range of `f64`.
+//!
+//! **Why needles do no harm.** The foot of the perpendicular is found by projecting on an edge and on what is at right angles to
+//! it, projected twice (the Gram-Schmidt process; Giraud, Langou and Rozloznik 2005). Rounding may then shift the weights by
+//! much, but only along directions in which the points hardly move: the *place* in the plane is right to
+//! some roundings of the extent. If the weights fall outside although the true ones do not, then on the way from the true place to the
+//! computed one an edge is crossed; so there is a point of the edge that close to the true place, and the edges are always looked
+//! at as well.
+
+use crate::base::Point;
+use crate::geometry::unit::unit_of;
+use crate::geometry::vector::{across, add, dot, scale, sub};
+use crate::geometry::{segment, triangle};
+
+/// Weights of the vertices that give the point of the triangle closest to `p`: the nearest of the closest points of the edges and of the
+/// foot of the perpendicular, where it lies inside.
+#[inline(never)]
+pub(super) fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
+    let from_p = triangle.map(|x| sub(x, p));
+    let (_, per_unit) = unit_of(from_p.as_flattened().iter());
+    let local = from_p.map(|x| scale(x, per_unit));
+    let on_edge = |i: usize, j: usize| {
+        let t = segment::closest([local[i], local[j]], [0.0; 3]);
+        let mut weights = [0.0; 3];
+        (weights[i], weights[j]) = (1.0 - t, t);
+        weights
+    };
+    let distance_squared = |weights: [f64; 3]| {
+        let point = triangle::at(local, weights);
+        dot(point, point)
+    };
+    let mut best = on_edge(0, 1);
+    let mut least = distance_squared(best);
+    for weights in [Some(on_edge(1, 2)), Some(on_edge(2, 0)), foot(local)].into_iter().flatten() {
+        let found = distance_squared(weights);
+        if found < least {
+            (best, least) = (weights, found);
+        }
+    }
+    best
+}
+
+/// Weights of the foot of the perpendicular from the origin, its place right to the last digits; `None` when it lies outside, on
+/// an edge, or nowhere.
+fn foot([a, b, c]: [Point; 3]) -> Option<[f64; 3]> {
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let height = across(ac, ab);
+    let of_c = -dot(a, height) / dot(height, height);
+    let of_b = -dot(add(a, scale(ac, of_c)), ab) / dot(ab, ab);
+    let weights = [1.0 - of_b - of_c, of_b, of_c];
+    weights.iter().all(|w| (f64::MIN_POSITIVE..1.0).contains(w)).then_some(weights)
+}
