@@ -299,3 +299,34 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #[test]
+    fn a_search_with_a_filter_finds_the_nearest_that_passes(
+        (points, triangles) in rough_soup(),
+        p in prop::array::uniform3(-2.0f64..2.0),
+        one_in in 1u32..40, salt in 0u32..1000,
+        within in prop_oneof![Just(f64::INFINITY), 0.0f64..1.0],
+    ) {
+        let passes = |t: u32| t.wrapping_mul(2654435761).wrapping_add(salt * 7919) % one_in == 0;
+        let tree = NearestTriangle::new(&points, &triangles);
+        let alone = |t: &u32| NearestTriangle::new(&points, &[triangles[*t as usize]]).closest_within(p, within);
+        let all = (0..triangles.len() as u32).filter(|t| passes(*t)).filter_map(|t| {
+            alone(&t).map(|found| motet::spatial::Closest { triangle: t as usize, ..found })
+        });
+        let expected = all.min_by(|x, y| x.distance_squared.total_cmp(&y.distance_squared));
+        let mut asked = Vec::new();
+        let mut best = (f64::INFINITY, usize::MAX);
+        let found = tree.closest_where(p, within, |t, closest| {
+            let this = (closest.distance_squared, closest.triangle);
+            assert!(closest.triangle == t as usize && this < best && !asked.contains(&t));
+            assert_eq!(Some(closest.point), alone(&t).map(|c| c.point));
+            asked.push(t);
+            best = if passes(t) { this } else { best };
+            passes(t)
+        });
+        prop_assert_eq!(found, expected);
+        prop_assert_eq!(tree.closest_where(p, within, |_, _| false), None);
+        prop_assert_eq!(tree.closest_where(p, within, |_, _| true), tree.closest_within(p, within));
+    }
+}

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::base::{Point, Threads, VertexId};
 use packed::Packed;
+use search::Query;
 
 /// The answer to a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +74,21 @@ impl NearestTriangle {
 
     /// The same, looking no farther than `distance`: `None` when everything is beyond.
     pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
-        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance })
+        self.closest_where(p, distance, |_, _| true)
+    }
+
+    /// The closest of those triangles that `admit` admits, by its number and what a search for it alone would find.
+    ///
+    /// Only triangles better than all admitted before are asked about, none twice: nearer, or as near and of a smaller number.
+    /// A search that refuses much looks at much: at everything nearer than its answer.
+    pub fn closest_where(
+        &self,
+        p: Point,
+        distance: f64,
+        admit: impl FnMut(u32, &Closest) -> bool,
+    ) -> Option<Closest> {
+        let query = Query { p, reach: distance * distance, guess: NO_GUESS };
+        Arch::new().dispatch(One { tree: &self.tree, query, admit })
     }
 
     /// What [`closest`](Self::closest) says of each of many points.
@@ -132,18 +147,18 @@ impl NearestTriangle {
 }
 
 /// One search, and many, compiled for the instructions that the machine has.
-struct One<'a> {
+struct One<'a, F> {
     tree: &'a Packed,
-    p: Point,
-    reach: f64,
+    query: Query,
+    admit: F,
 }
 
-impl WithSimd for One<'_> {
+impl<F: FnMut(u32, &Closest) -> bool> WithSimd for One<'_, F> {
     type Output = Option<Closest>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        search::nearest(self.tree, simd, self.p, self.reach, NO_GUESS)
+        search::nearest(self.tree, simd, self.query, self.admit)
     }
 }
 
@@ -168,7 +183,8 @@ impl WithSimd for Run<'_> {
                 Some(guesses) if self.tree.knows(guesses[i as usize]) => guesses[i as usize],
                 _ => last,
             };
-            let closest = search::nearest(self.tree, simd, self.points[i as usize], f64::INFINITY, guess);
+            let query = Query { p: self.points[i as usize], reach: f64::INFINITY, guess };
+            let closest = search::nearest(self.tree, simd, query, |_, _| true);
             last = closest.map_or(last, |closest| closest.triangle as u32);
             found.push(closest);
         }

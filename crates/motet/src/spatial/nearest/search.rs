@@ -37,8 +37,10 @@ impl Node {
 }
 
 /// The nearest triangle so far.
-struct Search<'a, S> {
+struct Search<'a, S, F> {
     tree: &'a Packed,
+    /// Which triangles count.
+    admit: F,
     simd: S,
     p: Point,
     framed: [f32; 3],
@@ -51,10 +53,23 @@ struct Search<'a, S> {
     best: Option<Closest>,
 }
 
-/// The triangle nearest to `p` within the square root of `reach`, of those equally near the one of smallest id. A `guess` costs one
-/// look and saves more the nearer it is.
+/// What there is to ask: the triangle nearest to `p` within the square root of `reach`, of those equally near the one of smallest
+/// id. A `guess` costs one look and saves more the nearer it is.
+#[derive(Clone, Copy)]
+pub(super) struct Query {
+    pub(super) p: Point,
+    pub(super) reach: f64,
+    pub(super) guess: u32,
+}
+
+/// The answer, of those triangles that `admit` admits; it is asked only for what is better than all that it admitted before.
 #[inline(always)]
-pub(super) fn nearest<S: Simd>(tree: &Packed, simd: S, p: Point, reach: f64, guess: u32) -> Option<Closest> {
+pub(super) fn nearest<S: Simd>(
+    tree: &Packed,
+    simd: S,
+    Query { p, reach, guess }: Query,
+    admit: impl FnMut(u32, &Closest) -> bool,
+) -> Option<Closest> {
     if tree.leaves.is_empty() || !is_finite(p) {
         return None;
     }
@@ -64,7 +79,7 @@ pub(super) fn nearest<S: Simd>(tree: &Packed, simd: S, p: Point, reach: f64, gue
     let framed_size = framed.iter().fold(0.0, |most, x| largest(f64::from(x.abs()), most));
     let exact = (ROUNDING_OF_EXACT * (size + tree.frame.largest) + UNDERFLOW) * tree.frame.scale;
     let rounding = ROUNDING * (1.0 + framed_size) + exact;
-    let mut search = Search { tree, simd, p, framed, rounding, reach, bound: 0.0, best: None };
+    let mut search = Search { tree, admit, simd, p, framed, rounding, reach, bound: 0.0, best: None };
     search.set_bound();
     if let Some(&place) = tree.id_to_place.get(guess as usize)
         && tree.is_sound[place as usize / 8] >> (place % 8) & 1 == 1
@@ -75,7 +90,7 @@ pub(super) fn nearest<S: Simd>(tree: &Packed, simd: S, p: Point, reach: f64, gue
     search.best.filter(|best| best.distance_squared.is_finite())
 }
 
-impl<S: Simd> Search<'_, S> {
+impl<S: Simd, F: FnMut(u32, &Closest) -> bool> Search<'_, S, F> {
     #[inline(always)]
     fn set_bound(&mut self) {
         // Finite, so that boxes without an inside, which are infinitely far off, are beyond it.
@@ -93,10 +108,15 @@ impl<S: Simd> Search<'_, S> {
         let point = triangle::at(corners, weights);
         let offset = sub(point, self.p);
         let distance_squared = dot(offset, offset);
-        let triangle = self.tree.ids[place] as usize;
+        let id = self.tree.ids[place];
+        let triangle = id as usize;
         let is_better = |b: &Closest| (distance_squared, triangle) < (b.distance_squared, b.triangle);
         if distance_squared <= self.reach && self.best.as_ref().is_none_or(is_better) {
-            self.best = Some(Closest { triangle, weights, point, distance_squared });
+            let found = Closest { triangle, weights, point, distance_squared };
+            if !(self.admit)(id, &found) {
+                return;
+            }
+            self.best = Some(found);
             if distance_squared < self.reach {
                 self.reach = distance_squared;
                 self.set_bound();
