@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         Verb::Convert(args) => verbs::convert::run(&args, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
+        Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
     exit::status(outcome, &console)

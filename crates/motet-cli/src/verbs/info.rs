@@ -40,7 +40,7 @@ pub(crate) struct InfoArgs {
 }
 
 pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> {
-    if is_series(&args.mesh) {
+    if io::is_series(&args.mesh) {
         return series(&args.mesh, console);
     }
     if let Some(output) = &args.output {
@@ -240,10 +240,6 @@ fn histogram(counts: &[usize; 11]) -> String {
 
 fn yes_or_no(is: bool) -> &'static str {
     if is { "yes" } else { "no" }
-}
-
-fn is_series(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
 }
 
 /// Times and files, and whether each file is there.

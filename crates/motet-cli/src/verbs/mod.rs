@@ -1,5 +1,6 @@
 //! One file a verb.
 
+pub(crate) mod contact;
 pub(crate) mod convert;
 pub(crate) mod demo;
 pub(crate) mod info;

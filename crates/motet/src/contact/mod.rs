@@ -1,1 +1,52 @@
 //! Floor 7: how far apart surfaces are, where, and when they will touch.
+//!
+//! A [`Contact`] holds two or more surfaces, the *bodies*, over one list of points: a stent and the wall of a vessel, three leaflets, patches of a
+//! volume mesh, a coil against itself. It is made once; at each step of a solver [`Contact::refit`] takes the new points,
+//! [`Contact::measure`] gives the gap at every vertex and the nearest places of every pair of bodies.
+//!
+//! All distances are exact up to rounding (some 1e-15 of the size), in any unit of length: the distance of a vertex is the least over *all*
+//! triangles of the other surface, that of two bodies the least over all pairs of triangles, by edges too. Trees of boxes only
+//! save looking at what is farther. Overestimating a gap is the unsafe direction, and does not happen.
+//!
+//! ```
+//! use motet::base::{Threads, VertexId};
+//! use motet::contact::{Body, Contact, Options};
+//!
+//! // Two triangles, 0.1 apart.
+//! let points = vec![
+//!     [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0],
+//!     [0.0, 0.0, 0.1], [1.0, 0.0, 0.1], [0.0, 1.0, 0.1],
+//! ];
+//! let body = |name: &str, first: u32| Body {
+//!     name: name.into(),
+//!     triangles: vec![[first, first + 1, first + 2].map(VertexId)],
+//!     is_room: false,
+//! };
+//! let options = Options { warn: Some(0.2), ..Options::default() };
+//! let mut contact = Contact::new(points, vec![body("lower", 0), body("upper", 3)], options)?;
+//! let gaps = contact.measure(&Threads::single());
+//! assert!((gaps.least() - 0.1).abs() < 1e-15);
+//! assert!(gaps.is_warned());
+//! # Ok::<(), motet::Error>(())
+//! ```
+
+mod ahead;
+mod along;
+mod answer;
+mod body;
+mod contact;
+mod crossing;
+mod facing;
+mod inside;
+mod nearest;
+mod options;
+mod pair;
+mod rule;
+mod runs;
+mod sweep;
+
+pub use ahead::{Ahead, FirstContact};
+pub use answer::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
+pub use body::Body;
+pub use contact::Contact;
+pub use options::Options;

@@ -30,4 +30,4 @@ pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, Write
 pub use reading::read_as;
 pub use registry::{can_write, formats, read, read_noted, write};
 pub use replace::{replace, replace_all};
-pub use series::{SeriesWriter, parse_series, read_series};
+pub use series::{SeriesWriter, is_series, parse_series, read_series};

@@ -11,6 +11,11 @@ use crate::io::format::WriteOptions;
 use crate::io::{replace, write};
 use crate::mesh::Mesh;
 
+/// Whether a path is that of a series, by its ending.
+pub fn is_series(path: impl AsRef<Path>) -> bool {
+    path.as_ref().extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+}
+
 /// The times of a series and the file of each, in the order in which they are written down.
 ///
 /// A file without a time gets its place in the series. Names are taken to be relative

@@ -20,7 +20,7 @@ pub(crate) use args::MoveArgs;
 
 use self::args::Method;
 use self::patches::Patches;
-use self::plan::{Plan, is_series};
+use self::plan::Plan;
 use self::report::{Report, Step};
 use self::words::LayerWord;
 use crate::args::Common;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
 /// Refuses, before any work, an output that cannot be written or that would overwrite
 /// the motion. A series is many files: its folder is made where there is none.
 fn check_output(args: &MoveArgs) -> motet::Result<()> {
-    if is_series(&args.output) {
+    if io::is_series(&args.output) {
         let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
         folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&args.output, &e))?;
     } else {
@@ -189,7 +189,7 @@ struct Sink<'a> {
 impl<'a> Sink<'a> {
     fn new(args: &'a MoveArgs, reference: &'a Mesh) -> Self {
         let (path, options) = (args.output.as_path(), args.writing.options());
-        let series = is_series(path).then(|| SeriesWriter::new(path, options.clone()));
+        let series = io::is_series(path).then(|| SeriesWriter::new(path, options.clone()));
         Self {
             path,
             options,

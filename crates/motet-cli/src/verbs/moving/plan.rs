@@ -57,7 +57,7 @@ impl<'a> Plan<'a> {
         let asked = Asked { mesh, boundary, fixed, args, console };
         let Some(word) = &args.displacement else { return asked.words(patches) };
         match Path::new(word) {
-            pvd if pvd.exists() && is_series(pvd) => asked.series(pvd),
+            pvd if pvd.exists() && io::is_series(pvd) => asked.series(pvd),
             surface if surface.exists() => asked.surface(surface),
             _ => asked.array(word),
         }
@@ -232,7 +232,7 @@ impl<'a> Asked<'a, '_> {
     }
 
     fn parts(self, motion: BoundaryMotion) -> Plan<'a> {
-        let (default, first) = if is_series(&self.args.output) { (SERIES_STEPS, 0) } else { (1, 1) };
+        let (default, first) = if io::is_series(&self.args.output) { (SERIES_STEPS, 0) } else { (1, 1) };
         let n = self.args.steps.unwrap_or(default);
         let dt = self.args.dt.unwrap_or(1.0);
         Plan {
@@ -246,9 +246,4 @@ impl<'a> Asked<'a, '_> {
             source: Source::Parts(motion),
         }
     }
-}
-
-/// Whether a file is a series by its ending.
-pub(crate) fn is_series(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
 }

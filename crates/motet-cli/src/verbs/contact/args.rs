@@ -1,0 +1,126 @@
+//! The words of `motet contact`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use motet::contact::Options;
+use motet::{Error, Result};
+
+use crate::verbs::convert::WritingArgs;
+
+/// Tell how far apart surfaces are, where, and when they will touch
+///
+/// For every vertex the exact distance to the nearest other surface, for every pair of surfaces the
+/// nearest places, by edges and faces too. OUT holds all surfaces, with the cell array `body` (1, 2 ..)
+/// and the point arrays gap, gap_normal, closest_body, closest_cell, warning, time_to_contact.
+/// Where nothing is within reach, gap is NaN and closest_body 0.
+#[derive(Debug, Args)]
+#[command(override_usage = "\
+motet contact A B [C ..] -o OUT [--warn D] [OPTIONS]
+       motet contact MESH --patches P,Q[,R ..] -o OUT [--warn D] [OPTIONS]
+       motet contact A --self -o OUT [--warn D] [OPTIONS]")]
+#[command(after_help = "\
+A, B are surfaces (.vtp .stl .obj .vtu ..), volume meshes (their boundary counts), or series (.pvd: all of
+them go on together, files that are no series stand still, and OUT is a series). Lengths are in units of the
+mesh, times in those of the velocity or of the series.
+
+A closed surface has an inside, where gaps are negative; a vessel closed by caps holds others inside: name it by --room.
+
+Examples:
+  A stent in a vessel, warned of where nearer than 0.1:
+    motet contact stent.stl lumen.vtp -o gaps.vtp --warn 0.1
+  Leaflets of a valve, patches of one mesh, over a cardiac cycle:
+    motet contact valve.pvd --patches LCC,NCC,RCC -o out/gaps.pvd --warn 0.05
+  A flap that folds, and a coil against itself:
+    motet contact flap.vtp --self -o gaps.vtp --warn 0.2
+  When will it touch, at the velocities of a point array, within 0.1 s:
+    motet contact a.vtp b.vtp -o gaps.vtp --velocity v --horizon 0.1
+
+Exit status 0 whether or not something warns; with --fail-on-warning 4 where something does.")]
+pub(crate) struct ContactArgs {
+    /// Surfaces, meshes or series
+    #[arg(value_name = "SURFACE", required = true)]
+    pub(crate) surfaces: Vec<PathBuf>,
+    /// Where the surfaces go with their gaps: .vtp, .vtu, .vtk; a .pvd for a series
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// Warn of what is nearer than this
+    #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
+    pub(crate) warn: Option<f64>,
+    /// Patches of the one mesh that is given, by name or number
+    #[arg(long, value_name = "P,Q", value_delimiter = ',', help_heading = "Gaps")]
+    pub(crate) patches: Vec<String>,
+    /// Measure each surface against itself as well, neighbours left out
+    #[arg(long = "self", help_heading = "Gaps")]
+    pub(crate) own: bool,
+    /// Look no farther than this [default: no limit; for --self 4 D, or a tenth of the size]
+    #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
+    pub(crate) within: Option<f64>,
+    /// The surface of this name (of its file or patch) is the wall of a room that the others are in: negative outside. Repeatable
+    #[arg(long, value_name = "NAME", help_heading = "Gaps")]
+    pub(crate) room: Vec<String>,
+    /// Count only places that face each other through free space, not through the thickness of a body
+    #[arg(long, help_heading = "Gaps")]
+    pub(crate) facing: bool,
+    /// Along one surface, count places as a gap from this many times farther along it than across
+    #[arg(long, value_name = "N", default_value_t = 3.0, help_heading = "Gaps", value_parser = positive)]
+    pub(crate) fold: f64,
+    /// How distances are found
+    #[arg(long, value_name = "HOW", default_value = "exact", help_heading = "Gaps")]
+    pub(crate) method: Method,
+
+    /// Look ahead: a vector point array, velocities of the vertices; those of surfaces without it are 0
+    #[arg(long, value_name = "ARRAY", help_heading = "Looking ahead")]
+    pub(crate) velocity: Option<String>,
+    /// How far ahead, in time [default: as far as they go; in a series without velocities the next frame]
+    #[arg(long, value_name = "T", help_heading = "Looking ahead", value_parser = positive)]
+    pub(crate) horizon: Option<f64>,
+
+    /// Exit status 4 where something warns, for scripts
+    #[arg(long, requires = "warn")]
+    pub(crate) fail_on_warning: bool,
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+/// How distances are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// Over all triangles, by a tree of boxes
+    Exact,
+    /// By the Delaunay tets between the surfaces, as Moyle and Ventikos (2008) did: an upper bound; reports its error
+    Delaunay,
+}
+
+impl ContactArgs {
+    pub(crate) fn options(&self) -> Options {
+        Options {
+            warn: self.warn,
+            own: self.own,
+            within: self.within.unwrap_or(f64::INFINITY),
+            facing: self.facing,
+            fold: self.fold,
+        }
+    }
+
+    /// Refuses words that do not go together.
+    pub(crate) fn check(&self) -> Result<()> {
+        if self.horizon.is_some() && self.velocity.is_none() {
+            return Err(Error::options("--horizon goes with --velocity")
+                .remedy("a series without velocities looks ahead to its next frame"));
+        }
+        if !self.patches.is_empty() && self.surfaces.len() != 1 {
+            return Err(Error::options("--patches are those of one mesh")
+                .remedy("give one mesh, or surfaces without --patches"));
+        }
+        Ok(())
+    }
+}
+
+fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
+        _ => Err("a positive number is wanted".into()),
+    }
+}

@@ -1,0 +1,156 @@
+//! What is measured, frame by frame: the surfaces of the call as bodies over one list of points.
+
+use std::path::{Path, PathBuf};
+
+use motet::base::{CellId, Point, VertexId};
+use motet::contact::Body;
+use motet::mesh::Surface;
+use motet::{Error, Mesh, Result, io};
+
+use super::args::ContactArgs;
+use crate::console::Console;
+
+/// The bodies of one frame.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) points: Vec<Point>,
+    /// The velocity of each point, where asked for.
+    pub(crate) velocity: Option<Vec<Point>>,
+    pub(crate) bodies: Vec<Body>,
+    /// Where each body comes from.
+    pub(crate) sources: Vec<Source>,
+}
+
+/// Where a body comes from.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Source {
+    pub(crate) file: PathBuf,
+    /// Its first point in the list of all.
+    pub(crate) first_point: usize,
+    /// The cell of the file that each triangle is of.
+    pub(crate) cells: Vec<CellId>,
+}
+
+/// The surfaces of a call: a list of files for each.
+pub(crate) struct Frames<'a> {
+    args: &'a ContactArgs,
+    /// When each frame is; one frame at 0 where nothing is a series.
+    pub(crate) times: Vec<f64>,
+    files: Vec<Vec<PathBuf>>,
+}
+
+impl<'a> Frames<'a> {
+    pub(crate) fn new(args: &'a ContactArgs) -> Result<Self> {
+        let mut times: Option<(Vec<f64>, &Path)> = None;
+        let mut files = Vec::new();
+        for path in &args.surfaces {
+            if !io::is_series(path) {
+                files.push(vec![path.clone()]);
+                continue;
+            }
+            let (own, list): (Vec<f64>, Vec<PathBuf>) = io::read_series(path)?.into_iter().unzip();
+            if list.is_empty() {
+                return Err(Error::input("a series without frames").in_file(path));
+            }
+            if let Some((times, other)) = times.as_ref().filter(|(times, _)| times.len() != own.len()) {
+                return Err(Error::input(format!(
+                    "{} frames, and {} has {}: series go on together",
+                    own.len(),
+                    other.display(),
+                    times.len()
+                ))
+                .in_file(path));
+            }
+            times.get_or_insert((own, path));
+            files.push(list);
+        }
+        let times = times.map_or(vec![0.0], |(times, _)| times);
+        Ok(Self { args, times, files })
+    }
+
+    /// Frame `k`.
+    pub(crate) fn read(&self, k: usize, console: &Console) -> Result<Frame> {
+        let velocity = self.args.velocity.as_ref().map(|_| Vec::new());
+        let mut frame = Frame { points: Vec::new(), velocity, bodies: Vec::new(), sources: Vec::new() };
+        let mut has_velocity = false;
+        for (list, given) in self.files.iter().zip(&self.args.surfaces) {
+            let file = &list[if list.len() == 1 { 0 } else { k }];
+            let (mesh, notes) = io::read_noted(file)?;
+            notes.iter().for_each(|note| console.warn(note));
+            has_velocity |=
+                frame.add_velocity(&mesh, self.args.velocity.as_deref()).map_err(|e| e.in_file(file))?;
+            frame.add_bodies(&mesh, file, given, &self.args.patches).map_err(|e| e.in_file(file))?;
+            frame.points.extend(&mesh.points);
+        }
+        if let (Some(name), false) = (&self.args.velocity, has_velocity) {
+            return Err(Error::options(format!("no surface has a vector point array `{name}`"))
+                .remedy("`motet info FILE` lists the arrays of a file"));
+        }
+        for name in &self.args.room {
+            let Some(body) = frame.bodies.iter_mut().find(|body| body.name == *name) else {
+                let known: Vec<_> = frame.bodies.iter().map(|body| body.name.as_str()).collect();
+                return Err(Error::options(format!("--room {name}: no surface of that name"))
+                    .remedy(format!("there are {}", known.join(", "))));
+            };
+            body.is_room = true;
+        }
+        Ok(frame)
+    }
+}
+
+impl Frame {
+    /// Whether the bodies have the same triangles, so that only points moved.
+    pub(crate) fn is_moved_of(&self, other: &Self) -> bool {
+        self.points.len() == other.points.len() && self.bodies == other.bodies
+    }
+
+    fn add_velocity(&mut self, mesh: &Mesh, name: Option<&str>) -> Result<bool> {
+        let (Some(velocity), Some(name)) = (&mut self.velocity, name) else { return Ok(false) };
+        let field = mesh.point_field(name);
+        match field {
+            Some(field) => velocity.extend(field.to_vectors().map_err(|e| e.at(format!("array {name}")))?),
+            None => velocity.resize(velocity.len() + mesh.points.len(), [0.0; 3]),
+        }
+        Ok(field.is_some())
+    }
+
+    fn add_bodies(&mut self, mesh: &Mesh, file: &Path, given: &Path, patches: &[String]) -> Result<()> {
+        let mut surface = Surface::of(mesh);
+        if surface.triangles.is_empty() {
+            surface = Surface::boundary_of(mesh);
+        }
+        if surface.triangles.is_empty() {
+            return Err(Error::input(
+                "has no surface: neither surface cells nor volume cells with a boundary",
+            )
+            .remedy("give triangles or other surface cells"));
+        }
+        let shift = VertexId::new(self.points.len());
+        let mut add = |name: String, is_of: &dyn Fn(usize) -> bool| {
+            let of = (0..surface.triangles.len()).filter(|&t| is_of(t));
+            let triangles = of.clone().map(|t| surface.triangles[t].map(|v| VertexId(v.0 + shift.0)));
+            self.bodies.push(Body { name, triangles: triangles.collect(), is_room: false });
+            let cells = of.map(|t| surface.triangle_to_cell[t]).collect();
+            self.sources.push(Source { file: file.to_owned(), first_point: shift.index(), cells });
+        };
+        if patches.is_empty() {
+            let name = given
+                .file_stem()
+                .map_or_else(|| "surface".into(), |stem| stem.to_string_lossy().into_owned());
+            add(name, &|_| true);
+        }
+        let labels = mesh.patches();
+        for word in patches {
+            let Some(id) = labels.as_ref().and_then(|labels| labels.find(word)) else {
+                let known =
+                    labels.as_ref().map(|l| l.used().into_iter().map(|id| l.name(id)).collect::<Vec<_>>());
+                let known =
+                    known.filter(|known| !known.is_empty()).map_or("none".into(), |known| known.join(", "));
+                return Err(Error::options(format!("the mesh has no patch `{word}`"))
+                    .remedy(format!("it has {known}")));
+            };
+            add(word.clone(), &|t| surface.patches[t] == id);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,125 @@
+//! `motet contact`: how far apart surfaces are, where, and when they will touch.
+
+mod args;
+mod frames;
+mod histogram;
+mod output;
+mod report;
+
+use std::time::Instant;
+
+use motet::base::Threads;
+use motet::contact::{Ahead, Contact};
+use motet::io::{self, SeriesWriter};
+use motet::{Error, Result};
+
+pub(crate) use args::ContactArgs;
+
+use self::frames::{Frame, Frames};
+use self::report::{Report, Step};
+use crate::args::Common;
+use crate::console::Console;
+use crate::exit::Outcome;
+
+pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Result<Outcome> {
+    let begin = Instant::now();
+    args.check()?;
+    check_output(args)?;
+    let threads = common.threads()?;
+    let frames = Frames::new(args)?;
+    let n = frames.times.len();
+    let bar = console.bar(n as u64, "measuring");
+    let mut report = Report::new(args);
+    let mut series =
+        io::is_series(&args.output).then(|| SeriesWriter::new(&args.output, args.writing.options()));
+    let mut handle: Option<(Contact, Frame)> = None;
+    let mut next = Some(frames.read(0, console)?);
+    for k in 0..n {
+        let Some(frame) = next.take() else { break };
+        if k + 1 < n {
+            next = Some(frames.read(k + 1, console)?);
+        }
+        let measuring = Instant::now();
+        let mut contact = prepared(handle.take(), &frame, args)?;
+        let gaps = contact.measure(&threads);
+        report.seconds.measure += measuring.elapsed().as_secs_f64();
+        let looking = Instant::now();
+        let dt = if k + 1 < n { frames.times[k + 1] - frames.times[k] } else { 0.0 };
+        let ahead = look_ahead(&contact, &frame, next.as_ref(), dt, args, &threads)?;
+        report.seconds.look_ahead += looking.elapsed().as_secs_f64();
+        let is_last = k + 1 == n;
+        let mesh = output::mesh(&frame, &gaps, ahead.as_ref());
+        let writing = Instant::now();
+        let file = match &mut series {
+            Some(series) => Some(series.add(frames.times[k], &mesh)?),
+            None if is_last => {
+                Some((args.output.clone(), io::write(&args.output, &mesh, &args.writing.options())?))
+            }
+            None => None,
+        };
+        report.seconds.write += writing.elapsed().as_secs_f64();
+        let (file, lost) = file.unzip();
+        lost.into_iter().flatten().for_each(|what| console.warn(what));
+        let step = Step::new((frames.times[k], file), &contact, &frame, &gaps, ahead.as_ref());
+        report.add(&contact, &frame, step);
+        handle = Some((contact, frame));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    report.seconds.total = begin.elapsed().as_secs_f64();
+    report.tell(console);
+    Ok(if args.fail_on_warning && report.is_warned() { Outcome::NotReached } else { Outcome::Done })
+}
+
+/// Refuses, before any work, an output that cannot be written or that would overwrite an input.
+fn check_output(args: &ContactArgs) -> Result<()> {
+    if io::is_series(&args.output) {
+        let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
+        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&args.output, &e))?;
+    } else {
+        io::can_write(&args.output)?;
+    }
+    let is_output = |input: &std::path::PathBuf| {
+        input.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b))
+    };
+    match args.surfaces.iter().any(is_output) {
+        true => Err(Error::options("the result would overwrite a surface it is made from")
+            .in_file(&args.output)
+            .remedy("give --output another name")),
+        false => Ok(()),
+    }
+}
+
+/// The handle of the frame before, where only points moved; else a new one.
+fn prepared(last: Option<(Contact, Frame)>, frame: &Frame, args: &ContactArgs) -> Result<Contact> {
+    let told = |e: Error| match (e.file(), frame.sources.as_slice()) {
+        (None, [one]) => e.in_file(&one.file),
+        _ => e,
+    };
+    if let Some((mut contact, last)) = last
+        && frame.is_moved_of(&last)
+    {
+        contact.refit(&frame.points).map_err(told)?;
+        return Ok(contact);
+    }
+    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options()).map_err(told)
+}
+
+/// By velocities where there are any, else to the next frame where there is one that fits.
+fn look_ahead(
+    contact: &Contact,
+    frame: &Frame,
+    next: Option<&Frame>,
+    dt: f64,
+    args: &ContactArgs,
+    threads: &Threads,
+) -> Result<Option<Ahead>> {
+    if let Some(velocity) = &frame.velocity {
+        let horizon = args.horizon.unwrap_or(f64::INFINITY);
+        return contact.look_ahead(velocity, horizon, threads).map(Some);
+    }
+    match next.filter(|next| dt > 0.0 && next.is_moved_of(frame)) {
+        Some(next) => contact.look_ahead_to(&next.points, dt, threads).map(Some),
+        None => Ok(None),
+    }
+}

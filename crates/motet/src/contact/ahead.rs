@@ -1,0 +1,111 @@
+//! Looking ahead: when surfaces will touch, if all vertices go on straight.
+
+use serde::Serialize;
+
+use super::along::Ways;
+use super::body::Prepared;
+use super::contact::Contact;
+use super::rule::Rule;
+use super::sweep::{Sweep, sweep};
+use crate::base::{Error, Point, Result, Threads};
+use crate::geometry::distance::triangle_triangle;
+use crate::geometry::vector::{is_finite, scale, sub};
+
+/// When surfaces will touch. "Not before" is safe: nothing touches earlier, rounding included, as long as every vertex goes on
+/// straight at its velocity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ahead {
+    /// The first contact of all; `None` where nothing touches before the horizon.
+    pub first: Option<FirstContact>,
+    /// For each vertex of each body, in the order of [`BodyGaps::vertices`](super::BodyGaps): no triangle at it touches
+    /// another surface before this; infinite where none does before the horizon.
+    pub times: Vec<Vec<f64>>,
+}
+
+/// Where surfaces will touch first.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FirstContact {
+    /// Not before this.
+    pub time: f64,
+    /// The bodies.
+    pub bodies: [u32; 2],
+    /// A triangle of each.
+    pub triangles: [u32; 2],
+    /// Where they will be.
+    pub place: Point,
+}
+
+impl Contact {
+    /// Looks ahead as far as `horizon`, which may be infinite, with a velocity for each point. Pairs of triangles that
+    /// [`measure`](Self::measure) leaves out as neighbours are left out here as well.
+    ///
+    /// By additive conservative advancement (Li, Kaufman and Jiang 2021, *Codimensional incremental potential contact*).
+    ///
+    /// # Errors
+    /// When there is not a velocity for each point, or one of the bodies' is not finite; when the horizon is not positive.
+    pub fn look_ahead(&self, velocity: &[Point], horizon: f64, threads: &Threads) -> Result<Ahead> {
+        self.check_velocity(velocity, horizon)?;
+        let vertices = |body: &Prepared| vec![f64::INFINITY; body.vertices.len()];
+        let mut ahead = Ahead { first: None, times: self.bodies.iter().map(vertices).collect() };
+        for (ids, along, options) in self.asked() {
+            let bodies = ids.map(|id| &self.bodies[id as usize]);
+            let rule = Rule::new(&self.points, bodies, along, &options);
+            let admit = |i: u32, j: u32| {
+                if !rule.may_admit([i, j]) {
+                    return false;
+                }
+                rule.admits_all() || {
+                    let corners = (rule.a.corners(&self.points, i), rule.b.corners(&self.points, j));
+                    rule.admits([i, j], &triangle_triangle::closest(corners.0, corners.1), &mut Ways::default())
+                }
+            };
+            let (a, b) = (&rule.a.triangles, &rule.b.triangles);
+            let found = sweep(&self.points, velocity, [a, b], horizon, threads, admit);
+            ahead.take(ids, bodies, found);
+        }
+        Ok(ahead)
+    }
+
+    /// Looks ahead to points that are reached, straight, after the time `dt`.
+    ///
+    /// # Errors
+    /// As [`look_ahead`](Self::look_ahead).
+    pub fn look_ahead_to(&self, next: &[Point], dt: f64, threads: &Threads) -> Result<Ahead> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(Error::options(format!("a time step of {dt}")).remedy("give a positive one"));
+        }
+        let velocity: Vec<Point> =
+            next.iter().zip(self.points()).map(|(to, from)| scale(sub(*to, *from), 1.0 / dt)).collect();
+        self.look_ahead(&velocity, dt, threads)
+    }
+
+    fn check_velocity(&self, velocity: &[Point], horizon: f64) -> Result<()> {
+        if velocity.len() != self.points.len() {
+            return Err(Error::input(format!("{} velocities, expected {}", velocity.len(), self.points.len()))
+                .remedy("give one for each point"));
+        }
+        let mut used = self.bodies.iter().flat_map(|body| &body.vertices);
+        if let Some(v) = used.find(|v| !is_finite(velocity[v.index()])) {
+            return Err(Error::input("a velocity that is no finite number").at(format!("point {v}")));
+        }
+        match horizon > 0.0 {
+            true => Ok(()),
+            false => Err(Error::options(format!("a horizon of {horizon}")).remedy("give a positive time")),
+        }
+    }
+}
+
+impl Ahead {
+    fn take(&mut self, ids: [u32; 2], bodies: [&Prepared; 2], found: Sweep) {
+        let first = found.first.map(|f| FirstContact { time: f.time, bodies: ids, triangles: f.triangles, place: f.place });
+        let is_earlier = |f: &FirstContact| self.first.is_none_or(|known| f.time < known.time);
+        if let Some(first) = first.filter(is_earlier) {
+            self.first = Some(first);
+        }
+        for ((id, body), of_triangles) in ids.into_iter().zip(bodies).zip(found.times) {
+            for (time, star) in self.times[id as usize].iter_mut().zip(body.stars.iter()) {
+                *time = star.iter().map(|&t| of_triangles[t as usize]).fold(*time, f64::min);
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! A surface that may touch others: triangles, and on which side of them there is room.
+
+use crate::base::{Csr, Error, Point, Result, VertexId};
+use crate::geometry::triangle;
+use crate::geometry::vector::{cross, dot, is_finite, sub};
+use crate::spatial::NearestTriangle;
+
+/// A surface by its triangles over the points that all bodies share. Open or closed, in one piece or many.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Body {
+    /// What reports call it.
+    pub name: String,
+    /// Its triangles; a closed surface has them counter-clockwise seen from outside, or all of them clockwise.
+    pub triangles: Vec<[VertexId; 3]>,
+    /// The body is the wall of a room, such as a vessel, and others are within: the sign of its distances is turned.
+    pub is_room: bool,
+}
+
+/// On which side of the triangles there is room, by their normals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Free {
+    Both,
+    Ahead,
+    Behind,
+}
+
+/// A body with all that does not change when points move, and its tree.
+#[derive(Clone, Debug)]
+pub(super) struct Prepared {
+    pub(super) name: String,
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) is_closed: bool,
+    pub(super) is_room: bool,
+    /// Its vertices, rising.
+    pub(super) vertices: Vec<VertexId>,
+    /// The triangles of each of its vertices, by their places in the lists.
+    pub(super) stars: Csr<u32>,
+    pub(super) free: Free,
+    /// Unit normals of the triangles, where [`keep_normals`](Self::keep_normals) was called.
+    normals: Vec<Point>,
+    pub(super) tree: NearestTriangle,
+}
+
+impl Prepared {
+    pub(super) fn new(body: Body, points: &[Point]) -> Result<Self> {
+        let Body { name, triangles, is_room } = body;
+        if triangles.is_empty() {
+            return Err(Error::input(format!("the surface {name} has no triangles"))
+                .remedy("contact is measured between surfaces: give one with triangles or other surface cells"));
+        }
+        if let Some((i, v)) = (0..).zip(triangles.as_flattened()).find(|(_, v)| v.index() >= points.len()) {
+            let (i, n): (usize, usize) = (i, points.len());
+            return Err(Error::input(format!("names point {v}, and there are {n} points"))
+                .at(format!("surface {name}, triangle {}", i / 3)));
+        }
+        let mut vertices = triangles.as_flattened().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        check_finite(&name, &vertices, points)?;
+        let place = |v: &VertexId| vertices.binary_search(v).unwrap_or_default();
+        let places: Vec<[usize; 3]> = triangles.iter().map(|t| t.each_ref().map(place)).collect();
+        let stars = Csr::from_pairs(vertices.len(), || {
+            (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v, i)))
+        });
+        let is_closed = super::inside::is_closed(&triangles);
+        let tree = NearestTriangle::new(points, &triangles);
+        let mut body =
+            Self { name, triangles, is_closed, is_room, vertices, stars, free: Free::Both, normals: Vec::new(), tree };
+        body.free = body.free_side(points);
+        Ok(body)
+    }
+
+    /// # Errors
+    /// When a point of the body is not finite.
+    pub(super) fn check(&self, points: &[Point]) -> Result<()> {
+        check_finite(&self.name, &self.vertices, points)
+    }
+
+    /// Takes over points that moved.
+    pub(super) fn refit(&mut self, points: &[Point]) {
+        self.tree.refit(points);
+        self.free = self.free_side(points);
+        if !self.normals.is_empty() {
+            self.keep_normals(points);
+        }
+    }
+
+    /// Works out all normals, now and whenever points move.
+    pub(super) fn keep_normals(&mut self, points: &[Point]) {
+        self.normals = (0..self.triangles.len() as u32).map(|t| self.unit_normal(points, t)).collect();
+    }
+
+    pub(super) fn corners(&self, points: &[Point], triangle: u32) -> [Point; 3] {
+        self.triangles[triangle as usize].map(|v| points[v.index()])
+    }
+
+    /// Whether the bodies have a vertex in common.
+    pub(super) fn is_joined(&self, other: &Self) -> bool {
+        let (few, many) = match self.vertices.len() <= other.vertices.len() {
+            true => (&self.vertices, &other.vertices),
+            false => (&other.vertices, &self.vertices),
+        };
+        few.iter().any(|v| many.binary_search(v).is_ok())
+    }
+
+    /// Outside a closed body, inside a room; on both sides of an open one.
+    fn free_side(&self, points: &[Point]) -> Free {
+        if !self.is_closed {
+            return Free::Both;
+        }
+        let origin = points[self.vertices[0].index()];
+        let volume_6: f64 = (0..self.triangles.len() as u32)
+            .map(|t| self.corners(points, t).map(|p| sub(p, origin)))
+            .map(|[a, b, c]| dot(a, cross(b, c)))
+            .sum();
+        match (volume_6 >= 0.0) != self.is_room {
+            true => Free::Ahead,
+            false => Free::Behind,
+        }
+    }
+
+    /// The unit normal of a triangle; zero where it has no area.
+    pub(super) fn normal(&self, points: &[Point], triangle: u32) -> Point {
+        let kept = self.normals.get(triangle as usize);
+        kept.copied().unwrap_or_else(|| self.unit_normal(points, triangle))
+    }
+
+    fn unit_normal(&self, points: &[Point], triangle: u32) -> Point {
+        let area = triangle::area_vector(self.corners(points, triangle));
+        let largest = area.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if largest == 0.0 {
+            return [0.0; 3];
+        }
+        // In units of the largest: squares of areas of small triangles underflow.
+        let area = area.map(|x| x / largest);
+        area.map(|x| x / dot(area, area).sqrt())
+    }
+}
+
+fn check_finite(name: &str, vertices: &[VertexId], points: &[Point]) -> Result<()> {
+    match vertices.iter().find(|v| !is_finite(points[v.index()])) {
+        None => Ok(()),
+        Some(v) => Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
+            .at(format!("surface {name}, point {v}"))
+            .remedy("remove the point and its cells, or give it a place")),
+    }
+}

@@ -1,0 +1,193 @@
+//! The handle: surfaces prepared once, measured at every step.
+
+use super::along::Along;
+use super::answer::{BodyGaps, Gaps, PairGap, Warned};
+use super::body::{Body, Prepared};
+use super::options::Options;
+use super::pair::{self, Guesses};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::distance;
+use crate::mesh;
+
+/// Without a limit, a body is measured against itself as far as this part of the size of all.
+const OWN_REACH: f64 = 0.1;
+
+/// With a warning distance alone, a body is measured against itself as far as this many of it.
+const OWN_WARNINGS: f64 = 4.0;
+
+/// Surfaces that may touch. Made once, refitted as points move; each answer starts from the last one, which saves time and changes nothing.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    pub(super) points: Vec<Point>,
+    pub(super) bodies: Vec<Prepared>,
+    pub(super) along: Along,
+    options: Options,
+    /// The pairs that are measured, and whether they have vertices in common: neighbours are then to be left out.
+    pairs: Vec<([u32; 2], bool)>,
+    /// For each pair.
+    guesses: Vec<Guesses>,
+}
+
+impl Contact {
+    /// Prepares `bodies` over `points`: all pairs of bodies will be measured, and each with itself where
+    /// [`Options::own`] says so.
+    ///
+    /// # Errors
+    /// When there is nothing to measure, a body has no triangles, a triangle names a point beyond `points`, one of their points is
+    /// not finite, or a length of the options is not positive.
+    pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options) -> Result<Self> {
+        check(&bodies, &options)?;
+        let mut bodies = bodies.into_iter().map(|b| Prepared::new(b, &points)).collect::<Result<Vec<_>>>()?;
+        let triangles = bodies.iter().flat_map(|body| &body.triangles);
+        let along = Along::new(points.len(), triangles);
+        let n = bodies.len() as u32;
+        let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
+        let is_joined = |[a, b]: [u32; 2]| a == b || bodies[a as usize].is_joined(&bodies[b as usize]);
+        let pairs: Vec<_> = all.map(|pair| (pair, is_joined(pair))).collect();
+        for &([a, b], is_joined) in &pairs {
+            if is_joined || options.facing {
+                [a, b].iter().for_each(|&id| bodies[id as usize].keep_normals(&points));
+            }
+        }
+        let guesses = vec![Guesses::default(); pairs.len()];
+        Ok(Self { points, bodies, along, options, pairs, guesses })
+    }
+
+    /// Takes over points that moved; the triangles stay.
+    ///
+    /// # Errors
+    /// When there are not as many points as before, or one of the bodies' is not finite; then nothing is taken over.
+    pub fn refit(&mut self, points: &[Point]) -> Result<()> {
+        if points.len() != self.points.len() {
+            return Err(Error::input(format!("{} points, expected {}", points.len(), self.points.len()))
+                .remedy("give all points in the same order as at first"));
+        }
+        self.bodies.iter().try_for_each(|body| body.check(points))?;
+        self.points.copy_from_slice(points);
+        self.bodies.iter_mut().for_each(|body| body.refit(points));
+        Ok(())
+    }
+
+    /// The points as they were given last.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// How many bodies there are.
+    pub fn n_bodies(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The name of a body.
+    pub fn name(&self, body: u32) -> &str {
+        &self.bodies[body as usize].name
+    }
+
+    /// The triangles of a body.
+    pub fn triangles(&self, body: u32) -> &[[VertexId; 3]] {
+        &self.bodies[body as usize].triangles
+    }
+
+    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other.
+    pub fn is_closed(&self, body: u32) -> bool {
+        self.bodies[body as usize].is_closed
+    }
+
+    /// The gap at every vertex, and the nearest places of every pair.
+    pub fn measure(&mut self, threads: &Threads) -> Gaps {
+        let new = |body: &Prepared| BodyGaps::new(&body.vertices, &self.points);
+        let mut bodies: Vec<BodyGaps> = self.bodies.iter().map(new).collect();
+        let mut pairs: Vec<PairGap> = Vec::new();
+        let mut guesses = std::mem::take(&mut self.guesses);
+        for ((ids, along, options), guesses) in self.asked().zip(&mut guesses) {
+            let scene = pair::Scene {
+                points: &self.points,
+                bodies: ids.map(|id| &self.bodies[id as usize]),
+                ids,
+                along,
+                options: &options,
+            };
+            let (gap, sides) = scene.measure(guesses, threads);
+            for (side, id) in sides.into_iter().zip(ids) {
+                side.put(&scene, &mut bodies[id as usize]);
+            }
+            pairs.push(gap);
+        }
+        self.guesses = guesses;
+        Gaps { bodies, pairs }
+    }
+
+    /// Groups of connected vertices that warn, the nearest first.
+    pub fn warned(&self, gaps: &Gaps) -> Vec<Warned> {
+        let mut groups: Vec<Warned> = Vec::new();
+        for (id, body) in (0..).zip(&gaps.bodies) {
+            let mut is_open = body.warning.clone();
+            for seed in 0..is_open.len() {
+                if !std::mem::take(&mut is_open[seed]) {
+                    continue;
+                }
+                let (mut group, mut next) = (vec![seed], 0);
+                while let Some(&place) = group.get(next) {
+                    next += 1;
+                    for neighbor in self.along.neighbors(body.vertices[place]) {
+                        let Ok(other) = body.vertices.binary_search(&VertexId(*neighbor)) else { continue };
+                        if std::mem::take(&mut is_open[other]) {
+                            group.push(other);
+                        }
+                    }
+                }
+                let nearer = |x: usize, y: usize| if body.gap[y] < body.gap[x] { y } else { x };
+                let at = group.iter().copied().fold(seed, nearer);
+                let vertex = body.vertices[at];
+                groups.push(Warned {
+                    bodies: [id, body.closest_body[at]],
+                    n_vertices: group.len(),
+                    gap: body.gap[at],
+                    vertex,
+                    place: self.points[vertex.index()],
+                });
+            }
+        }
+        groups.sort_by(|x, y| x.gap.total_cmp(&y.gap).then(x.vertex.cmp(&y.vertex)));
+        groups
+    }
+
+    /// Each pair with the ways along the surface, where it has some in common, and with what it is measured by.
+    pub(super) fn asked(&self) -> impl Iterator<Item = ([u32; 2], Option<&Along>, Options)> {
+        let own = Options { within: self.own_reach(), ..self.options };
+        self.pairs.iter().map(move |&([a, b], is_joined)| {
+            ([a, b], is_joined.then_some(&self.along), if a == b { own } else { self.options })
+        })
+    }
+
+    /// How far a body is measured against itself.
+    fn own_reach(&self) -> f64 {
+        let vertices = self.bodies.iter().flat_map(|body| &body.vertices);
+        let points = || vertices.map(|v| self.points[v.index()]).collect::<Vec<_>>();
+        let size = || mesh::bounds(&points()).map_or(0.0, |[low, high]| distance(low, high));
+        match self.options.warn {
+            _ if self.options.within.is_finite() => self.options.within,
+            Some(warn) => OWN_WARNINGS * warn,
+            None => OWN_REACH * size(),
+        }
+    }
+}
+
+fn check(bodies: &[Body], options: &Options) -> Result<()> {
+    if bodies.is_empty() || bodies.len() == 1 && !options.own {
+        return Err(Error::options(format!("{} surface, and contact is between two", bodies.len()))
+            .remedy("give another surface, or ask for contact of the surface with itself"));
+    }
+    if bodies.len() > u32::MAX as usize {
+        return Err(Error::options("too many surfaces"));
+    }
+    let lengths =
+        [("the warning distance", options.warn), ("the reach", Some(options.within)), ("the fold", Some(options.fold))];
+    for (what, length) in lengths {
+        if length.is_some_and(|length| length.is_nan() || length < 0.0) {
+            return Err(Error::options(format!("{what} is {}", length.unwrap_or_default()))
+                .remedy("give a positive number"));
+        }
+    }
+    Ok(())
+}

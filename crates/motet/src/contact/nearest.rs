@@ -1,0 +1,63 @@
+//! The nearest places of two surfaces over all pairs of triangles, and the triangles that are near enough to warn.
+//!
+//! Distances of vertices from the other surface are not enough: two edges that cross at a distance come nearest between their ends.
+//! They are a good bound, though, so that few pairs of triangles are looked at.
+
+use super::along::Ways;
+use super::answer::Nearest;
+use super::rule::Rule;
+use crate::geometry::distance::triangle_triangle;
+use crate::geometry::triangle;
+
+/// Above a bound by this part, so that the pair that the bound came from is found again.
+const SLACK: f64 = 1e-9;
+
+/// The nearest pair of triangles within the root of `start`, which may be the squared distance of a known pair.
+pub(super) fn nearest(rule: &Rule<'_>, start: f64) -> Option<Nearest> {
+    let is_own = std::ptr::eq(rule.a, rule.b);
+    let mut ways = Ways::default();
+    let corners = |[i, j]: [u32; 2]| (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
+    let bound = start * (1.0 + SLACK) + f64::MIN_POSITIVE;
+    let (_, i, j) = rule.a.tree.closest_pair(&rule.b.tree, bound, |i, j, bound| {
+        if is_own && i >= j || !rule.may_admit([i, j]) {
+            return None;
+        }
+        let (a, b) = corners([i, j]);
+        // A pair at the bound counts as well: of those equally near the first one is told.
+        let found = triangle_triangle::closest_below(a, b, bound.next_up())?;
+        rule.admits([i, j], &found, &mut ways).then_some(found.distance_squared)
+    })?;
+    let (a, b) = corners([i, j]);
+    let closest = triangle_triangle::closest(a, b);
+    Some(Nearest {
+        distance: closest.distance(),
+        triangles: [i, j],
+        vertices: [rule.a.triangles[i as usize], rule.b.triangles[j as usize]],
+        points: [triangle::at(a, closest.on_a), triangle::at(b, closest.on_b)],
+        features: closest.features(),
+        closest,
+    })
+}
+
+/// Marks the triangles of both surfaces that are nearer to the other than `warn`.
+pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, [near_a, near_b]: [&mut [bool]; 2]) {
+    let is_own = std::ptr::eq(rule.a, rule.b);
+    let mut ways = Ways::default();
+    rule.a.tree.closest_pair(&rule.b.tree, warn * warn, |i, j, bound| {
+        let is_known = match is_own {
+            true => i >= j || near_a[i as usize] && near_a[j as usize],
+            false => near_a[i as usize] && near_b[j as usize],
+        };
+        if is_known || !rule.may_admit([i, j]) {
+            return None;
+        }
+        let (a, b) = (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
+        let found = triangle_triangle::closest_below(a, b, bound)?;
+        if rule.admits([i, j], &found, &mut ways) {
+            near_a[i as usize] = true;
+            let near_b: &mut [bool] = if is_own { near_a } else { near_b };
+            near_b[j as usize] = true;
+        }
+        None
+    });
+}

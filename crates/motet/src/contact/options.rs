@@ -1,0 +1,27 @@
+//! What is measured, and what counts as a gap.
+
+/// How contact is looked for. Lengths are in units of the points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Warn of gaps below this; none by default.
+    pub warn: Option<f64>,
+    /// Whether each body is measured against itself as well (a flap that folds, loops of a coil). Off by default.
+    pub own: bool,
+    /// How far is looked; farther gaps are infinite. No limit by default; with [`own`](Self::own) a limit saves time, since
+    /// a surface that faces itself nowhere is searched to the end.
+    pub within: f64,
+    /// Whether a gap counts only where both surfaces face each other through free space, not through the thickness of a body.
+    /// Off by default between bodies that share no vertex; within one body, and between
+    /// bodies that do share some, always on.
+    pub facing: bool,
+    /// Within one body, and between bodies that share vertices: two places count as neighbours, not as a gap, where the way along the surface is
+    /// shorter than this many times the straight one. 3 by default: a fold counts once it is narrower than 37 degrees
+    /// (along the sides of a wedge of angle `a` it is `cot(a / 2)` times as far as across).
+    pub fold: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { warn: None, own: false, within: f64::INFINITY, facing: false, fold: 3.0 }
+    }
+}

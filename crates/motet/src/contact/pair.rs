@@ -1,0 +1,208 @@
+//! One pair of bodies measured: vertices against triangles both ways, the nearest triangles, what crosses, what is inside.
+
+use super::along::{Along, Ways};
+use super::answer::{BodyGaps, Nearest, PairGap};
+use super::body::{Free, Prepared};
+use super::crossing;
+use super::inside::inside;
+use super::nearest::{mark_nearer, nearest};
+use super::options::Options;
+use super::rule::Rule;
+use super::runs::in_runs;
+use crate::base::{Point, Threads};
+use crate::geometry::vector::{scale, sub};
+use crate::spatial::Closest;
+
+/// The triangles that were nearest at the last step, to each vertex of the first body and of the second.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Guesses([Vec<u32>; 2]);
+
+/// A bound by this much above a distance finds it again.
+const SLACK: f64 = 1.0 + 1e-9;
+
+/// The triangles that were found; `u32::MAX` where there is none.
+fn triangles(found: &[Option<Closest>]) -> Vec<u32> {
+    found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
+}
+
+/// Two bodies at one time.
+pub(super) struct Scene<'a> {
+    pub(super) points: &'a [Point],
+    pub(super) bodies: [&'a Prepared; 2],
+    pub(super) ids: [u32; 2],
+    pub(super) along: Option<&'a Along>,
+    pub(super) options: &'a Options,
+}
+
+/// What one body has of the other.
+pub(super) struct Side {
+    /// Which of the two bodies.
+    own: usize,
+    found: Vec<Option<Closest>>,
+    /// Whether each vertex is where the other body does not let it be.
+    is_wrong: Vec<bool>,
+    /// Whether each triangle is nearer than the warning distance.
+    is_near: Vec<bool>,
+}
+
+impl Scene<'_> {
+    fn is_own(&self) -> bool {
+        self.ids[0] == self.ids[1]
+    }
+
+    fn rule(&self, own: usize) -> Rule<'_> {
+        Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.along, self.options)
+    }
+
+    /// Measures the pair; the second side is empty for a body with itself.
+    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, [Side; 2]) {
+        let found = [0, 1].map(|own| match self.is_own() && own == 1 {
+            true => Vec::new(),
+            false => self.of_vertices(own, &mut guesses.0[own], threads),
+        });
+        let limit = self.options.within * self.options.within;
+        let all = found.iter().flatten().flatten();
+        let start = all.map(|closest| closest.distance_squared).fold(limit, f64::min);
+        let nearest = nearest(&self.rule(0), start);
+        let crossings = self.crossings(nearest.as_ref(), threads);
+        let mut sides = [0, 1].map(|own| self.side(own, &crossings, threads));
+        for (side, found) in sides.iter_mut().zip(found) {
+            side.found = found;
+            self.look_again_where_wrong(side);
+        }
+        self.warn(nearest.as_ref(), &mut sides);
+        let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count();
+        let gap = PairGap {
+            bodies: self.ids,
+            nearest,
+            crossings,
+            n_wrong: sides.each_ref().map(|side| count(&side.is_wrong)),
+            depth: sides.iter().map(Side::depth).fold(0.0, f64::max),
+            n_warned: sides.each_ref().map(|side| count(&side.is_near)),
+        };
+        (gap, sides)
+    }
+
+    /// The nearest triangle of the other body for each vertex.
+    fn of_vertices(&self, own: usize, guesses: &mut Vec<u32>, threads: &Threads) -> Vec<Option<Closest>> {
+        let rule = self.rule(own);
+        let place = |i: usize| self.points[rule.a.vertices[i].index()];
+        let within = self.options.within;
+        if !rule.admits_all() {
+            let found = self.admitted_of_vertices(&rule, guesses, threads);
+            *guesses = triangles(&found);
+            return found;
+        }
+        let points: Vec<Point> = (0..rule.a.vertices.len()).map(place).collect();
+        let last = (guesses.len() == points.len()).then_some(&guesses[..]);
+        let mut found = rule.b.tree.closest_all(&points, last, threads);
+        *guesses = triangles(&found);
+        found.iter_mut().for_each(|c| *c = c.filter(|c| c.distance_squared <= within * within));
+        found
+    }
+
+    /// The same by a rule. What was nearest at the last step, or to the vertex before, bounds the search: what is farther has not to
+    /// be held against the rule.
+    fn admitted_of_vertices(&self, rule: &Rule<'_>, guesses: &[u32], threads: &Threads) -> Vec<Option<Closest>> {
+        let within = self.options.within;
+        in_runs(rule.a.vertices.len(), threads, |run| {
+            let (mut ways, mut last) = (Ways::default(), u32::MAX);
+            let mut found = Vec::with_capacity(run.len());
+            for i in run {
+                let place = self.points[rule.a.vertices[i].index()];
+                let guess = guesses.get(i).map_or(last, |&guess| guess);
+                let bound = rule.distance(i, guess, &mut ways).map_or(within, |d| within.min(d * SLACK));
+                let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, &mut ways));
+                last = closest.map_or(u32::MAX, |closest| closest.triangle as u32);
+                found.push(closest);
+            }
+            found
+        })
+    }
+
+    /// Nothing crosses where the nearest places are apart.
+    fn crossings(&self, nearest: Option<&Nearest>, threads: &Threads) -> Vec<[u32; 2]> {
+        let [a, b] = self.bodies;
+        match nearest {
+            Some(nearest) if nearest.distance == 0.0 && self.is_own() => {
+                crossing::own_crossings(self.points, &a.triangles, threads)
+            }
+            Some(nearest) if nearest.distance == 0.0 => {
+                crossing::crossings(self.points, &a.triangles, &b.triangles, threads)
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    fn side(&self, own: usize, crossings: &[[u32; 2]], threads: &Threads) -> Side {
+        let rule = self.rule(own);
+        let mut side = Side { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
+        if rule.b.is_closed && !self.is_own() && self.along.is_none() {
+            let crossings: Vec<_> = crossings.iter().map(|pair| [pair[own], pair[1 - own]]).collect();
+            let (own, other) = (&rule.a.triangles, &rule.b.triangles);
+            let is_inside = inside(self.points, &rule.a.vertices, own, other, &crossings, threads);
+            side.is_wrong = is_inside.into_iter().map(|inside| inside != rule.b.is_room).collect();
+        }
+        side
+    }
+
+    /// A vertex within a body is as deep as its surface is near, whichever way that faces.
+    fn look_again_where_wrong(&self, side: &mut Side) {
+        let rule = self.rule(side.own);
+        for (i, found) in side.found.iter_mut().enumerate() {
+            if side.is_wrong.get(i) == Some(&true) && !rule.admits_all() {
+                *found = rule.b.tree.closest(self.points[rule.a.vertices[i].index()]);
+            }
+        }
+    }
+
+    /// Marks the triangles nearer than the warning distance.
+    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Side; 2]) {
+        let Some(warn) = self.options.warn else { return };
+        let [first, second] = sides;
+        for (side, body) in [&mut *first, &mut *second].into_iter().zip(self.bodies) {
+            side.is_near = vec![false; body.triangles.len()];
+        }
+        if self.is_own() {
+            second.is_near.clear();
+        }
+        if nearest.is_some_and(|nearest| nearest.distance < warn) {
+            mark_nearer(&self.rule(0), warn, [&mut first.is_near, &mut second.is_near]);
+        }
+    }
+}
+
+impl Side {
+    fn depth(&self) -> f64 {
+        let wrong = self.found.iter().zip(&self.is_wrong).filter(|(_, wrong)| **wrong);
+        wrong.filter_map(|(found, _)| *found).map(|found| found.distance_squared.sqrt()).fold(0.0, f64::max)
+    }
+
+    /// Takes the gaps over where they are less than what is known.
+    pub(super) fn put(&self, scene: &Scene<'_>, gaps: &mut BodyGaps) {
+        let (own, other) = (scene.bodies[self.own], scene.bodies[1 - self.own]);
+        for (i, found) in self.found.iter().enumerate() {
+            let Some(found) = found else { continue };
+            let is_wrong = self.is_wrong.get(i) == Some(&true);
+            let sign = if is_wrong { -1.0 } else { 1.0 };
+            let gap = sign * found.distance_squared.sqrt();
+            gaps.warning[i] |= is_wrong && scene.options.warn.is_some();
+            if gap >= gaps.gap[i] {
+                continue;
+            }
+            let triangle = found.triangle as u32;
+            let way = sub(found.point, scene.points[own.vertices[i].index()]);
+            gaps.gap[i] = gap;
+            gaps.normal[i] = match gap == 0.0 {
+                true => scale(other.normal(scene.points, triangle), if other.free == Free::Behind { 1.0 } else { -1.0 }),
+                false => scale(way, 1.0 / gap),
+            };
+            gaps.closest_body[i] = scene.ids[1 - self.own];
+            gaps.closest_triangle[i] = triangle;
+            gaps.closest_point[i] = found.point;
+        }
+        for (i, star) in own.stars.iter().enumerate() {
+            gaps.warning[i] |= star.iter().any(|&t| self.is_near.get(t as usize) == Some(&true));
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Which places count as a gap, and which are only neighbours or lie behind a wall.
+
+use super::along::{Along, Ways};
+use super::body::Prepared;
+use super::facing::{is_facing, may_face};
+use super::options::Options;
+use crate::base::{Point, VertexId};
+use crate::geometry::distance::Closest;
+use crate::geometry::triangle;
+use crate::geometry::vector::{distance, dot, sub};
+use crate::spatial;
+
+/// How two bodies are looked at. Nothing is left out between bodies that share no vertex, unless it is asked for.
+#[derive(Clone, Copy)]
+pub(super) struct Rule<'a> {
+    pub(super) points: &'a [Point],
+    pub(super) a: &'a Prepared,
+    pub(super) b: &'a Prepared,
+    /// Ways along the surface, where the bodies have some in common.
+    along: Option<&'a Along>,
+    facing: bool,
+    fold: f64,
+}
+
+impl<'a> Rule<'a> {
+    pub(super) fn new(
+        points: &'a [Point],
+        [a, b]: [&'a Prepared; 2],
+        along: Option<&'a Along>,
+        options: &Options,
+    ) -> Self {
+        Self { points, a, b, along, facing: options.facing || along.is_some(), fold: options.fold }
+    }
+
+    /// Whether everything counts.
+    pub(super) fn admits_all(&self) -> bool {
+        !self.facing
+    }
+
+    /// Tells of triangles of the second body whether they count as near to one vertex of the first.
+    pub(super) fn at_vertex(self, place: usize, ways: &mut Ways) -> impl FnMut(u32, &spatial::Closest) -> bool {
+        let vertex = self.a.vertices[place];
+        let start = self.points[vertex.index()];
+        move |j, found| {
+            let corners = self.b.triangles[j as usize];
+            if self.along.is_some() && corners.contains(&vertex) {
+                return false;
+            }
+            let (own, other) = ((self.a, self.a.stars.list(place)), (self.b, j));
+            if !is_facing(self.points, own, other, [start, found.point]) {
+                return false;
+            }
+            let length = self.fold * found.distance_squared.sqrt();
+            self.is_gap(vertex, (corners, found.point), length, ways)
+        }
+    }
+
+    /// How far a vertex of the first body is from a triangle of the second, where that counts.
+    pub(super) fn distance(&self, place: usize, j: u32, ways: &mut Ways) -> Option<f64> {
+        let p = self.points[self.a.vertices[place].index()];
+        let corners = self.b.triangles.get(j as usize)?.map(|v| self.points[v.index()]);
+        let weights = triangle::closest(corners, p);
+        let point = triangle::at(corners, weights);
+        let off = sub(point, p);
+        let distance_squared = dot(off, off);
+        let found = spatial::Closest { triangle: j as usize, weights, point, distance_squared };
+        self.at_vertex(place, ways)(j, &found).then(|| distance_squared.sqrt())
+    }
+
+    /// Whether it is farther than `length` along the surface.
+    fn is_gap(&self, from: VertexId, to: ([VertexId; 3], Point), length: f64, ways: &mut Ways) -> bool {
+        self.along.is_none_or(|along| !along.is_within(self.points, from, to, length, ways))
+    }
+
+    /// Whether two triangles count as near to each other.
+    pub(super) fn admits(&self, [i, j]: [u32; 2], found: &Closest<3, 3>, ways: &mut Ways) -> bool {
+        if self.admits_all() {
+            return true;
+        }
+        let (own, other) = (self.a.triangles[i as usize], self.b.triangles[j as usize]);
+        let from = triangle::at(self.a.corners(self.points, i), found.on_a);
+        let to = triangle::at(self.b.corners(self.points, j), found.on_b);
+        if !is_facing(self.points, (self.a, &[i]), (self.b, j), [from, to]) {
+            return false;
+        }
+        let heaviest = (1..3).fold(0, |best, k| if found.on_a[k] > found.on_a[best] { k } else { best });
+        let first = distance(from, self.points[own[heaviest].index()]);
+        self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, ways)
+    }
+
+    /// Whether two triangles are worth measuring: not the same, nor neighbours that share a vertex, nor turned away from each other.
+    pub(super) fn may_admit(&self, [i, j]: [u32; 2]) -> bool {
+        let (own, other) = (self.a.triangles[i as usize], self.b.triangles[j as usize]);
+        let is_joined = self.along.is_some() && own.iter().any(|v| other.contains(v));
+        !is_joined && (!self.facing || may_face(self.points, [self.a, self.b], [i, j]))
+    }
+}
