@@ -66,7 +66,7 @@ fn off_plane([p, q, r, s]: [Point; 4]) -> Option<Point> {
 }
 
 /// A point that differs from `p` along this axis only.
-pub(super) fn beside(mut p: Point, axis: usize) -> Point {
+pub(crate) fn beside(mut p: Point, axis: usize) -> Point {
     let lowered = p[axis] / 2.0 - 1.0;
     p[axis] = if lowered == p[axis] { p[axis] + 1.0 } else { lowered };
     p

@@ -1,0 +1,127 @@
+//! Which triangles of two surfaces meet, or of one surface with itself: exact, touching included.
+//!
+//! Neighbours on a surface meet in the vertices that they share, and that is no crossing. So pairs with vertices in common are judged by
+//! what they have in common beyond:
+//!
+//! | shared | the pair counts where |
+//! |---|---|
+//! | no vertex | the triangles have a point in common |
+//! | one vertex | the edge opposite to it, of one of them, meets the other: whoever walks within both triangles away from the shared vertex leaves one of them through that edge |
+//! | two vertices | both lie in one plane on the same side of the shared edge |
+//! | all three | always: it is the same triangle twice |
+//!
+//! Vertices are shared when they have one id. Two vertices of different ids at one place are points that touch.
+
+use super::runs::{around, corners, in_runs};
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::distance::triangle_triangle;
+use crate::geometry::distance::{segment_segment, segment_triangle};
+use crate::geometry::predicates::{collinear, orient3d};
+use crate::spatial::BoxTree;
+
+/// All pairs of a triangle of `a` and one of `b` that meet in more than vertices and edges that they share; rising.
+///
+/// Triangles with a corner that is not finite meet nothing. Those without area are their edges.
+///
+/// Panics when a triangle names a point beyond `points`.
+pub fn crossings(
+    points: &[Point],
+    a: &[[VertexId; 3]],
+    b: &[[VertexId; 3]],
+    threads: &Threads,
+) -> Vec<[u32; 2]> {
+    pairs(points, a, b, threads, |_, _| true)
+}
+
+/// All pairs of triangles of one surface that meet in more than they share, the smaller id first; rising.
+///
+/// Panics when a triangle names a point beyond `points`.
+pub fn own_crossings(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<[u32; 2]> {
+    pairs(points, triangles, triangles, threads, |i, j| i < j)
+}
+
+fn pairs(
+    points: &[Point],
+    a: &[[VertexId; 3]],
+    b: &[[VertexId; 3]],
+    threads: &Threads,
+    admit: impl Fn(u32, u32) -> bool + Sync + Send,
+) -> Vec<[u32; 2]> {
+    let boxes: Vec<_> = b.iter().map(|&t| around(&corners(points, t))).collect();
+    let tree = BoxTree::new(&boxes);
+    in_runs(a.len(), threads, |run| {
+        let (mut near, mut found) = (Vec::new(), Vec::new());
+        for i in run {
+            tree.touching(around(&corners(points, a[i])), &mut near);
+            let met = near.iter().filter(|&&j| admit(i as u32, j) && cross(points, a[i], b[j as usize]));
+            found.extend(met.map(|&j| [i as u32, j]));
+        }
+        found
+    })
+}
+
+/// Whether two triangles have more in common than what they share by their ids.
+fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+    let [of_a, of_b] = [a, b].map(|t| corners(points, t));
+    if !a.iter().any(|v| b.contains(v)) {
+        return triangle_triangle::meet(of_a, of_b);
+    }
+    let (shared, _) = distinct(a, |v| b.contains(&v));
+    let ((rest_a, n_a), (rest_b, n_b)) = (distinct(a, |v| !b.contains(&v)), distinct(b, |v| !a.contains(&v)));
+    let at = |v: VertexId| points[v.index()];
+    match (n_a, n_b) {
+        // The same vertices: a triangle twice, unless it is but an edge or a point.
+        (0, 0) => distinct(a, |_| true).1 == 3,
+        // An edge or a vertex of the other.
+        (0, _) | (_, 0) => false,
+        (1, 1) if shared[0] != shared[1] => {
+            overlap_beside([at(shared[0]), at(shared[1])], at(rest_a[0]), at(rest_b[0]))
+        }
+        // With a single vertex left, the edge opposite is that vertex twice.
+        _ => {
+            segment_triangle::meet([at(rest_a[0]), at(rest_a[1])], of_b)
+                || segment_triangle::meet([at(rest_b[0]), at(rest_b[1])], of_a)
+        }
+    }
+}
+
+/// The first and the last of the different vertices of a triangle that are wanted, and how many they are.
+fn distinct(t: [VertexId; 3], wanted: impl Fn(VertexId) -> bool) -> ([VertexId; 2], usize) {
+    let (mut ends, mut n) = ([t[0]; 2], 0);
+    for (k, &v) in t.iter().enumerate() {
+        if wanted(v) && !t[..k].contains(&v) {
+            ends = if n == 0 { [v, v] } else { [ends[0], v] };
+            n += 1;
+        }
+    }
+    (ends, n)
+}
+
+/// Whether the triangles of an edge with `p` and with `q` have more in common than the edge.
+fn overlap_beside(edge: [Point; 2], p: Point, q: Point) -> bool {
+    let [u, v] = edge;
+    if orient3d(u, v, p, q) != 0 {
+        return false;
+    }
+    let flat = [collinear(u, v, p), collinear(u, v, q)];
+    if u == v {
+        return segment_segment::meet([u, p], [q, q]) || segment_segment::meet([u, q], [p, p]);
+    }
+    match flat {
+        [false, false] => is_same_side(edge, p, q),
+        // All on one line, along which points follow each other as their coordinates do.
+        [true, true] => {
+            let (first, last) = if u < v { (u, v) } else { (v, u) };
+            p < first && q < first || p > last && q > last
+        }
+        _ => false,
+    }
+}
+
+/// Whether two points of one plane lie on the same side of a line in it; neither lies on the line.
+fn is_same_side([u, v]: [Point; 2], p: Point, q: Point) -> bool {
+    (0..3).map(|axis| segment_segment::beside(u, axis)).any(|apex| {
+        let side = orient3d(u, v, p, apex);
+        side != 0 && side == orient3d(u, v, q, apex)
+    })
+}

@@ -1,0 +1,171 @@
+//! Which vertices lie inside a closed surface: exact, by the winding number.
+//!
+//! A ray along an axis goes through triangles from behind (+1) and from the front (-1); the sum is how often the surface winds round its origin,
+//! and a point is inside where that is not 0 (so also inside a surface that is turned inside out, and inside either of two that overlap). Exact signs
+//! decide each passage. The origin counts as moved by (e, e^2) across the ray, for an e smaller than any number (Edelsbrunner and
+//! Mücke 1990, *Simulation of simplicity*), so a ray through a vertex or along an edge passes each sheet of the surface once.
+//!
+//! Not every vertex needs a ray: where a triangle does not meet the surface, all its corners are on the same side.
+
+use super::runs::{around, corners, in_runs};
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::distance::segment_triangle;
+use crate::geometry::predicates::orient3d;
+use crate::geometry::vector::is_finite;
+use crate::spatial::{Bounds, BoxTree};
+
+/// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
+/// times.
+pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
+    let ways = |&[a, b, c]: &[VertexId; 3]| [[a, b], [b, c], [c, a]];
+    let mut edges: Vec<([VertexId; 2], bool)> =
+        triangles.iter().flat_map(ways).map(|[u, v]| ([u.min(v), u.max(v)], u < v)).collect();
+    edges.retain(|([u, v], _)| u != v);
+    edges.sort_unstable();
+    edges.chunk_by(|x, y| x.0 == y.0).all(|uses| 2 * uses.iter().filter(|x| x.1).count() == uses.len())
+}
+
+/// Which of `vertices` lie inside the closed surface `b`. Vertices on it do not.
+///
+/// `a` is the surface of these vertices, and `crossings` what [`crossings`](super::crossings) says of `a` and `b`. Vertices that no triangle of `a` has are
+/// welcome; they get a ray each, the others one for each connected part that the crossings leave. A surface `b` that is not
+/// [closed](is_closed) has no inside: the answer is then that of the rays.
+///
+/// Duplicate triangles, those without area and those that cross others count as the winding number counts them. Those with a corner that is not finite are left out.
+///
+/// Panics when a triangle or `vertices` name a point beyond `points`.
+pub fn inside(
+    points: &[Point],
+    vertices: &[VertexId],
+    a: &[[VertexId; 3]],
+    b: &[[VertexId; 3]],
+    crossings: &[[u32; 2]],
+    threads: &Threads,
+) -> Vec<bool> {
+    let mut is_on = vec![false; points.len()];
+    b.as_flattened().iter().for_each(|v| is_on[v.index()] = true);
+    let part = parts(points.len(), a, crossings, &is_on);
+    let mut asked: Vec<u32> =
+        vertices.iter().filter(|v| !is_on[v.index()]).map(|v| part[v.index()]).collect();
+    asked.sort_unstable();
+    asked.dedup();
+    let rays = Rays::new(points, b);
+    let answers = in_runs(asked.len(), threads, |run| {
+        let mut near = Vec::new();
+        run.map(|i| rays.winding(points[asked[i] as usize], &mut near).is_some_and(|n| n != 0)).collect()
+    });
+    let of_part = |part| asked.binary_search(&part).is_ok_and(|i| answers[i]);
+    vertices.iter().map(|v| !is_on[v.index()] && of_part(part[v.index()])).collect()
+}
+
+/// The smallest vertex of each one's part: corners of triangles that cross nothing, those on `b` apart, belong together.
+fn parts(n_points: usize, a: &[[VertexId; 3]], crossings: &[[u32; 2]], is_on: &[bool]) -> Vec<u32> {
+    let mut is_cut = vec![false; a.len()];
+    for &[i, _] in crossings {
+        if let Some(is_cut) = is_cut.get_mut(i as usize) {
+            *is_cut = true;
+        }
+    }
+    let mut above: Vec<u32> = (0..n_points as u32).collect();
+    for (triangle, _) in a.iter().zip(is_cut).filter(|(_, is_cut)| !is_cut) {
+        for k in 0..3 {
+            let edge = [triangle[k], triangle[(k + 1) % 3]];
+            if edge.iter().all(|v| !is_on[v.index()]) {
+                let [u, v] = edge.map(|v| top(&mut above, v.0));
+                above[u.max(v) as usize] = u.min(v);
+            }
+        }
+    }
+    // What is above has a smaller id, so it is done already.
+    for v in 0..n_points {
+        above[v] = above[above[v] as usize];
+    }
+    above
+}
+
+/// The vertex above all of `v`'s; halves the way on going (Tarjan and van Leeuwen 1984, *Worst-case analysis of set union algorithms*).
+fn top(above: &mut [u32], mut v: u32) -> u32 {
+    while above[v as usize] != v {
+        above[v as usize] = above[above[v as usize] as usize];
+        v = above[v as usize];
+    }
+    v
+}
+
+/// A surface made ready for rays: turned so that they run along x.
+struct Rays {
+    triangles: Vec<[Point; 3]>,
+    tree: BoxTree,
+    bounds: Bounds,
+    /// The axis that became x.
+    axis: usize,
+}
+
+impl Rays {
+    fn new(points: &[Point], b: &[[VertexId; 3]]) -> Self {
+        let sound = |t: &[Point; 3]| t.iter().all(|&p| is_finite(p));
+        let mut triangles: Vec<_> = b.iter().map(|&t| corners(points, t)).filter(sound).collect();
+        let bounds = around(triangles.as_flattened());
+        let axis = easiest_axis(&triangles, bounds);
+        triangles.iter_mut().for_each(|t| *t = t.map(|p| turned(p, axis)));
+        let boxes: Vec<_> = triangles.iter().map(|t| around(t)).collect();
+        Self { tree: BoxTree::new(&boxes), triangles, bounds: bounds.map(|p| turned(p, axis)), axis }
+    }
+
+    /// How often the surface winds round `q`; `None` on the surface.
+    fn winding(&self, q: Point, near: &mut Vec<u32>) -> Option<i64> {
+        if !is_finite(q) {
+            return Some(0);
+        }
+        let q = turned(q, self.axis);
+        self.tree.touching([q, [self.bounds[1][0].max(q[0]), q[1], q[2]]], near);
+        let mut winding = 0;
+        for &j in near.iter() {
+            let triangle = self.triangles[j as usize];
+            if triangle.iter().any(|p| p[0] <= q[0]) && segment_triangle::meet([q, q], triangle) {
+                return None;
+            }
+            winding += passage(q, triangle);
+        }
+        Some(winding)
+    }
+}
+
+/// A turn of the axes, so that handedness stays.
+fn turned(p: Point, axis: usize) -> Point {
+    [0, 1, 2].map(|k| p[(axis + k) % 3])
+}
+
+/// The axis along which a ray meets the fewest boxes: what they cover together of what the surface covers.
+fn easiest_axis(triangles: &[[Point; 3]], bounds: Bounds) -> usize {
+    let size = |[low, high]: Bounds| [0, 1, 2].map(|k| high[k] - low[k]);
+    let whole = size(bounds);
+    let covers = |axis: usize| -> f64 {
+        let [u, v] = [1, 2].map(|k| (axis + k) % 3);
+        let part = |s: Point| (s[u] / whole[u]) * (s[v] / whole[v]);
+        triangles.iter().map(|t| part(size(around(t)))).sum()
+    };
+    let covered = [0, 1, 2].map(covers);
+    (0..3).min_by(|&i, &j| covered[i].total_cmp(&covered[j])).unwrap_or(0)
+}
+
+/// What the ray from `q` along x adds to the winding number at a triangle that does not hold `q`.
+fn passage(q: Point, [a, b, c]: [Point; 3]) -> i64 {
+    let turn = turn(a, b, q);
+    if turn == 0 || turn != self::turn(b, c, q) || turn != self::turn(c, a, q) {
+        return 0;
+    }
+    // The normal's x has the sign of the turn: the triangle is ahead where `q` lies on the side of smaller x.
+    if orient3d(a, b, c, q) * turn < 0 { i64::from(turn) } else { 0 }
+}
+
+/// The sign of the turn from `a` to `b` to `q`, seen along x, with `q` moved by (e, e^2). 0 only for an edge along x. Exact.
+fn turn(a: Point, b: Point, q: Point) -> i8 {
+    let flat = |p: Point, x: f64| [x, p[1], p[2]];
+    let sign = orient3d(flat(a, 0.0), flat(b, 0.0), flat(q, 0.0), flat(a, 1.0));
+    if sign != 0 {
+        return sign;
+    }
+    // (b - a) x (q - a) grows by -(b - a)_z e + (b - a)_y e^2.
+    if a[2] != b[2] { if b[2] < a[2] { 1 } else { -1 } } else { (b[1] > a[1]) as i8 - (b[1] < a[1]) as i8 }
+}
