@@ -6,7 +6,7 @@ use super::along::Ways;
 use super::body::Prepared;
 use super::contact::Contact;
 use super::rule::Rule;
-use super::sweep::{Sweep, sweep};
+use super::sweep::{Sweep, sweep, sweep_own};
 use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::vector::{is_finite, scale, sub};
@@ -56,11 +56,18 @@ impl Contact {
                 }
                 rule.admits_all() || {
                     let corners = (rule.a.corners(&self.points, i), rule.b.corners(&self.points, j));
-                    rule.admits([i, j], &triangle_triangle::closest(corners.0, corners.1), &mut Ways::default())
+                    rule.admits(
+                        [i, j],
+                        &triangle_triangle::closest(corners.0, corners.1),
+                        &mut Ways::default(),
+                    )
                 }
             };
-            let (a, b) = (&rule.a.triangles, &rule.b.triangles);
-            let found = sweep(&self.points, velocity, [a, b], horizon, threads, admit);
+            let (points, a, b) = (&self.points, &rule.a.triangles, &rule.b.triangles);
+            let found = match ids[0] == ids[1] {
+                true => sweep_own(points, velocity, a, horizon, admit, threads),
+                false => sweep(points, velocity, a, b, horizon, admit, threads),
+            };
             ahead.take(ids, bodies, found);
         }
         Ok(ahead)
@@ -81,8 +88,12 @@ impl Contact {
 
     fn check_velocity(&self, velocity: &[Point], horizon: f64) -> Result<()> {
         if velocity.len() != self.points.len() {
-            return Err(Error::input(format!("{} velocities, expected {}", velocity.len(), self.points.len()))
-                .remedy("give one for each point"));
+            return Err(Error::input(format!(
+                "{} velocities, expected {}",
+                velocity.len(),
+                self.points.len()
+            ))
+            .remedy("give one for each point"));
         }
         let mut used = self.bodies.iter().flat_map(|body| &body.vertices);
         if let Some(v) = used.find(|v| !is_finite(velocity[v.index()])) {
@@ -97,7 +108,12 @@ impl Contact {
 
 impl Ahead {
     fn take(&mut self, ids: [u32; 2], bodies: [&Prepared; 2], found: Sweep) {
-        let first = found.first.map(|f| FirstContact { time: f.time, bodies: ids, triangles: f.triangles, place: f.place });
+        let first = found.first.map(|f| FirstContact {
+            time: f.time,
+            bodies: ids,
+            triangles: f.triangles,
+            place: f.place,
+        });
         let is_earlier = |f: &FirstContact| self.first.is_none_or(|known| f.time < known.time);
         if let Some(first) = first.filter(is_earlier) {
             self.first = Some(first);

@@ -13,7 +13,10 @@ pub(super) struct Along {
 }
 
 impl Along {
-    pub(super) fn new<'a>(n_points: usize, triangles: impl Iterator<Item = &'a [VertexId; 3]> + Clone) -> Self {
+    pub(super) fn new<'a>(
+        n_points: usize,
+        triangles: impl Iterator<Item = &'a [VertexId; 3]> + Clone,
+    ) -> Self {
         let neighbors = Csr::from_pairs(n_points, || {
             triangles.clone().flat_map(|&[a, b, c]| {
                 [(a, b), (b, c), (c, a)].into_iter().flat_map(|(x, y)| [(x.index(), y.0), (y.index(), x.0)])

@@ -45,8 +45,9 @@ impl Prepared {
     pub(super) fn new(body: Body, points: &[Point]) -> Result<Self> {
         let Body { name, triangles, is_room } = body;
         if triangles.is_empty() {
-            return Err(Error::input(format!("the surface {name} has no triangles"))
-                .remedy("contact is measured between surfaces: give one with triangles or other surface cells"));
+            return Err(Error::input(format!("the surface {name} has no triangles")).remedy(
+                "contact is measured between surfaces: give one with triangles or other surface cells",
+            ));
         }
         if let Some((i, v)) = (0..).zip(triangles.as_flattened()).find(|(_, v)| v.index() >= points.len()) {
             let (i, n): (usize, usize) = (i, points.len());
@@ -64,8 +65,17 @@ impl Prepared {
         });
         let is_closed = super::inside::is_closed(&triangles);
         let tree = NearestTriangle::new(points, &triangles);
-        let mut body =
-            Self { name, triangles, is_closed, is_room, vertices, stars, free: Free::Both, normals: Vec::new(), tree };
+        let mut body = Self {
+            name,
+            triangles,
+            is_closed,
+            is_room,
+            vertices,
+            stars,
+            free: Free::Both,
+            normals: Vec::new(),
+            tree,
+        };
         body.free = body.free_side(points);
         Ok(body)
     }
@@ -140,8 +150,10 @@ impl Prepared {
 fn check_finite(name: &str, vertices: &[VertexId], points: &[Point]) -> Result<()> {
     match vertices.iter().find(|v| !is_finite(points[v.index()])) {
         None => Ok(()),
-        Some(v) => Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
-            .at(format!("surface {name}, point {v}"))
-            .remedy("remove the point and its cells, or give it a place")),
+        Some(v) => {
+            Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
+                .at(format!("surface {name}, point {v}"))
+                .remedy("remove the point and its cells, or give it a place"))
+        }
     }
 }

@@ -35,7 +35,9 @@ pub(super) fn may_face(points: &[Point], [a, b]: [&Prepared; 2], [i, j]: [u32; 2
         _ => turn < -LEAST_TURN,
     };
     let (corners_a, corners_b) = (a.corners(points, i), b.corners(points, j));
-    !is_alike && !is_behind(a.free, normal_a, corners_a[0], corners_b) && !is_behind(b.free, normal_b, corners_b[0], corners_a)
+    !is_alike
+        && !is_behind(a.free, normal_a, corners_a[0], corners_b)
+        && !is_behind(b.free, normal_b, corners_b[0], corners_a)
 }
 
 /// Whether all corners are on the side of a plane that is not free.

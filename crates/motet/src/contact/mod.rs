@@ -49,4 +49,7 @@ pub use ahead::{Ahead, FirstContact};
 pub use answer::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
 pub use body::Body;
 pub use contact::Contact;
+pub use crossing::{crossings, own_crossings};
+pub use inside::{inside, is_closed};
 pub use options::Options;
+pub use sweep::{Sweep, Touch, sweep, sweep_own};

@@ -103,7 +103,12 @@ impl Scene<'_> {
 
     /// The same by a rule. What was nearest at the last step, or to the vertex before, bounds the search: what is farther has not to
     /// be held against the rule.
-    fn admitted_of_vertices(&self, rule: &Rule<'_>, guesses: &[u32], threads: &Threads) -> Vec<Option<Closest>> {
+    fn admitted_of_vertices(
+        &self,
+        rule: &Rule<'_>,
+        guesses: &[u32],
+        threads: &Threads,
+    ) -> Vec<Option<Closest>> {
         let within = self.options.within;
         in_runs(rule.a.vertices.len(), threads, |run| {
             let (mut ways, mut last) = (Ways::default(), u32::MAX);
@@ -194,7 +199,10 @@ impl Side {
             let way = sub(found.point, scene.points[own.vertices[i].index()]);
             gaps.gap[i] = gap;
             gaps.normal[i] = match gap == 0.0 {
-                true => scale(other.normal(scene.points, triangle), if other.free == Free::Behind { 1.0 } else { -1.0 }),
+                true => scale(
+                    other.normal(scene.points, triangle),
+                    if other.free == Free::Behind { 1.0 } else { -1.0 },
+                ),
                 false => scale(way, 1.0 / gap),
             };
             gaps.closest_body[i] = scene.ids[1 - self.own];

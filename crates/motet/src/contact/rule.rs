@@ -38,7 +38,11 @@ impl<'a> Rule<'a> {
     }
 
     /// Tells of triangles of the second body whether they count as near to one vertex of the first.
-    pub(super) fn at_vertex(self, place: usize, ways: &mut Ways) -> impl FnMut(u32, &spatial::Closest) -> bool {
+    pub(super) fn at_vertex(
+        self,
+        place: usize,
+        ways: &mut Ways,
+    ) -> impl FnMut(u32, &spatial::Closest) -> bool {
         let vertex = self.a.vertices[place];
         let start = self.points[vertex.index()];
         move |j, found| {

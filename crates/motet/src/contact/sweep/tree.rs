@@ -1,0 +1,148 @@
+//! A tree of boxes whose sides move: which of them touch a moving box, and from when on.
+//!
+//! The side of a box moves with the least or greatest velocity of what is within, so the box stays around it. Other than the box around a
+//! whole motion, it does not grow by a motion that all have in common, and time needs no end.
+
+use crate::base::Point;
+use crate::geometry::vector::{add, scale, sub};
+use crate::spatial::Bounds;
+
+/// Things in a leaf.
+const LEAF: usize = 2;
+
+/// Quotients of differences are right to 3 roundings; the rest is for what follows.
+const ROUNDING: f64 = 1e-15;
+
+/// Where a box is at time 0 and how its corners move.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MovingBox {
+    place: Bounds,
+    velocity: Bounds,
+}
+
+impl MovingBox {
+    /// Around points; all finite.
+    pub(super) fn new<const N: usize>(points: [Point; N], velocities: [Point; N]) -> Self {
+        Self { place: around(&points), velocity: around(&velocities) }
+    }
+
+    fn joined(self, other: Self) -> Self {
+        let join = |[a, b]: Bounds, [c, d]: Bounds| around(&[a, b, c, d]);
+        Self { place: join(self.place, other.place), velocity: join(self.velocity, other.velocity) }
+    }
+
+    fn centre(&self, time: f64) -> Point {
+        let middle = |[low, high]: Bounds| add(scale(low, 0.5), scale(high, 0.5));
+        add(middle(self.place), scale(middle(self.velocity), time))
+    }
+
+    /// When the boxes touch first, from 0 to the horizon; never later than they do.
+    #[inline]
+    fn touches(&self, other: &Self, horizon: f64) -> Option<f64> {
+        let (mut from, mut to) = (0.0, horizon);
+        for (a, b) in [(self, other), (other, self)] {
+            for k in 0..3 {
+                // They are apart while the low side of one is above the high side of the other.
+                let apart = a.place[0][k] - b.place[1][k];
+                let closing = b.velocity[1][k] - a.velocity[0][k];
+                if apart > 0.0 {
+                    // Infinite or negative (which is never) where they do not come closer.
+                    let when = if closing > 0.0 { apart / closing } else { f64::INFINITY };
+                    from = if when > from { when } else { from };
+                } else if closing < 0.0 {
+                    let when = apart / closing;
+                    to = if when < to { when } else { to };
+                }
+            }
+        }
+        let from = from * (1.0 - ROUNDING);
+        (from <= to * (1.0 + ROUNDING) && from < f64::INFINITY && from <= horizon).then_some(from)
+    }
+}
+
+fn around(points: &[Point]) -> Bounds {
+    points.iter().fold([points[0]; 2], |[low, high], p| {
+        [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
+    })
+}
+
+/// Moving boxes within moving boxes.
+#[derive(Debug, Default)]
+pub(super) struct MovingTree {
+    nodes: Vec<Node>,
+    /// In the order of the leaves, with their ids.
+    boxes: Vec<(MovingBox, u32)>,
+    horizon: f64,
+}
+
+/// A box with either two subtrees (the left one follows at once) or a run of boxes.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    around: MovingBox,
+    /// The right subtree, or the first box.
+    start: u32,
+    /// How many boxes; 0 with subtrees.
+    count: u32,
+}
+
+impl MovingTree {
+    /// Boxes are known by their places; `None` is left out. Neighbours are those that are near each other halfway to the horizon, at the start if it is infinite.
+    pub(super) fn new(boxes: Vec<Option<MovingBox>>, horizon: f64) -> Self {
+        let mut boxes: Vec<_> = boxes.into_iter().zip(0u32..).filter_map(|(b, id)| Some((b?, id))).collect();
+        let mut tree = Self { nodes: Vec::with_capacity(boxes.len()), boxes: Vec::new(), horizon };
+        let time = if horizon.is_finite() { 0.5 * horizon } else { 0.0 };
+        if !boxes.is_empty() {
+            tree.build(&mut boxes, 0, time);
+        }
+        tree.boxes = boxes;
+        tree
+    }
+
+    /// Sorted by the longest side of the box of centres, halved until few are left.
+    fn build(&mut self, boxes: &mut [(MovingBox, u32)], start: u32, time: f64) {
+        let whole = boxes[1..].iter().fold(boxes[0].0, |whole, b| whole.joined(b.0));
+        let place = self.nodes.len();
+        self.nodes.push(Node { around: whole, start, count: boxes.len() as u32 });
+        if boxes.len() <= LEAF {
+            return;
+        }
+        let first = boxes[0].0.centre(time);
+        let [low, high] = boxes.iter().fold([first; 2], |[low, high], b| {
+            let p = b.0.centre(time);
+            [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
+        });
+        let size = sub(high, low);
+        let axis = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
+        let key = |b: &(MovingBox, u32)| b.0.centre(time)[axis];
+        let middle = boxes.len() / 2;
+        boxes.select_nth_unstable_by(middle, |x, y| key(x).total_cmp(&key(y)).then(x.1.cmp(&y.1)));
+        let (left, right) = boxes.split_at_mut(middle);
+        self.build(left, start, time);
+        (self.nodes[place].start, self.nodes[place].count) = (self.nodes.len() as u32, 0);
+        self.build(right, start + middle as u32, time);
+    }
+
+    /// Puts all boxes that touch `asked` before the horizon into `found`, in place of what it held: from when on (or sooner), and their ids.
+    pub(super) fn touching(&self, asked: &Option<MovingBox>, found: &mut Vec<(f64, u32)>) {
+        found.clear();
+        let Some(asked) = asked else { return };
+        // Halving keeps the depth below 32, and each level leaves one box behind.
+        let mut open = [0u32; 33];
+        let mut n_open = usize::from(!self.nodes.is_empty());
+        while n_open > 0 {
+            n_open -= 1;
+            let node = &self.nodes[open[n_open] as usize];
+            if node.around.touches(asked, self.horizon).is_none() {
+                continue;
+            }
+            if node.count == 0 {
+                (open[n_open], open[n_open + 1]) = (node.start, open[n_open] + 1);
+                n_open += 2;
+                continue;
+            }
+            let run = node.start as usize..(node.start + node.count) as usize;
+            let touching = self.boxes[run].iter();
+            found.extend(touching.filter_map(|(b, id)| Some((b.touches(asked, self.horizon)?, *id))));
+        }
+    }
+}
