@@ -1,7 +1,7 @@
 //! The handle: surfaces prepared once, measured at every step.
 
 use super::along::Along;
-use super::answer::{BodyGaps, Gaps, PairGap, Warned};
+use super::answer::{BodyGaps, Gaps, Nearest, Warned};
 use super::body::{Body, Prepared};
 use super::options::Options;
 use super::pair::{self, Guesses};
@@ -97,24 +97,31 @@ impl Contact {
     pub fn measure(&mut self, threads: &Threads) -> Gaps {
         let new = |body: &Prepared| BodyGaps::new(&body.vertices, &self.points);
         let mut bodies: Vec<BodyGaps> = self.bodies.iter().map(new).collect();
-        let mut pairs: Vec<PairGap> = Vec::new();
-        let mut guesses = std::mem::take(&mut self.guesses);
-        for ((ids, along, options), guesses) in self.asked().zip(&mut guesses) {
-            let scene = pair::Scene {
-                points: &self.points,
-                bodies: ids.map(|id| &self.bodies[id as usize]),
-                ids,
-                along,
-                options: &options,
-            };
+        let pairs = self.for_each_pair(|scene, guesses| {
             let (gap, sides) = scene.measure(guesses, threads);
-            for (side, id) in sides.into_iter().zip(ids) {
-                side.put(&scene, &mut bodies[id as usize]);
+            for (side, id) in sides.into_iter().zip(scene.ids) {
+                side.put(scene, &mut bodies[id as usize]);
             }
-            pairs.push(gap);
-        }
-        self.guesses = guesses;
+            gap
+        });
         Gaps { bodies, pairs }
+    }
+
+    /// The nearest places of every pair of bodies, and nothing else: what a solver asks for at every iteration. `None` where
+    /// nothing is within reach.
+    pub fn nearest(&mut self) -> Vec<([u32; 2], Option<Nearest>)> {
+        self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_alone(guesses)))
+    }
+
+    fn for_each_pair<T>(&mut self, mut of: impl FnMut(&pair::Scene<'_>, &mut Guesses) -> T) -> Vec<T> {
+        let mut guesses = std::mem::take(&mut self.guesses);
+        let scenes = self.asked().zip(&mut guesses).map(|((ids, along, options), guesses)| {
+            let bodies = ids.map(|id| &self.bodies[id as usize]);
+            of(&pair::Scene { points: &self.points, bodies, ids, along, options }, guesses)
+        });
+        let answers = scenes.collect();
+        self.guesses = guesses;
+        answers
     }
 
     /// Groups of connected vertices that warn, the nearest first.

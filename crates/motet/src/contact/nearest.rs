@@ -39,6 +39,15 @@ pub(super) fn nearest(rule: &Rule<'_>, start: f64) -> Option<Nearest> {
     })
 }
 
+/// The squared distance of two triangles, where it counts.
+pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64> {
+    if !rule.may_admit([i, j]) {
+        return None;
+    }
+    let found = triangle_triangle::closest(rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
+    rule.admits([i, j], &found, &mut Ways::default()).then_some(found.distance_squared)
+}
+
 /// Marks the triangles of both surfaces that are nearer to the other than `warn`.
 pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, [near_a, near_b]: [&mut [bool]; 2]) {
     let is_own = std::ptr::eq(rule.a, rule.b);

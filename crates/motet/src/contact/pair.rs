@@ -5,7 +5,7 @@ use super::answer::{BodyGaps, Nearest, PairGap};
 use super::body::{Free, Prepared};
 use super::crossing;
 use super::inside::inside;
-use super::nearest::{mark_nearer, nearest};
+use super::nearest::{distance_squared, mark_nearer, nearest};
 use super::options::Options;
 use super::rule::Rule;
 use super::runs::in_runs;
@@ -13,9 +13,14 @@ use crate::base::{Point, Threads};
 use crate::geometry::vector::{scale, sub};
 use crate::spatial::Closest;
 
-/// The triangles that were nearest at the last step, to each vertex of the first body and of the second.
+/// What was nearest at the last step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Guesses([Vec<u32>; 2]);
+pub(super) struct Guesses {
+    /// The triangles: to each vertex of the first body and of the second.
+    of_vertices: [Vec<u32>; 2],
+    /// The pair of triangles.
+    pair: Option<[u32; 2]>,
+}
 
 /// A bound by this much above a distance finds it again.
 const SLACK: f64 = 1.0 + 1e-9;
@@ -31,7 +36,7 @@ pub(super) struct Scene<'a> {
     pub(super) bodies: [&'a Prepared; 2],
     pub(super) ids: [u32; 2],
     pub(super) along: Option<&'a Along>,
-    pub(super) options: &'a Options,
+    pub(super) options: Options,
 }
 
 /// What one body has of the other.
@@ -51,19 +56,18 @@ impl Scene<'_> {
     }
 
     fn rule(&self, own: usize) -> Rule<'_> {
-        Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.along, self.options)
+        Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.along, &self.options)
     }
 
     /// Measures the pair; the second side is empty for a body with itself.
     pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, [Side; 2]) {
         let found = [0, 1].map(|own| match self.is_own() && own == 1 {
             true => Vec::new(),
-            false => self.of_vertices(own, &mut guesses.0[own], threads),
+            false => self.of_vertices(own, &mut guesses.of_vertices[own], threads),
         });
-        let limit = self.options.within * self.options.within;
         let all = found.iter().flatten().flatten();
-        let start = all.map(|closest| closest.distance_squared).fold(limit, f64::min);
-        let nearest = nearest(&self.rule(0), start);
+        let start = all.map(|closest| closest.distance_squared).fold(f64::INFINITY, f64::min);
+        let nearest = self.nearest(start, guesses);
         let crossings = self.crossings(nearest.as_ref(), threads);
         let mut sides = [0, 1].map(|own| self.side(own, &crossings, threads));
         for (side, found) in sides.iter_mut().zip(found) {
@@ -81,6 +85,30 @@ impl Scene<'_> {
             n_warned: sides.each_ref().map(|side| count(&side.is_near)),
         };
         (gap, sides)
+    }
+
+    /// The nearest places and nothing else. A bound comes from the pair that was nearest last time, at first from
+    /// some vertex.
+    pub(super) fn nearest_alone(&self, guesses: &mut Guesses) -> Option<Nearest> {
+        let rule = self.rule(0);
+        let place = || self.points[rule.a.vertices[0].index()];
+        let start = match guesses.pair {
+            None if rule.admits_all() => {
+                rule.b.tree.closest(place()).map_or(f64::INFINITY, |c| c.distance_squared)
+            }
+            _ => f64::INFINITY,
+        };
+        self.nearest(start, guesses)
+    }
+
+    /// The nearest places within the root of `start` and within reach.
+    fn nearest(&self, start: f64, guesses: &mut Guesses) -> Option<Nearest> {
+        let rule = self.rule(0);
+        let limit = self.options.within * self.options.within;
+        let last = guesses.pair.and_then(|pair| distance_squared(&rule, pair));
+        let found = nearest(&rule, start.min(last.unwrap_or(limit)).min(limit));
+        guesses.pair = found.map(|found| found.triangles);
+        found
     }
 
     /// The nearest triangle of the other body for each vertex.
