@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use motet::base::{CellId, Point, VertexId};
 use motet::contact::Body;
+use motet::geometry::vector::is_finite;
 use motet::mesh::Surface;
 use motet::{Error, Mesh, Result, io};
 
@@ -124,6 +125,15 @@ impl Frame {
                 "has no surface: neither surface cells nor volume cells with a boundary",
             )
             .remedy("give triangles or other surface cells"));
+        }
+        let is_astray = |v: &&VertexId| !is_finite(mesh.points[v.index()]);
+        if let Some(v) = surface.triangles.as_flattened().iter().find(is_astray) {
+            return Err(Error::input(format!(
+                "a coordinate that is no finite number: {:?}",
+                mesh.points[v.index()]
+            ))
+            .at(format!("point {v}"))
+            .remedy("remove the point and its cells, or give it a place"));
         }
         let shift = VertexId::new(self.points.len());
         let mut add = |name: String, is_of: &dyn Fn(usize) -> bool| {
