@@ -325,9 +325,7 @@ fn a_surface_meets_itself_as_two_would() {
 #[ignore = "a measurement"]
 fn how_long_it_takes() {
     let n = 65;
-    for (horizon, spread) in
-        [(0.05, 0.1), (0.2, 0.1), (1.0, 0.1), (0.2, 0.0), (1.0, 0.0), (f64::INFINITY, 0.0)]
-    {
+    for (horizon, spread) in [(0.05, 0.1), (0.2, 0.1), (0.2, 0.0), (1.0, 0.0), (f64::INFINITY, 0.0)] {
         let (points, mut velocity, [a, b]) = balls(n, 1);
         let half = points.len() / 2;
         for (k, v) in velocity.iter_mut().enumerate() {
