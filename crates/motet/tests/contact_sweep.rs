@@ -113,6 +113,11 @@ fn two_triangles_touch_when_the_roots_of_the_cubics_say() {
         if expected.is_finite() {
             n_touch += 1;
             early.push(1.0 - found / expected);
+            if found < 0.999 * expected {
+                let [a, b] = at(x, v, found);
+                let distance = triangle_triangle::closest(a, b).distance();
+                println!("case {k}: {found} for {expected}, where the distance is {distance:e} {x:?} {v:?}");
+            }
         } else if found.is_infinite() {
             n_miss += 1;
         } else {
@@ -224,7 +229,7 @@ fn plain_motions_have_plain_times() {
     // Past each other by a hair, and onto each other by one.
     let past = |z: f64| [[-2.0, 0.0, z], [-2.0, 1.0, z], [-3.0, 0.5, z + 1.0]];
     assert_eq!(time([lower, past(1e-5)], [still, all([1.0, 0.0, 0.0])], 9.0), f64::INFINITY);
-    is(time([lower, past(-1e-5)], [still, all([1.0, 0.0, 0.0])], 9.0), 2.0);
+    is(time([lower, past(-1e-5)], [still, all([1.0, 0.0, 0.0])], 9.0), 2.00001);
     // Points and segments.
     is(time([lower, all([0.2, 0.2, 1.0])], [still, all([0.0, 0.0, -1.0])], f64::INFINITY), 1.0);
     is(time([all([0.0; 3]), all([0.0, 0.0, 1.0])], [still, all([0.0, 0.0, -1.0])], f64::INFINITY), 1.0);
@@ -320,9 +325,7 @@ fn a_surface_meets_itself_as_two_would() {
 #[ignore = "a measurement"]
 fn how_long_it_takes() {
     let n = 65;
-    for (horizon, spread) in
-        [(0.05, 0.1), (0.2, 0.1), (1.0, 0.1), (0.2, 0.0), (1.0, 0.0), (f64::INFINITY, 0.0)]
-    {
+    for (horizon, spread) in [(0.05, 0.1), (0.2, 0.1), (0.2, 0.0), (1.0, 0.0), (f64::INFINITY, 0.0)] {
         let (points, mut velocity, [a, b]) = balls(n, 1);
         let half = points.len() / 2;
         for (k, v) in velocity.iter_mut().enumerate() {

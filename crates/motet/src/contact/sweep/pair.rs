@@ -23,8 +23,9 @@ const ROUNDING: f64 = 1e-14;
 /// ends as the square of the time left.
 const ENOUGH: f64 = 1e-6;
 
-/// Most pairs that touch end in 3 to 10 steps.
-const MOST_STEPS: usize = 100;
+/// Two steps a pair are the mean. Where triangles turn fast and close slowly, each step takes the same small part of what is left: 100 steps
+/// were too few for 2 of 13,000 random pairs (27 of 100 too early at the worst), 1000 for none (4e-5 too early).
+const MOST_STEPS: usize = 1000;
 
 /// Two triangles, relative to the first vertex of the first.
 pub(super) struct Pair {
