@@ -20,7 +20,7 @@ fn between(points: &[Point], bodies: &[Triangles]) -> Between {
 }
 
 fn sided(points: &[Point], bodies: &[Triangles], sides: &[Side]) -> Between {
-    let options = BetweenOptions { sides: sides.to_vec() };
+    let options = BetweenOptions { sides: sides.to_vec(), ..BetweenOptions::default() };
     Between::new(points, bodies, &options, &Threads::single()).unwrap()
 }
 
@@ -109,7 +109,7 @@ fn soup(seed: u64, unit: f64) -> (Vec<Point>, Vec<Triangles>) {
     let mut numbers = Numbers(seed);
     let n = 12 + numbers.below(40);
     let on_grid = numbers.below(3) == 0;
-    let mut coordinate = |numbers: &mut Numbers| {
+    let coordinate = |numbers: &mut Numbers| {
         if on_grid { numbers.below(4) as f64 / 3.0 } else { numbers.unit() }
     };
     let points: Vec<Point> = (0..n).map(|_| [(); 3].map(|()| unit * coordinate(&mut numbers))).collect();
@@ -187,6 +187,12 @@ fn no_gap_is_smaller_than_the_distance_and_the_nearest_vertices_are() {
             assert!(*gap >= exact - 1e-14 * unit, "seed {seed}, vertex {v}: {gap} {exact}");
             assert_eq!(*gap < f64::INFINITY, found.closest[v] != VertexId::NONE);
         }
+        let options = BetweenOptions { stars: true, ..BetweenOptions::default() };
+        let stars = Between::new(&points, &bodies, &options, &Threads::single()).unwrap();
+        for (v, (gap, exact)) in stars.gap.iter().zip(&exact).enumerate() {
+            assert!(*gap >= exact - 1e-14 * unit && *gap <= found.gap[v], "seed {seed}, vertex {v}");
+        }
+        assert!(stars.least.unwrap().distance <= found.least.unwrap().distance);
         let pair = found.nearest_vertices.unwrap();
         assert_eq!(pair.distance, nearest_vertices(&points, &bodies), "seed {seed}");
         let [v, w] = pair.vertices;
@@ -354,7 +360,7 @@ fn updates_are_bounds_and_the_same_where_nothing_moved() {
 #[test]
 fn threads_change_nothing() {
     let (points, bodies) = joined(&[sphere(4, [0.0; 3], 1.0), sphere(4, [2.05, 0.1, 0.2], 1.0)]);
-    let options = BetweenOptions { sides: vec![Side::Outside; 2] };
+    let options = BetweenOptions { sides: vec![Side::Outside; 2], stars: true };
     let one = Between::new(&points, &bodies, &options, &Threads::single()).unwrap();
     let three = Between::new(&points, &bodies, &options, &Threads::new(3).unwrap()).unwrap();
     assert_eq!((&one.tets, &one.gap, &one.closest), (&three.tets, &three.gap, &three.closest));

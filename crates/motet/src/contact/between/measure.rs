@@ -58,7 +58,7 @@ impl Part {
     }
 
     /// The places of which it has a vertex.
-    fn has(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+    pub(super) fn has(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..4).filter(|&i| self.sites[i] != NO_SITE)
     }
 

@@ -13,6 +13,7 @@
 //! triangles of the surface are left out. How much is lost is measured by `examples/contact_delaunay.rs`. The exact answer takes a
 //! tree of boxes; this one gives what a tree does not: the tets of the gap, and a graph that moves along.
 
+mod gaps;
 mod measure;
 pub mod paper;
 mod side;
@@ -22,9 +23,6 @@ mod sites;
 pub use side::Side;
 
 use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
-use crate::geometry::vector::{distance, sub};
-use measure::{Pair, Part, nearest};
-use side::starts_on;
 use sites::{NO_SITE, Sites};
 
 /// What a tet is by the bodies that its vertices belong to.
@@ -90,6 +88,9 @@ pub struct BetweenOptions {
     /// points counts only if the way between them starts on that side at both ends, as told by the triangles there: so nothing
     /// is measured through the wall of a thin body.
     pub sides: Vec<Side>,
+    /// Whether a vertex is also measured to all triangles round the vertices that share a tet with it: nearer to the truth, and slower; see
+    /// the table that `examples/contact_delaunay.rs` prints. Default: no, as in the text of 2008.
+    pub stars: bool,
 }
 
 /// The gaps between bodies, by the Delaunay tets of their vertices.
@@ -109,6 +110,7 @@ pub struct Between {
     /// How many tets have all vertices of one body.
     pub n_of_one_body: usize,
     sides: Vec<Side>,
+    stars: bool,
     sites: Sites,
     /// The gap tets as sites, and the gap tets at each site.
     simplices: Vec<[u32; 4]>,
@@ -158,6 +160,7 @@ impl Between {
             nearest_vertices: None,
             n_of_one_body: n_tets - kinds.len(),
             sides: sides.collect(),
+            stars: options.stars,
             sites,
             simplices,
             at_site,
@@ -186,126 +189,5 @@ impl Between {
     /// How many bodies there are.
     pub fn n_bodies(&self) -> usize {
         self.sites.n_bodies()
-    }
-
-    fn measure(&mut self, points: &[Point], threads: &Threads) {
-        let measured = threads.map(self.simplices.len(), |t| self.tet(self.simplices[t], points));
-        let vertices =
-            threads.map(self.sites.vertices.len(), |i| self.vertex(self.sites.vertices[i], points));
-        (self.least, self.nearest_vertices) = (None, None);
-        for (tet, (least, pair)) in self.tets.iter_mut().zip(measured) {
-            (tet.bodies, tet.distance) = least.map_or(([0; 2], f64::INFINITY), |l| (l.bodies, l.distance));
-            keep_nearer(&mut self.least, least, |l| l.distance);
-            keep_nearer(&mut self.nearest_vertices, pair, |p| p.distance);
-        }
-        self.gap = vec![f64::INFINITY; points.len()];
-        self.closest = vec![VertexId::NONE; points.len()];
-        for (&(body, v, _), (gap, other)) in self.sites.vertices.iter().zip(vertices) {
-            if gap < self.gap[v.index()] {
-                (self.gap[v.index()], self.closest[v.index()]) = (gap, other.1);
-            }
-            // Bodies that touch where no tet is have no other witness.
-            if other.1 != VertexId::NONE && self.simplices.is_empty() {
-                let own = (body, v);
-                let [first, second] = if own.0 < other.0 { [own, other] } else { [other, own] };
-                let bodies = [first.0, second.0];
-                let pair = VertexPair { distance: gap, bodies, vertices: [first.1, second.1] };
-                let least = Least { distance: gap, bodies, points: pair.vertices.map(|v| points[v.index()]) };
-                keep_nearer(&mut self.least, Some(least), |l| l.distance);
-                keep_nearer(&mut self.nearest_vertices, Some(pair), |p| p.distance);
-            }
-        }
-    }
-
-    /// Where two bodies come nearest in a tet, and the nearest two vertices of different bodies.
-    fn tet(&self, tet: [u32; 4], points: &[Point]) -> (Option<Least>, Option<VertexPair>) {
-        let parts = self.parts(tet, points);
-        let (mut least, mut nearest_vertices) = (None, None);
-        for (i, b) in parts.iter().enumerate() {
-            for a in &parts[..i] {
-                let pair = nearest(a, b, &self.sites);
-                let bodies = [a.body, b.body];
-                if self.counts(a, b, &pair, points) {
-                    let found = Least {
-                        distance: pair.distance_squared.sqrt(),
-                        bodies,
-                        points: [a.at(&pair.on_a), b.at(&pair.on_b)],
-                    };
-                    keep_nearer(&mut least, Some(found), |l| l.distance);
-                }
-                let real = |part: &Part| {
-                    part.vertices.into_iter().filter(|&v| v != VertexId::NONE).collect::<Vec<_>>()
-                };
-                for &v in &real(a) {
-                    for &w in &real(b) {
-                        let distance = distance(points[v.index()], points[w.index()]);
-                        let found = VertexPair { distance, bodies, vertices: [v, w] };
-                        keep_nearer(&mut nearest_vertices, Some(found), |p| p.distance);
-                    }
-                }
-            }
-        }
-        (least, nearest_vertices)
-    }
-
-    /// The gap of a vertex of a body, and the nearest vertex there with its body.
-    fn vertex(&self, (body, v, site): (u32, VertexId, u32), points: &[Point]) -> (f64, (u32, VertexId)) {
-        let first = self.sites.vertex(site, body);
-        let mut best = (f64::INFINITY, (u32::MAX, VertexId::NONE));
-        for &owner in self.sites.owners(site).iter().filter(|owner| owner.0 != body) {
-            let between = distance(points[first.index()], points[owner.1.index()]);
-            if between < best.0 {
-                best = (between, owner);
-            }
-        }
-        for &t in self.at_site.list(site as usize) {
-            let tet = self.simplices[t as usize];
-            let parts = self.parts(tet, points);
-            let place = tet.iter().position(|&s| s == site).unwrap_or(0);
-            let Some(own) = parts.iter().find(|part| part.body == body).map(|part| part.vertex(place)) else {
-                continue;
-            };
-            for other in parts.iter().filter(|part| part.body != body) {
-                let pair = nearest(&own, other, &self.sites);
-                let gap = pair.distance_squared.sqrt();
-                if gap < best.0 && self.counts(&own, other, &pair, points) {
-                    let heaviest = (1..4).fold(0, |m, i| if pair.on_b[i] > pair.on_b[m] { i } else { m });
-                    best = (gap, (other.body, other.vertices[heaviest]));
-                }
-            }
-        }
-        // Vertices of one body in one place are measured once; should they part, this stays a bound.
-        (best.0 + distance(points[v.index()], points[first.index()]), best.1)
-    }
-
-    /// What each body has of a tet, by body.
-    fn parts(&self, tet: [u32; 4], points: &[Point]) -> Vec<Part> {
-        let mut bodies: Vec<u32> = Vec::with_capacity(4);
-        for site in tet {
-            bodies.extend(self.sites.owners(site).iter().map(|owner| owner.0));
-        }
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies.into_iter().map(|body| Part::new(tet, body, &self.sites, points)).collect()
-    }
-
-    /// Whether the way between two points is on the side that counts, at both ends.
-    fn counts(&self, a: &Part, b: &Part, pair: &Pair, points: &[Point]) -> bool {
-        let [on_a, on_b] = [a, b].map(|part| self.sides[part.body as usize]);
-        if [on_a, on_b] == [Side::Both; 2] {
-            return true;
-        }
-        let way = sub(b.at(&pair.on_b), a.at(&pair.on_a));
-        starts_on(on_a, a, &pair.on_a, way, &self.sites, points)
-            && starts_on(on_b, b, &pair.on_b, sub([0.0; 3], way), &self.sites, points)
-    }
-}
-
-/// Takes the new one where it is nearer; of two as near the first stays.
-fn keep_nearer<T>(best: &mut Option<T>, new: Option<T>, distance: impl Fn(&T) -> f64) {
-    if let Some(new) = new
-        && best.as_ref().is_none_or(|best| distance(&new) < distance(best))
-    {
-        *best = Some(new);
     }
 }

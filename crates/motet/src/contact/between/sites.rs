@@ -123,11 +123,22 @@ impl Sites {
     pub(super) fn star_of<'a>(&'a self, body: u32, sites: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
         let lists = sites.iter().map(|&s| self.star.list(s as usize));
         let shortest = lists.min_by_key(|list| list.len()).unwrap_or(&[]);
-        let start = if body == 0 { 0 } else { self.ends[body as usize - 1] };
-        let range = start..self.ends[body as usize];
+        let range = self.of_body(body);
         let holds =
             move |t: &u32| range.contains(t) && sites.iter().all(|s| self.triangles[*t as usize].contains(s));
         shortest.iter().copied().filter(holds).map(|t| t as usize)
+    }
+
+    /// The triangles of a body at a site.
+    pub(super) fn star(&self, body: u32, site: u32) -> impl Iterator<Item = usize> + '_ {
+        let range = self.of_body(body);
+        let list = self.star.list(site as usize).iter().filter(move |t| range.contains(t));
+        list.map(|&t| t as usize)
+    }
+
+    fn of_body(&self, body: u32) -> std::ops::Range<u32> {
+        let start = if body == 0 { 0 } else { self.ends[body as usize - 1] };
+        start..self.ends[body as usize]
     }
 
     /// Whether these sites are a vertex, an edge or a triangle of the surface of a body.
