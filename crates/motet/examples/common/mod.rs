@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 use motet::base::{Point, VertexId};
 
 /// Points, and triangles over them.
-pub type Shape = (Vec<Point>, Vec<[VertexId; 3]>);
+pub(crate) type Shape = (Vec<Point>, Vec<[VertexId; 3]>);
 
 /// A tube of radius 1 and length 8 with bulges: 99,200 triangles.
-pub fn tube() -> Shape {
+pub(crate) fn tube() -> Shape {
     let (around, along) = (400, 125);
     let mut points = Vec::new();
     for i in 0..around {
@@ -31,7 +31,7 @@ pub fn tube() -> Shape {
 }
 
 /// A lattice of two families of helices between radii 0.91 and 0.95, closed: 27,864 vertices.
-pub fn lattice() -> Shape {
+pub(crate) fn lattice() -> Shape {
     let (around, along) = (168usize, 114usize);
     let is_strut = |x: f64| (x.rem_euclid(1.0) - 0.5).abs() < 0.14;
     let keep = |i: usize, j: usize| {

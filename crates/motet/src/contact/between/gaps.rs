@@ -17,12 +17,23 @@ struct Gap {
     vertex: VertexId,
 }
 
+/// What a tet says.
+struct Measured {
+    /// Where two bodies come nearest, on the sides that count.
+    least: Option<Least>,
+    /// How near they come whatever the sides: no vertex is nearer to another body in this tet.
+    bound: f64,
+    /// The nearest two vertices of different bodies.
+    nearest_vertices: Option<VertexPair>,
+}
+
 impl Between {
     pub(super) fn measure(&mut self, points: &[Point], threads: &Threads) {
         let measured = threads.map(self.simplices.len(), |t| self.tet(self.simplices[t], points));
-        let gaps = threads.map(self.sites.vertices.len(), |i| self.vertex(self.sites.vertices[i], points));
+        let n_vertices = self.sites.vertices.len();
+        let gaps = threads.map(n_vertices, |i| self.vertex(self.sites.vertices[i], &measured, points));
         (self.least, self.nearest_vertices) = (None, None);
-        for (tet, (least, pair)) in self.tets.iter_mut().zip(measured) {
+        for (tet, Measured { least, nearest_vertices: pair, .. }) in self.tets.iter_mut().zip(measured) {
             (tet.bodies, tet.distance) = least.map_or(([0; 2], f64::INFINITY), |l| (l.bodies, l.distance));
             keep_nearer(&mut self.least, least, |l| l.distance);
             keep_nearer(&mut self.nearest_vertices, pair, |p| p.distance);
@@ -50,14 +61,14 @@ impl Between {
         }
     }
 
-    /// Where two bodies come nearest in a tet, and the nearest two vertices of different bodies.
-    fn tet(&self, tet: [u32; 4], points: &[Point]) -> (Option<Least>, Option<VertexPair>) {
+    fn tet(&self, tet: [u32; 4], points: &[Point]) -> Measured {
         let parts = self.parts(tet, points);
-        let (mut least, mut nearest_vertices) = (None, None);
+        let (mut least, mut bound, mut nearest_vertices) = (None, f64::INFINITY, None);
         for (i, b) in parts.iter().enumerate() {
             for a in &parts[..i] {
                 let pair = nearest(a, b, &self.sites);
                 let bodies = [a.body, b.body];
+                bound = bound.min(pair.distance_squared.sqrt());
                 if self.counts(a, b, &pair, points) {
                     let ends = [a.at(&pair.on_a), b.at(&pair.on_b)];
                     let found = Least { distance: pair.distance_squared.sqrt(), bodies, points: ends };
@@ -73,11 +84,16 @@ impl Between {
                 }
             }
         }
-        (least, nearest_vertices)
+        Measured { least, bound, nearest_vertices }
     }
 
     /// The gap of a vertex of a body.
-    fn vertex(&self, (body, v, site): (u32, VertexId, u32), points: &[Point]) -> Option<Gap> {
+    fn vertex(
+        &self,
+        (body, v, site): (u32, VertexId, u32),
+        measured: &[Measured],
+        points: &[Point],
+    ) -> Option<Gap> {
         let first = self.sites.vertex(site, body);
         let mut best = None;
         for &(body, vertex) in self.sites.owners(site).iter().filter(|owner| owner.0 != body) {
@@ -87,6 +103,10 @@ impl Between {
         }
         let mut others: Vec<(u32, u32)> = Vec::new();
         for &t in self.at_site.list(site as usize) {
+            let is_far = best.is_some_and(|best: Gap| measured[t as usize].bound >= best.distance);
+            if is_far && !self.stars {
+                continue;
+            }
             let tet = self.simplices[t as usize];
             let place = tet.iter().position(|&s| s == site).unwrap_or(0);
             let own = Part::new(tet, body, &self.sites, points).vertex(place);

@@ -62,6 +62,10 @@ impl Part {
         (0..4).filter(|&i| self.sites[i] != NO_SITE)
     }
 
+    fn is_vertex(&self) -> bool {
+        self.has().count() == 1
+    }
+
     /// Those of the tet's edges or facets that are its own and features of its surface.
     fn real<'a, const N: usize>(
         &'a self,
@@ -94,23 +98,33 @@ pub(super) fn nearest(a: &Part, b: &Part, sites: &Sites) -> Pair {
             );
         }
     }
-    // Collected: each is asked for more than once, and there are hardly more than two.
-    let (edges_a, edges_b): (Vec<_>, Vec<_>) =
-        (a.real(&EDGES, sites).collect(), b.real(&EDGES, sites).collect());
-    for i in a.has() {
-        for &edge in &edges_b {
-            best.offer([i], edge, &point_segment::closest(a.points[i], b.points(edge)));
-        }
-        for facet in b.real(&FACETS, sites) {
+    // Edges are collected, since each is asked for more than once, and there are hardly more than two.
+    let edges_a: Vec<_> = if a.is_vertex() { Vec::new() } else { a.real(&EDGES, sites).collect() };
+    let mut has_facet = false;
+    for facet in b.real(&FACETS, sites) {
+        has_facet = true;
+        for i in a.has() {
             best.offer([i], facet, &point_triangle::closest(a.points[i], b.points(facet)));
+        }
+    }
+    // A vertex against a whole triangle is done.
+    if a.is_vertex() && has_facet && b.has().count() == 3 {
+        return best;
+    }
+    let edges_b: Vec<_> = if b.is_vertex() { Vec::new() } else { b.real(&EDGES, sites).collect() };
+    for &edge in &edges_b {
+        for i in a.has() {
+            best.offer([i], edge, &point_segment::closest(a.points[i], b.points(edge)));
         }
     }
     for k in b.has() {
         for &edge in &edges_a {
             best.offer(edge, [k], &point_segment::closest(b.points[k], a.points(edge)).swapped());
         }
-        for facet in a.real(&FACETS, sites) {
-            best.offer(facet, [k], &point_triangle::closest(b.points[k], a.points(facet)).swapped());
+        if !a.is_vertex() {
+            for facet in a.real(&FACETS, sites) {
+                best.offer(facet, [k], &point_triangle::closest(b.points[k], a.points(facet)).swapped());
+            }
         }
     }
     for &of_a in &edges_a {

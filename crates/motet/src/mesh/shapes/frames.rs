@@ -112,7 +112,7 @@ impl CenterLine {
             let [u, v, _] = self.frames[i];
             add(scale(u, x), scale(v, y))
         };
-        if share < 0.0 || share > 1.0 {
+        if !(0.0..=1.0).contains(&share) {
             let end = if share < 0.0 { i } else { i + 1 };
             let on = add(self.points[end], scale(self.frames[end][2], z - self.arc[end]));
             return add(on, across(end));

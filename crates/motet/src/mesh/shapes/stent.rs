@@ -188,7 +188,7 @@ impl Stent {
     /// leaves the rings their link's length apart at every radius.
     fn strut(&self, ring: usize, phase: f64, radius: f64) -> (f64, f64) {
         let amplitude = self.amplitude();
-        let sign = if ring % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if ring.is_multiple_of(2) { 1.0 } else { -1.0 };
         let pitch = 2.0 * amplitude + self.strut_width + self.link_length;
         let middle =
             amplitude + self.strut_width / 2.0 + pitch * ring as f64 + sign * amplitude * phase.cos();
@@ -200,9 +200,9 @@ impl Stent {
     /// Whether the segment from `i` has a link up from this ring.
     fn has_link(&self, ring: usize, i: usize) -> bool {
         // Even rings have their crowns where the phase is 0, odd ones half a turn on.
-        let shift = if ring % 2 == 0 { 1 } else { 1 + self.segments };
+        let shift = if ring.is_multiple_of(2) { 1 } else { 1 + self.segments };
         let (crown, place) = ((i + shift) / (2 * self.segments), (i + shift) % (2 * self.segments));
-        ring + 1 < self.rings && place == 0 && (crown % self.crowns + ring) % self.link_every == 0
+        ring + 1 < self.rings && place == 0 && (crown % self.crowns + ring).is_multiple_of(self.link_every)
     }
 
     fn vertex(&self, ring: usize, i: usize, corner: Corner) -> VertexId {
