@@ -33,6 +33,7 @@
 mod ahead;
 mod along;
 mod answer;
+mod between;
 mod body;
 mod contact;
 mod crossing;
@@ -47,6 +48,7 @@ mod sweep;
 
 pub use ahead::{Ahead, FirstContact};
 pub use answer::{BodyGaps, Gaps, NONE, Nearest, PairGap, Warned};
+pub use between::{Between, BetweenOptions, GapKind, GapTet, Least, Side, VertexPair, paper};
 pub use body::Body;
 pub use contact::Contact;
 pub use crossing::{crossings, own_crossings};

@@ -1,9 +1,9 @@
-//! Volume cells and their boundary, labelled, as one mesh.
+//! Volume cells and their boundary, or a surface alone, labelled, as one mesh.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Point, VertexId};
-use crate::mesh::{Boundary, Cells, Field, LabelNames, Mesh};
+use crate::mesh::{Boundary, CellKind, Cells, Field, LabelNames, Mesh};
 
 /// The mesh of `cells`, all of one region, with its boundary facets behind them
 /// as cells of the patches. `patch_of` says to which of `patches` (names of
@@ -29,6 +29,18 @@ pub(super) fn labelled(
     Mesh {
         cell_data: vec![Field::scalars("region", region_ids), Field::scalars("patch", patch_ids)],
         label_names: LabelNames { regions: names(&[region]), patches: names(patches) },
+        ..Mesh::new(points, cells)
+    }
+}
+
+/// A surface alone: triangles, all of one patch.
+pub(super) fn skin(points: Vec<Point>, triangles: &[[VertexId; 3]], patch: &str) -> Mesh {
+    let mut cells = Cells::new();
+    triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    let patches = vec![1; triangles.len()];
+    Mesh {
+        cell_data: vec![Field::scalars("patch", patches)],
+        label_names: LabelNames { patches: [(1, patch.to_owned())].into(), ..LabelNames::default() },
         ..Mesh::new(points, cells)
     }
 }

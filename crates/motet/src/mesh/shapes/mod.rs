@@ -8,25 +8,34 @@
 //! | [`tube`] | tets; wedges or thin tets at the wall, if wanted | `wall` `inlet` `outlet` |
 //! | [`mixed`] | hexahedra, wedges, pyramids, tets | `surface` |
 //! | [`quadratic`] | quadratic tets, from any of the tet shapes | as they were |
+//! | [`Stent`] | triangles, the same at every radius | `stent` |
+//! | [`wire`] | triangles, round tubes along line segments | `wire` |
 //!
 //! Each has a cell array `region` on its volume cells and `patch` on its surface
 //! cells, which cover the whole boundary, and names for both. Cells are positive
 //! and conforming, and the same arguments give the same bytes. Most are built of
-//! hexahedra that [`to_tets`] then splits.
+//! hexahedra that [`to_tets`] then splits. The two of triangles are closed and turned outward; [`CenterLine`] bends
+//! what lies along z.
 
 mod ball;
 mod boxes;
 mod cubed_sphere;
+mod frames;
 mod labelled;
 mod mixed;
 mod quadratic;
 mod split;
+mod stent;
 mod tube;
+mod wire;
 
 pub use ball::ball;
 pub use boxes::box_grid;
 pub use cubed_sphere::sphere_in_box;
+pub use frames::CenterLine;
 pub use mixed::mixed;
 pub use quadratic::quadratic;
 pub use split::to_tets;
+pub use stent::Stent;
 pub use tube::{TubeOptions, WallCells, tube};
+pub use wire::{Chain, chains, wire};

@@ -1,0 +1,147 @@
+//! How near two bodies come within one tet, by what is really there of their surfaces.
+
+use super::sites::{NO_SITE, Sites};
+use crate::base::{Id, Point, VertexId};
+use crate::geometry::distance::{Closest, point_segment, point_triangle, segment_segment};
+use crate::geometry::vector::{add, dot, scale, sub};
+
+/// The vertices that one body has of a tet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) body: u32,
+    /// Of the tet; [`NO_SITE`] where this body has no vertex.
+    pub(super) sites: [u32; 4],
+    pub(super) vertices: [VertexId; 4],
+    points: [Point; 4],
+}
+
+/// A pair of points of two parts, by weights of the four vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) distance_squared: f64,
+    pub(super) on_a: [f64; 4],
+    pub(super) on_b: [f64; 4],
+}
+
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+
+impl Part {
+    /// What `body` has of a tet.
+    pub(super) fn new(tet: [u32; 4], body: u32, sites: &Sites, points: &[Point]) -> Self {
+        let vertices = tet.map(|s| sites.vertex(s, body));
+        let mut own = tet;
+        let mut places = [[0.0; 3]; 4];
+        for i in 0..4 {
+            if vertices[i] == VertexId::NONE {
+                own[i] = NO_SITE;
+            } else {
+                places[i] = points[vertices[i].index()];
+            }
+        }
+        Self { body, sites: own, vertices, points: places }
+    }
+
+    /// Only the vertex in this place.
+    pub(super) fn vertex(mut self, i: usize) -> Self {
+        for k in (0..4).filter(|&k| k != i) {
+            self.sites[k] = NO_SITE;
+        }
+        self
+    }
+
+    /// The point with these weights.
+    pub(super) fn at(&self, weights: &[f64; 4]) -> Point {
+        (0..4)
+            .filter(|&i| weights[i] != 0.0)
+            .fold([0.0; 3], |sum, i| add(sum, scale(self.points[i], weights[i])))
+    }
+
+    /// The places of which it has a vertex.
+    pub(super) fn has(&self) -> impl Iterator<Item = usize> + Clone + '_ {
+        (0..4).filter(|&i| self.sites[i] != NO_SITE)
+    }
+
+    fn is_vertex(&self) -> bool {
+        self.has().count() == 1
+    }
+
+    /// Those of the tet's edges or facets that are its own and features of its surface.
+    fn real<'a, const N: usize>(
+        &'a self,
+        all: &'a [[usize; N]],
+        sites: &'a Sites,
+    ) -> impl Iterator<Item = [usize; N]> + 'a {
+        let own = move |places: &&[usize; N]| {
+            let own = places.map(|i| self.sites[i]);
+            !own.contains(&NO_SITE) && sites.is_real(self.body, &own)
+        };
+        all.iter().filter(own).copied()
+    }
+
+    fn points<const N: usize>(&self, places: [usize; N]) -> [Point; N] {
+        places.map(|i| self.points[i])
+    }
+}
+
+/// The nearest pair of points of the features that two bodies have in a tet: vertices, edges and facets of the tet that are also those of
+/// their surfaces. An edge that is a chord across a dent, or a facet that is no triangle, is left out: nothing of the body is there.
+pub(super) fn nearest(a: &Part, b: &Part, sites: &Sites) -> Pair {
+    let mut best = Pair { distance_squared: f64::INFINITY, on_a: [0.0; 4], on_b: [0.0; 4] };
+    for i in a.has() {
+        for k in b.has() {
+            let offset = sub(b.points[k], a.points[i]);
+            best.offer(
+                [i],
+                [k],
+                &Closest { distance_squared: dot(offset, offset), on_a: [1.0], on_b: [1.0], offset },
+            );
+        }
+    }
+    // Edges are collected, since each is asked for more than once, and there are hardly more than two.
+    let edges_a: Vec<_> = if a.is_vertex() { Vec::new() } else { a.real(&EDGES, sites).collect() };
+    let mut has_facet = false;
+    for facet in b.real(&FACETS, sites) {
+        has_facet = true;
+        for i in a.has() {
+            best.offer([i], facet, &point_triangle::closest(a.points[i], b.points(facet)));
+        }
+    }
+    // A vertex against a whole triangle is done.
+    if a.is_vertex() && has_facet && b.has().count() == 3 {
+        return best;
+    }
+    let edges_b: Vec<_> = if b.is_vertex() { Vec::new() } else { b.real(&EDGES, sites).collect() };
+    for &edge in &edges_b {
+        for i in a.has() {
+            best.offer([i], edge, &point_segment::closest(a.points[i], b.points(edge)));
+        }
+    }
+    for k in b.has() {
+        for &edge in &edges_a {
+            best.offer(edge, [k], &point_segment::closest(b.points[k], a.points(edge)).swapped());
+        }
+        if !a.is_vertex() {
+            for facet in a.real(&FACETS, sites) {
+                best.offer(facet, [k], &point_triangle::closest(b.points[k], a.points(facet)).swapped());
+            }
+        }
+    }
+    for &of_a in &edges_a {
+        for &of_b in &edges_b {
+            best.offer(of_a, of_b, &segment_segment::closest(a.points(of_a), b.points(of_b)));
+        }
+    }
+    best
+}
+
+impl Pair {
+    fn offer<const A: usize, const B: usize>(&mut self, a: [usize; A], b: [usize; B], found: &Closest<A, B>) {
+        if found.distance_squared < self.distance_squared {
+            (self.on_a, self.on_b) = ([0.0; 4], [0.0; 4]);
+            a.iter().zip(found.on_a).for_each(|(&i, w)| self.on_a[i] = w);
+            b.iter().zip(found.on_b).for_each(|(&i, w)| self.on_b[i] = w);
+            self.distance_squared = found.distance_squared;
+        }
+    }
+}

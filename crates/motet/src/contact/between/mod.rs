@@ -1,0 +1,193 @@
+//! Gaps by the Delaunay tets that span them, as Moyle and Ventikos (2008) measure them: quick to keep, and an upper bound.
+//!
+//! The vertices of all bodies are triangulated; a tet whose vertices belong to more than one body spans a gap, and says how near
+//! these bodies come in it: by two edges (two-two) or by a facet and a vertex (three-one).
+//!
+//! **What is exact.** The least distance between two *vertices* of different bodies ([`Between::nearest_vertices`]): no third vertex lies in
+//! the ball whose diameter they are, since it would be nearer to the one of them that is of another body, so they are joined by an
+//! edge of every Delaunay triangulation.
+//!
+//! **What is a bound.** Everything else is the distance between points that do lie on the surfaces, hence never too small, but
+//! the nearest triangle need not be in a tet with the vertex, so it may be too large. The text of 2008 takes every edge and facet of a tet for a
+//! part of the surfaces, also chords across dents, and may thus be too small as well; here those that are not edges or
+//! triangles of the surface are left out. How much is lost is measured by `examples/contact_delaunay.rs`. The exact answer takes a
+//! tree of boxes; this one gives what a tree does not: the tets of the gap, and a graph that moves along.
+
+mod gaps;
+mod measure;
+pub mod paper;
+mod side;
+mod simplices;
+mod sites;
+
+pub use side::Side;
+
+use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
+use sites::{NO_SITE, Sites};
+
+/// What a tet is by the bodies that its vertices belong to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GapKind {
+    /// Two vertices of one body and two of another.
+    TwoTwo,
+    /// Three vertices of one body and one of another.
+    ThreeOne,
+    /// Two vertices of one body, and one each of two others.
+    TwoOneOne,
+    /// Vertices of four bodies.
+    Ones,
+    /// A vertex is in two bodies, or two bodies have a vertex in one place: their distance is 0 there.
+    Touching,
+    /// All vertices are in one plane or line, so there are triangles or segments in place of tets.
+    Flat,
+    /// All vertices of one body: no gap, and never in the list.
+    Four,
+}
+
+/// A tet that spans a gap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GapTet {
+    /// The body with most vertices first: the edges of a two-two, or the facet and the lone vertex of a three-one; not oriented. In a
+    /// [`GapKind::Flat`] one the last is [`Id::NONE`], or the last two.
+    pub vertices: [VertexId; 4],
+    /// What it is.
+    pub kind: GapKind,
+    /// The two bodies that come nearest in it, the smaller first.
+    pub bodies: [u32; 2],
+    /// How near they come in it; infinite where the way from one to the other is on a side that does not count.
+    pub distance: f64,
+}
+
+/// Where two bodies come nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Least {
+    /// How near.
+    pub distance: f64,
+    /// Which, the smaller first.
+    pub bodies: [u32; 2],
+    /// The point on each.
+    pub points: [Point; 2],
+}
+
+/// Two vertices of different bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VertexPair {
+    /// How far apart.
+    pub distance: f64,
+    /// The bodies, the smaller first.
+    pub bodies: [u32; 2],
+    /// The vertex of each.
+    pub vertices: [VertexId; 2],
+}
+
+/// What [`Between::new`] is told.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BetweenOptions {
+    /// On which side of each body its gaps are; bodies past the end have [`Side::Both`]. Default: none given. With a side, a pair of
+    /// points counts only if the way between them starts on that side at both ends, as told by the triangles there: so nothing
+    /// is measured through the wall of a thin body.
+    pub sides: Vec<Side>,
+    /// Whether a vertex is also measured to all triangles round the vertices that share a tet with it: nearer to the truth, and slower; see
+    /// the table that `examples/contact_delaunay.rs` prints. Default: no, as in the text of 2008.
+    pub stars: bool,
+}
+
+/// The gaps between bodies, by the Delaunay tets of their vertices.
+#[derive(Clone, Debug)]
+pub struct Between {
+    /// The tets that span gaps.
+    pub tets: Vec<GapTet>,
+    /// For each point how far it is from the features of other bodies that share a tet with it: an upper bound of its distance; infinite
+    /// where there are none, and for points that no body uses.
+    pub gap: Vec<f64>,
+    /// For each point the vertex of another body that is nearest to where its gap ends; [`Id::NONE`] where the gap is infinite.
+    pub closest: Vec<VertexId>,
+    /// Where two bodies come nearest, over all tets: an upper bound; `None` where no tet spans a gap.
+    pub least: Option<Least>,
+    /// The nearest two vertices of different bodies, whatever the sides: exact after [`Between::new`].
+    pub nearest_vertices: Option<VertexPair>,
+    /// How many tets have all vertices of one body.
+    pub n_of_one_body: usize,
+    sides: Vec<Side>,
+    stars: bool,
+    sites: Sites,
+    /// The gap tets as sites, and the gap tets at each site.
+    simplices: Vec<[u32; 4]>,
+    at_site: Csr<u32>,
+}
+
+impl Between {
+    /// Triangulates the vertices of all bodies and measures the tets that span gaps. Each body is triangles over the same points; bodies may
+    /// touch and share vertices, be open or closed, in one plane or a single point. One body alone has no gaps. The
+    /// result is the same for any number of threads.
+    ///
+    /// # Errors
+    /// When there is no body, when one is empty, when a triangle names a point that is not there, or a point is not finite.
+    pub fn new(
+        points: &[Point],
+        bodies: &[Vec<[VertexId; 3]>],
+        options: &BetweenOptions,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let used = sites::used_vertices(points, bodies)?;
+        let own: Vec<Point> = used.iter().map(|v| points[v.index()]).collect();
+        let found = simplices::simplices(&own, threads)?;
+        let sites = Sites::new(points.len(), &used, &found.duplicates, bodies);
+        let classified = threads.map(found.tets.len(), |t| simplices::classified(found.tets[t], &sites));
+        let spans = |kind: GapKind| kind != GapKind::Four;
+        let n_tets = classified.len();
+        let (kinds, simplices): (Vec<GapKind>, Vec<[u32; 4]>) =
+            classified.into_iter().filter(|(kind, _)| spans(*kind)).unzip();
+        let vertex = |site: u32| sites.owners(site).first().map_or(VertexId::NONE, |owner| owner.1);
+        let unmeasured = |(kind, tet): (&GapKind, &[u32; 4])| GapTet {
+            vertices: tet.map(vertex),
+            kind: *kind,
+            bodies: [0; 2],
+            distance: f64::INFINITY,
+        };
+        let sides = (0..bodies.len()).map(|b| options.sides.get(b).copied().unwrap_or_default());
+        let at_site = Csr::from_pairs(used.len(), || {
+            (0..)
+                .zip(&simplices)
+                .flat_map(|(t, tet)| tet.iter().filter(|&&s| s != NO_SITE).map(move |&s| (s as usize, t)))
+        });
+        let mut between = Self {
+            tets: kinds.iter().zip(&simplices).map(unmeasured).collect(),
+            gap: Vec::new(),
+            closest: Vec::new(),
+            least: None,
+            nearest_vertices: None,
+            n_of_one_body: n_tets - kinds.len(),
+            sides: sides.collect(),
+            stars: options.stars,
+            sites,
+            simplices,
+            at_site,
+        };
+        between.measure(points, threads);
+        Ok(between)
+    }
+
+    /// Measures the same tets with points that moved: much less work than [`Between::new`], which makes it the handle to keep over
+    /// the steps of a simulation. No tet is exchanged, so what is near must be in a tet with what it was near to before:
+    /// all distances, that of the nearest vertices too, are then upper bounds, and looser the farther things move along each other.
+    ///
+    /// # Errors
+    /// When there is another number of points, or one that a body uses is not finite.
+    pub fn update(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
+        if points.len() != self.gap.len() {
+            let (had, has) = (self.gap.len(), points.len());
+            return Err(Error::input(format!("{has} points, where {had} were triangulated"))
+                .remedy("measure a surface with other vertices anew"));
+        }
+        sites::check_finite(points, self.sites.vertices.iter().map(|(_, v, _)| *v))?;
+        self.measure(points, threads);
+        Ok(())
+    }
+
+    /// How many bodies there are.
+    pub fn n_bodies(&self) -> usize {
+        self.sites.n_bodies()
+    }
+}

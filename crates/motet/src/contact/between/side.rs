@@ -1,0 +1,115 @@
+//! On which side of a surface the way to another one starts.
+
+use super::measure::Part;
+use super::sites::{NO_SITE, Sites};
+use crate::base::Point;
+use crate::geometry::distance::{Feature, point_segment, point_triangle};
+use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+
+/// Where the gaps of a body are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// On both sides of its triangles: a sheet, such as a leaflet or a flap.
+    #[default]
+    Both,
+    /// Where its triangles face: a stent or a coil whose triangles are turned outward.
+    Outside,
+    /// Behind its triangles: the lumen, for a vessel whose triangles are turned outward.
+    Inside,
+}
+
+/// Whether the way `along`, from the point of a part with these weights, starts on this side of the body; one within the
+/// surface starts on both.
+///
+/// The side is that of a point a little along the way, by the nearest point of the triangles around: by the normal
+/// of the triangle, the sum of the two normals at an edge, and the sum of the normals weighted by their angles at a vertex (Baerentzen and
+/// Aanaes 2005). The little is a quarter of the way to where these triangles end, so that nothing else can be nearest.
+pub(super) fn starts_on(
+    side: Side,
+    part: &Part,
+    on: &[f64; 4],
+    along: Point,
+    sites: &Sites,
+    points: &[Point],
+) -> bool {
+    if side == Side::Both {
+        return true;
+    }
+    let feature: Vec<u32> = (0..4).filter(|&i| on[i] != 0.0).map(|i| part.sites[i]).collect();
+    let from = part.at(on);
+    let star = Star::new(part.body, &feature, from, sites, points);
+    let length = norm(along);
+    if !(length > 0.0 && star.reach > 0.0 && star.reach.is_finite()) {
+        return true;
+    }
+    let ahead = star.height(scale(along, 0.25 * star.reach / length));
+    match side {
+        Side::Both => true,
+        Side::Outside => ahead >= 0.0,
+        Side::Inside => ahead <= 0.0,
+    }
+}
+
+/// The triangles around a point of a surface, taken relative to it.
+struct Star {
+    triangles: Vec<[Point; 3]>,
+    sites: Vec<[u32; 3]>,
+    /// How far the nearest edge is that the point is not on.
+    reach: f64,
+}
+
+impl Star {
+    fn new(body: u32, feature: &[u32], from: Point, sites: &Sites, points: &[Point]) -> Self {
+        let mut star = Self { triangles: Vec::new(), sites: Vec::new(), reach: f64::INFINITY };
+        for t in sites.star_of(body, feature) {
+            let corners = sites.corners[t].map(|v| sub(points[v.index()], from));
+            if norm(normal(corners)) == 0.0 {
+                continue;
+            }
+            let ids = sites.triangles[t];
+            for i in 0..3 {
+                let [j, k] = [(i + 1) % 3, (i + 2) % 3];
+                if !feature.iter().all(|s| [ids[j], ids[k]].contains(s)) {
+                    let away = point_segment::closest([0.0; 3], [corners[j], corners[k]]);
+                    star.reach = star.reach.min(away.distance());
+                }
+            }
+            star.triangles.push(corners);
+            star.sites.push(ids);
+        }
+        star
+    }
+
+    /// How far a place is above the surface, by the direction of the normal at its nearest point; only the sign counts.
+    fn height(&self, place: Point) -> f64 {
+        let nearest = self.triangles.iter().map(|t| point_triangle::closest(place, *t)).enumerate();
+        let nearest = nearest.min_by(|x, y| x.1.distance_squared.total_cmp(&y.1.distance_squared));
+        let Some((t, closest)) = nearest else { return 0.0 };
+        let own = match closest.features()[1] {
+            Feature::Face => vec![self.sites[t][0], self.sites[t][1], self.sites[t][2]],
+            Feature::Edge(i) => [1, 2].map(|k| self.sites[t][(usize::from(i) + k) % 3]).to_vec(),
+            Feature::Vertex(i) => vec![self.sites[t][usize::from(i)]],
+        };
+        let around =
+            self.sites.iter().zip(&self.triangles).filter(|(ids, _)| own.iter().all(|s| ids.contains(s)));
+        let sum = around.fold([0.0; 3], |sum, (ids, t)| {
+            let weight = if let &[s] = own.as_slice() { angle_at(s, ids, t) } else { 1.0 };
+            let normal = normal(*t);
+            add(sum, scale(normal, weight / norm(normal)))
+        });
+        // The offset runs from the place to its nearest point.
+        -dot(sum, closest.offset)
+    }
+}
+
+fn normal([a, b, c]: [Point; 3]) -> Point {
+    cross(sub(b, a), sub(c, a))
+}
+
+/// The angle of a triangle at the corner with this site.
+fn angle_at(site: u32, ids: &[u32; 3], corners: &[Point; 3]) -> f64 {
+    let i = ids.iter().position(|&s| s == site && s != NO_SITE).unwrap_or(0);
+    let [u, v] = [1, 2].map(|k| sub(corners[(i + k) % 3], corners[i]));
+    norm(cross(u, v)).atan2(dot(u, v))
+}

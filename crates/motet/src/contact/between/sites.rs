@@ -1,0 +1,148 @@
+//! The places that the vertices of all bodies take: who stands at each, and which triangles meet there.
+
+use crate::base::{Csr, Error, Id, Point, Result, VertexId};
+use crate::geometry::vector::is_finite;
+
+/// As a site: none.
+pub(super) const NO_SITE: u32 = u32::MAX;
+
+/// Vertices in the same place are one site, with an owner for each body that has a vertex there.
+///
+/// What a body has in common with another, be it a vertex of both or two vertices in one place, is thus a site of two owners.
+#[derive(Clone, Debug)]
+pub(super) struct Sites {
+    /// The owners of each site by body, rising, each with its first vertex there.
+    pub(super) owners: Csr<(u32, VertexId)>,
+    /// Every vertex that a triangle uses, with its body and site; in the order of bodies, then of ids.
+    pub(super) vertices: Vec<(u32, VertexId, u32)>,
+    /// The triangles of all bodies, one body after the other, as sites.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The same as vertices.
+    pub(super) corners: Vec<[VertexId; 3]>,
+    /// Where the triangles of each body end.
+    ends: Vec<u32>,
+    /// The triangles at each site.
+    star: Csr<u32>,
+}
+
+/// The vertices that the bodies use, each once, rising.
+pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> Result<Vec<VertexId>> {
+    if bodies.is_empty() {
+        return Err(Error::input("a measure of gaps needs a body, and there is none")
+            .remedy("give the triangles of each body as a list of their own"));
+    }
+    let mut used = vec![false; points.len()];
+    for (b, triangles) in bodies.iter().enumerate() {
+        if triangles.is_empty() {
+            return Err(Error::input("has no triangles")
+                .at(format!("body {b}"))
+                .remedy("leave it out, or check which patches it was taken from"));
+        }
+        for (t, triangle) in triangles.iter().enumerate() {
+            for v in triangle {
+                *used.get_mut(v.index()).ok_or_else(|| {
+                    Error::input(format!("vertex {v} is named, but there are {} points", points.len()))
+                        .at(format!("body {b}, triangle {t}"))
+                        .remedy("give all points that the triangles are about")
+                })? = true;
+            }
+        }
+    }
+    let used: Vec<VertexId> = (0..used.len()).filter(|&v| used[v]).map(VertexId::new).collect();
+    check_finite(points, used.iter().copied())?;
+    Ok(used)
+}
+
+/// Whether the points of these vertices are numbers.
+pub(super) fn check_finite(points: &[Point], mut vertices: impl Iterator<Item = VertexId>) -> Result<()> {
+    match vertices.find(|v| !is_finite(points[v.index()])) {
+        None => Ok(()),
+        Some(v) => Err(Error::input(format!("has the coordinates {:?}", points[v.index()]))
+            .at(format!("vertex {v}"))
+            .remedy("give finite numbers, or leave out the triangles there")),
+    }
+}
+
+impl Sites {
+    /// `duplicates` are `(duplicate, kept)` places in `used`; a site is the place of a kept one.
+    pub(super) fn new(
+        n_points: usize,
+        used: &[VertexId],
+        duplicates: &[(u32, u32)],
+        bodies: &[Vec<[VertexId; 3]>],
+    ) -> Self {
+        let mut of_vertex = vec![NO_SITE; n_points];
+        used.iter().zip(0..).for_each(|(v, site)| of_vertex[v.index()] = site);
+        for &(duplicate, kept) in duplicates {
+            of_vertex[used[duplicate as usize].index()] = kept;
+        }
+        let corners: Vec<[VertexId; 3]> = bodies.concat();
+        let triangles: Vec<[u32; 3]> = corners.iter().map(|t| t.map(|v| of_vertex[v.index()])).collect();
+        let mut vertices = Vec::with_capacity(used.len());
+        let mut ends = Vec::with_capacity(bodies.len());
+        for (body, triangles) in (0..).zip(bodies) {
+            let mut own: Vec<VertexId> = triangles.as_flattened().to_vec();
+            own.sort_unstable();
+            own.dedup();
+            vertices.extend(own.into_iter().map(|v| (body, v, of_vertex[v.index()])));
+            ends.push(ends.last().copied().unwrap_or(0) + triangles.len() as u32);
+        }
+        // Of the vertices that a body has at one site only the first is its owner.
+        let mut last = vec![NO_SITE; used.len()];
+        let is_first = |&(body, _, site): &(u32, VertexId, u32)| {
+            std::mem::replace(&mut last[site as usize], body) != body
+        };
+        let first: Vec<(u32, VertexId, u32)> = vertices.iter().copied().filter(is_first).collect();
+        let owners = Csr::from_pairs(used.len(), || first.iter().map(|&(b, v, s)| (s as usize, (b, v))));
+        let star = Csr::from_pairs(used.len(), || {
+            (0..).zip(&triangles).flat_map(|(t, &[a, b, c])| {
+                let once = [Some(a), (b != a).then_some(b), (c != a && c != b).then_some(c)];
+                once.into_iter().flatten().map(move |site| (site as usize, t))
+            })
+        });
+        Self { owners, vertices, triangles, corners, ends, star }
+    }
+
+    /// How many bodies there are.
+    pub(super) fn n_bodies(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Who stands at a site; nobody at none.
+    pub(super) fn owners(&self, site: u32) -> &[(u32, VertexId)] {
+        if site == NO_SITE { &[] } else { self.owners.list(site as usize) }
+    }
+
+    /// The vertex of a body at a site, [`Id::NONE`] where it has none.
+    pub(super) fn vertex(&self, site: u32, body: u32) -> VertexId {
+        let found = self.owners(site).iter().find(|owner| owner.0 == body);
+        found.map_or(VertexId::NONE, |owner| owner.1)
+    }
+
+    /// The triangles of a body that hold all these sites, at least one.
+    pub(super) fn star_of<'a>(&'a self, body: u32, sites: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
+        let lists = sites.iter().map(|&s| self.star.list(s as usize));
+        let shortest = lists.min_by_key(|list| list.len()).unwrap_or(&[]);
+        let range = self.of_body(body);
+        let holds =
+            move |t: &u32| range.contains(t) && sites.iter().all(|s| self.triangles[*t as usize].contains(s));
+        shortest.iter().copied().filter(holds).map(|t| t as usize)
+    }
+
+    /// The triangles of a body at a site.
+    pub(super) fn star(&self, body: u32, site: u32) -> impl Iterator<Item = usize> + '_ {
+        let range = self.of_body(body);
+        let list = self.star.list(site as usize).iter().filter(move |t| range.contains(t));
+        list.map(|&t| t as usize)
+    }
+
+    fn of_body(&self, body: u32) -> std::ops::Range<u32> {
+        let start = if body == 0 { 0 } else { self.ends[body as usize - 1] };
+        start..self.ends[body as usize]
+    }
+
+    /// Whether these sites are a vertex, an edge or a triangle of the surface of a body.
+    pub(super) fn is_real(&self, body: u32, sites: &[u32]) -> bool {
+        self.star_of(body, sites).next().is_some()
+    }
+}
