@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::along::Ways;
 use super::body::Prepared;
-use super::contact::Contact;
+use super::handle::Contact;
 use super::rule::Rule;
 use super::sweep::{Sweep, sweep, sweep_own};
 use crate::base::{Error, Point, Result, Threads};

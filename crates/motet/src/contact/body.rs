@@ -1,5 +1,6 @@
 //! A surface that may touch others: triangles, and on which side of them there is room.
 
+use super::side::Side;
 use crate::base::{Csr, Error, Point, Result, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::{cross, dot, is_finite, sub};
@@ -16,14 +17,6 @@ pub struct Body {
     pub is_room: bool,
 }
 
-/// On which side of the triangles there is room, by their normals.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Free {
-    Both,
-    Ahead,
-    Behind,
-}
-
 /// A body with all that does not change when points move, and its tree.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
@@ -35,7 +28,7 @@ pub(super) struct Prepared {
     pub(super) vertices: Vec<VertexId>,
     /// The triangles of each of its vertices, by their places in the lists.
     pub(super) stars: Csr<u32>,
-    pub(super) free: Free,
+    pub(super) free: Side,
     /// Unit normals of the triangles, where [`keep_normals`](Self::keep_normals) was called.
     normals: Vec<Point>,
     pub(super) tree: NearestTriangle,
@@ -72,7 +65,7 @@ impl Prepared {
             is_room,
             vertices,
             stars,
-            free: Free::Both,
+            free: Side::Both,
             normals: Vec::new(),
             tree,
         };
@@ -114,9 +107,9 @@ impl Prepared {
     }
 
     /// Outside a closed body, inside a room; on both sides of an open one.
-    fn free_side(&self, points: &[Point]) -> Free {
+    fn free_side(&self, points: &[Point]) -> Side {
         if !self.is_closed {
-            return Free::Both;
+            return Side::Both;
         }
         let origin = points[self.vertices[0].index()];
         let volume_6: f64 = (0..self.triangles.len() as u32)
@@ -124,8 +117,8 @@ impl Prepared {
             .map(|[a, b, c]| dot(a, cross(b, c)))
             .sum();
         match (volume_6 >= 0.0) != self.is_room {
-            true => Free::Ahead,
-            false => Free::Behind,
+            true => Side::Outside,
+            false => Side::Inside,
         }
     }
 

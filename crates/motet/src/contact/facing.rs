@@ -1,6 +1,7 @@
 //! Whether two places of surfaces see each other through free space.
 
-use super::body::{Free, Prepared};
+use super::body::Prepared;
+use super::side::Side;
 use crate::base::Point;
 use crate::geometry::vector::{dot, norm, scale, sub};
 
@@ -9,12 +10,12 @@ use crate::geometry::vector::{dot, norm, scale, sub};
 const LEAST_COSINE: f64 = 0.25;
 
 /// Whether the way `out` from a triangle with this normal goes into free space.
-fn goes_free(free: Free, normal: Point, out: Point) -> bool {
+fn goes_free(free: Side, normal: Point, out: Point) -> bool {
     let cosine = dot(normal, out);
     match free {
-        Free::Both => cosine.abs() > LEAST_COSINE,
-        Free::Ahead => cosine > LEAST_COSINE,
-        Free::Behind => cosine < -LEAST_COSINE,
+        Side::Both => cosine.abs() > LEAST_COSINE,
+        Side::Outside => cosine > LEAST_COSINE,
+        Side::Inside => cosine < -LEAST_COSINE,
     }
 }
 
@@ -30,7 +31,7 @@ pub(super) fn may_face(points: &[Point], [a, b]: [&Prepared; 2], [i, j]: [u32; 2
     let (normal_a, normal_b) = (a.normal(points, i), b.normal(points, j));
     let turn = dot(normal_a, normal_b);
     let is_alike = match (a.free, b.free) {
-        (Free::Both, _) | (_, Free::Both) => false,
+        (Side::Both, _) | (_, Side::Both) => false,
         (own, other) if own == other => turn > LEAST_TURN,
         _ => turn < -LEAST_TURN,
     };
@@ -41,11 +42,11 @@ pub(super) fn may_face(points: &[Point], [a, b]: [&Prepared; 2], [i, j]: [u32; 2
 }
 
 /// Whether all corners are on the side of a plane that is not free.
-fn is_behind(free: Free, normal: Point, within: Point, corners: [Point; 3]) -> bool {
+fn is_behind(free: Side, normal: Point, within: Point, corners: [Point; 3]) -> bool {
     let sign = match free {
-        Free::Both => return false,
-        Free::Ahead => 1.0,
-        Free::Behind => -1.0,
+        Side::Both => return false,
+        Side::Outside => 1.0,
+        Side::Inside => -1.0,
     };
     corners.iter().all(|&corner| {
         let off = sub(corner, within);

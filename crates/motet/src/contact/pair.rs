@@ -2,13 +2,14 @@
 
 use super::along::{Along, Ways};
 use super::answer::{BodyGaps, Nearest, PairGap};
-use super::body::{Free, Prepared};
+use super::body::Prepared;
 use super::crossing;
 use super::inside::inside;
 use super::nearest::{distance_squared, mark_nearer, nearest};
 use super::options::Options;
 use super::rule::Rule;
 use super::runs::in_runs;
+use super::side::Side;
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{scale, sub};
 use crate::spatial::Closest;
@@ -40,7 +41,7 @@ pub(super) struct Scene<'a> {
 }
 
 /// What one body has of the other.
-pub(super) struct Side {
+pub(super) struct Half {
     /// Which of the two bodies.
     own: usize,
     found: Vec<Option<Closest>>,
@@ -60,7 +61,7 @@ impl Scene<'_> {
     }
 
     /// Measures the pair; the second side is empty for a body with itself.
-    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, [Side; 2]) {
+    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, [Half; 2]) {
         let found = [0, 1].map(|own| match self.is_own() && own == 1 {
             true => Vec::new(),
             false => self.of_vertices(own, &mut guesses.of_vertices[own], threads),
@@ -81,7 +82,7 @@ impl Scene<'_> {
             nearest,
             crossings,
             n_wrong: sides.each_ref().map(|side| count(&side.is_wrong)),
-            depth: sides.iter().map(Side::depth).fold(0.0, f64::max),
+            depth: sides.iter().map(Half::depth).fold(0.0, f64::max),
             n_warned: sides.each_ref().map(|side| count(&side.is_near)),
         };
         (gap, sides)
@@ -167,9 +168,9 @@ impl Scene<'_> {
         }
     }
 
-    fn side(&self, own: usize, crossings: &[[u32; 2]], threads: &Threads) -> Side {
+    fn side(&self, own: usize, crossings: &[[u32; 2]], threads: &Threads) -> Half {
         let rule = self.rule(own);
-        let mut side = Side { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
+        let mut side = Half { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
         if rule.b.is_closed && !self.is_own() && self.along.is_none() {
             let crossings: Vec<_> = crossings.iter().map(|pair| [pair[own], pair[1 - own]]).collect();
             let (own, other) = (&rule.a.triangles, &rule.b.triangles);
@@ -180,7 +181,7 @@ impl Scene<'_> {
     }
 
     /// A vertex within a body is as deep as its surface is near, whichever way that faces.
-    fn look_again_where_wrong(&self, side: &mut Side) {
+    fn look_again_where_wrong(&self, side: &mut Half) {
         let rule = self.rule(side.own);
         for (i, found) in side.found.iter_mut().enumerate() {
             if side.is_wrong.get(i) == Some(&true) && !rule.admits_all() {
@@ -190,7 +191,7 @@ impl Scene<'_> {
     }
 
     /// Marks the triangles nearer than the warning distance.
-    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Side; 2]) {
+    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Half; 2]) {
         let Some(warn) = self.options.warn else { return };
         let [first, second] = sides;
         for (side, body) in [&mut *first, &mut *second].into_iter().zip(self.bodies) {
@@ -205,7 +206,7 @@ impl Scene<'_> {
     }
 }
 
-impl Side {
+impl Half {
     fn depth(&self) -> f64 {
         let wrong = self.found.iter().zip(&self.is_wrong).filter(|(_, wrong)| **wrong);
         wrong.filter_map(|(found, _)| *found).map(|found| found.distance_squared.sqrt()).fold(0.0, f64::max)
@@ -229,7 +230,7 @@ impl Side {
             gaps.normal[i] = match gap == 0.0 {
                 true => scale(
                     other.normal(scene.points, triangle),
-                    if other.free == Free::Behind { 1.0 } else { -1.0 },
+                    if other.free == Side::Inside { 1.0 } else { -1.0 },
                 ),
                 false => scale(way, 1.0 / gap),
             };

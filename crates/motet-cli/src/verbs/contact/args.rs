@@ -70,6 +70,10 @@ pub(crate) struct ContactArgs {
     #[arg(long, value_name = "HOW", default_value = "exact", help_heading = "Gaps")]
     pub(crate) method: Method,
 
+    /// Write the Delaunay tets that span the gaps, with the arrays kind (22, 31 ..) and distance, to seal or to make porous
+    #[arg(long, value_name = "FILE", help_heading = "Gaps")]
+    pub(crate) gap_tets: Option<PathBuf>,
+
     /// Look ahead: a vector point array, velocities of the vertices; those of surfaces without it are 0
     #[arg(long, value_name = "ARRAY", help_heading = "Looking ahead")]
     pub(crate) velocity: Option<String>,
@@ -89,7 +93,8 @@ pub(crate) struct ContactArgs {
 pub(crate) enum Method {
     /// Over all triangles, by a tree of boxes
     Exact,
-    /// By the Delaunay tets between the surfaces, as Moyle and Ventikos (2008) did: an upper bound; reports its error
+    /// By the Delaunay tets between the surfaces (Moyle and Ventikos 2008): an upper bound. The exact
+    /// gaps are found as well: the array gap_error is what it is too large by, all but gap and warning are exact
     Delaunay,
 }
 
@@ -109,6 +114,14 @@ impl ContactArgs {
         if self.horizon.is_some() && self.velocity.is_none() {
             return Err(Error::options("--horizon goes with --velocity")
                 .remedy("a series without velocities looks ahead to its next frame"));
+        }
+        if self.own && (self.method == Method::Delaunay || self.gap_tets.is_some()) {
+            return Err(Error::options("Delaunay tets span gaps between surfaces, not within one")
+                .remedy("leave --self away, or --method delaunay and --gap-tets"));
+        }
+        if self.gap_tets.is_some() && self.surfaces.iter().any(|path| motet::io::is_series(path)) {
+            return Err(Error::options("--gap-tets goes with one state, not with a series")
+                .remedy("give a frame of it"));
         }
         if !self.patches.is_empty() && self.surfaces.len() != 1 {
             return Err(Error::options("--patches are those of one mesh")

@@ -1,6 +1,7 @@
 //! `motet contact`: how far apart surfaces are, where, and when they will touch.
 
 mod args;
+mod delaunay;
 mod frames;
 mod histogram;
 mod output;
@@ -9,12 +10,14 @@ mod report;
 use std::time::Instant;
 
 use motet::base::Threads;
-use motet::contact::{Ahead, Contact};
+use motet::contact::{Ahead, Contact, Gaps};
 use motet::io::{self, SeriesWriter};
 use motet::{Error, Result};
 
 pub(crate) use args::ContactArgs;
 
+use self::args::Method;
+use self::delaunay::Beside;
 use self::frames::{Frame, Frames};
 use self::report::{Report, Step};
 use crate::args::Common;
@@ -41,14 +44,17 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         }
         let measuring = Instant::now();
         let mut contact = prepared(handle.take(), &frame, args)?;
-        let gaps = contact.measure(&threads);
+        let mut gaps = contact.measure(&threads);
         report.seconds.measure += measuring.elapsed().as_secs_f64();
+        let beside = by_delaunay(&contact, &mut gaps, args, &threads, console)?;
         let looking = Instant::now();
         let dt = if k + 1 < n { frames.times[k + 1] - frames.times[k] } else { 0.0 };
         let ahead = look_ahead(&contact, &frame, next.as_ref(), dt, args, &threads)?;
         report.seconds.look_ahead += looking.elapsed().as_secs_f64();
         let is_last = k + 1 == n;
-        let mesh = output::mesh(&frame, &gaps, ahead.as_ref());
+        let mut mesh = output::mesh(&frame, &gaps, ahead.as_ref());
+        let (beside, errors) = beside.unzip();
+        errors.into_iter().for_each(|errors| output::add_errors(&mut mesh, errors));
         let writing = Instant::now();
         let file = match &mut series {
             Some(series) => Some(series.add(frames.times[k], &mesh)?),
@@ -61,7 +67,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         let (file, lost) = file.unzip();
         lost.into_iter().flatten().for_each(|what| console.warn(what));
         let step = Step::new((frames.times[k], file), &contact, &frame, &gaps, ahead.as_ref());
-        report.add(&contact, &frame, step);
+        report.add(&contact, &frame, step.beside(beside));
         handle = Some((contact, frame));
         bar.inc(1);
     }
@@ -82,6 +88,9 @@ fn check_output(args: &ContactArgs) -> Result<()> {
     let is_output = |input: &std::path::PathBuf| {
         input.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b))
     };
+    if let Some(file) = &args.gap_tets {
+        io::can_write(file)?;
+    }
     match args.surfaces.iter().any(is_output) {
         true => Err(Error::options("the result would overwrite a surface it is made from")
             .in_file(&args.output)
@@ -103,6 +112,31 @@ fn prepared(last: Option<(Contact, Frame)>, frame: &Frame, args: &ContactArgs) -
         return Ok(contact);
     }
     Contact::new(frame.points.clone(), frame.bodies.clone(), args.options()).map_err(told)
+}
+
+/// The gaps by Delaunay tets and the tets themselves, where they are asked for.
+fn by_delaunay(
+    contact: &Contact,
+    gaps: &mut Gaps,
+    args: &ContactArgs,
+    threads: &Threads,
+    console: &Console,
+) -> Result<Option<(Beside, Vec<f64>)>> {
+    if args.method == Method::Exact && args.gap_tets.is_none() {
+        return Ok(None);
+    }
+    let (between, seconds) = delaunay::between(contact, threads)?;
+    if let Some(file) = &args.gap_tets {
+        let (mesh, n_flat) = delaunay::tets(contact, &between);
+        io::write(file, &mesh, &args.writing.options())?.iter().for_each(|what| console.warn(what));
+        if n_flat > 0 {
+            console.warn(format_args!(
+                "{n_flat} gaps are triangles or segments, since all vertices are in a plane: not written"
+            ));
+        }
+    }
+    let is_asked = args.method == Method::Delaunay;
+    Ok(is_asked.then(|| delaunay::replace(gaps, &between, seconds, args.warn)))
 }
 
 /// By velocities where there are any, else to the next frame where there is one that fits.

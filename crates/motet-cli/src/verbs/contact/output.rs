@@ -54,3 +54,9 @@ pub(crate) fn mesh(frame: &Frame, gaps: &Gaps, ahead: Option<&Ahead>) -> Mesh {
     mesh.set_cell_field(Field::scalars("cell", Values::from(cell_of)));
     mesh
 }
+
+/// Adds how much each gap is too large.
+pub(crate) fn add_errors(mesh: &mut Mesh, errors: Vec<f64>) {
+    let finite = errors.into_iter().map(|error| if error.is_finite() { error } else { f64::NAN });
+    mesh.set_point_field(Field::scalars("gap_error", finite.collect::<Vec<f64>>()));
+}

@@ -8,6 +8,7 @@ use motet::geometry::distance::Feature;
 use serde::Serialize;
 
 use super::args::ContactArgs;
+use super::delaunay::Beside;
 use super::frames::Frame;
 use super::histogram::Histogram;
 use crate::console::Console;
@@ -65,6 +66,8 @@ pub(crate) struct Step {
     pairs: Vec<Pair>,
     warned: Vec<Group>,
     first_contact: Option<First>,
+    /// How good the answer by Delaunay tets is, where that was asked for.
+    delaunay: Option<Beside>,
     #[serde(skip)]
     all: Vec<f64>,
     #[serde(skip)]
@@ -263,6 +266,7 @@ impl Step {
             pairs: gaps.pairs.iter().map(|pair| Pair::new(pair, &name, &cell)).collect(),
             warned: contact.warned(gaps).into_iter().map(group).collect(),
             first_contact: first,
+            delaunay: None,
             all: gaps
                 .bodies
                 .iter()
@@ -272,6 +276,12 @@ impl Step {
                 .collect(),
             looked_ahead: ahead.is_some(),
         }
+    }
+
+    /// With what is known of the answer by Delaunay tets.
+    pub(crate) fn beside(mut self, delaunay: Option<Beside>) -> Self {
+        self.delaunay = delaunay;
+        self
     }
 
     fn nearest(&self) -> Option<&Pair> {
@@ -309,6 +319,20 @@ impl Step {
         console.say(table);
         if let Some(histogram) = Histogram::of(&self.all, warn) {
             console.say(histogram);
+        }
+        if let Some(Beside { gap_tets, least, compared, exact, largest_over, largest_under, seconds: s }) =
+            &self.delaunay
+        {
+            console.say(format_args!(
+                "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, exact at {:.1} % of {} vertices",
+                count(*gap_tets),
+                seconds(*s),
+                least.map_or("-".into(), short),
+                short(*largest_over),
+                short(*largest_under),
+                100.0 * exact,
+                count(*compared)
+            ));
         }
         let n = if console.is_verbose() { self.warned.len() } else { FIRST };
         for group in self.warned.iter().take(n) {

@@ -1,7 +1,8 @@
 //! The measure of all tets and of all vertices, with the points where they are now.
 
+use super::super::Side;
 use super::measure::{Pair, Part, nearest};
-use super::side::{Side, starts_on};
+use super::side::starts_on;
 use super::sites::NO_SITE;
 use super::{Between, Least, VertexPair};
 use crate::base::{Id, Point, Threads, VertexId};

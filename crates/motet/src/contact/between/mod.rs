@@ -20,8 +20,7 @@ mod side;
 mod simplices;
 mod sites;
 
-pub use side::Side;
-
+use super::side::Side;
 use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
 use sites::{NO_SITE, Sites};
 

@@ -1,23 +1,11 @@
 //! On which side of a surface the way to another one starts.
 
+use super::super::Side;
 use super::measure::Part;
 use super::sites::{NO_SITE, Sites};
 use crate::base::Point;
 use crate::geometry::distance::{Feature, point_segment, point_triangle};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
-
-/// Where the gaps of a body are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Side {
-    /// On both sides of its triangles: a sheet, such as a leaflet or a flap.
-    #[default]
-    Both,
-    /// Where its triangles face: a stent or a coil whose triangles are turned outward.
-    Outside,
-    /// Behind its triangles: the lumen, for a vessel whose triangles are turned outward.
-    Inside,
-}
 
 /// Whether the way `along`, from the point of a part with these weights, starts on this side of the body; one within the
 /// surface starts on both.

@@ -5,6 +5,7 @@ use super::answer::{BodyGaps, Gaps, Nearest, Warned};
 use super::body::{Body, Prepared};
 use super::options::Options;
 use super::pair::{self, Guesses};
+use super::side::Side;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
@@ -91,6 +92,11 @@ impl Contact {
     /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other.
     pub fn is_closed(&self, body: u32) -> bool {
         self.bodies[body as usize].is_closed
+    }
+
+    /// On which side of a body its gaps are: on both where it is open; outside a closed one, inside a room.
+    pub fn side(&self, body: u32) -> Side {
+        self.bodies[body as usize].free
     }
 
     /// The gap at every vertex, and the nearest places of every pair.

@@ -1,0 +1,114 @@
+//! Gaps by the Delaunay tets that span them, beside the exact ones.
+
+use std::time::Instant;
+
+use motet::base::{Id, Point, Threads, VertexId};
+use motet::contact::{Between, BetweenOptions, Contact, GapKind, Gaps};
+use motet::geometry::predicates::orient3d;
+use motet::mesh::{CellKind, Cells, Field};
+use motet::{Mesh, Result};
+use serde::Serialize;
+
+/// How good the Delaunay tets' answer is, over all vertices that have a gap in both.
+#[derive(Debug, Serialize)]
+pub(crate) struct Beside {
+    pub(crate) gap_tets: usize,
+    /// The least gap by Delaunay tets.
+    pub(crate) least: Option<f64>,
+    /// Vertices that were compared; the others have no gap in one of the two.
+    pub(crate) compared: usize,
+    /// The share of them that is exact to 1e-12 of itself.
+    pub(crate) exact: f64,
+    pub(crate) largest_over: f64,
+    pub(crate) largest_under: f64,
+    pub(crate) seconds: f64,
+}
+
+/// The tets that span the gaps of a contact.
+pub(crate) fn between(contact: &Contact, threads: &Threads) -> Result<(Between, f64)> {
+    let begin = Instant::now();
+    let ids = 0..contact.n_bodies() as u32;
+    let bodies: Vec<_> = ids.clone().map(|body| contact.triangles(body).to_vec()).collect();
+    let options =
+        BetweenOptions { sides: ids.map(|body| contact.side(body)).collect(), ..BetweenOptions::default() };
+    let between = Between::new(contact.points(), &bodies, &options, threads)?;
+    Ok((between, begin.elapsed().as_secs_f64()))
+}
+
+/// Puts the gaps of the tets in place of the exact ones. Also says by how much each is too large.
+pub(crate) fn replace(
+    gaps: &mut Gaps,
+    between: &Between,
+    seconds: f64,
+    warn: Option<f64>,
+) -> (Beside, Vec<f64>) {
+    let mut told = Beside {
+        gap_tets: between.tets.len(),
+        least: between.least.map(|least| least.distance),
+        compared: 0,
+        exact: 0.0,
+        largest_over: 0.0,
+        largest_under: 0.0,
+        seconds,
+    };
+    let (mut errors, mut n_exact) = (Vec::new(), 0);
+    for body in &mut gaps.bodies {
+        for (i, v) in body.vertices.iter().enumerate() {
+            let (exact, found) = (body.gap[i].abs(), between.gap[v.index()]);
+            let error = found - exact;
+            errors.push(error);
+            if error.is_finite() {
+                told.compared += 1;
+                n_exact += usize::from(error.abs() <= 1e-12 * exact);
+                told.largest_over = told.largest_over.max(error);
+                told.largest_under = told.largest_under.max(-error);
+            }
+            body.gap[i] = found.copysign(body.gap[i]);
+            body.warning[i] = warn.is_some_and(|warn| body.gap[i] < warn);
+        }
+    }
+    told.exact = n_exact as f64 / told.compared.max(1) as f64;
+    (told, errors)
+}
+
+/// The gap tets as a mesh: those with four vertices. Also how many more there are, which are flat.
+pub(crate) fn tets(contact: &Contact, between: &Between) -> (Mesh, usize) {
+    let tets = || between.tets.iter().filter(|tet| !tet.vertices.contains(&VertexId::NONE));
+    let mut used: Vec<VertexId> = tets().flat_map(|tet| tet.vertices).collect();
+    used.sort_unstable();
+    used.dedup();
+    let points = used.iter().map(|v| contact.points()[v.index()]).collect();
+    let mut cells = Cells::new();
+    for tet in tets() {
+        let mut vertices = tet.vertices;
+        if is_turned(vertices.map(|v| contact.points()[v.index()])) {
+            vertices.swap(2, 3);
+        }
+        let new = |v: VertexId| VertexId::new(used.binary_search(&v).unwrap_or_default());
+        cells.push(CellKind::TETRA, vertices.map(new));
+    }
+    let mut mesh = Mesh::new(points, cells);
+    let kind = |kind: GapKind| match kind {
+        GapKind::TwoTwo => 22,
+        GapKind::ThreeOne => 31,
+        GapKind::TwoOneOne => 211,
+        GapKind::Ones => 1111,
+        _ => 0,
+    };
+    mesh.set_cell_field(Field::scalars("kind", tets().map(|tet| kind(tet.kind)).collect::<Vec<i32>>()));
+    let distance = |d: f64| if d.is_finite() { d } else { f64::NAN };
+    mesh.set_cell_field(Field::scalars(
+        "distance",
+        tets().map(|tet| distance(tet.distance)).collect::<Vec<f64>>(),
+    ));
+    let pairs = |i: usize| tets().map(|tet| tet.bodies[i] as i32 + 1).collect::<Vec<i32>>();
+    mesh.set_cell_field(Field::scalars("body", pairs(0)));
+    mesh.set_cell_field(Field::scalars("other_body", pairs(1)));
+    let n_flat = between.tets.len() - mesh.cells.len();
+    (mesh, n_flat)
+}
+
+/// Whether a tet is numbered the wrong way round.
+fn is_turned([a, b, c, d]: [Point; 4]) -> bool {
+    orient3d(a, b, c, d) < 0
+}
