@@ -71,7 +71,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let out = out.ok_or("where shall it go? contact_stent OUT.pvd")?;
     let places = if places.is_empty() { ARTERY.to_vec() } else { places };
-    let stent = Stent { length, rings: 12, crowns: 8, strut_width: 0.08, thickness: 0.06, ..Stent::default() };
+    let stent =
+        Stent { length, rings: 12, crowns: 8, strut_width: 0.08, thickness: 0.06, ..Stent::default() };
     let line = CenterLine::new(&smooth(&places))?;
     let mut series = SeriesWriter::new(&out, WriteOptions::default());
     for step in 0..=steps {
@@ -80,6 +81,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         mesh.points = line.bent(&mesh.points);
         series.add(f64::from(step), &mesh)?;
     }
-    println!("{out}: {} steps, radius {} to {}, {} triangles", steps, radii[0], radii[1], stent.triangles()?.len());
+    println!(
+        "{out}: {} steps, radius {} to {}, {} triangles",
+        steps,
+        radii[0],
+        radii[1],
+        stent.triangles()?.len()
+    );
     Ok(())
 }

@@ -139,7 +139,7 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
             if start >= bound {
                 continue;
             }
-            if let Some(time) = self.pair(i, j).time(bound, self.horizon) {
+            if let Some(time) = self.pair(i, j).time(start, bound, self.horizon) {
                 own.fetch_min(time.to_bits(), Ordering::Relaxed);
                 other.fetch_min(time.to_bits(), Ordering::Relaxed);
             }
@@ -156,9 +156,9 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
         tree.touching(&self.box_of(self.surfaces[0][i as usize]), &mut near);
         near.sort_unstable_by_key(|&(_, j)| j);
         let beyond = time.next_up();
-        near.iter().filter(|&&(_, j)| self.is_wanted(i, j)).find_map(|&(_, j)| {
+        near.iter().filter(|&&(_, j)| self.is_wanted(i, j)).find_map(|&(start, j)| {
             let pair = self.pair(i, j);
-            let found = pair.time(beyond, self.horizon).filter(|&found| found == time);
+            let found = pair.time(start, beyond, self.horizon).filter(|&found| found == time);
             found.map(|time| Touch { time, triangles: [i, j], place: pair.place(time) })
         })
     }

@@ -27,6 +27,9 @@ const ENOUGH: f64 = 1e-6;
 /// were too few for 2 of 13,000 random pairs (27 of 100 too early at the worst), 1000 for none (4e-5 too early).
 const MOST_STEPS: usize = 1000;
 
+/// Squares above it have all their digits.
+const SMALLEST_SQUARE: f64 = 1e-290;
+
 /// Two triangles, relative to the first vertex of the first.
 pub(super) struct Pair {
     origin: (Point, Point),
@@ -56,14 +59,14 @@ impl Pair {
         Self { origin, places, velocities, size, speed, width, fastest }
     }
 
-    /// No contact comes before this time. `None` when it is not below `bound` or beyond the horizon; otherwise the bound changes nothing:
-    /// whatever ends the search early is a step that would have gone beyond.
-    pub(super) fn time(&self, bound: f64, horizon: f64) -> Option<f64> {
+    /// No contact comes before this time, given that none comes before `start`. `None` when it is not below `bound` or beyond the horizon;
+    /// otherwise the bound changes nothing: whatever ends the search early is a step that would have gone beyond.
+    pub(super) fn time(&self, start: f64, bound: f64, horizon: f64) -> Option<f64> {
         let is_late = |time: f64| time >= bound || time > horizon;
         let last = bound.min(horizon);
         // First between centres: a look that costs little and often ends it.
         let [a, b] = self.places.map(|[p, q, r]| add(add(p, q), r));
-        let mut time = self.closed_at(0.0, sub(b, a));
+        let mut time = self.closed_at(0.0, sub(b, a)).max(start);
         for _ in 0..MOST_STEPS {
             if is_late(time) {
                 return None;
@@ -72,15 +75,16 @@ impl Pair {
             let touching = rounding + ENOUGH * self.width.min(time * self.fastest);
             // From beyond this the next step goes beyond `last`, with something to spare for rounding.
             let reach = (last - time) * self.fastest * (1.0 + 4.0 * ROUNDING) + 2.0 * rounding;
-            let Some(near) = self.closest_within(time, reach.max(2.0 * touching)) else { return None };
+            let near = self.closest_within(time, reach.max(2.0 * touching))?;
             let distance = near.distance();
-            if !(distance > touching) {
+            if distance <= touching {
                 break;
             }
             let at_least = time + (distance - rounding) / self.fastest * (1.0 - ROUNDING);
             let next = self.closed_at(time, near.offset).max(at_least);
-            // Also where there are no numbers to go on with.
-            if !(next > time) {
+            // Nor where there are no numbers to go on with.
+            let goes_on = next > time;
+            if !goes_on {
                 break;
             }
             time = next;
@@ -91,7 +95,12 @@ impl Pair {
     fn closest_within(&self, time: f64, reach: f64) -> Option<Closest<3, 3>> {
         let [a, b] = self.at(time);
         let reach_squared = reach * reach;
-        if reach_squared < f64::INFINITY { closest_below(a, b, reach_squared) } else { Some(closest(a, b)) }
+        // Where the square is good for nothing, the distance alone will do.
+        if (SMALLEST_SQUARE..f64::INFINITY).contains(&reach_squared) {
+            closest_below(a, b, reach_squared)
+        } else {
+            Some(closest(a, b))
+        }
     }
 
     /// Halfway between the closest points at a time.
@@ -120,7 +129,9 @@ impl Pair {
         for (p, u) in at[0].iter().zip(speeds[0]) {
             for (q, v) in at[1].iter().zip(speeds[1]) {
                 let (apart, closing) = (q - p - rounding, u - v + ROUNDING * self.speed);
-                if !(apart > 0.0) {
+                // NaN is not.
+                let is_apart = apart > 0.0;
+                if !is_apart {
                     return time;
                 }
                 if closing > 0.0 {

@@ -1,0 +1,77 @@
+"""Draws the stent that opens in an artery, its gaps in colour (writes docs/contact.png).
+
+    ./test --setup                                        (once: the Python packages)
+    cargo run --release -p motet --example contact_stent target/contact/stent.pvd
+    cargo run --release -- contact target/contact/stent.pvd VESSEL -o target/contact/gaps.pvd --warn 0.15
+    target/venv/bin/python docs/contact_picture.py target/contact
+
+VESSEL is `id1_model.vtp` of the VMTK tutorials (BSD-3; github.com/vmtk/vmtk.github.com, resources/img/tutorials).
+"""
+import sys
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pyvista as pv
+from matplotlib.colors import LinearSegmentedColormap
+from PIL import Image, ImageDraw
+
+from pictures import HERE, INK, font, lit, save
+
+PANEL = (420, 330)
+RANGE = (0.0, 0.6)
+WARN = 0.15
+STEPS = (0, 12, 15)
+# Red warns (below a quarter of the range), pale is far.
+GAP = LinearSegmentedColormap.from_list("gap", [
+    (0.0, "#8c0f2d"), (0.249, "#e0583f"), (0.251, "#f0c36a"), (0.6, "#8fc7b4"), (1.0, "#2b6c8a")])
+
+
+def panel(mesh):
+    """Stent and wall; the wall's warned places shine through."""
+    body = mesh.cell_data["body"]
+    stent = mesh.extract_cells(body == 1).extract_surface(algorithm="dataset_surface")
+    wall = mesh.extract_cells(body == 2).extract_surface(algorithm="dataset_surface")
+    plotter = lit(stent, PANEL)
+    plotter.add_mesh(wall, color="#d9c7bb", opacity=0.22, smooth_shading=True, ambient=0.35, diffuse=0.6, specular=0.1)
+    near = wall.threshold(0.5, scalars="warning", all_scalars=False) if wall["warning"].any() else None
+    if near is not None and near.n_cells:
+        plotter.add_mesh(near, color="#e0583f", opacity=0.55, ambient=0.5, diffuse=0.4)
+    plotter.add_mesh(stent, scalars="gap", cmap=GAP, clim=RANGE, show_scalar_bar=False, ambient=0.65, diffuse=0.45)
+    centre = np.array(wall.center)
+    plotter.camera_position = [centre + np.array([-62.0, 4.0, 16.0]), centre + np.array([0.0, -1.2, -1.3]), (0.0, 0.0, 1.0)]
+    plotter.camera.view_angle = 15.5
+    plotter.enable_depth_peeling(8)
+    plotter.enable_anti_aliasing("ssaa")
+    image = Image.fromarray(plotter.screenshot(return_img=True))
+    plotter.close()
+    return image
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder = Path(sys.argv[1])
+    entries = list(ElementTree.parse(folder / "gaps.pvd").iter("DataSet"))
+    width, height = PANEL
+    sheet = Image.new("RGB", (len(STEPS) * width, height + 84), "white")
+    draw = ImageDraw.Draw(sheet)
+    for column, step in enumerate(STEPS):
+        mesh = pv.read(folder / entries[step].get("file"))
+        sheet.paste(panel(mesh), (column * width, 0))
+        stent = np.unique(mesh.cells_dict[pv.CellType.TRIANGLE][mesh.cell_data["body"] == 1])
+        gap, warned = np.nanmin(mesh["gap"][stent]), int(mesh["warning"][stent].sum())
+        text = f"step {step}: gap {gap:.2f} mm, " + (f"{warned:,} vertices warn" if warned else "no warning")
+        draw.text((column * width + width // 2, height + 6), text, fill=INK, font=font(16), anchor="ma")
+    left, top, long = sheet.width // 2 - 150, height + 42, 300
+    for x in range(long):
+        draw.line([(left + x, top), (left + x, top + 12)], fill=tuple(int(255 * c) for c in GAP(x / (long - 1))[:3]))
+    for value in (0.0, WARN, 0.3, 0.45, 0.6):
+        x = left + int(value / RANGE[1] * (long - 1))
+        draw.text((x, top + 17), f"{value:g}", fill=INK, font=font(14), anchor="ma")
+    draw.text((left - 12, top + 6), "gap", fill=INK, font=font(15), anchor="rm")
+    save(sheet, HERE / "contact.png")
+
+
+if __name__ == "__main__":
+    main()
