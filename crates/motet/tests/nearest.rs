@@ -308,7 +308,7 @@ proptest! {
         one_in in 1u32..40, salt in 0u32..1000,
         within in prop_oneof![Just(f64::INFINITY), 0.0f64..1.0],
     ) {
-        let passes = |t: u32| t.wrapping_mul(2654435761).wrapping_add(salt * 7919) % one_in == 0;
+        let passes = |t: u32| t.wrapping_mul(2654435761).wrapping_add(salt * 7919).is_multiple_of(one_in);
         let tree = NearestTriangle::new(&points, &triangles);
         let alone = |t: &u32| NearestTriangle::new(&points, &[triangles[*t as usize]]).closest_within(p, within);
         let all = (0..triangles.len() as u32).filter(|t| passes(*t)).filter_map(|t| {
@@ -328,5 +328,21 @@ proptest! {
         prop_assert_eq!(found, expected);
         prop_assert_eq!(tree.closest_where(p, within, |_, _| false), None);
         prop_assert_eq!(tree.closest_where(p, within, |_, _| true), tree.closest_within(p, within));
+    }
+}
+
+#[test]
+fn points_far_off_have_exact_answers_too() {
+    let surface = Surface::of(&sphere_in_box(8, 2));
+    let tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    for power in 0..40 {
+        let far = 3f64.powi(power);
+        for direction in [[1.0, 0.3, -0.2], [-0.1, -0.7, 1.0]] {
+            let p = scale(direction, far);
+            let expected = by_brute_force(&surface.points, &surface.triangles, p);
+            for found in [tree.closest(p), tree.closest_all(&[p; 2], Some(&[3, 5]), &Threads::single())[1]] {
+                assert_eq!(found.map(|c| (c.triangle, c.distance_squared)), Some(expected), "{far}");
+            }
+        }
     }
 }

@@ -43,7 +43,7 @@ const FOURTH_POWERS: Range<f64> = 1e-280..1e280;
 /// The foot of the perpendicular, where it lies inside, else the nearest of the closest points of the edges. The distance
 /// is right to some 1e-15 of the *extent*, the size of triangle and point together, for any shape ([`needle`] says why), in any
 /// unit and however far off the origin lies. A triangle without area is its edges.
-#[inline]
+#[inline(always)]
 pub fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
     let [a, b, c] = triangle;
     let edges = [sub(b, a), sub(c, b), sub(a, c)];

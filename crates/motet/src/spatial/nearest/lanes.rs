@@ -68,6 +68,18 @@ impl<S: Simd> Lanes<S> {
         Self(self.0, self.0.mul_add_e_f32s(self.1, factor.1, summand.1))
     }
 
+    /// All of this part together.
+    #[inline(always)]
+    pub(super) fn sum(self) -> f32 {
+        self.0.reduce_sum_f32s(self.1)
+    }
+
+    /// The smallest of this part.
+    #[inline(always)]
+    pub(super) fn least(self) -> f32 {
+        self.0.reduce_min_f32s(self.1)
+    }
+
     /// Where this is below `limit`: `yes`, elsewhere `no`, as where either is NaN.
     #[inline(always)]
     pub(super) fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
@@ -114,4 +126,9 @@ pub(super) fn sub<S: Simd>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
 #[inline(always)]
 pub(super) fn dot<S: Simd>(a: Vector<S>, b: Vector<S>) -> Lanes<S> {
     a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+#[inline(always)]
+pub(super) fn cross<S: Simd>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

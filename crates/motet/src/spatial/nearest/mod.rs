@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::base::{Point, Threads, VertexId};
 use packed::Packed;
-use search::Query;
+use search::{Admit, All, Search, Where};
 
 /// The answer to a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ impl NearestTriangle {
 
     /// The same, looking no farther than `distance`: `None` when everything is beyond.
     pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
-        self.closest_where(p, distance, |_, _| true)
+        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit: All })
     }
 
     /// The closest of those triangles that `admit` admits, by its number and what a search for it alone would find.
@@ -87,8 +87,8 @@ impl NearestTriangle {
         distance: f64,
         admit: impl FnMut(u32, &Closest) -> bool,
     ) -> Option<Closest> {
-        let query = Query { p, reach: distance * distance, guess: NO_GUESS };
-        Arch::new().dispatch(One { tree: &self.tree, query, admit })
+        let admit = Where(admit);
+        Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit })
     }
 
     /// What [`closest`](Self::closest) says of each of many points.
@@ -147,18 +147,21 @@ impl NearestTriangle {
 }
 
 /// One search, and many, compiled for the instructions that the machine has.
-struct One<'a, F> {
+struct One<'a, A> {
     tree: &'a Packed,
-    query: Query,
-    admit: F,
+    p: Point,
+    reach: f64,
+    admit: A,
 }
 
-impl<F: FnMut(u32, &Closest) -> bool> WithSimd for One<'_, F> {
+impl<A: Admit> WithSimd for One<'_, A> {
     type Output = Option<Closest>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        search::nearest(self.tree, simd, self.query, self.admit)
+        let mut search = Search::new(self.tree, simd, self.p, self.reach, self.admit)?;
+        search.descend();
+        search.finish()
     }
 }
 
@@ -183,8 +186,13 @@ impl WithSimd for Run<'_> {
                 Some(guesses) if self.tree.knows(guesses[i as usize]) => guesses[i as usize],
                 _ => last,
             };
-            let query = Query { p: self.points[i as usize], reach: f64::INFINITY, guess };
-            let closest = search::nearest(self.tree, simd, query, |_, _| true);
+            let p = self.points[i as usize];
+            let mut closest = None;
+            if let Some(mut search) = Search::new(self.tree, simd, p, f64::INFINITY, All) {
+                search.begin_at(guess);
+                search.descend();
+                closest = search.finish();
+            }
             last = closest.map_or(last, |closest| closest.triangle as u32);
             found.push(closest);
         }

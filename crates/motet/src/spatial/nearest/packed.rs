@@ -284,8 +284,15 @@ fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
     first
 }
 
-/// The centre of a triangle, and its id. In 32 bits, as all that matters is which are neighbours.
-type Item = ([f32; 3], u32);
+/// The centre of a triangle, in whole numbers of the same order, and its id. In 32 bits, as all that matters is which are neighbours.
+type Item = ([i32; 3], u32);
+
+/// A whole number for each number, larger for larger ones; and back, by its bits.
+#[inline(always)]
+fn ordered(bits: u32) -> i32 {
+    let bits = bits as i32;
+    bits ^ ((bits >> 31) as u32 >> 1) as i32
+}
 
 /// Ids of the triangles, neighbours together: halved across the longest side of the box of their centres, down to eights.
 ///
@@ -296,7 +303,7 @@ fn by_halves(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
     let per_extent = 1.0 / extent.max(1e-300);
     let centre = |t: &[VertexId; 3]| {
         let [a, b, c] = t.map(|v| scale(sub(points[v.index()], corner), per_extent));
-        add(add(a, b), c).map(|x| x as f32)
+        add(add(a, b), c).map(|x| ordered((x as f32).to_bits()))
     };
     let mut items: Vec<Item> = triangles.iter().map(centre).zip(0..).collect();
     halve(&mut items);
@@ -308,15 +315,18 @@ fn halve(items: &mut [Item]) {
     if items.len() <= 8 {
         return;
     }
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
     for (centre, _) in items.iter() {
         for k in 0..3 {
-            (low[k], high[k]) = (smaller(centre[k], low[k]), larger(centre[k], high[k]));
+            (low[k], high[k]) = (centre[k].min(low[k]), centre[k].max(high[k]));
         }
     }
-    let axis = (0..3).fold(0, |most, k| if high[k] - low[k] > high[most] - low[most] { k } else { most });
+    let back = |x: i32| f32::from_bits(ordered(x as u32) as u32);
+    let side = [0, 1, 2].map(|k| back(high[k]) - back(low[k]));
+    let axis = (0..3).fold(0, |most, k| if side[k] > side[most] { k } else { most });
     let half = 4 * items.len().div_ceil(8).next_power_of_two();
-    items.select_nth_unstable_by(half, |x, y| x.0[axis].total_cmp(&y.0[axis]).then(x.1.cmp(&y.1)));
+    // One comparison, of numbers none of which are equal.
+    items.select_nth_unstable_by_key(half, |x| i64::from(x.0[axis]) << 32 | i64::from(x.1));
     let (left, right) = items.split_at_mut(half);
     halve(left);
     halve(right);
