@@ -39,7 +39,7 @@ def panel(mesh):
         plotter.add_mesh(near, color="#e0583f", opacity=0.55, ambient=0.5, diffuse=0.4)
     plotter.add_mesh(stent, scalars="gap", cmap=GAP, clim=RANGE, show_scalar_bar=False, ambient=0.65, diffuse=0.45)
     centre = np.array(wall.center)
-    plotter.camera_position = [centre + np.array([-62.0, 4.0, 16.0]), centre + np.array([0.0, -1.2, -1.3]), (0.0, 0.0, 1.0)]
+    plotter.camera_position = [centre + np.array([-62.0, 4.0, 16.0]), centre + np.array([0.0, -1.2, -0.6]), (0.0, 0.0, 1.0)]
     plotter.camera.view_angle = 15.5
     plotter.enable_depth_peeling(8)
     plotter.enable_anti_aliasing("ssaa")
@@ -60,7 +60,7 @@ def main():
         mesh = pv.read(folder / entries[step].get("file"))
         sheet.paste(panel(mesh), (column * width, 0))
         stent = np.unique(mesh.cells_dict[pv.CellType.TRIANGLE][mesh.cell_data["body"] == 1])
-        gap, warned = np.nanmin(mesh["gap"][stent]), int(mesh["warning"][stent].sum())
+        gap, warned = np.nanmin(mesh["gap"]), int(mesh["warning"][stent].sum())
         text = f"step {step}: gap {gap:.2f} mm, " + (f"{warned:,} vertices warn" if warned else "no warning")
         draw.text((column * width + width // 2, height + 6), text, fill=INK, font=font(16), anchor="ma")
     left, top, long = sheet.width // 2 - 150, height + 42, 300
