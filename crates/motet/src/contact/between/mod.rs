@@ -10,8 +10,15 @@
 //! **What is a bound.** Everything else is the distance between points that do lie on the surfaces, hence never too small, but
 //! the nearest triangle need not be in a tet with the vertex, so it may be too large. The text of 2008 takes every edge and facet of a tet for a
 //! part of the surfaces, also chords across dents, and may thus be too small as well; here those that are not edges or
-//! triangles of the surface are left out. How much is lost is measured by `examples/contact_delaunay.rs`. The exact answer takes a
-//! tree of boxes; this one gives what a tree does not: the tets of the gap, and a graph that moves along.
+//! triangles of the surface are left out. The exact answer takes a tree of boxes; this one gives what a tree does not: the tets of
+//! the gap, and a graph that moves along.
+//!
+//! **How good the bound is**, for a stent lattice in a tube (78,000 vertices), by `examples/contact_delaunay.rs`, in which there are more pairs. Of
+//! the vertices 24 % have no gap tet, 33 % their exact distance, and of those seen the median is 0.04 % too large, one in twenty more than 16 %, the worst 134 %. Of the tenth that is nearest
+//! to the other surface all are seen, and the worst is 33 % too large; with `stars` all of these are exact. The least
+//! distance of all was off by 0 to 0.8 % over nine pairs. The paper's rule for two edges is too large in 43 % of the lattice's two-two
+//! tets, by up to 88 %. It takes 0.6 s and 0.27 s an update, on one thread of a busy machine, where the tree has the
+//! exact distances of all vertices from nothing in 0.1 s.
 
 mod gaps;
 mod measure;
