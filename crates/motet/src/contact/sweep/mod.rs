@@ -42,6 +42,9 @@ pub struct Sweep {
 /// 1e-4 of the time too early. Triangles that pass each other by less than 1e-14 of how far they are apart or a
 /// millionth of their own size count as touching then. Triangles that meet at the start have time 0.
 ///
+/// Two balls of 50,000 triangles each take 0.3 s for a motion up to which 600 touch, 3 s where they go through each other and nearly all do
+/// (one thread of a busy machine; the measurement is in `tests/contact_sweep.rs`).
+///
 /// Pairs that share a vertex are always in touch and left out, as are those that `admit` does not let in and triangles with
 /// a corner or a velocity that is not finite. The result depends neither on the number of threads nor on the unit of length or time, nor
 /// on a velocity that all have in common, by more than rounding.
