@@ -28,6 +28,8 @@ pub(super) struct Prepared {
     pub(super) vertices: Vec<VertexId>,
     /// The triangles of each of its vertices, by their places in the lists.
     pub(super) stars: Csr<u32>,
+    /// Whether each of its vertices is on an edge that one triangle alone uses.
+    pub(super) is_rim: Vec<bool>,
     pub(super) free: Side,
     /// Unit normals of the triangles, where [`keep_normals`](Self::keep_normals) was called.
     normals: Vec<Point>,
@@ -56,6 +58,7 @@ impl Prepared {
         let stars = Csr::from_pairs(vertices.len(), || {
             (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v, i)))
         });
+        let is_rim = rim(&places, vertices.len());
         let is_closed = super::inside::is_closed(&triangles);
         let tree = NearestTriangle::new(points, &triangles);
         let mut body = Self {
@@ -65,6 +68,7 @@ impl Prepared {
             is_room,
             vertices,
             stars,
+            is_rim,
             free: Side::Both,
             normals: Vec::new(),
             tree,
@@ -149,4 +153,16 @@ fn check_finite(name: &str, vertices: &[VertexId], points: &[Point]) -> Result<(
                 .remedy("remove the point and its cells, or give it a place"))
         }
     }
+}
+
+/// Which vertices are on an edge that one triangle alone uses.
+fn rim(triangles: &[[usize; 3]], n_vertices: usize) -> Vec<bool> {
+    let edges = |&[a, b, c]: &[usize; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
+    let mut edges: Vec<[usize; 2]> = triangles.iter().flat_map(edges).collect();
+    edges.sort_unstable();
+    let mut is_rim = vec![false; n_vertices];
+    for same in edges.chunk_by(|x, y| x == y).filter(|same| same.len() == 1) {
+        same[0].iter().for_each(|&v| is_rim[v] = true);
+    }
+    is_rim
 }

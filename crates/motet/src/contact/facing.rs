@@ -3,27 +3,20 @@
 use super::body::Prepared;
 use super::side::Side;
 use crate::base::Point;
-use crate::geometry::vector::{dot, norm, scale, sub};
+use crate::geometry::vector::{add, dot, norm, scale, sub};
 
-/// The least cosine between a normal and the way across the gap: 75 degrees. Neighbours on one smooth surface lie at right
-/// angles to its normal; on a convex edge or corner that is nearest to something, some triangle is within 75 degrees.
+/// The least cosine between a surface and the way to a place nearest to it: 75 degrees from its normal. Neighbours on one smooth surface lie
+/// at right angles to that.
 const LEAST_COSINE: f64 = 0.25;
-
-/// Whether the way `out` from a triangle with this normal goes into free space.
-fn goes_free(free: Side, normal: Point, out: Point) -> bool {
-    let cosine = dot(normal, out);
-    match free {
-        Side::Both => cosine.abs() > LEAST_COSINE,
-        Side::Outside => cosine > LEAST_COSINE,
-        Side::Inside => cosine < -LEAST_COSINE,
-    }
-}
 
 /// How far rounding may move a point off a plane, as a part of how far it is from a point in it.
 const ROUNDING: f64 = 1e-15;
 
 /// The cosine between the normals of two triangles that face away from each other as far as they may.
 const LEAST_TURN: f64 = 1.0 - 2.0 * LEAST_COSINE * LEAST_COSINE;
+
+/// A place of a body: a point within a triangle by the weights of its vertices.
+pub(super) type Place<'a> = (&'a Prepared, u32, [f64; 3]);
 
 /// Whether two triangles may face each other anywhere. It is a quick look that spares most neighbours the measuring: their normals
 /// are too much alike, or one lies behind the other. A coil of 51,304 triangles is measured against itself in a third of the time.
@@ -54,20 +47,67 @@ fn is_behind(free: Side, normal: Point, within: Point, corners: [Point; 3]) -> b
     })
 }
 
-/// Whether some triangle of `star` of body `a` and triangle `j` of `b` face each other along the way from `from` to `to`. Places that touch
-/// face each other.
-pub(super) fn is_facing(
-    points: &[Point],
-    (a, star): (&Prepared, &[u32]),
-    (b, j): (&Prepared, u32),
-    [from, to]: [Point; 2],
-) -> bool {
-    let way = sub(to, from);
-    let length = norm(way);
-    if length == 0.0 {
+/// Whether the way from the place of a vertex, by its place in the body's list, to one of another surface starts in free space and ends
+/// at right angles to that, more or less. Places that touch face each other.
+pub(super) fn sees(points: &[Point], (a, vertex): (&Prepared, usize), to: Place<'_>, way: Point) -> bool {
+    let Some(way) = unit(way) else { return true };
+    let star = a.stars.list(vertex);
+    faces(points, to, scale(way, -1.0))
+        && (star.iter().any(|&i| is_free(a.free, a.normal(points, i), way, 0.0))
+            || is_free(a.free, sum_of_normals(points, a, star), way, LEAST_COSINE)
+            || a.free == Side::Both && a.is_rim[vertex])
+}
+
+/// Whether two places that are nearest to each other do so across free space.
+pub(super) fn see_each_other(points: &[Point], from: Place<'_>, to: Place<'_>, way: Point) -> bool {
+    let Some(way) = unit(way) else { return true };
+    faces(points, to, scale(way, -1.0)) && faces(points, from, way)
+}
+
+/// Whether the way `out` from a place to which it is nearest leads into free space: by the normal of the triangle, or on an edge or a
+/// vertex by the sum of the normals around, which an edge as sharp as a knife has too. The rim of an open surface may be left any way.
+fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> bool {
+    if is_free(body.free, body.normal(points, triangle), out, LEAST_COSINE) {
         return true;
     }
-    let way = scale(way, 1.0 / length);
-    goes_free(b.free, b.normal(points, j), scale(way, -1.0))
-        && star.iter().any(|&i| goes_free(a.free, a.normal(points, i), way))
+    let vertices = body.triangles[triangle as usize];
+    let held = || (0..3).filter(|&k| weights[k] != 0.0).map(|k| vertices[k]);
+    let n_held = held().count();
+    let Some(Ok(place)) = held().next().map(|v| body.vertices.binary_search(&v)) else { return false };
+    if n_held == 3 {
+        return false;
+    }
+    let is_rim = |v| body.vertices.binary_search(&v).is_ok_and(|place| body.is_rim[place]);
+    if body.free == Side::Both && held().all(is_rim) {
+        return true;
+    }
+    let around: Vec<u32> = body
+        .stars
+        .list(place)
+        .iter()
+        .copied()
+        .filter(|&t| held().all(|v| body.triangles[t as usize].contains(&v)))
+        .collect();
+    is_free(body.free, sum_of_normals(points, body, &around), out, LEAST_COSINE)
+}
+
+/// Whether a way goes to the free side of a surface with this normal, with more than this cosine.
+fn is_free(free: Side, normal: Point, way: Point, least: f64) -> bool {
+    let cosine = dot(normal, way);
+    match free {
+        Side::Both => cosine.abs() > LEAST_COSINE,
+        Side::Outside => cosine > least,
+        Side::Inside => cosine < -least,
+    }
+}
+
+/// The direction of the sum of the normals of some triangles; zero where they cancel out.
+fn sum_of_normals(points: &[Point], body: &Prepared, triangles: &[u32]) -> Point {
+    let sum = triangles.iter().fold([0.0; 3], |sum, &t| add(sum, body.normal(points, t)));
+    unit(sum).unwrap_or_default()
+}
+
+fn unit(way: Point) -> Option<Point> {
+    let length = norm(way);
+    (length > 0.0).then(|| scale(way, 1.0 / length))
 }

@@ -2,7 +2,7 @@
 
 use super::along::{Along, Ways};
 use super::body::Prepared;
-use super::facing::{is_facing, may_face};
+use super::facing::{may_face, see_each_other, sees};
 use super::options::Options;
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::Closest;
@@ -50,8 +50,8 @@ impl<'a> Rule<'a> {
             if self.along.is_some() && corners.contains(&vertex) {
                 return false;
             }
-            let (own, other) = ((self.a, self.a.stars.list(place)), (self.b, j));
-            if !is_facing(self.points, own, other, [start, found.point]) {
+            let way = sub(found.point, start);
+            if !sees(self.points, (self.a, place), (self.b, j, found.weights), way) {
                 return false;
             }
             let length = self.fold * found.distance_squared.sqrt();
@@ -84,7 +84,7 @@ impl<'a> Rule<'a> {
         let (own, other) = (self.a.triangles[i as usize], self.b.triangles[j as usize]);
         let from = triangle::at(self.a.corners(self.points, i), found.on_a);
         let to = triangle::at(self.b.corners(self.points, j), found.on_b);
-        if !is_facing(self.points, (self.a, &[i]), (self.b, j), [from, to]) {
+        if !see_each_other(self.points, (self.a, i, found.on_a), (self.b, j, found.on_b), sub(to, from)) {
             return false;
         }
         let heaviest = (1..3).fold(0, |best, k| if found.on_a[k] > found.on_a[best] { k } else { best });
