@@ -41,7 +41,7 @@ const FOURTH_POWERS: Range<f64> = 1e-280..1e280;
 /// the triangle closest to `p`; exactly 0 off the vertex or edge that holds it.
 ///
 /// The foot of the perpendicular, where it lies inside, else the nearest of the closest points of the edges. The distance
-/// is right to some 1e-15 of the *extent*, the size of triangle and point together, for any shape ([`needle`] says why), in any
+/// is right to some 1e-15 of the *extent*, the size of triangle and point together, for any shape (`needle.rs` says why), in any
 /// unit and however far off the origin lies. A triangle without area is its edges.
 #[inline(always)]
 pub fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {

@@ -119,7 +119,7 @@ impl ContactArgs {
             return Err(Error::options("Delaunay tets span gaps between surfaces, not within one")
                 .remedy("leave --self away, or --method delaunay and --gap-tets"));
         }
-        if self.gap_tets.is_some() && self.surfaces.iter().any(|path| motet::io::is_series(path)) {
+        if self.gap_tets.is_some() && self.surfaces.iter().any(motet::io::is_series) {
             return Err(Error::options("--gap-tets goes with one state, not with a series")
                 .remedy("give a frame of it"));
         }

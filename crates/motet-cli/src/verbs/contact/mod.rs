@@ -6,6 +6,7 @@ mod frames;
 mod histogram;
 mod output;
 mod report;
+mod words;
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! What contact reports: to people tables and a histogram, to programs an object.
+//! What contact reports to programs: an object; what people are told of it is in `words`.
 
 use std::path::PathBuf;
 
@@ -10,124 +10,118 @@ use serde::Serialize;
 use super::args::ContactArgs;
 use super::delaunay::Beside;
 use super::frames::Frame;
-use super::histogram::Histogram;
-use crate::console::Console;
-use crate::table::{Table, count, seconds, short, time as time_of};
-
-/// How many groups of warned vertices are told where nobody asks for all.
-const FIRST: usize = 10;
 
 /// All that was found.
 #[derive(Debug, Serialize)]
-pub(crate) struct Report {
-    output: PathBuf,
-    warn: Option<f64>,
+pub(super) struct Report {
+    pub(super) output: PathBuf,
+    pub(super) warn: Option<f64>,
     /// Whether something warns in any frame.
-    warning: bool,
+    pub(super) warning: bool,
     /// The time of the first frame that warns, and of the first in which something touches.
-    first_warning: Option<f64>,
-    first_touch: Option<f64>,
-    bodies: Vec<BodyFacts>,
-    steps: Vec<Step>,
-    pub(crate) seconds: Stages,
+    pub(super) first_warning: Option<f64>,
+    pub(super) first_touch: Option<f64>,
+    pub(super) bodies: Vec<BodyFacts>,
+    pub(super) steps: Vec<Step>,
+    pub(super) seconds: Stages,
 }
 
 /// Seconds by stage.
 #[derive(Debug, Default, Serialize)]
-pub(crate) struct Stages {
+pub(super) struct Stages {
     /// Preparing surfaces and measuring.
-    pub(crate) measure: f64,
-    pub(crate) look_ahead: f64,
-    pub(crate) write: f64,
-    pub(crate) total: f64,
+    pub(super) measure: f64,
+    pub(super) look_ahead: f64,
+    pub(super) write: f64,
+    pub(super) total: f64,
 }
 
 /// A surface of the first frame.
 #[derive(Debug, Serialize)]
-struct BodyFacts {
-    name: String,
-    file: PathBuf,
-    vertices: usize,
-    triangles: usize,
-    closed: bool,
-    room: bool,
+pub(super) struct BodyFacts {
+    pub(super) name: String,
+    pub(super) file: PathBuf,
+    pub(super) vertices: usize,
+    pub(super) triangles: usize,
+    pub(super) closed: bool,
+    pub(super) room: bool,
 }
 
 /// What was found in one frame.
 #[derive(Debug, Serialize)]
-pub(crate) struct Step {
-    time: f64,
-    file: Option<PathBuf>,
+pub(super) struct Step {
+    pub(super) time: f64,
+    pub(super) file: Option<PathBuf>,
     /// The least gap of all; 0 where surfaces meet, null where nothing is within reach.
-    least: Option<f64>,
-    warning: bool,
+    pub(super) least: Option<f64>,
+    pub(super) warning: bool,
     /// By body: gaps of its vertices.
-    gaps: Vec<Spread>,
-    pairs: Vec<Pair>,
-    warned: Vec<Group>,
-    first_contact: Option<First>,
+    pub(super) gaps: Vec<Spread>,
+    pub(super) pairs: Vec<Pair>,
+    pub(super) warned: Vec<Group>,
+    pub(super) first_contact: Option<First>,
     /// How good the answer by Delaunay tets is, where that was asked for.
-    delaunay: Option<Beside>,
+    pub(super) delaunay: Option<Beside>,
     #[serde(skip)]
-    all: Vec<f64>,
+    pub(super) all: Vec<f64>,
     #[serde(skip)]
-    looked_ahead: bool,
+    pub(super) looked_ahead: bool,
 }
 
 /// The gaps of one body's vertices that have one.
 #[derive(Debug, Serialize)]
-struct Spread {
-    body: String,
-    vertices: usize,
-    warned: usize,
-    min: Option<f64>,
-    median: Option<f64>,
-    max: Option<f64>,
+pub(super) struct Spread {
+    pub(super) body: String,
+    pub(super) vertices: usize,
+    pub(super) warned: usize,
+    pub(super) min: Option<f64>,
+    pub(super) median: Option<f64>,
+    pub(super) max: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
-struct Pair {
-    bodies: [String; 2],
+pub(super) struct Pair {
+    pub(super) bodies: [String; 2],
     /// Null where nothing is within reach.
-    distance: Option<f64>,
-    points: Option<[Point; 2]>,
+    pub(super) distance: Option<f64>,
+    pub(super) points: Option<[Point; 2]>,
     /// The cell of each file.
-    cells: Option<[usize; 2]>,
-    features: Option<[&'static str; 2]>,
+    pub(super) cells: Option<[usize; 2]>,
+    pub(super) features: Option<[&'static str; 2]>,
     /// Cells of the files that meet.
-    crossings: Vec<[usize; 2]>,
+    pub(super) crossings: Vec<[usize; 2]>,
     /// Vertices of each that are where the other does not let them be.
-    wrong: [usize; 2],
-    depth: f64,
+    pub(super) wrong: [usize; 2],
+    pub(super) depth: f64,
     /// Triangles of each nearer than the warning distance.
-    warned_triangles: [usize; 2],
+    pub(super) warned_triangles: [usize; 2],
 }
 
 /// Connected vertices that warn.
 #[derive(Debug, Serialize)]
-struct Group {
-    body: String,
+pub(super) struct Group {
+    pub(super) body: String,
     /// The body that the nearest of them is near to.
-    near: Option<String>,
-    vertices: usize,
-    gap: f64,
+    pub(super) near: Option<String>,
+    pub(super) vertices: usize,
+    pub(super) gap: f64,
     /// The point of its file.
-    point: usize,
-    place: Point,
+    pub(super) point: usize,
+    pub(super) place: Point,
 }
 
 /// The first contact, if vertices go on straight.
 #[derive(Debug, Serialize)]
-struct First {
+pub(super) struct First {
     /// From the time of the frame; nothing touches before.
-    after: f64,
-    bodies: [String; 2],
-    cells: [usize; 2],
-    place: Point,
+    pub(super) after: f64,
+    pub(super) bodies: [String; 2],
+    pub(super) cells: [usize; 2],
+    pub(super) place: Point,
 }
 
 impl Report {
-    pub(crate) fn new(args: &ContactArgs) -> Self {
+    pub(super) fn new(args: &ContactArgs) -> Self {
         Self {
             output: args.output.clone(),
             warn: args.warn,
@@ -140,16 +134,22 @@ impl Report {
         }
     }
 
-    pub(crate) fn is_warned(&self) -> bool {
+    pub(super) fn is_warned(&self) -> bool {
         self.warning
     }
 
-    pub(crate) fn add(&mut self, contact: &Contact, frame: &Frame, step: Step) {
+    pub(super) fn add(&mut self, contact: &Contact, frame: &Frame, step: Step) {
         if self.bodies.is_empty() {
-            self.bodies = (0..)
-                .zip(frame.bodies.iter().zip(&frame.sources).zip(&step.gaps))
-                .map(facts(contact))
-                .collect();
+            let all = (0..).zip(frame.bodies.iter().zip(&frame.sources)).zip(&step.gaps);
+            let facts = all.map(|((id, (body, source)), spread)| BodyFacts {
+                name: body.name.clone(),
+                file: source.file.clone(),
+                vertices: spread.vertices,
+                triangles: body.triangles.len(),
+                closed: contact.is_closed(id),
+                room: body.is_room,
+            });
+            self.bodies = facts.collect();
         }
         self.warning |= step.warning;
         if step.warning {
@@ -160,78 +160,10 @@ impl Report {
         }
         self.steps.push(step);
     }
-
-    pub(crate) fn tell(&self, console: &Console) {
-        console.report(self);
-        let mut bodies = Table::new(["surface", "vertices", "triangles", "closed"]);
-        for body in &self.bodies {
-            let closed = match (body.closed, body.room) {
-                (false, _) => "no",
-                (true, false) => "yes",
-                (true, true) => "yes, a room",
-            };
-            bodies.row([body.name.clone(), count(body.vertices), count(body.triangles), closed.into()]);
-        }
-        console.say(bodies);
-        match self.steps.as_slice() {
-            [step] => step.tell(self.warn, console),
-            steps => self.tell_series(steps, console),
-        }
-        self.hint_at_rooms(console);
-        console.say(format_args!("wrote {}", self.output.display()));
-        let Stages { measure, look_ahead, write, total } = self.seconds;
-        let [measure, look_ahead, write, total] = [measure, look_ahead, write, total].map(seconds);
-        console
-            .say(format_args!("measured {measure}, looked ahead {look_ahead}, wrote {write}, all {total}"));
-    }
-
-    fn tell_series(&self, steps: &[Step], console: &Console) {
-        let mut table =
-            Table::new(["time", "least gap", "between", "warned vertices", "crossings", "contact after"]);
-        for step in steps {
-            let near = step.nearest();
-            let n_warned: usize = step.gaps.iter().map(|gap| gap.warned).sum();
-            let n_crossings: usize = step.pairs.iter().map(|pair| pair.crossings.len()).sum();
-            table.row([
-                time_of(step.time),
-                step.least.map_or("-".into(), short),
-                near.map_or("-".into(), |pair| pair.bodies.join(" and ")),
-                count(n_warned),
-                count(n_crossings),
-                step.contact_after(),
-            ]);
-        }
-        console.say(table);
-        if let Some(time) = self.first_warning {
-            console.say(format_args!("the first warning is at time {}", time_of(time)));
-        }
-        if let Some(time) = self.first_touch {
-            console.say(format_args!("the first touching is at time {}", time_of(time)));
-        }
-    }
-
-    /// A closed surface around all others is a room as a rule.
-    fn hint_at_rooms(&self, console: &Console) {
-        let Some(step) = self.steps.first() else { return };
-        for pair in &step.pairs {
-            for (own, other) in [(0, 1), (1, 0)] {
-                let find = |name: &String| self.bodies.iter().find(|body| body.name == *name);
-                let (Some(a), Some(b)) = (find(&pair.bodies[own]), find(&pair.bodies[other])) else {
-                    continue;
-                };
-                if pair.wrong[own] == a.vertices && !b.room {
-                    console.warn(format_args!(
-                        "all of {} is inside {}: if that is the wall of a room, say --room {}",
-                        a.name, b.name, b.name
-                    ));
-                }
-            }
-        }
-    }
 }
 
 impl Step {
-    pub(crate) fn new(
+    pub(super) fn new(
         (time, file): (f64, Option<PathBuf>),
         contact: &Contact,
         frame: &Frame,
@@ -279,89 +211,9 @@ impl Step {
     }
 
     /// With what is known of the answer by Delaunay tets.
-    pub(crate) fn beside(mut self, delaunay: Option<Beside>) -> Self {
+    pub(super) fn beside(mut self, delaunay: Option<Beside>) -> Self {
         self.delaunay = delaunay;
         self
-    }
-
-    fn nearest(&self) -> Option<&Pair> {
-        let near = self.pairs.iter().filter(|pair| pair.distance.is_some());
-        near.min_by(|x, y| {
-            x.distance.unwrap_or(f64::INFINITY).total_cmp(&y.distance.unwrap_or(f64::INFINITY))
-        })
-    }
-
-    fn contact_after(&self) -> String {
-        match &self.first_contact {
-            Some(first) => time_of(first.after),
-            None if self.looked_ahead => "none ahead".into(),
-            None => "-".into(),
-        }
-    }
-
-    fn tell(&self, warn: Option<f64>, console: &Console) {
-        let mut table = Table::new(["between", "least gap", "at", "crossings", "deepest"]);
-        for pair in &self.pairs {
-            table.row([
-                pair.bodies.join(" and "),
-                pair.distance.map_or("none within reach".into(), short),
-                pair.points.map_or("-".into(), |[a, _]| a.map(short).join(", ")),
-                count(pair.crossings.len()),
-                short(pair.depth),
-            ]);
-        }
-        console.say(table);
-        let mut table = Table::new(["gaps of vertices", "least", "median", "largest", "warned"]);
-        for gap in &self.gaps {
-            let [min, median, max] = [gap.min, gap.median, gap.max].map(|x| x.map_or("-".into(), short));
-            table.row([gap.body.clone(), min, median, max, count(gap.warned)]);
-        }
-        console.say(table);
-        if let Some(histogram) = Histogram::of(&self.all, warn) {
-            console.say(histogram);
-        }
-        if let Some(Beside { gap_tets, least, compared, exact, largest_over, largest_under, seconds: s }) =
-            &self.delaunay
-        {
-            console.say(format_args!(
-                "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, exact at {:.1} % of {} vertices",
-                count(*gap_tets),
-                seconds(*s),
-                least.map_or("-".into(), short),
-                short(*largest_over),
-                short(*largest_under),
-                100.0 * exact,
-                count(*compared)
-            ));
-        }
-        let n = if console.is_verbose() { self.warned.len() } else { FIRST };
-        for group in self.warned.iter().take(n) {
-            let near = group.near.as_ref().map_or(String::new(), |near| format!(" of {near}"));
-            console.say(format_args!(
-                "warned: {} vertices of {} within {}{near}, nearest point {} at {}",
-                count(group.vertices),
-                group.body,
-                short(group.gap),
-                group.point,
-                group.place.map(short).join(", ")
-            ));
-        }
-        if self.warned.len() > n {
-            console.say(format_args!(
-                "and {} groups more: -v and --json tell all",
-                count(self.warned.len() - n)
-            ));
-        }
-        match &self.first_contact {
-            Some(first) => console.say(format_args!(
-                "no contact before {}, then {} near {}",
-                short(first.after),
-                first.bodies.join(" and "),
-                first.place.map(short).join(", ")
-            )),
-            None if self.looked_ahead => console.say("no contact ahead"),
-            None => {}
-        }
     }
 }
 
@@ -399,18 +251,5 @@ impl Pair {
             depth: pair.depth,
             warned_triangles: pair.n_warned,
         }
-    }
-}
-
-fn facts<'a>(
-    contact: &'a Contact,
-) -> impl FnMut((u32, ((&'a motet::contact::Body, &'a super::frames::Source), &'a Spread))) -> BodyFacts {
-    |(id, ((body, source), spread))| BodyFacts {
-        name: body.name.clone(),
-        file: source.file.clone(),
-        vertices: spread.vertices,
-        triangles: body.triangles.len(),
-        closed: contact.is_closed(id),
-        room: body.is_room,
     }
 }

@@ -1,0 +1,162 @@
+//! What contact says to people: tables, a histogram, the places that warn.
+
+use super::delaunay::Beside;
+use super::histogram::Histogram;
+use super::report::{Pair, Report, Stages, Step};
+use crate::console::Console;
+use crate::table::{Table, count, seconds, short, time as time_of};
+
+/// How many groups of warned vertices are told where nobody asks for all.
+const FIRST: usize = 10;
+
+impl Report {
+    pub(super) fn tell(&self, console: &Console) {
+        console.report(self);
+        let mut bodies = Table::new(["surface", "vertices", "triangles", "closed"]);
+        for body in &self.bodies {
+            let closed = match (body.closed, body.room) {
+                (false, _) => "no",
+                (true, false) => "yes",
+                (true, true) => "yes, a room",
+            };
+            bodies.row([body.name.clone(), count(body.vertices), count(body.triangles), closed.into()]);
+        }
+        console.say(bodies);
+        match self.steps.as_slice() {
+            [step] => step.tell(self.warn, console),
+            steps => self.tell_series(steps, console),
+        }
+        self.hint_at_rooms(console);
+        console.say(format_args!("wrote {}", self.output.display()));
+        let Stages { measure, look_ahead, write, total } = self.seconds;
+        let [measure, look_ahead, write, total] = [measure, look_ahead, write, total].map(seconds);
+        console
+            .say(format_args!("measured {measure}, looked ahead {look_ahead}, wrote {write}, all {total}"));
+    }
+
+    fn tell_series(&self, steps: &[Step], console: &Console) {
+        let mut table =
+            Table::new(["time", "least gap", "between", "warned vertices", "crossings", "contact after"]);
+        for step in steps {
+            let near = step.nearest();
+            let n_warned: usize = step.gaps.iter().map(|gap| gap.warned).sum();
+            let n_crossings: usize = step.pairs.iter().map(|pair| pair.crossings.len()).sum();
+            table.row([
+                time_of(step.time),
+                step.least.map_or("-".into(), short),
+                near.map_or("-".into(), |pair| pair.bodies.join(" and ")),
+                count(n_warned),
+                count(n_crossings),
+                step.contact_after(),
+            ]);
+        }
+        console.say(table);
+        if let Some(time) = self.first_warning {
+            console.say(format_args!("the first warning is at time {}", time_of(time)));
+        }
+        if let Some(time) = self.first_touch {
+            console.say(format_args!("the first touching is at time {}", time_of(time)));
+        }
+    }
+
+    /// A closed surface around all others is a room as a rule.
+    fn hint_at_rooms(&self, console: &Console) {
+        let Some(step) = self.steps.first() else { return };
+        for pair in &step.pairs {
+            for (own, other) in [(0, 1), (1, 0)] {
+                let find = |name: &String| self.bodies.iter().find(|body| body.name == *name);
+                let (Some(a), Some(b)) = (find(&pair.bodies[own]), find(&pair.bodies[other])) else {
+                    continue;
+                };
+                if pair.wrong[own] == a.vertices && !b.room {
+                    console.warn(format_args!(
+                        "all of {} is inside {}: if that is the wall of a room, say --room {}",
+                        a.name, b.name, b.name
+                    ));
+                }
+            }
+        }
+    }
+}
+
+impl Step {
+    fn nearest(&self) -> Option<&Pair> {
+        let near = self.pairs.iter().filter(|pair| pair.distance.is_some());
+        near.min_by(|x, y| {
+            x.distance.unwrap_or(f64::INFINITY).total_cmp(&y.distance.unwrap_or(f64::INFINITY))
+        })
+    }
+
+    fn contact_after(&self) -> String {
+        match &self.first_contact {
+            Some(first) => time_of(first.after),
+            None if self.looked_ahead => "none ahead".into(),
+            None => "-".into(),
+        }
+    }
+
+    fn tell(&self, warn: Option<f64>, console: &Console) {
+        let mut table = Table::new(["between", "least gap", "at", "crossings", "deepest"]);
+        for pair in &self.pairs {
+            table.row([
+                pair.bodies.join(" and "),
+                pair.distance.map_or("none within reach".into(), short),
+                pair.points.map_or("-".into(), |[a, _]| a.map(short).join(", ")),
+                count(pair.crossings.len()),
+                short(pair.depth),
+            ]);
+        }
+        console.say(table);
+        let mut table = Table::new(["gaps of vertices", "least", "median", "largest", "warned"]);
+        for gap in &self.gaps {
+            let [min, median, max] = [gap.min, gap.median, gap.max].map(|x| x.map_or("-".into(), short));
+            table.row([gap.body.clone(), min, median, max, count(gap.warned)]);
+        }
+        console.say(table);
+        if let Some(histogram) = Histogram::of(&self.all, warn) {
+            console.say(histogram);
+        }
+        if let Some(Beside { gap_tets, least, compared, exact, largest_over, largest_under, seconds: s }) =
+            &self.delaunay
+        {
+            console.say(format_args!(
+                "by {} Delaunay tets in {}: least gap {}, too large by up to {}, too small by up to {}, exact at {:.1} % of {} vertices",
+                count(*gap_tets),
+                seconds(*s),
+                least.map_or("-".into(), short),
+                short(*largest_over),
+                short(*largest_under),
+                100.0 * exact,
+                count(*compared)
+            ));
+        }
+        let n = if console.is_verbose() { self.warned.len() } else { FIRST };
+        for group in self.warned.iter().take(n) {
+            let near = group.near.as_ref().map_or(String::new(), |near| format!(" of {near}"));
+            console.say(format_args!(
+                "warned: {} vertices of {} within {}{near}, nearest point {} at {}",
+                count(group.vertices),
+                group.body,
+                short(group.gap),
+                group.point,
+                group.place.map(short).join(", ")
+            ));
+        }
+        if self.warned.len() > n {
+            console.say(format_args!(
+                "and {} groups more: -v and --json tell all",
+                count(self.warned.len() - n)
+            ));
+        }
+        match &self.first_contact {
+            Some(first) => console.say(format_args!(
+                "no contact before {}, then {} near {}",
+                short(first.after),
+                first.bodies.join(" and "),
+                first.place.map(short).join(", ")
+            )),
+            None if self.looked_ahead => console.say("no contact ahead"),
+            None => {}
+        }
+    }
+}
