@@ -166,15 +166,26 @@ fn a_room_turns_the_sign_and_is_hinted_at() {
 #[test]
 fn a_surface_is_held_against_itself() {
     let folder = Folder::new();
-    let mut two = block([0.0; 3], [1.0; 3]);
-    let other = block([1.25, 0.0, 0.0], [2.0, 1.0, 1.0]);
+    let (one, other) = (block([0.0; 3], [1.0; 3]), block([1.25, 0.0, 0.0], [2.0, 1.0, 1.0]));
+    folder.mesh("one.vtp", &one);
+    folder.mesh("other.vtp", &other);
+    let mut two = one.clone();
     let first = two.points.len() as u32;
     other.cells.iter().for_each(|(_, kind, v)| two.cells.push(kind, v.iter().map(|v| VertexId(v.0 + first))));
     two.points.extend(&other.points);
     folder.mesh("two.vtp", &two);
     let told = report(&folder, "contact two.vtp --self -o gaps.vtp --warn 0.3");
     assert_eq!(told["steps"][0]["least"], 0.25);
-    assert_eq!(told["steps"][0]["gaps"][0]["warned"], 18);
+    // As two files they warn of the same.
+    let apart = report(&folder, "contact one.vtp other.vtp -o apart.vtp --warn 0.3");
+    let warned =
+        |told: &Value, body: usize| told["steps"][0]["gaps"][body]["warned"].as_u64().expect("a count");
+    assert_eq!(warned(&told, 0), warned(&apart, 0) + warned(&apart, 1));
+    let gap = |name: &str| values(&read(folder.path(name)).expect("it is written"), "gap");
+    for (alone, among) in gap("gaps.vtp").into_iter().zip(gap("apart.vtp")) {
+        // Vertices half way along the sides would look along their own surface.
+        assert!(alone == among || among > 0.5, "{alone} for {among}");
+    }
 }
 
 #[test]
