@@ -120,6 +120,12 @@ def wanted(good):
             name, theirs = fastest(good, key, threads)
             if name and ("motet", threads) in good:
                 rows.append([f"{what}, threads {threads}: {name} / motet", f"{theirs / good['motet', threads][key]:.2f}", WANTED[what]])
+    built = {key: {"step_seconds": r["seconds" if key[0] in REFITS else "step_seconds"]} for key, r in good.items()}
+    for threads in (1, 2):
+        name, theirs = fastest(built, "step_seconds", threads)
+        if name and ("motet", threads) in good:
+            rows.append([f"step, threads {threads}: {name}, built again / motet",
+                         f"{theirs / good['motet', threads]['step_seconds']:.2f}", WANTED["step"]])
     rows.append(["nearest places at a step, refit apart", seconds_text(ours["nearest_warm_seconds"]),
                  "< " + seconds_text(WANTED["nearest"])])
     if two := good.get(("motet", 2)):

@@ -182,7 +182,7 @@ class Coal:
         for body, points in zip(bodies, both):
             body.beginReplaceModel()
             body.replaceSubModel(points)
-            body.endReplaceModel(False)  # its refits make the answer ten times slower, or take longer than this
+            body.endReplaceModel(False, False)  # its refits make the answer ten times slower, or take longer than this
         return bodies
 
     def ask(self, bodies, *_):
