@@ -4,13 +4,15 @@ import datetime
 import subprocess
 import sys
 
+import bench_contact
 import bench_delaunay
 import bench_files
 import bench_motion
 import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
-BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh}
+BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
+           "contact": bench_contact}
 
 
 def words():

@@ -1,20 +1,34 @@
 //! How long distances from one surface to another take: a stent lattice in a tube.
 //!
-//! `contact_timing [--threads N] [--seconds S] [--check]` prints one JSON object with medians in milliseconds: the tree built from
-//! nothing, all vertices of the lattice asked, the tree refitted after a small motion, all asked again with the last
-//! answers as guesses, and each asked on its own. `--check` holds every answer against all triangles, of one vertex in a hundred.
+//! `contact_timing [--threads N] [--seconds S] [--check] [--distances PREFIX]` prints one JSON object with medians in milliseconds:
+//! the tree built from nothing, all vertices of the lattice asked, the tree refitted after a small motion, all asked again
+//! with the last answers as guesses, and each asked on its own; then both surfaces as bodies of a `Contact`: set-up, refit, their
+//! nearest places alone and everything, at first and at further steps. The same in seconds is for bench-compare.
+//!
+//! `--check` holds every answer against all triangles, of one vertex in a hundred. `--distances` writes those of all vertices to
+//! `PREFIX.f64`, and after the last of the steps that are written to `PREFIX_step.f64`. `contact_timing --write FOLDER` writes what
+//! is measured, and nothing else: points as f64, triangles as u32, at rest and at eight steps.
 
 mod common;
 
 use std::error::Error;
+use std::path::Path;
 use std::time::Instant;
 
 use motet::base::{Point, Threads, VertexId};
+use motet::contact::{Body, Contact, Options};
 use motet::geometry::triangle;
 use motet::geometry::vector::{dot, sub};
 use motet::spatial::{Closest, NearestTriangle};
+use serde_json::Value;
 
-use common::{lattice, tube};
+use common::{Shape, lattice, tube};
+
+/// Steps that are written for others to measure.
+const STEPS: usize = 8;
+
+/// Gaps below this warn: some of the lattice.
+const WARN: f64 = 0.03;
 
 /// Points at a time step: moved by up to 0.0005 in each direction, which is one hundredth of the gap.
 fn moved(points: &[Point], step: usize) -> Vec<Point> {
@@ -22,14 +36,24 @@ fn moved(points: &[Point], step: usize) -> Vec<Point> {
     points.iter().map(|p| [p[0] + wave(p[2]), p[1] + wave(p[0]), p[2] + wave(p[1])]).collect()
 }
 
+/// Points of the tube and of the lattice at a time step; they move against each other.
+fn at_step([tube, lattice]: [&[Point]; 2], step: usize) -> [Vec<Point>; 2] {
+    [moved(tube, step), moved(lattice, step + 1)]
+}
+
 /// The median time in milliseconds.
 fn median(budget: f64, mut work: impl FnMut(usize) -> f64) -> f64 {
+    median_of(repeated(budget, &mut work))
+}
+
+/// Seconds of nine repeats, or of as many as the budget lasts for.
+fn repeated(budget: f64, mut work: impl FnMut(usize) -> f64) -> Vec<f64> {
     let begin = Instant::now();
     let mut all = Vec::new();
     while all.len() < 9 || begin.elapsed().as_secs_f64() < budget {
         all.push(work(all.len()));
     }
-    median_of(all)
+    all
 }
 
 fn median_of(mut all: Vec<f64>) -> f64 {
@@ -58,8 +82,135 @@ fn by_brute_force(points: &[Point], triangles: &[[VertexId; 3]], p: Point) -> (f
     all.fold((f64::INFINITY, 0), |best, next| if next.0 < best.0 { next } else { best })
 }
 
+fn triangles_of(found: &[Option<Closest>]) -> Vec<u32> {
+    found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
+}
+
+/// Vertices of the lattice against the tube; their distances at rest and after the last step.
+fn by_vertex(
+    [(points, triangles), (queries, _)]: [&Shape; 2],
+    budget: f64,
+    threads: &Threads,
+    out: &mut Value,
+) -> (NearestTriangle, [Vec<Option<Closest>>; 2]) {
+    out["seconds"] = repeated(budget, |_| {
+        timed(|| NearestTriangle::new(points, triangles).closest_all(queries, None, threads)).0
+    })
+    .into();
+    out["build_ms"] = median(budget, |_| timed(|| NearestTriangle::new(points, triangles)).0).into();
+    let rest = NearestTriangle::new(points, triangles);
+    let each = || queries.iter().map(|p| rest.closest(*p)).collect::<Vec<_>>();
+    out["one_by_one_ms"] = median(budget, |_| timed(each).0).into();
+    out["cold_ms"] = median(budget, |_| timed(|| rest.closest_all(queries, None, threads)).0).into();
+    let mut tree = rest.clone();
+    let mut found = rest.closest_all(queries, None, threads);
+    let at_rest = found.clone();
+    let (mut refit, mut warm) = (Vec::new(), Vec::new());
+    let mut take = |step| {
+        let [points, queries] = at_step([points, queries], step);
+        let guesses = triangles_of(&found);
+        let (moving, ()) = timed(|| tree.refit(&points));
+        let (asking, answer) = timed(|| tree.closest_all(&queries, Some(&guesses), threads));
+        found = answer;
+        refit.push(moving);
+        warm.push(asking);
+        moving + asking
+    };
+    out["step_ms"] = median(2.0 * budget, &mut take).into();
+    take(STEPS - 1);
+    out["refit_ms"] = median_of(refit).into();
+    out["warm_ms"] = median_of(warm).into();
+    (rest, [at_rest, found])
+}
+
+/// Both surfaces as bodies over one list of points.
+fn contact([tube, lattice]: [&Shape; 2]) -> motet::base::Result<Contact> {
+    let n = tube.0.len();
+    let points = [&tube.0[..], &lattice.0].concat();
+    let body = |name: &str, triangles: &[[VertexId; 3]], first: usize| {
+        let triangles = triangles.iter().map(|t| t.map(|v| VertexId::new(first + v.index()))).collect();
+        Body { name: name.into(), triangles, is_room: false }
+    };
+    let bodies = vec![body("tube", &tube.1, 0), body("lattice", &lattice.1, n)];
+    Contact::new(points, bodies, Options { warn: Some(WARN), ..Options::default() })
+}
+
+/// The handle: nearest places of the two surfaces alone, and everything that it measures. Gives the gaps of the lattice after the
+/// last step.
+fn whole(shapes: [&Shape; 2], budget: f64, threads: &Threads, out: &mut Value) -> motet::Result<Vec<f64>> {
+    let rest = contact(shapes)?;
+    out["contact_new_ms"] = median(budget, |_| timed(|| contact(shapes)).0).into();
+    let mut nearest = Vec::new();
+    let first = median(budget, |_| {
+        let mut contact = rest.clone();
+        let (seconds, answer) = timed(|| contact.nearest());
+        nearest = answer;
+        seconds
+    });
+    out["nearest_cold_ms"] = first.into();
+    out["nearest_distance"] = least(&nearest);
+    out["measure_cold_ms"] = median(budget, |_| {
+        let mut contact = rest.clone();
+        timed(|| contact.measure(threads)).0
+    })
+    .into();
+    let mut contact = rest;
+    let points_at = |step| at_step([&shapes[0].0, &shapes[1].0], step).concat();
+    let mut refit = Vec::new();
+    let warm = median(budget, |step| {
+        let points = points_at(step);
+        refit.push(timed(|| contact.refit(&points)).0);
+        timed(|| contact.nearest()).0
+    });
+    out["contact_refit_ms"] = median_of(refit).into();
+    out["nearest_warm_ms"] = warm.into();
+    out["measure_ms"] = median(budget, |step| {
+        let moved = contact.refit(&points_at(step));
+        timed(|| moved.map(|()| contact.measure(threads))).0
+    })
+    .into();
+    contact.refit(&points_at(STEPS - 1))?;
+    out["nearest_distance_step"] = least(&contact.nearest());
+    let mut gaps = contact.measure(threads);
+    out["warned_vertices"] =
+        gaps.bodies.iter().flat_map(|b| &b.warning).filter(|warns| **warns).count().into();
+    Ok(gaps.bodies.swap_remove(1).gap)
+}
+
+fn least(nearest: &[([u32; 2], Option<motet::contact::Nearest>)]) -> Value {
+    nearest.iter().filter_map(|(_, nearest)| *nearest).map(|nearest| nearest.distance).next().into()
+}
+
+/// What is measured, for other programs: raw, little-endian.
+fn write(folder: &Path, [tube, lattice]: [&Shape; 2]) -> std::io::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    let put =
+        |name: &str, points: &[Point]| write_raw(&folder.join(name), points.as_flattened().iter().copied());
+    for (name, shape) in [("tube", tube), ("lattice", lattice)] {
+        put(&format!("{name}.f64"), &shape.0)?;
+        let corners = shape.1.as_flattened().iter().flat_map(|v| v.0.to_le_bytes());
+        std::fs::write(folder.join(format!("{name}.u32")), corners.collect::<Vec<u8>>())?;
+    }
+    for step in 0..STEPS {
+        let [tube, lattice] = at_step([&tube.0, &lattice.0], step);
+        put(&format!("tube_{step}.f64"), &tube)?;
+        put(&format!("lattice_{step}.f64"), &lattice)?;
+    }
+    Ok(())
+}
+
+fn write_raw(path: &Path, numbers: impl Iterator<Item = f64>) -> std::io::Result<()> {
+    std::fs::write(path, numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
+}
+
+fn distances(found: &[Option<Closest>]) -> impl Iterator<Item = f64> {
+    found.iter().map(|c| c.map_or(f64::INFINITY, |c| c.distance_squared.sqrt()))
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut threads, mut budget, mut check) = (1, 1.0, false);
+    let (mut threads, mut budget, mut check, mut prefix) = (1, 1.0, false, None);
+    let (tube, lattice) = (tube(), lattice());
+    let shapes = [&tube, &lattice];
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
@@ -67,51 +218,40 @@ fn main() -> Result<(), Box<dyn Error>> {
             "--threads" => threads = value()?.parse()?,
             "--seconds" => budget = value()?.parse()?,
             "--check" => check = true,
+            "--distances" => prefix = Some(value()?),
+            "--write" => return Ok(write(value()?.as_ref(), shapes)?),
             _ => return Err(format!("what is {word}?").into()),
         }
     }
     let threads = Threads::new(threads)?;
-    let (points, triangles) = tube();
-    let (queries, inner) = lattice();
-    let build = median(budget, |_| timed(|| NearestTriangle::new(&points, &triangles)).0);
-    let tree = NearestTriangle::new(&points, &triangles);
-    let each = |p: &Point| tree.closest(*p);
-    let one_by_one = median(budget, |_| timed(|| queries.iter().map(each).collect::<Vec<_>>()).0);
-    let found: Vec<Option<Closest>> = queries.iter().map(each).collect();
-    let least = found.iter().flatten().map(|c| c.distance_squared).fold(f64::INFINITY, f64::min).sqrt();
+    let (points, triangles) = &tube;
+    let queries = &lattice.0;
     let mut out = serde_json::json!({
-        "queries": queries.len(), "inner_triangles": inner.len(), "triangles": triangles.len(),
-        "threads": threads.count(), "build_ms": build, "one_by_one_ms": one_by_one, "least_distance": least,
+        "queries": queries.len(), "inner_triangles": lattice.1.len(), "triangles": triangles.len(),
+        "threads": threads.count(), "version": env!("CARGO_PKG_VERSION"),
     });
+    let (tree, [at_rest, at_last]) = by_vertex(shapes, budget, &threads, &mut out);
     out["memory_bytes"] = tree.memory().into();
-    let many = median(budget, |_| timed(|| tree.closest_all(&queries, None, &threads)).0);
-    let all = tree.closest_all(&queries, None, &threads);
-    let mut tree = tree.clone();
-    let (mut refit, mut warm) = (Vec::new(), Vec::new());
-    let mut guesses: Vec<u32> = all.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect();
-    let step = median(2.0 * budget, |step| {
-        let (points, queries) = (moved(&points, step), moved(&queries, step + 1));
-        refit.push(timed(|| tree.refit(&points)).0);
-        let (seconds, found) = timed(|| tree.closest_all(&queries, Some(&guesses), &threads));
-        warm.push(seconds);
-        guesses
-            .iter_mut()
-            .zip(found)
-            .for_each(|(guess, c)| *guess = c.map_or(u32::MAX, |c| c.triangle as u32));
-        refit[refit.len() - 1] + seconds
-    });
-    out["cold_ms"] = many.into();
-    out["build_and_cold_ms"] = milliseconds((build + many) / 1e3).into();
-    out["refit_ms"] = median_of(refit).into();
-    out["warm_ms"] = median_of(warm).into();
-    out["step_ms"] = step.into();
+    out["least_distance"] = distances(&at_rest).fold(f64::INFINITY, f64::min).into();
+    let gaps = whole(shapes, budget, &threads, &mut out)?;
+    if let Some(prefix) = prefix {
+        write_raw(format!("{prefix}.f64").as_ref(), distances(&at_rest))?;
+        write_raw(format!("{prefix}_step.f64").as_ref(), distances(&at_last))?;
+    }
     if check {
-        out["differ"] = found.iter().zip(&all).filter(|(x, y)| x != y).count().into();
-        let asked = queries.iter().zip(&found).step_by(100);
+        let each = queries.iter().map(|p| tree.closest(*p));
+        out["differ"] = each.zip(&at_rest).filter(|(x, y)| x != *y).count().into();
+        out["gaps_differ"] = gaps.iter().zip(distances(&at_last)).filter(|(x, y)| **x != *y).count().into();
+        let asked = queries.iter().zip(&at_rest).step_by(100);
         let wrong = asked.filter(|(p, c)| {
-            c.map(|c| (c.distance_squared, c.triangle)) != Some(by_brute_force(&points, &triangles, **p))
+            c.map(|c| (c.distance_squared, c.triangle)) != Some(by_brute_force(points, triangles, **p))
         });
         out["wrong"] = wrong.count().into();
+    }
+    for (name, value) in out.as_object().cloned().unwrap_or_default() {
+        if let (Some(what), Some(milliseconds)) = (name.strip_suffix("_ms"), value.as_f64()) {
+            out[format!("{what}_seconds")] = (milliseconds / 1e3).into();
+        }
     }
     println!("{out}");
     Ok(())
