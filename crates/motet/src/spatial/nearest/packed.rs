@@ -301,13 +301,31 @@ fn by_halves(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
     let used = || triangles.iter().map(|t| points[t[0].index()]).filter(|p| is_finite(*p));
     let (corner, extent) = cube(used());
     let per_extent = 1.0 / extent.max(1e-300);
-    let centre = |t: &[VertexId; 3]| {
-        let [a, b, c] = t.map(|v| scale(sub(points[v.index()], corner), per_extent));
-        add(add(a, b), c).map(|x| ordered((x as f32).to_bits()))
+    let middle = |t: &[VertexId; 3]| {
+        let corners = t.map(|v| scale(sub(points[v.index()], corner), per_extent).map(|x| x as f32));
+        middle_of_longest(corners).map(|x| ordered(x.to_bits()))
     };
-    let mut items: Vec<Item> = triangles.iter().map(centre).zip(0..).collect();
+    let mut items: Vec<Item> = triangles.iter().map(middle).zip(0..).collect();
     halve(&mut items);
     items.into_iter().map(|item| item.1).collect()
+}
+
+/// Twice the middle of the longest edge. Triangles that share it, as the two of a quad do, have the same one to the bit.
+#[inline(always)]
+fn middle_of_longest([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
+    let squared = |x: [f32; 3], y: [f32; 3]| {
+        let [x, y, z] = [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
+        x * x + y * y + z * z
+    };
+    let (ab, bc, ca) = (squared(a, b), squared(b, c), squared(c, a));
+    let (x, y) = if ab >= bc && ab >= ca {
+        (a, b)
+    } else if bc >= ca {
+        (b, c)
+    } else {
+        (c, a)
+    };
+    [x[0] + y[0], x[1] + y[1], x[2] + y[2]]
 }
 
 /// Halves are of eight times a power of two, so that leaves and boxes of leaves are halves, too.
