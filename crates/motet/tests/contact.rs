@@ -325,3 +325,28 @@ fn what_is_no_surface_is_refused_with_the_place() {
     assert!(sound.refit(&nan).is_err() && sound.refit(&points[1..]).is_err());
     assert_eq!(sound.points(), points, "nothing is taken over");
 }
+
+#[test]
+fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
+    let mut numbers = Numbers(5);
+    for case in 0..12 {
+        let mut shapes = [torus(10, 30, [1.0, 0.3]), sheet(14, |x, y| 0.5 + 0.2 * (5.0 * x * y).sin())];
+        let mut handle = contact(&shapes, Options::default());
+        for step in 0..30 {
+            // Small steps, and now and then a jump or one vertex alone.
+            let reach = if step % 9 == 8 { 0.3 } else { 0.02 };
+            let shift = [(); 3].map(|()| reach * (numbers.unit() - 0.5));
+            let shape = &mut shapes[numbers.below(2)];
+            if step % 5 == 4 {
+                let v = numbers.below(shape.points.len());
+                shape.points[v] = add(shape.points[v], scale(shift, 10.0));
+            } else {
+                shape.points.iter_mut().for_each(|p| *p = add(*p, shift));
+            }
+            let points = bodies(&shapes).0;
+            handle.refit(&points).expect("the points are finite");
+            let anew = contact(&shapes, Options::default()).nearest();
+            assert_eq!(handle.nearest(), anew, "case {case}, step {step}");
+        }
+    }
+}

@@ -5,7 +5,7 @@
 
 use pulp::Simd;
 
-use super::lanes::{Eight, Lanes, cross, dot, load, parts, splat, sub};
+use super::lanes::{Eight, Lanes, Vector, cross, dot, load, parts, splat, sub};
 
 /// Half the distance from 1 to the next number of 32 bits.
 const U: f64 = 1.0 / 16_777_216.0;
@@ -59,6 +59,21 @@ impl Boxes {
         let least = |eight: Eight| eight.into_iter().fold(f32::INFINITY, f32::min);
         let most = |eight: Eight| eight.into_iter().fold(f32::NEG_INFINITY, f32::max);
         (self.low.map(least), self.high.map(most))
+    }
+
+    /// The box around some of them, which are told by bits.
+    #[inline(always)]
+    pub(super) fn around_some(&self, mut which: u32) -> [[f32; 3]; 2] {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        while which != 0 {
+            let lane = which.trailing_zeros() as usize & 7;
+            which &= which - 1;
+            for axis in 0..3 {
+                low[axis] = smaller(self.low[axis][lane], low[axis]);
+                high[axis] = larger(self.high[axis][lane], high[axis]);
+            }
+        }
+        [low, high]
     }
 
     pub(super) fn get(&self, lane: usize) -> [[f32; 3]; 2] {
@@ -152,6 +167,22 @@ pub(super) struct Triangles {
 
 impl Triangles {
     pub(super) const NONE: Self = Self { corners: [[[f32::NAN; 8]; 3]; 3] };
+
+    /// The box of each, eight at a time; whatever it is around one with a corner that is NaN.
+    #[inline(always)]
+    pub(super) fn boxes_of_sound<S: Simd>(&self, simd: S) -> Boxes {
+        let mut boxes = Boxes::EMPTY;
+        for axis in 0..3 {
+            for i in 0..parts::<S>() {
+                let a = Lanes::load(simd, &self.corners[0][axis], i);
+                let b = Lanes::load(simd, &self.corners[1][axis], i);
+                let c = Lanes::load(simd, &self.corners[2][axis], i);
+                a.min(b).min(c).store(&mut boxes.low[axis], i);
+                a.max(b).max(c).store(&mut boxes.high[axis], i);
+            }
+        }
+        boxes
+    }
 
     /// The box of each; none around one with a corner that is NaN.
     pub(super) fn boxes(&self) -> Boxes {
@@ -271,4 +302,43 @@ impl Triangles {
         }
         (out, above.least())
     }
+
+    /// A square below that of the distance of each from another triangle, but for rounding.
+    ///
+    /// Seen along any direction, triangles are as far apart as the intervals of their corners. Taken are the normal of the other one and
+    /// the way between the centres: of 30 pairs of a stent and a wall whose boxes are near, one is left.
+    #[inline(always)]
+    pub(super) fn slabs_squared<S: Simd>(&self, simd: S, other: [[f32; 3]; 3]) -> Eight {
+        let mut out = [0.0; 8];
+        let other = other.map(|corner| splat(simd, corner));
+        let normal = cross(sub(other[1], other[0]), sub(other[2], other[0]));
+        for i in 0..parts::<S>() {
+            let own = [
+                load(simd, &self.corners[0], i),
+                load(simd, &self.corners[1], i),
+                load(simd, &self.corners[2], i),
+            ];
+            let mut between = [Lanes::splat(simd, 0.0); 3];
+            for axis in 0..3 {
+                between[axis] = (own[0][axis] - other[0][axis])
+                    + (own[1][axis] - other[1][axis])
+                    + (own[2][axis] - other[2][axis]);
+            }
+            let bound = slab_squared(simd, normal, own, other);
+            bound.max(slab_squared(simd, between, own, other)).store(&mut out, i);
+        }
+        out
+    }
+}
+
+/// How far two triangles are apart along a direction, squared.
+#[inline(always)]
+fn slab_squared<S: Simd>(simd: S, along: Vector<S>, a: [Vector<S>; 3], b: [Vector<S>; 3]) -> Lanes<S> {
+    let [a0, a1, a2] = [dot(along, a[0]), dot(along, a[1]), dot(along, a[2])];
+    let [b0, b1, b2] = [dot(along, b[0]), dot(along, b[1]), dot(along, b[2])];
+    let above = a0.min(a1).min(a2) - b0.max(b1).max(b2);
+    let below = b0.min(b1).min(b2) - a0.max(a1).max(a2);
+    let apart = above.max(below).max(Lanes::splat(simd, 0.0));
+    // Lengths that underflow do not count.
+    apart * apart / (dot(along, along) + Lanes::splat(simd, 1e-30))
 }

@@ -18,6 +18,8 @@ pub(super) struct Pairs<'a, F> {
     pub(super) to: &'a Packed,
     /// What is not nearer than its root does not count.
     pub(super) reach: f64,
+    /// Whether `to` is the first surface of each pair, and `from` the second.
+    pub(super) is_turned: bool,
     pub(super) pair: F,
 }
 
@@ -32,20 +34,18 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
         }
         let mut open = Vec::new();
         for leaf in 0..self.from.leaves.len() {
-            let boxes = self.from.leaves[leaf].boxes();
-            let (low, high) = boxes.around();
             if self.from.is_sound[leaf] == 0 {
                 continue;
             }
-            let around = framed(&self.from.frame, &self.to.frame, [low, high]);
+            let own = self.leaf(leaf);
             open.clear();
             open.push(0);
             while let Some(node) = open.pop() {
-                let bound = self.bound(around);
+                let bound = self.bound(&own);
                 let (bounds, first) = match self.to.within(node) {
-                    Ok(within) => (within.0.distances_squared_to(simd, around), within.1),
+                    Ok(within) => (within.0.distances_squared_to(simd, own.around), within.1),
                     Err(other) => {
-                        self.look_into(simd, leaf, &boxes, other, &mut best);
+                        self.look_into(simd, &own, other, &mut best);
                         continue;
                     }
                 };
@@ -61,37 +61,59 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
 }
 
 impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
-    /// What has a lower bound above this is farther than `reach`, whatever rounding did.
+    /// A leaf of `from` in the frame of `to`.
     #[inline(always)]
-    fn bound(&self, around: [[f32; 3]; 2]) -> f32 {
+    fn leaf(&self, leaf: usize) -> Leaf {
         let (from, to) = (&self.from.frame, &self.to.frame);
+        let boxes = self.from.leaves[leaf].boxes();
+        let around = framed(from, to, boxes.around().into());
+        let mut own = Boxes::EMPTY;
+        for lane in (0..8).filter(|lane| self.from.is_sound[leaf] >> lane & 1 == 1) {
+            own.set(lane, framed(from, to, boxes.get(lane)).into());
+        }
         let size = around.iter().flatten().fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
         let exact = (ROUNDING_OF_EXACT * (from.largest + to.largest) + UNDERFLOW) * to.scale;
         let rounding = ROUNDING * (1.0 + size + to.scale / from.scale) + exact;
-        let reach = self.reach.sqrt() * to.scale + rounding;
+        Leaf { place: leaf, around, boxes: own, rounding }
+    }
+
+    /// What has a lower bound above this is farther than `reach`, whatever rounding did.
+    #[inline(always)]
+    fn bound(&self, own: &Leaf) -> f32 {
+        let reach = self.reach.sqrt() * self.to.frame.scale + own.rounding;
         let bound = reach * reach * (1.0 + 2.0 * ROUNDING_OF_SQUARE);
         if bound < MOST { bound as f32 } else { MOST as f32 }
     }
 
-    /// All pairs of two leaves whose boxes are near enough.
+    /// All pairs of two leaves whose boxes are near enough, and whose triangles are not clearly farther.
     #[inline(always)]
-    fn look_into<S: Simd>(
-        &mut self,
-        simd: S,
-        leaf: usize,
-        boxes: &Boxes,
-        other: usize,
-        best: &mut Option<(f64, u32, u32)>,
-    ) {
-        let others = self.to.leaves[other].boxes();
-        for lane in (0..8).filter(|lane| self.from.is_sound[leaf] >> lane & 1 == 1) {
-            let around = framed(&self.from.frame, &self.to.frame, boxes.get(lane));
-            let bounds = others.distances_squared_to(simd, around);
-            let mut near = at_most(simd, &bounds, self.bound(around)) & u32::from(self.to.is_sound[other]);
+    fn look_into<S: Simd>(&mut self, simd: S, own: &Leaf, other: usize, best: &mut Option<(f64, u32, u32)>) {
+        let others = &self.to.leaves[other];
+        let boxes = others.boxes_of_sound(simd);
+        let bound = self.bound(own);
+        let around = boxes.distances_squared_to(simd, own.around);
+        let theirs = at_most(simd, &around, bound) & u32::from(self.to.is_sound[other]);
+        if theirs == 0 {
+            return;
+        }
+        let ours = own.boxes.distances_squared_to(simd, boxes.around_some(theirs));
+        let mut ours = at_most(simd, &ours, bound);
+        while ours != 0 {
+            let lane = ours.trailing_zeros() as usize & 7;
+            ours &= ours - 1;
+            let bounds = boxes.distances_squared_to(simd, own.boxes.get(lane));
+            let mut near = at_most(simd, &bounds, bound) & theirs;
+            if near == 0 {
+                continue;
+            }
+            let corners = self.from.leaves[own.place].corners.map(|corner| corner.map(|axis| axis[lane]));
+            let corners = corners.map(|x| self.to.frame.of(self.from.frame.back(x)));
+            near &= at_most(simd, &others.slabs_squared(simd, corners), bound);
             while near != 0 {
                 let place = 8 * other + near.trailing_zeros() as usize;
                 near &= near - 1;
-                let (i, j) = (self.from.ids[8 * leaf + lane], self.to.ids[place]);
+                let (own, other) = (self.from.ids[8 * own.place + lane], self.to.ids[place]);
+                let (i, j) = if self.is_turned { (other, own) } else { (own, other) };
                 let Some(distance_squared) = (self.pair)(i, j, self.reach) else { continue };
                 let is_better = best.is_none_or(|best| (distance_squared, i, j) < best);
                 if distance_squared <= self.reach && is_better {
@@ -101,6 +123,17 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
             }
         }
     }
+}
+
+/// A leaf that goes down the other tree.
+struct Leaf {
+    place: usize,
+    /// Around all its sound triangles.
+    around: [[f32; 3]; 2],
+    /// Around each; nothing around those that are not sound.
+    boxes: Boxes,
+    /// How far rounding may bring a bound off.
+    rounding: f64,
 }
 
 /// A box of one frame in another.
