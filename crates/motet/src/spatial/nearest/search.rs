@@ -46,6 +46,15 @@ impl Node {
     }
 }
 
+/// What is nearest goes last; the others stay where they are, or one place on.
+#[inline(always)]
+pub(super) fn put_nearest_on_top(nodes: &mut [u64]) {
+    for i in 1..nodes.len() {
+        let (x, y) = (nodes[i - 1], nodes[i]);
+        (nodes[i - 1], nodes[i]) = (x.max(y), x.min(y));
+    }
+}
+
 /// Takes the least out of the first `n`; `None` when there are none.
 #[inline(always)]
 fn take_least(all: &mut [u64; WAITING], n: &mut usize) -> Option<Node> {
@@ -228,10 +237,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
                     n_open += 1;
                 }
             }
-            for i in 1..n_open {
-                let (x, y) = (open[i - 1], open[i]);
-                (open[i - 1], open[i]) = (x.max(y), x.min(y));
-            }
+            put_nearest_on_top(&mut open[..n_open]);
         }
         self.descend_from(open, n_open);
     }
@@ -268,11 +274,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
                 open[n_open] = Node(first + lane, bounds[lane as usize & 7]).packed();
                 n_open += 1;
             }
-            // The nearest one goes on top.
-            for i in start + 1..n_open {
-                let (x, y) = (open[i - 1], open[i]);
-                (open[i - 1], open[i]) = (x.max(y), x.min(y));
-            }
+            put_nearest_on_top(&mut open[start..n_open]);
         }
     }
 
