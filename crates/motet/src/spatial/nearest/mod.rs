@@ -2,6 +2,7 @@
 
 mod eights;
 mod lanes;
+mod nearby;
 mod packed;
 mod pairs;
 mod search;
@@ -10,6 +11,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::base::{Point, Threads, VertexId};
+use nearby::Nearby;
 use packed::Packed;
 use search::{Admit, All, Search, Where};
 
@@ -182,7 +184,7 @@ impl WithSimd for Run<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let mut last = NO_GUESS;
+        let (mut last, mut nearby) = (NO_GUESS, Nearby::new());
         let mut found = Vec::with_capacity(self.order.len());
         for &i in self.order {
             let guess = match self.guesses {
@@ -193,7 +195,7 @@ impl WithSimd for Run<'_> {
             let mut closest = None;
             if let Some(mut search) = Search::new(self.tree, simd, p, f64::INFINITY, All) {
                 search.begin_at(guess);
-                search.descend();
+                search.descend_nearby(&mut nearby);
                 closest = search.finish();
             }
             last = closest.map_or(last, |closest| closest.triangle as u32);

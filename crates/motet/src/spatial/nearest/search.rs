@@ -5,13 +5,14 @@ use pulp::Simd;
 use super::Closest;
 use super::eights::{ROUNDING, ROUNDING_OF_SQUARE};
 use super::lanes::at_most;
+use super::nearby::{N_EIGHTS, Nearby};
 use super::packed::Packed;
 use crate::base::Point;
 use crate::geometry::triangle;
 use crate::geometry::vector::{dot, is_finite, sub};
 
 /// A tree over 2^31 triangles has eleven levels, each leaves up to seven boxes behind.
-const OPEN: usize = 8 * 12;
+pub(super) const OPEN: usize = 8 * 12;
 
 /// At most so many triangles wait for an exact look. For a point near a tube there are two or three.
 const WAITING: usize = 16;
@@ -30,18 +31,27 @@ const MOST: f64 = 1e38;
 const FAR: f64 = 1e9;
 
 /// A part of the tree, or the place of a triangle, and a lower bound of its squared distance.
-struct Node(u32, f32);
+pub(super) struct Node(pub(super) u32, pub(super) f32);
 
 impl Node {
     /// In the order of the bound: bits of numbers above zero rise as the numbers do.
     #[inline(always)]
-    fn packed(self) -> u64 {
+    pub(super) fn packed(self) -> u64 {
         u64::from(self.1.to_bits()) << 32 | u64::from(self.0)
     }
 
     #[inline(always)]
-    fn of(packed: u64) -> Self {
+    pub(super) fn of(packed: u64) -> Self {
         Self(packed as u32, f32::from_bits((packed >> 32) as u32))
+    }
+}
+
+/// What is nearest goes last; the others stay where they are, or one place on.
+#[inline(always)]
+pub(super) fn put_nearest_on_top(nodes: &mut [u64]) {
+    for i in 1..nodes.len() {
+        let (x, y) = (nodes[i - 1], nodes[i]);
+        (nodes[i - 1], nodes[i]) = (x.max(y), x.min(y));
     }
 }
 
@@ -207,10 +217,35 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     /// From the root.
     #[inline(always)]
     pub(super) fn descend(&mut self) {
-        let n_boxes = self.tree.boxes.len();
-        let n_above = n_boxes + self.tree.turned.len();
+        self.descend_from([0; OPEN], 1);
+    }
+
+    /// The same from boxes near by, where they are known to do.
+    #[inline(always)]
+    pub(super) fn descend_nearby(&mut self, nearby: &mut Nearby) {
         let mut open = [0; OPEN];
         let mut n_open = 1;
+        if nearby.serves(self.tree, self.simd, self.framed, self.bound) {
+            n_open = 0;
+            for i in 0..N_EIGHTS {
+                let bounds = nearby.boxes[i].distances_squared(self.simd, self.framed);
+                let mut near = at_most(self.simd, &bounds, self.bound);
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize & 7;
+                    near &= near - 1;
+                    open[n_open] = Node(nearby.nodes[8 * i + lane], bounds[lane]).packed();
+                    n_open += 1;
+                }
+            }
+            put_nearest_on_top(&mut open[..n_open]);
+        }
+        self.descend_from(open, n_open);
+    }
+
+    #[inline(always)]
+    fn descend_from(&mut self, mut open: [u64; OPEN], mut n_open: usize) {
+        let n_boxes = self.tree.boxes.len();
+        let n_above = n_boxes + self.tree.turned.len();
         while n_open > 0 {
             n_open -= 1;
             let Node(node, bound) = Node::of(open[n_open]);
@@ -239,11 +274,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
                 open[n_open] = Node(first + lane, bounds[lane as usize & 7]).packed();
                 n_open += 1;
             }
-            // The nearest one goes on top.
-            for i in start + 1..n_open {
-                let (x, y) = (open[i - 1], open[i]);
-                (open[i - 1], open[i]) = (x.max(y), x.min(y));
-            }
+            put_nearest_on_top(&mut open[start..n_open]);
         }
     }
 
