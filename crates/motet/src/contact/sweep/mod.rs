@@ -62,7 +62,15 @@ pub fn sweep(
     threads: &Threads,
 ) -> Sweep {
     let times = [infinite(a.len()), infinite(b.len())];
-    let all = All { points, velocity, surfaces: [a, b], times: [&times[0], &times[1]], is_own: false, horizon, admit };
+    let all = All {
+        points,
+        velocity,
+        surfaces: [a, b],
+        times: [&times[0], &times[1]],
+        is_own: false,
+        horizon,
+        admit,
+    };
     let first = all.run(threads);
     Sweep { first, times: times.map(plain) }
 }
