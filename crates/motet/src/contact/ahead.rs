@@ -1,5 +1,7 @@
 //! Looking ahead: when surfaces will touch, if all vertices go on straight.
 
+use std::sync::Mutex;
+
 use serde::Serialize;
 
 use super::along::Ways;
@@ -50,17 +52,20 @@ impl Contact {
         for (ids, along, options) in self.asked() {
             let bodies = ids.map(|id| &self.bodies[id as usize]);
             let rule = Rule::new(&self.points, bodies, along, &options);
+            let kept = Mutex::new(Vec::<Ways>::new());
+            let take = || kept.lock().ok().and_then(|mut kept| kept.pop()).unwrap_or_default();
+            let give = |ways| kept.lock().map(|mut kept| kept.push(ways)).unwrap_or_default();
             let admit = |i: u32, j: u32| {
                 if !rule.may_admit([i, j]) {
                     return false;
                 }
                 rule.admits_all() || {
                     let corners = (rule.a.corners(&self.points, i), rule.b.corners(&self.points, j));
-                    rule.admits(
-                        [i, j],
-                        &triangle_triangle::closest(corners.0, corners.1),
-                        &mut Ways::default(),
-                    )
+                    let closest = triangle_triangle::closest(corners.0, corners.1);
+                    let mut ways = take();
+                    let is_admitted = rule.admits([i, j], &closest, &mut ways);
+                    give(ways);
+                    is_admitted
                 }
             };
             let (points, a, b) = (&self.points, &rule.a.triangles, &rule.b.triangles);

@@ -26,6 +26,8 @@ pub(super) struct Prepared {
     pub(super) is_room: bool,
     /// Its vertices, rising.
     pub(super) vertices: Vec<VertexId>,
+    /// The vertices of each triangle, by their places in that list.
+    pub(super) places: Vec<[u32; 3]>,
     /// The triangles of each of its vertices, by their places in the lists.
     pub(super) stars: Csr<u32>,
     /// Whether each of its vertices is on an edge that one triangle alone uses.
@@ -53,10 +55,10 @@ impl Prepared {
         vertices.sort_unstable();
         vertices.dedup();
         check_finite(&name, &vertices, points)?;
-        let place = |v: &VertexId| vertices.binary_search(v).unwrap_or_default();
-        let places: Vec<[usize; 3]> = triangles.iter().map(|t| t.each_ref().map(place)).collect();
+        let place = |v: &VertexId| vertices.binary_search(v).unwrap_or_default() as u32;
+        let places: Vec<[u32; 3]> = triangles.iter().map(|t| t.each_ref().map(place)).collect();
         let stars = Csr::from_pairs(vertices.len(), || {
-            (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v, i)))
+            (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v as usize, i)))
         });
         let is_rim = rim(&places, vertices.len());
         let is_closed = super::inside::is_closed(&triangles);
@@ -67,6 +69,7 @@ impl Prepared {
             is_closed,
             is_room,
             vertices,
+            places,
             stars,
             is_rim,
             free: Side::Both,
@@ -156,13 +159,13 @@ fn check_finite(name: &str, vertices: &[VertexId], points: &[Point]) -> Result<(
 }
 
 /// Which vertices are on an edge that one triangle alone uses.
-fn rim(triangles: &[[usize; 3]], n_vertices: usize) -> Vec<bool> {
-    let edges = |&[a, b, c]: &[usize; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
-    let mut edges: Vec<[usize; 2]> = triangles.iter().flat_map(edges).collect();
+fn rim(triangles: &[[u32; 3]], n_vertices: usize) -> Vec<bool> {
+    let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
+    let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(edges).collect();
     edges.sort_unstable();
     let mut is_rim = vec![false; n_vertices];
     for same in edges.chunk_by(|x, y| x == y).filter(|same| same.len() == 1) {
-        same[0].iter().for_each(|&v| is_rim[v] = true);
+        same[0].iter().for_each(|&v| is_rim[v as usize] = true);
     }
     is_rim
 }

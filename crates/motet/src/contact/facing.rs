@@ -47,15 +47,36 @@ fn is_behind(free: Side, normal: Point, within: Point, corners: [Point; 3]) -> b
     })
 }
 
-/// Whether the way from the place of a vertex, by its place in the body's list, to one of another surface starts in free space and ends
-/// at right angles to that, more or less. Places that touch face each other.
-pub(super) fn sees(points: &[Point], (a, vertex): (&Prepared, usize), to: Place<'_>, way: Point) -> bool {
-    let Some(way) = unit(way) else { return true };
-    let star = a.stars.list(vertex);
-    faces(points, to, scale(way, -1.0))
-        && (star.iter().any(|&i| is_free(a.free, a.normal(points, i), way, 0.0))
-            || is_free(a.free, sum_of_normals(points, a, star), way, LEAST_COSINE)
-            || a.free == Side::Both && a.is_rim[vertex])
+/// Which ways from a vertex lead into free space.
+pub(super) struct Sight {
+    free: Side,
+    /// Of the triangles around, and the direction of their sum.
+    normals: Vec<Point>,
+    sum: Point,
+    is_rim: bool,
+}
+
+impl Sight {
+    /// Of a vertex by its place in the body's list.
+    pub(super) fn new(points: &[Point], body: &Prepared, vertex: usize) -> Self {
+        let star = body.stars.list(vertex);
+        Self {
+            free: body.free,
+            normals: star.iter().map(|&t| body.normal(points, t)).collect(),
+            sum: sum_of_normals(points, body, star.iter().copied()),
+            is_rim: body.is_rim[vertex],
+        }
+    }
+
+    /// Whether the way to a place of another surface starts in free space and ends at right angles to that, more or
+    /// less. Places that touch face each other.
+    pub(super) fn sees(&self, points: &[Point], to: Place<'_>, way: Point) -> bool {
+        let Some(way) = unit(way) else { return true };
+        let is_off = self.normals.iter().any(|&normal| is_free(self.free, normal, way, 0.0))
+            || is_free(self.free, self.sum, way, LEAST_COSINE)
+            || self.free == Side::Both && self.is_rim;
+        is_off && faces(points, to, scale(way, -1.0))
+    }
 }
 
 /// Whether two places that are nearest to each other do so across free space.
@@ -70,25 +91,18 @@ fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> 
     if is_free(body.free, body.normal(points, triangle), out, LEAST_COSINE) {
         return true;
     }
-    let vertices = body.triangles[triangle as usize];
-    let held = || (0..3).filter(|&k| weights[k] != 0.0).map(|k| vertices[k]);
-    let n_held = held().count();
-    let Some(Ok(place)) = held().next().map(|v| body.vertices.binary_search(&v)) else { return false };
-    if n_held == 3 {
+    let (vertices, places) = (body.triangles[triangle as usize], body.places[triangle as usize]);
+    let held = || (0..3).filter(|&k| weights[k] != 0.0);
+    let Some(first) = held().next() else { return false };
+    if held().count() == 3 {
         return false;
     }
-    let is_rim = |v| body.vertices.binary_search(&v).is_ok_and(|place| body.is_rim[place]);
-    if body.free == Side::Both && held().all(is_rim) {
+    if body.free == Side::Both && held().all(|k| body.is_rim[places[k] as usize]) {
         return true;
     }
-    let around: Vec<u32> = body
-        .stars
-        .list(place)
-        .iter()
-        .copied()
-        .filter(|&t| held().all(|v| body.triangles[t as usize].contains(&v)))
-        .collect();
-    is_free(body.free, sum_of_normals(points, body, &around), out, LEAST_COSINE)
+    let star = body.stars.list(places[first] as usize).iter().copied();
+    let around = star.filter(|&t| held().all(|k| body.triangles[t as usize].contains(&vertices[k])));
+    is_free(body.free, sum_of_normals(points, body, around), out, LEAST_COSINE)
 }
 
 /// Whether a way goes to the free side of a surface with this normal, with more than this cosine.
@@ -102,8 +116,8 @@ fn is_free(free: Side, normal: Point, way: Point, least: f64) -> bool {
 }
 
 /// The direction of the sum of the normals of some triangles; zero where they cancel out.
-fn sum_of_normals(points: &[Point], body: &Prepared, triangles: &[u32]) -> Point {
-    let sum = triangles.iter().fold([0.0; 3], |sum, &t| add(sum, body.normal(points, t)));
+fn sum_of_normals(points: &[Point], body: &Prepared, triangles: impl Iterator<Item = u32>) -> Point {
+    let sum = triangles.fold([0.0; 3], |sum, t| add(sum, body.normal(points, t)));
     unit(sum).unwrap_or_default()
 }
 

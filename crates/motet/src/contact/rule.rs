@@ -2,7 +2,7 @@
 
 use super::along::{Along, Ways};
 use super::body::Prepared;
-use super::facing::{may_face, see_each_other, sees};
+use super::facing::{Sight, may_face, see_each_other};
 use super::options::Options;
 use crate::base::{Point, VertexId};
 use crate::geometry::distance::Closest;
@@ -45,13 +45,14 @@ impl<'a> Rule<'a> {
     ) -> impl FnMut(u32, &spatial::Closest) -> bool {
         let vertex = self.a.vertices[place];
         let start = self.points[vertex.index()];
+        let sight = Sight::new(self.points, self.a, place);
         move |j, found| {
             let corners = self.b.triangles[j as usize];
             if self.along.is_some() && corners.contains(&vertex) {
                 return false;
             }
             let way = sub(found.point, start);
-            if !sees(self.points, (self.a, place), (self.b, j, found.weights), way) {
+            if !sight.sees(self.points, (self.b, j, found.weights), way) {
                 return false;
             }
             let length = self.fold * found.distance_squared.sqrt();

@@ -5,6 +5,7 @@
 //! contact before" holds whatever rounding did.
 
 mod pair;
+mod queue;
 mod tree;
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,6 +14,7 @@ use super::runs::in_runs;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
 use pair::Pair;
+use queue::{Item, Queue};
 use tree::{MovingBox, MovingTree};
 
 /// The first contact of two surfaces.
@@ -60,7 +62,15 @@ pub fn sweep(
     threads: &Threads,
 ) -> Sweep {
     let times = [infinite(a.len()), infinite(b.len())];
-    let all = All { points, velocity, surfaces: [a, b], times: [&times[0], &times[1]], horizon, admit };
+    let all = All {
+        points,
+        velocity,
+        surfaces: [a, b],
+        times: [&times[0], &times[1]],
+        is_own: false,
+        horizon,
+        admit,
+    };
     let first = all.run(threads);
     Sweep { first, times: times.map(plain) }
 }
@@ -77,9 +87,9 @@ pub fn sweep_own(
     threads: &Threads,
 ) -> Sweep {
     let times = infinite(triangles.len());
-    let admit = |i, j| i < j && admit(i, j);
     let surfaces = [triangles; 2];
-    let first = All { points, velocity, surfaces, times: [&times, &times], horizon, admit }.run(threads);
+    let all = All { points, velocity, surfaces, times: [&times, &times], is_own: true, horizon, admit };
+    let first = all.run(threads);
     let times = plain(times);
     Sweep { first, times: [times.clone(), times] }
 }
@@ -103,50 +113,87 @@ fn read(time: &AtomicU64) -> f64 {
 struct All<'a, F> {
     points: &'a [Point],
     velocity: &'a [Point],
+    /// Twice the same one for a surface with itself, and so its times.
     surfaces: [&'a [[VertexId; 3]]; 2],
     times: [&'a Times; 2],
+    is_own: bool,
     horizon: f64,
     admit: F,
 }
 
 impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
-    /// Lowers all times, and says which pair was first.
+    /// Finds all times, and says which pair was first.
     ///
-    /// A pair is left alone when it is later than what both its triangles have already, so it could lower neither: which
-    /// pairs those are depends on the order of the threads, but the times do not.
+    /// Each triangle of one surface looks for the first one of the other that it meets, and then the other way round: a search goes
+    /// on until its own time alone. Which times other threads have found by then changes what is looked at, and no time.
     fn run(&self, threads: &Threads) -> Option<Touch> {
-        let [a, b] = self.surfaces;
-        let boxes: Vec<_> = b.iter().map(|&t| self.box_of(t)).collect();
-        let tree = MovingTree::new(boxes, self.horizon);
-        // The pair whose boxes are first to touch mostly gives a good time; then many others are seen to be later.
-        for first_only in [true, false] {
-            in_runs(a.len(), threads, |run| {
-                let mut near = Vec::new();
-                run.for_each(|i| self.follow(i as u32, &tree, first_only, &mut near));
-                Vec::<()>::new()
-            });
+        let tree = self.tree(1, |_| true);
+        self.search(0, &tree, threads);
+        if !self.is_own {
+            // What touches nothing was held against all: the others need not look at it again.
+            let touching = self.tree(0, |i| read(&self.times[0][i]) < f64::INFINITY);
+            self.search(1, &touching, threads);
         }
         self.first(&tree)
     }
 
-    /// All pairs with triangle `i` of the first surface, those first whose boxes are.
-    fn follow(&self, i: u32, tree: &MovingTree, first_only: bool, near: &mut Vec<(f64, u32)>) {
-        let own = &self.times[0][i as usize];
-        tree.touching(&self.box_of(self.surfaces[0][i as usize]), near);
-        near.retain(|&(_, j)| self.is_wanted(i, j));
-        near.sort_unstable_by(by_time);
-        let (first, rest) = near.split_at(near.len().min(1));
-        for &(start, j) in if first_only { first } else { rest } {
-            let other = &self.times[1][j as usize];
-            let bound = read(own).max(read(other));
-            if start >= bound {
-                continue;
+    /// The tree of a surface, with those triangles alone that are wanted.
+    fn tree(&self, side: usize, wanted: impl Fn(usize) -> bool) -> MovingTree {
+        let all = self.surfaces[side].iter().enumerate();
+        let boxes = all.map(|(i, &t)| wanted(i).then(|| self.box_of(t)).flatten());
+        MovingTree::new(boxes.collect(), self.horizon)
+    }
+
+    /// Finds the times of all triangles of one surface.
+    fn search(&self, side: usize, other: &MovingTree, threads: &Threads) {
+        in_runs(self.surfaces[side].len(), threads, |run| {
+            let mut queue = Queue::default();
+            run.for_each(|i| self.follow(side, i as u32, other, &mut queue));
+            Vec::<()>::new()
+        });
+    }
+
+    /// Finds the time of triangle `own` of one surface: looks at what comes first, and stops where all that is left comes later.
+    fn follow(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
+        let known = &self.times[side][own as usize];
+        let asked = self.box_of(self.surfaces[side][own as usize]);
+        other.begin(&asked, queue);
+        while let Some((time, item)) = queue.pop() {
+            let bound = read(known);
+            if time >= bound {
+                break;
             }
-            if let Some(time) = self.pair(i, j).time(start, bound, self.horizon) {
-                own.fetch_min(time.to_bits(), Ordering::Relaxed);
-                other.fetch_min(time.to_bits(), Ordering::Relaxed);
+            match item {
+                Item::Node(node) => other.open(node, &asked, bound, queue),
+                Item::Box(id) => {
+                    let pair = self.ids(side, own, id);
+                    if self.is_joined(pair) {
+                        continue;
+                    }
+                    let later = self.pair(pair).start(time);
+                    if later < bound && later <= self.horizon {
+                        queue.push(later, Item::Triangle(id));
+                    }
+                }
+                Item::Triangle(id) => {
+                    let pair = self.ids(side, own, id);
+                    if !(self.admit)(pair[0], pair[1]) {
+                        continue;
+                    }
+                    if let Some(time) = self.pair(pair).time(time, bound, self.horizon) {
+                        for (times, id) in self.times.into_iter().zip(pair) {
+                            times[id as usize].fetch_min(time.to_bits(), Ordering::Relaxed);
+                        }
+                    }
+                }
             }
         }
+    }
+
+    /// The triangles of a pair in the order of the surfaces; rising, for a surface with itself.
+    fn ids(&self, side: usize, own: u32, other: u32) -> [u32; 2] {
+        let is_turned = if self.is_own { other < own } else { side == 1 };
+        if is_turned { [other, own] } else { [own, other] }
     }
 
     /// The first pair of the least time.
@@ -159,19 +206,25 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
         tree.touching(&self.box_of(self.surfaces[0][i as usize]), &mut near);
         near.sort_unstable_by_key(|&(_, j)| j);
         let beyond = time.next_up();
-        near.iter().filter(|&&(_, j)| self.is_wanted(i, j)).find_map(|&(start, j)| {
-            let pair = self.pair(i, j);
-            let found = pair.time(start, beyond, self.horizon).filter(|&found| found == time);
-            found.map(|time| Touch { time, triangles: [i, j], place: pair.place(time) })
+        near.iter().filter(|(start, _)| *start < beyond).find_map(|&(start, j)| {
+            let ids = self.ids(0, i, j);
+            if self.is_joined(ids) {
+                return None;
+            }
+            let pair = self.pair(ids);
+            let found = pair.time(pair.start(start), beyond, self.horizon).filter(|&found| found == time)?;
+            let [i, j] = ids;
+            (self.admit)(i, j).then(|| Touch { time: found, triangles: ids, place: pair.place(found) })
         })
     }
 
-    fn is_wanted(&self, i: u32, j: u32) -> bool {
+    /// Whether two triangles share a vertex.
+    fn is_joined(&self, [i, j]: [u32; 2]) -> bool {
         let [a, b] = [self.surfaces[0][i as usize], self.surfaces[1][j as usize]];
-        !a.iter().any(|v| b.contains(v)) && (self.admit)(i, j)
+        a.iter().any(|v| b.contains(v))
     }
 
-    fn pair(&self, i: u32, j: u32) -> Pair {
+    fn pair(&self, [i, j]: [u32; 2]) -> Pair {
         let of = |t: [VertexId; 3]| t.map(|v| (self.points[v.index()], self.velocity[v.index()]));
         Pair::new(of(self.surfaces[0][i as usize]), of(self.surfaces[1][j as usize]))
     }
@@ -183,10 +236,6 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
         let is_sound = corners.iter().chain(&velocities).all(|&p| is_finite(p));
         is_sound.then(|| MovingBox::new(corners, velocities))
     }
-}
-
-fn by_time(x: &(f64, u32), y: &(f64, u32)) -> std::cmp::Ordering {
-    x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))
 }
 
 fn by_time_last(x: &(u32, f64), y: &(u32, f64)) -> std::cmp::Ordering {

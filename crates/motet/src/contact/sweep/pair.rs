@@ -40,8 +40,6 @@ pub(super) struct Pair {
     speed: f64,
     /// The larger size of one triangle alone.
     width: f64,
-    /// The largest relative speed of two vertices: no two points of the triangles have a larger one.
-    fastest: f64,
 }
 
 impl Pair {
@@ -53,34 +51,44 @@ impl Pair {
         let size = largest(places.as_flattened());
         let speed = largest(velocities.as_flattened());
         let width = places.iter().map(|t| largest(&[sub(t[1], t[0]), sub(t[2], t[0])])).fold(0.0, f64::max);
-        let [of_a, of_b] = velocities;
-        let speeds = of_a.iter().flat_map(|u| of_b.iter().map(|v| norm(sub(*v, *u))));
-        let fastest = speeds.fold(0.0, f64::max) + ROUNDING * speed;
-        Self { origin, places, velocities, size, speed, width, fastest }
+        Self { origin, places, velocities, size, speed, width }
     }
 
-    /// No contact comes before this time, given that none comes before `start`. `None` when it is not below `bound` or beyond the horizon;
+    /// The largest relative speed of two vertices: no two points of the triangles have a larger one.
+    fn fastest(&self) -> f64 {
+        let [of_a, of_b] = self.velocities;
+        let speeds = of_a.iter().flat_map(|u| of_b.iter().map(|v| norm(sub(*v, *u))));
+        speeds.fold(0.0, f64::max) + ROUNDING * self.speed
+    }
+
+    /// A time before which there is no contact, given that none comes before `start`: by the slab between the centres, a look that costs
+    /// little and is often enough.
+    pub(super) fn start(&self, start: f64) -> f64 {
+        let [a, b] = self.places.map(|[p, q, r]| add(add(p, q), r));
+        self.closed_at(0.0, sub(b, a)).max(start)
+    }
+
+    /// No contact comes before this time, given that none comes before [`start`](Self::start). `None` when it is not below `bound` or beyond the horizon;
     /// otherwise the bound changes nothing: whatever ends the search early is a step that would have gone beyond.
     pub(super) fn time(&self, start: f64, bound: f64, horizon: f64) -> Option<f64> {
         let is_late = |time: f64| time >= bound || time > horizon;
         let last = bound.min(horizon);
-        // First between centres: a look that costs little and often ends it.
-        let [a, b] = self.places.map(|[p, q, r]| add(add(p, q), r));
-        let mut time = self.closed_at(0.0, sub(b, a)).max(start);
+        let fastest = self.fastest();
+        let mut time = start;
         for _ in 0..MOST_STEPS {
             if is_late(time) {
                 return None;
             }
             let rounding = ROUNDING * (self.size + time * self.speed);
-            let touching = rounding + ENOUGH * self.width.min(time * self.fastest);
+            let touching = rounding + ENOUGH * self.width.min(time * fastest);
             // From beyond this the next step goes beyond `last`, with something to spare for rounding.
-            let reach = (last - time) * self.fastest * (1.0 + 4.0 * ROUNDING) + 2.0 * rounding;
+            let reach = (last - time) * fastest * (1.0 + 4.0 * ROUNDING) + 2.0 * rounding;
             let near = self.closest_within(time, reach.max(2.0 * touching))?;
             let distance = near.distance();
             if distance <= touching {
                 break;
             }
-            let at_least = time + (distance - rounding) / self.fastest * (1.0 - ROUNDING);
+            let at_least = time + (distance - rounding) / fastest * (1.0 - ROUNDING);
             let next = self.closed_at(time, near.offset).max(at_least);
             // Nor where there are no numbers to go on with.
             let goes_on = next > time;

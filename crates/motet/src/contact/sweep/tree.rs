@@ -3,6 +3,7 @@
 //! The side of a box moves with the least or greatest velocity of what is within, so the box stays around it. Other than the box around a
 //! whole motion, it does not grow by a motion that all have in common, and time needs no end.
 
+use super::queue::{Item, Queue};
 use crate::base::Point;
 use crate::geometry::vector::{add, scale, sub};
 use crate::spatial::Bounds;
@@ -120,6 +121,31 @@ impl MovingTree {
         self.build(left, start, time);
         (self.nodes[place].start, self.nodes[place].count) = (self.nodes.len() as u32, 0);
         self.build(right, start + middle as u32, time);
+    }
+
+    /// Makes `queue` ready for all boxes that touch `asked`.
+    pub(super) fn begin(&self, asked: &Option<MovingBox>, queue: &mut Queue) {
+        queue.clear();
+        if asked.is_some() && !self.nodes.is_empty() {
+            queue.push(0.0, Item::Node(0));
+        }
+    }
+
+    /// Puts in place of a node what is in it and touches `asked` before `bound`.
+    pub(super) fn open(&self, node: u32, asked: &Option<MovingBox>, bound: f64, queue: &mut Queue) {
+        let Some(asked) = asked else { return };
+        let Node { start, count, .. } = self.nodes[node as usize];
+        let mut put = |around: &MovingBox, item| {
+            if let Some(time) = around.touches(asked, self.horizon).filter(|&time| time < bound) {
+                queue.push(time, item);
+            }
+        };
+        if count == 0 {
+            [node + 1, start].into_iter().for_each(|k| put(&self.nodes[k as usize].around, Item::Node(k)));
+            return;
+        }
+        let run = start as usize..(start + count) as usize;
+        self.boxes[run].iter().for_each(|(around, id)| put(around, Item::Box(*id)));
     }
 
     /// Puts all boxes that touch `asked` before the horizon into `found`, in place of what it held: from when on (or sooner), and their ids.
