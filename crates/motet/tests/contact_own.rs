@@ -137,6 +137,13 @@ impl<'a> Oracle<'a> {
         norm(sum) > 0.0 && dot(scale(sum, 1.0 / norm(sum)), out) > 0.25
     }
 
+    /// Whether a direction leaves through any of the triangles that hold all of some vertices, however askew.
+    fn grazes(&self, holds: &[u32], out: [f64; 3]) -> bool {
+        let around =
+            (0..self.normals.len()).filter(|t| holds.iter().all(|v| self.shape.triangles[*t].contains(v)));
+        around.map(|t| dot(self.normals[t], out)).any(|cosine| cosine > 0.02)
+    }
+
     /// The gap of a vertex, within reach; and how near anything came to being judged the other way.
     fn gap(&self, v: usize, within: f64, fold: f64) -> f64 {
         let p = self.shape.points[v];
@@ -153,11 +160,16 @@ impl<'a> Oracle<'a> {
             }
             let way = scale(sub(place, p), 1.0 / far);
             let star = (0..self.normals.len()).filter(|&s| self.shape.triangles[s].contains(&(v as u32)));
-            let starts = star.map(|s| dot(self.normals[s], way)).any(|cosine| cosine > 0.0)
+            let starts = star.map(|s| dot(self.normals[s], way)).any(|cosine| cosine > 1e-9)
                 || self.leaves(&[v as u32], way);
             let back = scale(way, -1.0);
             let held: Vec<u32> = (0..3).filter(|&k| weights[k] != 0.0).map(|k| corners[k]).collect();
-            let ends = dot(self.normals[t], back) > 0.25 || held.len() < 3 && self.leaves(&held, back);
+            let ends = dot(self.normals[t], back) > 0.25
+                || held.len() < 3 && (self.grazes(&held, back) || self.leaves(&held, back));
+            let is_within = |u: &[u32; 3]| u.contains(&(v as u32)) && held.iter().all(|h| u.contains(h));
+            if self.shape.triangles.iter().any(is_within) {
+                continue;
+            }
             let to = |c: &u32| self.ways[v][*c as usize] + distance(self.shape.points[*c as usize], place);
             let along = corners.iter().map(to).fold(f64::INFINITY, f64::min);
             if starts && ends && along > fold * far {
@@ -182,6 +194,12 @@ fn folded_surfaces_have_the_gaps_of_a_look_at_everything() {
             0 => bent,
             _ => joined(&[bent.clone(), bent.shifted([0.1, 0.3, 0.75])]),
         };
+        // The oracle takes the normals as they are: outward.
+        let volume = |shape: &Shape| -> f64 {
+            let corners = (0..shape.triangles.len()).map(|t| shape.corners(t));
+            corners.map(|[a, b, c]| dot(a, cross(b, c))).sum()
+        };
+        let shape = if volume(&shape) < 0.0 { shape.turned_inside_out() } else { shape };
         let oracle = Oracle::new(&shape);
         let within = 0.9;
         let gaps = own(&shape, within);

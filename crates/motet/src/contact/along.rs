@@ -18,7 +18,7 @@ pub(super) struct Along {
 const SLACK: f64 = 1.0 + 1e-9;
 
 /// A search goes on to this many times the length asked for: what it then knows of one vertex tells enough of those around it, and
-/// one search in thirty is left (a coil of 51,304 triangles against itself).
+/// few searches are left.
 const SPARE: f64 = 1.5;
 
 impl Along {

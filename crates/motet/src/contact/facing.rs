@@ -9,6 +9,12 @@ use crate::geometry::vector::{add, dot, norm, scale, sub};
 /// at right angles to that.
 const LEAST_COSINE: f64 = 0.25;
 
+/// The same on an edge or a vertex, where the nearest place may lie at any angle to each of the triangles around: 89 degrees.
+const GRAZING: f64 = 0.02;
+
+/// The least cosine with which a way leaves a surface, so that one within it does not by rounding.
+const LEAVING: f64 = 1e-9;
+
 /// How far rounding may move a point off a plane, as a part of how far it is from a point in it.
 const ROUNDING: f64 = 1e-15;
 
@@ -72,7 +78,7 @@ impl Sight {
     /// less. Places that touch face each other.
     pub(super) fn sees(&self, points: &[Point], to: Place<'_>, way: Point) -> bool {
         let Some(way) = unit(way) else { return true };
-        let is_off = self.normals.iter().any(|&normal| is_free(self.free, normal, way, 0.0))
+        let is_off = self.normals.iter().any(|&normal| is_free(self.free, normal, way, LEAVING))
             || is_free(self.free, self.sum, way, LEAST_COSINE)
             || self.free == Side::Both && self.is_rim;
         is_off && faces(points, to, scale(way, -1.0))
@@ -102,7 +108,8 @@ fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> 
     }
     let star = body.stars.list(places[first] as usize).iter().copied();
     let around = star.filter(|&t| held().all(|k| body.triangles[t as usize].contains(&vertices[k])));
-    is_free(body.free, sum_of_normals(points, body, around), out, LEAST_COSINE)
+    around.clone().any(|t| is_free(body.free, body.normal(points, t), out, GRAZING))
+        || is_free(body.free, sum_of_normals(points, body, around), out, LEAST_COSINE)
 }
 
 /// Whether a way goes to the free side of a surface with this normal, with more than this cosine.

@@ -55,9 +55,23 @@ impl<'a> Rule<'a> {
             if !sight.sees(self.points, (self.b, j, found.weights), way) {
                 return false;
             }
+            if self.is_in_one_triangle(&[vertex], &held(corners, found.weights)) {
+                return false;
+            }
             let length = self.fold * found.distance_squared.sqrt();
             self.is_gap(vertex, (corners, found.point), length, ways)
         }
+    }
+
+    /// Whether some triangle has all these vertices: places on them are neighbours, however long the way along its edges.
+    fn is_in_one_triangle(&self, own: &[VertexId], other: &[VertexId]) -> bool {
+        let is_all_of =
+            |body: &Prepared, t: u32| own.iter().chain(other).all(|v| body.triangles[t as usize].contains(v));
+        self.along.is_some()
+            && [self.a, self.b].into_iter().any(|body| {
+                let star = own.first().and_then(|v| body.vertices.binary_search(v).ok());
+                star.is_some_and(|place| body.stars.list(place).iter().any(|&t| is_all_of(body, t)))
+            })
     }
 
     /// How far a vertex of the first body is from a triangle of the second, where that counts.
@@ -88,6 +102,9 @@ impl<'a> Rule<'a> {
         if !see_each_other(self.points, (self.a, i, found.on_a), (self.b, j, found.on_b), sub(to, from)) {
             return false;
         }
+        if self.is_in_one_triangle(&held(own, found.on_a), &held(other, found.on_b)) {
+            return false;
+        }
         let heaviest = (1..3).fold(0, |best, k| if found.on_a[k] > found.on_a[best] { k } else { best });
         let first = distance(from, self.points[own[heaviest].index()]);
         self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, ways)
@@ -99,4 +116,9 @@ impl<'a> Rule<'a> {
         let is_joined = self.along.is_some() && own.iter().any(|v| other.contains(v));
         !is_joined && (!self.facing || may_face(self.points, [self.a, self.b], [i, j]))
     }
+}
+
+/// The vertices whose weights are not 0.
+fn held(corners: [VertexId; 3], weights: [f64; 3]) -> Vec<VertexId> {
+    corners.into_iter().zip(weights).filter(|(_, w)| *w != 0.0).map(|(v, _)| v).collect()
 }
