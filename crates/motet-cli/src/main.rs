@@ -2,11 +2,13 @@
 //!
 //! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
 //! here: how the call is read (`args`), how the user is spoken to (`console`,
-//! `table`), how failures become exit statuses (`exit`).
+//! `table`), how failures become exit statuses (`exit`), what outputs are refused
+//! (`outputs`).
 
 mod args;
 mod console;
 mod exit;
+mod outputs;
 mod table;
 mod verbs;
 

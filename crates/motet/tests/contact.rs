@@ -6,6 +6,7 @@ mod surfaces;
 use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{Body, Contact, NONE, Options};
+use motet::geometry::distance::triangle_triangle;
 use motet::geometry::vector::{add, distance, norm, scale, sub};
 use surfaces::{Shape, bodies, coil, cube, oracle, sheet, soup, torus};
 
@@ -347,6 +348,69 @@ fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
             handle.refit(&points).expect("the points are finite");
             let anew = contact(&shapes, Options::default()).nearest();
             assert_eq!(handle.nearest(), anew, "case {case}, step {step}");
+        }
+    }
+}
+
+#[test]
+fn a_vertex_deep_inside_is_told_however_short_the_reach() {
+    let (points, two) = bodies(&[cube().scaled(0.1).shifted([0.45; 3]), cube()]);
+    let options = Options { within: 0.01, ..Options::default() };
+    let gaps = Contact::new(points, two, options).unwrap().measure(&Threads::single());
+    assert_eq!((gaps.pairs[0].n_wrong, gaps.pairs[0].nearest), ([8, 0], None));
+    assert!(gaps.bodies[0].gap.iter().all(|gap| (gap + 0.45).abs() < 1e-12), "{:?}", gaps.bodies[0].gap);
+    assert!((gaps.pairs[0].depth - 0.45).abs() < 1e-12);
+}
+
+#[test]
+fn what_crosses_counts_whichever_way_it_faces() {
+    // Two plates that cross at a small angle, so that their normals are much alike.
+    let plate = || cube().map(|p| [4.0 * p[0], 4.0 * p[1], 0.1 * p[2]]);
+    let turned = plate().map(|p| [p[0], p[1], p[2] + 0.05 * (p[0] - 2.0)]);
+    let facing = Options { facing: true, ..Options::default() };
+    let gaps = contact(&[plate(), turned.clone()], facing).measure(&Threads::single());
+    assert_eq!(gaps.least(), 0.0);
+    let all = contact(&[plate(), turned.clone()], Options::default()).measure(&Threads::single());
+    assert_eq!(gaps.pairs[0].crossings, all.pairs[0].crossings);
+    assert!(all.pairs[0].crossings.len() > 2);
+    // The same as one body, and a bow-tie whose triangles share the vertex that they cross at.
+    let mut both = plate();
+    both.triangles.extend(turned.triangles.iter().map(|t| t.map(|v| v + 8)));
+    both.points.extend(turned.points);
+    let own = Options { own: true, within: 1.0, ..Options::default() };
+    let gaps = contact(&[both], own).measure(&Threads::single());
+    assert_eq!((gaps.least(), gaps.pairs[0].crossings.len()), (0.0, all.pairs[0].crossings.len()));
+    let points = vec![[0.0; 3], [2.0, 1.0, 0.0], [2.0, -1.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]];
+    let tie = Shape { points, triangles: vec![[0, 1, 2], [0, 3, 4]] };
+    let gaps = contact(&[tie], own).measure(&Threads::single());
+    assert_eq!(gaps.pairs[0].crossings, [[0, 1]]);
+}
+
+#[test]
+fn a_surface_beside_a_far_larger_one_loses_nothing() {
+    let mut numbers = Numbers(23);
+    for size in [1e3, 1e8, 1e10, 1e14] {
+        for case in 0..40 {
+            let small = soup(&mut numbers, 9);
+            let mut large = soup(&mut numbers, 9).map(|p| p.map(|x| size * (x - 0.5)));
+            // Some triangles with one corner near by.
+            for v in [0, 3, 12] {
+                large.points[v] = [(); 3].map(|()| 3.0 * numbers.unit());
+            }
+            for pair in [[small.clone(), large.clone()], [large, small]] {
+                // The oracle's signs are wrong at such sizes.
+                let least = |i| (0..9).map(move |j| (i, j));
+                let expected = (0..9)
+                    .flat_map(least)
+                    .map(|(i, j)| triangle_triangle::closest(pair[0].corners(i), pair[1].corners(j)))
+                    .map(|closest| closest.distance_squared.sqrt())
+                    .fold(f64::INFINITY, f64::min);
+                let got = contact(&pair, Options::default()).nearest()[0].1.expect("no limit").distance;
+                assert!(
+                    (got - expected).abs() <= 1e-15 * size,
+                    "size {size}, case {case}: {got} for {expected}"
+                );
+            }
         }
     }
 }

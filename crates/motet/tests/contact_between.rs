@@ -354,7 +354,7 @@ fn updates_are_bounds_and_the_same_where_nothing_moved() {
     let mut nan = points.clone();
     nan[3][1] = f64::NAN;
     let error = kept.update(&nan, &Threads::single()).unwrap_err();
-    assert!(error.to_string().contains("vertex 3"), "{error}");
+    assert!(error.to_string().contains("point 3"), "{error}");
 }
 
 #[test]
@@ -377,9 +377,9 @@ fn what_cannot_be_measured_is_refused_with_the_place() {
         error.to_string()
     };
     assert!(refused(&[]).contains("needs a body"));
-    assert!(refused(&[ids(&[[0, 1, 1]]), vec![]]).contains("body 1: has no triangles"));
-    assert!(refused(&[ids(&[[0, 1, 1], [0, 1, 3]])]).contains("body 0, triangle 1: vertex 3"));
-    assert!(refused(&[ids(&[[0, 1, 2]])]).contains("vertex 2"));
+    assert!(refused(&[ids(&[[0, 1, 1]]), vec![]]).contains("body 1 has no triangles"));
+    assert!(refused(&[ids(&[[0, 1, 1], [0, 1, 3]])]).contains("body 0, triangle 1: names point 3"));
+    assert!(refused(&[ids(&[[0, 1, 2]])]).contains("body 0, point 2"));
     // A point that no body uses may be anything.
     assert!(
         Between::new(

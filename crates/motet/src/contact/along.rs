@@ -115,7 +115,7 @@ impl Along {
     /// How far it is from a vertex to a place; where that is more than `length`, a bound above it.
     ///
     /// Shortest ways first, counted with what is left as the crow flies (Hart, Nilsson and Raphael 1968): only vertices within an ellipse are
-    /// looked at, about a quarter of those within `length`.
+    /// looked at.
     fn least(
         &self,
         points: &[Point],

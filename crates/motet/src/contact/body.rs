@@ -1,9 +1,11 @@
 //! A surface that may touch others: triangles, and on which side of them there is room.
 
+use super::input::{check_finite, vertices_of};
 use super::side::Side;
-use crate::base::{Csr, Error, Point, Result, VertexId};
+use crate::base::{Csr, Point, Result, VertexId};
 use crate::geometry::triangle;
-use crate::geometry::vector::{cross, dot, is_finite, sub};
+use crate::geometry::vector::dot;
+use crate::mesh::cone_volume;
 use crate::spatial::NearestTriangle;
 
 /// A surface by its triangles over the points that all bodies share. Open or closed, in one piece or many.
@@ -30,10 +32,10 @@ pub(super) struct Prepared {
     pub(super) places: Vec<[u32; 3]>,
     /// The triangles of each of its vertices, by their places in the lists.
     pub(super) stars: Csr<u32>,
-    /// Whether each of its vertices is on an edge that one triangle alone uses.
+    /// Whether each of its vertices is on an edge that one triangle alone uses, where [`get_ready_to_face`](Self::get_ready_to_face) was called.
     pub(super) is_rim: Vec<bool>,
     pub(super) free: Side,
-    /// Unit normals of the triangles, where [`keep_normals`](Self::keep_normals) was called.
+    /// Unit normals of the triangles, where that was called.
     normals: Vec<Point>,
     pub(super) tree: NearestTriangle,
 }
@@ -41,26 +43,12 @@ pub(super) struct Prepared {
 impl Prepared {
     pub(super) fn new(body: Body, points: &[Point]) -> Result<Self> {
         let Body { name, triangles, is_room } = body;
-        if triangles.is_empty() {
-            return Err(Error::input(format!("the surface {name} has no triangles")).remedy(
-                "contact is measured between surfaces: give one with triangles or other surface cells",
-            ));
-        }
-        if let Some((i, v)) = (0..).zip(triangles.as_flattened()).find(|(_, v)| v.index() >= points.len()) {
-            let (i, n): (usize, usize) = (i, points.len());
-            return Err(Error::input(format!("names point {v}, and there are {n} points"))
-                .at(format!("surface {name}, triangle {}", i / 3)));
-        }
-        let mut vertices = triangles.as_flattened().to_vec();
-        vertices.sort_unstable();
-        vertices.dedup();
-        check_finite(&name, &vertices, points)?;
+        let vertices = vertices_of(&format!("surface {name}"), &triangles, points)?;
         let place = |v: &VertexId| vertices.binary_search(v).unwrap_or_default() as u32;
         let places: Vec<[u32; 3]> = triangles.iter().map(|t| t.each_ref().map(place)).collect();
         let stars = Csr::from_pairs(vertices.len(), || {
             (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v as usize, i)))
         });
-        let is_rim = rim(&places, vertices.len());
         let is_closed = super::inside::is_closed(&triangles);
         let tree = NearestTriangle::new(points, &triangles);
         let mut body = Self {
@@ -71,7 +59,7 @@ impl Prepared {
             vertices,
             places,
             stars,
-            is_rim,
+            is_rim: Vec::new(),
             free: Side::Both,
             normals: Vec::new(),
             tree,
@@ -83,7 +71,7 @@ impl Prepared {
     /// # Errors
     /// When a point of the body is not finite.
     pub(super) fn check(&self, points: &[Point]) -> Result<()> {
-        check_finite(&self.name, &self.vertices, points)
+        check_finite(&format!("surface {}", self.name), self.vertices.iter().copied(), points)
     }
 
     /// Takes over points that moved.
@@ -95,8 +83,13 @@ impl Prepared {
         }
     }
 
-    /// Works out all normals, now and whenever points move.
-    pub(super) fn keep_normals(&mut self, points: &[Point]) {
+    /// Works out what tells which ways lead into free space: the rim, and all normals, now and whenever points move.
+    pub(super) fn get_ready_to_face(&mut self, points: &[Point]) {
+        self.is_rim = rim(&self.places, self.vertices.len());
+        self.keep_normals(points);
+    }
+
+    fn keep_normals(&mut self, points: &[Point]) {
         self.normals = (0..self.triangles.len() as u32).map(|t| self.unit_normal(points, t)).collect();
     }
 
@@ -119,11 +112,8 @@ impl Prepared {
             return Side::Both;
         }
         let origin = points[self.vertices[0].index()];
-        let volume_6: f64 = (0..self.triangles.len() as u32)
-            .map(|t| self.corners(points, t).map(|p| sub(p, origin)))
-            .map(|[a, b, c]| dot(a, cross(b, c)))
-            .sum();
-        match (volume_6 >= 0.0) != self.is_room {
+        let volume: f64 = self.triangles.iter().map(|t| cone_volume(t.iter().copied(), points, origin)).sum();
+        match (volume >= 0.0) != self.is_room {
             true => Side::Outside,
             false => Side::Inside,
         }
@@ -144,17 +134,6 @@ impl Prepared {
         // In units of the largest: squares of areas of small triangles underflow.
         let area = area.map(|x| x / largest);
         area.map(|x| x / dot(area, area).sqrt())
-    }
-}
-
-fn check_finite(name: &str, vertices: &[VertexId], points: &[Point]) -> Result<()> {
-    match vertices.iter().find(|v| !is_finite(points[v.index()])) {
-        None => Ok(()),
-        Some(v) => {
-            Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
-                .at(format!("surface {name}, point {v}"))
-                .remedy("remove the point and its cells, or give it a place"))
-        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The handle: surfaces prepared once, measured at every step.
 
+use std::sync::OnceLock;
+
 use super::along::Along;
 use super::answer::{BodyGaps, Gaps, Nearest, Warned};
 use super::body::{Body, Prepared};
@@ -21,7 +23,8 @@ const OWN_WARNINGS: f64 = 4.0;
 pub struct Contact {
     pub(super) points: Vec<Point>,
     pub(super) bodies: Vec<Prepared>,
-    pub(super) along: Along,
+    /// Made when it is asked for first.
+    along: OnceLock<Along>,
     options: Options,
     /// The pairs that are measured, and whether they have vertices in common: neighbours are then to be left out.
     pairs: Vec<([u32; 2], bool)>,
@@ -39,19 +42,17 @@ impl Contact {
     pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options) -> Result<Self> {
         check(&bodies, &options)?;
         let mut bodies = bodies.into_iter().map(|b| Prepared::new(b, &points)).collect::<Result<Vec<_>>>()?;
-        let triangles = bodies.iter().flat_map(|body| &body.triangles);
-        let along = Along::new(points.len(), triangles);
         let n = bodies.len() as u32;
         let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
         let is_joined = |[a, b]: [u32; 2]| a == b || bodies[a as usize].is_joined(&bodies[b as usize]);
         let pairs: Vec<_> = all.map(|pair| (pair, is_joined(pair))).collect();
         for &([a, b], is_joined) in &pairs {
             if is_joined || options.facing {
-                [a, b].iter().for_each(|&id| bodies[id as usize].keep_normals(&points));
+                [a, b].iter().for_each(|&id| bodies[id as usize].get_ready_to_face(&points));
             }
         }
         let guesses = vec![Guesses::default(); pairs.len()];
-        Ok(Self { points, bodies, along, options, pairs, guesses })
+        Ok(Self { points, bodies, along: OnceLock::new(), options, pairs, guesses })
     }
 
     /// Takes over points that moved; the triangles stay.
@@ -142,7 +143,7 @@ impl Contact {
                 let (mut group, mut next) = (vec![seed], 0);
                 while let Some(&place) = group.get(next) {
                     next += 1;
-                    for neighbor in self.along.neighbors(body.vertices[place]) {
+                    for neighbor in self.along().neighbors(body.vertices[place]) {
                         let Ok(other) = body.vertices.binary_search(&VertexId(*neighbor)) else { continue };
                         if std::mem::take(&mut is_open[other]) {
                             group.push(other);
@@ -165,11 +166,20 @@ impl Contact {
         groups
     }
 
+    /// The edges of all bodies: only warnings and surfaces with something in common need them.
+    fn along(&self) -> &Along {
+        let triangles = self.bodies.iter().flat_map(|body| &body.triangles);
+        self.along.get_or_init(|| Along::new(self.points.len(), triangles))
+    }
+
     /// Each pair with the ways along the surface, where it has some in common, and with what it is measured by.
     pub(super) fn asked(&self) -> impl Iterator<Item = ([u32; 2], Option<&Along>, Options)> {
-        let own = Options { within: self.own_reach(), ..self.options };
+        let own = match self.options.own {
+            true => Options { within: self.own_reach(), ..self.options },
+            false => self.options,
+        };
         self.pairs.iter().map(move |&([a, b], is_joined)| {
-            ([a, b], is_joined.then_some(&self.along), if a == b { own } else { self.options })
+            ([a, b], is_joined.then(|| self.along()), if a == b { own } else { self.options })
         })
     }
 

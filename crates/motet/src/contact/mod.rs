@@ -38,6 +38,7 @@ mod body;
 mod crossing;
 mod facing;
 mod handle;
+mod input;
 mod inside;
 mod nearest;
 mod options;

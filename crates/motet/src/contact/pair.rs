@@ -154,17 +154,14 @@ impl Scene<'_> {
         })
     }
 
-    /// Nothing crosses where the nearest places are apart.
+    /// Nothing crosses where the nearest places are apart, but for triangles that share a vertex, which have no distance.
     fn crossings(&self, nearest: Option<&Nearest>, threads: &Threads) -> Vec<[u32; 2]> {
-        let [a, b] = self.bodies;
-        match nearest {
-            Some(nearest) if nearest.distance == 0.0 && self.is_own() => {
-                crossing::own_crossings(self.points, &a.triangles, threads)
-            }
-            Some(nearest) if nearest.distance == 0.0 => {
-                crossing::crossings(self.points, &a.triangles, &b.triangles, threads)
-            }
-            _ => Vec::new(),
+        let [a, b] = self.bodies.map(|body| &body.triangles);
+        let is_apart = nearest.is_none_or(|nearest| nearest.distance > 0.0);
+        match (self.is_own(), self.along.is_some()) {
+            (true, _) => crossing::own_crossings(self.points, a, threads),
+            (_, false) if is_apart => Vec::new(),
+            _ => crossing::crossings(self.points, a, b, threads),
         }
     }
 
@@ -180,11 +177,11 @@ impl Scene<'_> {
         side
     }
 
-    /// A vertex within a body is as deep as its surface is near, whichever way that faces.
+    /// A vertex within a body is as deep as its surface is near, whichever way that faces and however far it is.
     fn look_again_where_wrong(&self, side: &mut Half) {
         let rule = self.rule(side.own);
         for (i, found) in side.found.iter_mut().enumerate() {
-            if side.is_wrong.get(i) == Some(&true) && !rule.admits_all() {
+            if side.is_wrong.get(i) == Some(&true) && (found.is_none() || !rule.admits_all()) {
                 *found = rule.b.tree.closest(self.points[rule.a.vertices[i].index()]);
             }
         }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
-use crate::spatial::Bounds;
+use crate::spatial::{self, Bounds};
 
 /// Things that a thread does in one go: a few microseconds each, so that sharing out costs nothing beside.
 const RUN: usize = 128;
@@ -37,7 +37,5 @@ pub(super) fn around(points: &[Point]) -> Bounds {
     if !points.iter().all(|&p| is_finite(p)) {
         return [[f64::NAN; 3]; 2];
     }
-    points.iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], p| {
-        [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
-    })
+    spatial::around(points.iter().copied())
 }

@@ -189,7 +189,7 @@ impl BoxTree {
 }
 
 /// The box around points.
-pub(super) fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
+pub(crate) fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
     points.into_iter().fold([[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]], |[low, high], p| {
         [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
     })

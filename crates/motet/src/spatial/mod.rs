@@ -6,6 +6,7 @@ mod locate;
 mod nearest;
 pub mod trace;
 
+pub(crate) use boxes::around;
 pub use boxes::{Bounds, BoxTree};
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};

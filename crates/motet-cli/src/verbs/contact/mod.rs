@@ -8,6 +8,7 @@ mod output;
 mod report;
 mod words;
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use motet::base::Threads;
@@ -24,11 +25,13 @@ use self::report::{Report, Step};
 use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::outputs;
 
 pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Result<Outcome> {
     let begin = Instant::now();
     args.check()?;
-    check_output(args)?;
+    outputs::check(&args.output, args.surfaces.iter().map(PathBuf::as_path), "a surface")?;
+    args.gap_tets.as_ref().map_or(Ok(()), io::can_write)?;
     let threads = common.threads()?;
     let frames = Frames::new(args)?;
     let n = frames.times.len();
@@ -76,28 +79,6 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     report.seconds.total = begin.elapsed().as_secs_f64();
     report.tell(console);
     Ok(if args.fail_on_warning && report.is_warned() { Outcome::NotReached } else { Outcome::Done })
-}
-
-/// Refuses, before any work, an output that cannot be written or that would overwrite an input.
-fn check_output(args: &ContactArgs) -> Result<()> {
-    if io::is_series(&args.output) {
-        let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&args.output, &e))?;
-    } else {
-        io::can_write(&args.output)?;
-    }
-    let is_output = |input: &std::path::PathBuf| {
-        input.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b))
-    };
-    if let Some(file) = &args.gap_tets {
-        io::can_write(file)?;
-    }
-    match args.surfaces.iter().any(is_output) {
-        true => Err(Error::options("the result would overwrite a surface it is made from")
-            .in_file(&args.output)
-            .remedy("give --output another name")),
-        false => Ok(()),
-    }
 }
 
 /// The handle of the frame before, where only points moved; else a new one.

@@ -26,10 +26,11 @@ use self::words::LayerWord;
 use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::outputs;
 
 pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    check_output(args)?;
+    outputs::check(&args.output, args.displacement.as_ref().map(Path::new), "the motion")?;
     let Method::Delaunay = args.method;
     let threads = common.threads()?;
     let (mesh, notes) = io::read_noted(&args.mesh)?;
@@ -57,25 +58,6 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     report.end(sink.moved(), begin.elapsed().as_secs_f64());
     report.tell(console);
     Ok(if all_done { Outcome::Done } else { Outcome::NotReached })
-}
-
-/// Refuses, before any work, an output that cannot be written or that would overwrite
-/// the motion. A series is many files: its folder is made where there is none.
-fn check_output(args: &MoveArgs) -> motet::Result<()> {
-    if io::is_series(&args.output) {
-        let folder = args.output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&args.output, &e))?;
-    } else {
-        io::can_write(&args.output)?;
-    }
-    let same =
-        |a: &Path| a.canonicalize().ok().is_some_and(|a| args.output.canonicalize().is_ok_and(|b| a == b));
-    match args.displacement.as_ref().is_some_and(|word| same(Path::new(word))) {
-        true => Err(Error::options("the result would overwrite the motion it is made from")
-            .in_file(&args.output)
-            .remedy("give --output another name")),
-        false => Ok(()),
-    }
 }
 
 fn options(

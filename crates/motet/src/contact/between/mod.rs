@@ -27,6 +27,7 @@ mod side;
 mod simplices;
 mod sites;
 
+use super::input::check_finite;
 use super::side::Side;
 use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
 use sites::{NO_SITE, Sites};
@@ -187,7 +188,7 @@ impl Between {
             return Err(Error::input(format!("{has} points, where {had} were triangulated"))
                 .remedy("measure a surface with other vertices anew"));
         }
-        sites::check_finite(points, self.sites.vertices.iter().map(|(_, v, _)| *v))?;
+        check_finite("the bodies", self.sites.vertices.iter().map(|(_, v, _)| *v), points)?;
         self.measure(points, threads);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! The places that the vertices of all bodies take: who stands at each, and which triangles meet there.
 
+use super::super::input::vertices_of;
 use crate::base::{Csr, Error, Id, Point, Result, VertexId};
-use crate::geometry::vector::is_finite;
 
 /// As a site: none.
 pub(super) const NO_SITE: u32 = u32::MAX;
@@ -33,34 +33,9 @@ pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> 
     }
     let mut used = vec![false; points.len()];
     for (b, triangles) in bodies.iter().enumerate() {
-        if triangles.is_empty() {
-            return Err(Error::input("has no triangles")
-                .at(format!("body {b}"))
-                .remedy("leave it out, or check which patches it was taken from"));
-        }
-        for (t, triangle) in triangles.iter().enumerate() {
-            for v in triangle {
-                *used.get_mut(v.index()).ok_or_else(|| {
-                    Error::input(format!("vertex {v} is named, but there are {} points", points.len()))
-                        .at(format!("body {b}, triangle {t}"))
-                        .remedy("give all points that the triangles are about")
-                })? = true;
-            }
-        }
+        vertices_of(&format!("body {b}"), triangles, points)?.iter().for_each(|v| used[v.index()] = true);
     }
-    let used: Vec<VertexId> = (0..used.len()).filter(|&v| used[v]).map(VertexId::new).collect();
-    check_finite(points, used.iter().copied())?;
-    Ok(used)
-}
-
-/// Whether the points of these vertices are numbers.
-pub(super) fn check_finite(points: &[Point], mut vertices: impl Iterator<Item = VertexId>) -> Result<()> {
-    match vertices.find(|v| !is_finite(points[v.index()])) {
-        None => Ok(()),
-        Some(v) => Err(Error::input(format!("has the coordinates {:?}", points[v.index()]))
-            .at(format!("vertex {v}"))
-            .remedy("give finite numbers, or leave out the triangles there")),
-    }
+    Ok((0..used.len()).filter(|&v| used[v]).map(VertexId::new).collect())
 }
 
 impl Sites {

@@ -6,7 +6,7 @@
 use super::queue::{Item, Queue};
 use crate::base::Point;
 use crate::geometry::vector::{add, scale, sub};
-use crate::spatial::Bounds;
+use crate::spatial::{Bounds, around};
 
 /// Things in a leaf.
 const LEAF: usize = 2;
@@ -24,11 +24,11 @@ pub(super) struct MovingBox {
 impl MovingBox {
     /// Around points; all finite.
     pub(super) fn new<const N: usize>(points: [Point; N], velocities: [Point; N]) -> Self {
-        Self { place: around(&points), velocity: around(&velocities) }
+        Self { place: around(points), velocity: around(velocities) }
     }
 
     fn joined(self, other: Self) -> Self {
-        let join = |[a, b]: Bounds, [c, d]: Bounds| around(&[a, b, c, d]);
+        let join = |[a, b]: Bounds, [c, d]: Bounds| around([a, b, c, d]);
         Self { place: join(self.place, other.place), velocity: join(self.velocity, other.velocity) }
     }
 
@@ -59,12 +59,6 @@ impl MovingBox {
         let from = from * (1.0 - ROUNDING);
         (from <= to * (1.0 + ROUNDING) && from < f64::INFINITY && from <= horizon).then_some(from)
     }
-}
-
-fn around(points: &[Point]) -> Bounds {
-    points.iter().fold([points[0]; 2], |[low, high], p| {
-        [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
-    })
 }
 
 /// Moving boxes within moving boxes.
@@ -107,11 +101,7 @@ impl MovingTree {
         if boxes.len() <= LEAF {
             return;
         }
-        let first = boxes[0].0.centre(time);
-        let [low, high] = boxes.iter().fold([first; 2], |[low, high], b| {
-            let p = b.0.centre(time);
-            [[0, 1, 2].map(|k| low[k].min(p[k])), [0, 1, 2].map(|k| high[k].max(p[k]))]
-        });
+        let [low, high] = around(boxes.iter().map(|b| b.0.centre(time)));
         let size = sub(high, low);
         let axis = (0..3).max_by(|&i, &j| size[i].total_cmp(&size[j])).unwrap_or(0);
         let key = |b: &(MovingBox, u32)| b.0.centre(time)[axis];

@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::base::{Point, VertexId};
+use crate::base::{Point, VertexId, lanewise};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
@@ -179,19 +179,6 @@ fn signed_square<S: Simd>(x: Lanes<S>) -> Lanes<S> {
 struct Lanes<S: Simd>(S, S::f64s);
 
 type Vector<S> = [Lanes<S>; 3];
-
-macro_rules! lanewise {
-    ($($trait:ident $method:ident $simd:ident;)*) => {
-        $(impl<S: Simd> $trait for Lanes<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0, self.0.$simd(self.1, other.1))
-            }
-        })*
-    };
-}
 
 lanewise! {
     Add add add_f64s;

@@ -20,6 +20,9 @@ pub(super) const ROUNDING: f64 = 32.0 * U;
 /// How much larger the square of a bound can be by rounding, or smaller.
 pub(super) const ROUNDING_OF_SQUARE: f64 = 16.0 * U;
 
+/// The square of a normal times a corner, `24 x^3`, is still a number of 32 bits.
+pub(super) const MOST_OF_SLABS: f64 = 1e5;
+
 /// Eight boxes with sides along the axes. One without an inside holds nothing.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -168,9 +171,9 @@ pub(super) struct Triangles {
 impl Triangles {
     pub(super) const NONE: Self = Self { corners: [[[f32::NAN; 8]; 3]; 3] };
 
-    /// The box of each, eight at a time; whatever it is around one with a corner that is NaN.
+    /// The box of each; anything around one with a corner that is NaN.
     #[inline(always)]
-    pub(super) fn boxes_of_sound<S: Simd>(&self, simd: S) -> Boxes {
+    pub(super) fn boxes<S: Simd>(&self, simd: S) -> Boxes {
         let mut boxes = Boxes::EMPTY;
         for axis in 0..3 {
             for i in 0..parts::<S>() {
@@ -179,19 +182,6 @@ impl Triangles {
                 let c = Lanes::load(simd, &self.corners[2][axis], i);
                 a.min(b).min(c).store(&mut boxes.low[axis], i);
                 a.max(b).max(c).store(&mut boxes.high[axis], i);
-            }
-        }
-        boxes
-    }
-
-    /// The box of each; none around one with a corner that is NaN.
-    pub(super) fn boxes(&self) -> Boxes {
-        let mut boxes = Boxes::EMPTY;
-        for axis in 0..3 {
-            for lane in 0..8 {
-                let x = [0, 1, 2].map(|k| self.corners[k][axis][lane]);
-                boxes.low[axis][lane] = x.into_iter().fold(f32::INFINITY, f32::min);
-                boxes.high[axis][lane] = x.into_iter().fold(f32::NEG_INFINITY, f32::max);
             }
         }
         boxes
@@ -306,7 +296,7 @@ impl Triangles {
     /// A square below that of the distance of each from another triangle, but for rounding.
     ///
     /// Seen along any direction, triangles are as far apart as the intervals of their corners. Taken are the normal of the other one and
-    /// the way between the centres: of 30 pairs of a stent and a wall whose boxes are near, one is left.
+    /// the way between the centres. No coordinate may be above [`MOST_OF_SLABS`].
     #[inline(always)]
     pub(super) fn slabs_squared<S: Simd>(&self, simd: S, other: [[f32; 3]; 3]) -> Eight {
         let mut out = [0.0; 8];

@@ -4,6 +4,8 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use pulp::Simd;
 
+use crate::base::lanewise;
+
 /// A number for each of eight things.
 pub(super) type Eight = [f32; 8];
 
@@ -12,19 +14,6 @@ pub(super) type Eight = [f32; 8];
 pub(super) struct Lanes<S: Simd>(S, S::f32s);
 
 pub(super) type Vector<S> = [Lanes<S>; 3];
-
-macro_rules! lanewise {
-    ($($trait:ident $method:ident $simd:ident;)*) => {
-        $(impl<S: Simd> $trait for Lanes<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0, self.0.$simd(self.1, other.1))
-            }
-        })*
-    };
-}
 
 lanewise! {
     Add add add_f32s;

@@ -144,10 +144,7 @@ impl NearestTriangle {
         start: f64,
         pair: impl FnMut(u32, u32, f64) -> Option<f64>,
     ) -> Option<(f64, u32, u32)> {
-        // Each leaf of the one goes down the other: so the fewer leaves, the better.
-        let is_turned = other.tree.leaves.len() < self.tree.leaves.len();
-        let (from, to) = if is_turned { (&other.tree, &self.tree) } else { (&self.tree, &other.tree) };
-        Arch::new().dispatch(pairs::Pairs { from, to, reach: start, is_turned, pair })
+        Arch::new().dispatch(pairs::Pairs { from: &self.tree, to: &other.tree, reach: start, pair })
     }
 }
 

@@ -9,6 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::eights::{Boxes, Triangles, TurnedBoxes, larger, smaller};
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, is_finite, scale, sub};
+use crate::spatial::around;
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
 
 /// What to take from coordinates, and by what to multiply then, so that all lie between -1 and 1.
@@ -23,11 +24,7 @@ pub(super) struct Frame {
 impl Frame {
     /// The scale is a power of two, so that multiplying does not round.
     fn around(points: &[Point]) -> Self {
-        let finite = points.iter().copied().filter(|p| is_finite(*p));
-        let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        let (low, high) = finite.fold(start, |(low, high), p| {
-            ([0, 1, 2].map(|k| p[k].min(low[k])), [0, 1, 2].map(|k| p[k].max(high[k])))
-        });
+        let [low, high] = around(points.iter().copied().filter(|p| is_finite(*p)));
         let half = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
         let centre = [0, 1, 2].map(|k| 0.5 * low[k] + 0.5 * high[k]);
         let centre = if is_finite(centre) { centre } else { [0.0; 3] };
@@ -186,7 +183,7 @@ impl Packed {
     /// Eight boxes with sides along the axes and the node of the first one, or the leaf that a node is. The boxes of
     /// leaves are made anew, which only searches that ask seldom can afford.
     #[inline(always)]
-    pub(super) fn within(&self, node: u32) -> Result<(Boxes, u32), usize> {
+    pub(super) fn within<S: Simd>(&self, simd: S, node: u32) -> Result<(Boxes, u32), usize> {
         let (node, n_boxes) = (node as usize, self.boxes.len());
         if node < n_boxes {
             return Ok((self.boxes[node], self.first_within[node]));
@@ -198,7 +195,8 @@ impl Packed {
         let first = 8 * (node - n_boxes);
         let mut boxes = Boxes::EMPTY;
         for leaf in first..self.leaves.len().min(first + 8) {
-            boxes.set(leaf - first, self.leaves[leaf].boxes().around());
+            let [low, high] = self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into());
+            boxes.set(leaf - first, (low, high));
         }
         Ok((boxes, (n_above + first) as u32))
     }

@@ -4,7 +4,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use super::eights::{Boxes, ROUNDING, ROUNDING_OF_SQUARE};
+use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, ROUNDING_OF_SQUARE};
 use super::lanes::at_most;
 use super::packed::{Frame, Packed};
 use super::search::{ROUNDING_OF_EXACT, UNDERFLOW};
@@ -18,8 +18,6 @@ pub(super) struct Pairs<'a, F> {
     pub(super) to: &'a Packed,
     /// What is not nearer than its root does not count.
     pub(super) reach: f64,
-    /// Whether `to` is the first surface of each pair, and `from` the second.
-    pub(super) is_turned: bool,
     pub(super) pair: F,
 }
 
@@ -37,12 +35,12 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
             if self.from.is_sound[leaf] == 0 {
                 continue;
             }
-            let own = self.leaf(leaf);
+            let own = self.leaf(simd, leaf);
             open.clear();
             open.push(0);
             while let Some(node) = open.pop() {
                 let bound = self.bound(&own);
-                let (bounds, first) = match self.to.within(node) {
+                let (bounds, first) = match self.to.within(simd, node) {
                     Ok(within) => (within.0.distances_squared_to(simd, own.around), within.1),
                     Err(other) => {
                         self.look_into(simd, &own, other, &mut best);
@@ -63,10 +61,10 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
 impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     /// A leaf of `from` in the frame of `to`.
     #[inline(always)]
-    fn leaf(&self, leaf: usize) -> Leaf {
+    fn leaf<S: Simd>(&self, simd: S, leaf: usize) -> Leaf {
         let (from, to) = (&self.from.frame, &self.to.frame);
-        let boxes = self.from.leaves[leaf].boxes();
-        let around = framed(from, to, boxes.around().into());
+        let boxes = self.from.leaves[leaf].boxes(simd);
+        let around = framed(from, to, boxes.around_some(self.from.is_sound[leaf].into()));
         let mut own = Boxes::EMPTY;
         for lane in (0..8).filter(|lane| self.from.is_sound[leaf] >> lane & 1 == 1) {
             own.set(lane, framed(from, to, boxes.get(lane)).into());
@@ -74,7 +72,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         let size = around.iter().flatten().fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
         let exact = (ROUNDING_OF_EXACT * (from.largest + to.largest) + UNDERFLOW) * to.scale;
         let rounding = ROUNDING * (1.0 + size + to.scale / from.scale) + exact;
-        Leaf { place: leaf, around, boxes: own, rounding }
+        Leaf { place: leaf, around, boxes: own, rounding, is_far: size > MOST_OF_SLABS }
     }
 
     /// What has a lower bound above this is farther than `reach`, whatever rounding did.
@@ -89,7 +87,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     #[inline(always)]
     fn look_into<S: Simd>(&mut self, simd: S, own: &Leaf, other: usize, best: &mut Option<(f64, u32, u32)>) {
         let others = &self.to.leaves[other];
-        let boxes = others.boxes_of_sound(simd);
+        let boxes = others.boxes(simd);
         let bound = self.bound(own);
         let around = boxes.distances_squared_to(simd, own.around);
         let theirs = at_most(simd, &around, bound) & u32::from(self.to.is_sound[other]);
@@ -106,14 +104,15 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
             if near == 0 {
                 continue;
             }
-            let corners = self.from.leaves[own.place].corners.map(|corner| corner.map(|axis| axis[lane]));
-            let corners = corners.map(|x| self.to.frame.of(self.from.frame.back(x)));
-            near &= at_most(simd, &others.slabs_squared(simd, corners), bound);
+            if !own.is_far {
+                let corners = self.from.leaves[own.place].corners.map(|corner| corner.map(|axis| axis[lane]));
+                let corners = corners.map(|x| self.to.frame.of(self.from.frame.back(x)));
+                near &= at_most(simd, &others.slabs_squared(simd, corners), bound);
+            }
             while near != 0 {
                 let place = 8 * other + near.trailing_zeros() as usize;
                 near &= near - 1;
-                let (own, other) = (self.from.ids[8 * own.place + lane], self.to.ids[place]);
-                let (i, j) = if self.is_turned { (other, own) } else { (own, other) };
+                let (i, j) = (self.from.ids[8 * own.place + lane], self.to.ids[place]);
                 let Some(distance_squared) = (self.pair)(i, j, self.reach) else { continue };
                 let is_better = best.is_none_or(|best| (distance_squared, i, j) < best);
                 if distance_squared <= self.reach && is_better {
@@ -134,6 +133,8 @@ struct Leaf {
     boxes: Boxes,
     /// How far rounding may bring a bound off.
     rounding: f64,
+    /// Too far off in the frame of `to` for slabs.
+    is_far: bool,
 }
 
 /// A box of one frame in another.

@@ -1,0 +1,17 @@
+//! Arithmetic for numbers that are worked on some at a time.
+
+/// Operators of a type `Lanes<S>(S, S::...)`, each by a method of `pulp::Simd`.
+macro_rules! lanewise {
+    ($($trait:ident $method:ident $simd:ident;)*) => {
+        $(impl<S: Simd> $trait for Lanes<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0, self.0.$simd(self.1, other.1))
+            }
+        })*
+    };
+}
+
+pub(crate) use lanewise;

@@ -1,0 +1,48 @@
+//! What surfaces have to be: some triangles, over points that are there and are numbers.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::is_finite;
+
+/// The vertices of a surface, rising.
+///
+/// # Errors
+/// When it has no triangles, names a point that is not there, or one whose coordinates are not finite. `name` is how
+/// the message calls it.
+pub(super) fn vertices_of(
+    name: &str,
+    triangles: &[[VertexId; 3]],
+    points: &[Point],
+) -> Result<Vec<VertexId>> {
+    if triangles.is_empty() {
+        return Err(Error::input(format!("{name} has no triangles"))
+            .remedy("contact is measured between surfaces: give one with triangles, or leave it out"));
+    }
+    let is_beyond = |t: &[VertexId; 3]| t.iter().copied().find(|v| v.index() >= points.len());
+    if let Some((i, v)) = (0..).zip(triangles).find_map(|(i, t): (usize, _)| Some((i, is_beyond(t)?))) {
+        return Err(Error::input(format!("names point {v}, and there are {} points", points.len()))
+            .at(format!("{name}, triangle {i}"))
+            .remedy("give all points that the triangles are about"));
+    }
+    let mut vertices = triangles.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    check_finite(name, vertices.iter().copied(), points)?;
+    Ok(vertices)
+}
+
+/// # Errors
+/// When one of these points has coordinates that are not finite.
+pub(super) fn check_finite(
+    name: &str,
+    mut vertices: impl Iterator<Item = VertexId>,
+    points: &[Point],
+) -> Result<()> {
+    match vertices.find(|v| !is_finite(points[v.index()])) {
+        None => Ok(()),
+        Some(v) => {
+            Err(Error::input(format!("a coordinate that is no finite number: {:?}", points[v.index()]))
+                .at(format!("{name}, point {v}"))
+                .remedy("remove the point and its triangles, or give it a place"))
+        }
+    }
+}
