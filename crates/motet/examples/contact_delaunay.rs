@@ -143,7 +143,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
 fn exact(case: &Case, threads: &Threads) -> Vec<f64> {
     let mut gap = vec![f64::INFINITY; case.points.len()];
     let trees: Vec<NearestTriangle> =
-        case.bodies.iter().map(|b| NearestTriangle::new(&case.points, b)).collect();
+        case.bodies.iter().map(|b| NearestTriangle::new(&case.points, b, &Threads::single())).collect();
     for (a, body) in case.bodies.iter().enumerate() {
         let mut own: Vec<VertexId> = body.as_flattened().to_vec();
         own.sort_unstable();
@@ -162,15 +162,15 @@ fn exact(case: &Case, threads: &Threads) -> Vec<f64> {
 /// The least distance of two triangles of different bodies.
 fn exact_least(case: &Case, start: f64) -> f64 {
     let trees: Vec<NearestTriangle> =
-        case.bodies.iter().map(|b| NearestTriangle::new(&case.points, b)).collect();
+        case.bodies.iter().map(|b| NearestTriangle::new(&case.points, b, &Threads::single())).collect();
     let corners = |b: usize, t: u32| case.bodies[b][t as usize].map(|v| case.points[v.index()]);
     let mut least = start * start;
     for b in 1..trees.len() {
         for a in 0..b {
-            let pair = |i: u32, j: u32, bound: f64| {
+            let pair = |(): &mut (), i: u32, j: u32, bound: f64| {
                 closest_below(corners(a, i), corners(b, j), bound).map(|c| c.distance_squared)
             };
-            if let Some((found, _, _)) = trees[a].closest_pair(&trees[b], least, pair) {
+            if let Some((found, _, _)) = trees[a].closest_pair(&trees[b], least, &Threads::single(), pair) {
                 least = least.min(found);
             }
         }

@@ -94,11 +94,11 @@ fn by_vertex(
     out: &mut Value,
 ) -> (NearestTriangle, [Vec<Option<Closest>>; 2]) {
     out["seconds"] = repeated(budget, |_| {
-        timed(|| NearestTriangle::new(points, triangles).closest_all(queries, None, threads)).0
+        timed(|| NearestTriangle::new(points, triangles, threads).closest_all(queries, None, threads)).0
     })
     .into();
-    out["build_ms"] = median(budget, |_| timed(|| NearestTriangle::new(points, triangles)).0).into();
-    let rest = NearestTriangle::new(points, triangles);
+    out["build_ms"] = median(budget, |_| timed(|| NearestTriangle::new(points, triangles, threads)).0).into();
+    let rest = NearestTriangle::new(points, triangles, threads);
     let each = || queries.iter().map(|p| rest.closest(*p)).collect::<Vec<_>>();
     out["one_by_one_ms"] = median(budget, |_| timed(each).0).into();
     out["cold_ms"] = median(budget, |_| timed(|| rest.closest_all(queries, None, threads)).0).into();
@@ -109,7 +109,7 @@ fn by_vertex(
     let mut take = |step| {
         let [points, queries] = at_step([points, queries], step);
         let guesses = triangles_of(&found);
-        let (moving, ()) = timed(|| tree.refit(&points));
+        let (moving, ()) = timed(|| tree.refit(&points, threads));
         let (asking, answer) = timed(|| tree.closest_all(&queries, Some(&guesses), threads));
         found = answer;
         refit.push(moving);
@@ -124,7 +124,7 @@ fn by_vertex(
 }
 
 /// Both surfaces as bodies over one list of points.
-fn contact([tube, lattice]: [&Shape; 2]) -> motet::base::Result<Contact> {
+fn contact([tube, lattice]: [&Shape; 2], threads: &Threads) -> motet::base::Result<Contact> {
     let n = tube.0.len();
     let points = [&tube.0[..], &lattice.0].concat();
     let body = |name: &str, triangles: &[[VertexId; 3]], first: usize| {
@@ -132,18 +132,18 @@ fn contact([tube, lattice]: [&Shape; 2]) -> motet::base::Result<Contact> {
         Body { name: name.into(), triangles, is_room: false }
     };
     let bodies = vec![body("tube", &tube.1, 0), body("lattice", &lattice.1, n)];
-    Contact::new(points, bodies, Options { warn: Some(WARN), ..Options::default() })
+    Contact::new(points, bodies, Options { warn: Some(WARN), ..Options::default() }, threads)
 }
 
 /// The handle: nearest places of the two surfaces alone, and everything that it measures. Gives the gaps of the lattice after the
 /// last step.
 fn whole(shapes: [&Shape; 2], budget: f64, threads: &Threads, out: &mut Value) -> motet::Result<Vec<f64>> {
-    let rest = contact(shapes)?;
-    out["contact_new_ms"] = median(budget, |_| timed(|| contact(shapes)).0).into();
+    let rest = contact(shapes, threads)?;
+    out["contact_new_ms"] = median(budget, |_| timed(|| contact(shapes, threads)).0).into();
     let mut nearest = Vec::new();
     let first = median(budget, |_| {
         let mut contact = rest.clone();
-        let (seconds, answer) = timed(|| contact.nearest());
+        let (seconds, answer) = timed(|| contact.nearest(threads));
         nearest = answer;
         seconds
     });
@@ -159,18 +159,18 @@ fn whole(shapes: [&Shape; 2], budget: f64, threads: &Threads, out: &mut Value) -
     let mut refit = Vec::new();
     let warm = median(budget, |step| {
         let points = points_at(step);
-        refit.push(timed(|| contact.refit(&points)).0);
-        timed(|| contact.nearest()).0
+        refit.push(timed(|| contact.refit(&points, threads)).0);
+        timed(|| contact.nearest(threads)).0
     });
     out["contact_refit_ms"] = median_of(refit).into();
     out["nearest_warm_ms"] = warm.into();
     out["measure_ms"] = median(budget, |step| {
-        let moved = contact.refit(&points_at(step));
+        let moved = contact.refit(&points_at(step), threads);
         timed(|| moved.map(|()| contact.measure(threads))).0
     })
     .into();
-    contact.refit(&points_at(STEPS - 1))?;
-    out["nearest_distance_step"] = least(&contact.nearest());
+    contact.refit(&points_at(STEPS - 1), threads)?;
+    out["nearest_distance_step"] = least(&contact.nearest(threads));
     let mut gaps = contact.measure(threads);
     out["warned_vertices"] =
         gaps.bodies.iter().flat_map(|b| &b.warning).filter(|warns| **warns).count().into();

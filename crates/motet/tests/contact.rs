@@ -15,7 +15,7 @@ const UNITS: [f64; 2] = [1e-3, 1.0];
 
 fn contact(shapes: &[Shape], options: Options) -> Contact {
     let (points, bodies) = bodies(shapes);
-    Contact::new(points, bodies, options).expect("the shapes are sound")
+    Contact::new(points, bodies, options, &Threads::single()).expect("the shapes are sound")
 }
 
 /// Holds all gaps of two shapes against the oracle, and against a second measuring that starts from the first.
@@ -136,12 +136,14 @@ fn a_guess_a_refit_and_threads_change_nothing() {
     };
     let shapes = [torus(16, 60, [1.0, 0.3]), sheet(40, |x, y| 0.4 + 0.1 * (7.0 * x * y).sin())];
     let options = Options { warn: Some(0.2), ..Options::default() };
-    let mut moving = contact(&shapes, options);
     let two = Threads::new(2).expect("two threads start");
+    let (points, parts) = bodies(&shapes);
+    let mut moving = Contact::new(points, parts, options, &two).expect("the shapes are sound");
     for step in 0..4 {
         let now = shapes.clone().map(|shape| shape.map(|p| wave(p, f64::from(step))));
-        moving.refit(&bodies(&now).0).expect("the points are finite");
+        moving.refit(&bodies(&now).0, &two).expect("the points are finite");
         let anew = contact(&now, options).measure(&Threads::single());
+        assert_eq!(moving.nearest(&two), [(anew.pairs[0].bodies, anew.pairs[0].nearest)]);
         assert_eq!(moving.measure(&two), anew);
         assert!(anew.is_warned());
     }
@@ -194,7 +196,7 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
     for turned in [false, true] {
         let outer = if turned { cube().turned_inside_out() } else { cube() };
         let (points, mut two) = bodies(&[inner.clone(), outer]);
-        let gaps = Contact::new(points.clone(), two.clone(), Options::default())
+        let gaps = Contact::new(points.clone(), two.clone(), Options::default(), &Threads::single())
             .unwrap()
             .measure(&Threads::single());
         assert!(gaps.bodies[0].gap.iter().all(|&gap| gap == -0.25), "{:?}", gaps.bodies[0].gap);
@@ -202,14 +204,14 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
         assert_eq!((gaps.pairs[0].n_wrong, gaps.pairs[0].depth), ([8, 0], 0.25));
         assert!(gaps.pairs[0].crossings.is_empty() && gaps.pairs[0].is_penetrated());
         two[1].is_room = true;
-        let mut room = Contact::new(points, two, Options::default()).unwrap();
+        let mut room = Contact::new(points, two, Options::default(), &Threads::single()).unwrap();
         let gaps = room.measure(&Threads::single());
         assert!(gaps.bodies[0].gap.iter().all(|&gap| gap == 0.25));
         assert!(!gaps.pairs[0].is_penetrated());
         // Shifted, one half is outside the room.
         let mut points = room.points().to_vec();
         points[..8].iter_mut().for_each(|p| p[0] += 0.5);
-        room.refit(&points).unwrap();
+        room.refit(&points, &Threads::single()).unwrap();
         let gaps = room.measure(&Threads::single());
         assert_eq!(gaps.pairs[0].n_wrong[0], 4);
         assert_eq!(gaps.pairs[0].depth, 0.25);
@@ -289,7 +291,9 @@ fn leaflets_that_share_an_edge_are_measured_away_from_it() {
         triangles: lower.triangles.iter().map(|t| t.map(|v| id(v, second))).collect(),
         is_room: false,
     };
-    let mut wedge = Contact::new(points.clone(), vec![body(false), body(true)], Options::default()).unwrap();
+    let mut wedge =
+        Contact::new(points.clone(), vec![body(false), body(true)], Options::default(), &Threads::single())
+            .unwrap();
     let gaps = wedge.measure(&Threads::single());
     let lower = &gaps.bodies[0];
     for (v, gap) in lower.vertices.iter().zip(&lower.gap) {
@@ -304,7 +308,9 @@ fn leaflets_that_share_an_edge_are_measured_away_from_it() {
 fn what_is_no_surface_is_refused_with_the_place() {
     let (points, two) = bodies(&[cube(), cube().shifted([3.0, 0.0, 0.0])]);
     let refused = |points: &[Point], bodies: &[Body], options: Options| {
-        Contact::new(points.to_vec(), bodies.to_vec(), options).expect_err("it is flawed").to_string()
+        Contact::new(points.to_vec(), bodies.to_vec(), options, &Threads::single())
+            .expect_err("it is flawed")
+            .to_string()
     };
     let plain = Options::default();
     assert!(refused(&points, &two[..1], plain).contains("another surface"));
@@ -322,8 +328,11 @@ fn what_is_no_surface_is_refused_with_the_place() {
     for options in [Options { warn: Some(-1.0), ..plain }, Options { within: f64::NAN, ..plain }] {
         assert!(refused(&points, &two, options).contains("positive"));
     }
-    let mut sound = Contact::new(points.clone(), two, plain).unwrap();
-    assert!(sound.refit(&nan).is_err() && sound.refit(&points[1..]).is_err());
+    let mut sound = Contact::new(points.clone(), two, plain, &Threads::single()).unwrap();
+    assert!(
+        sound.refit(&nan, &Threads::single()).is_err()
+            && sound.refit(&points[1..], &Threads::single()).is_err()
+    );
     assert_eq!(sound.points(), points, "nothing is taken over");
 }
 
@@ -345,9 +354,9 @@ fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
                 shape.points.iter_mut().for_each(|p| *p = add(*p, shift));
             }
             let points = bodies(&shapes).0;
-            handle.refit(&points).expect("the points are finite");
-            let anew = contact(&shapes, Options::default()).nearest();
-            assert_eq!(handle.nearest(), anew, "case {case}, step {step}");
+            handle.refit(&points, &Threads::single()).expect("the points are finite");
+            let anew = contact(&shapes, Options::default()).nearest(&Threads::single());
+            assert_eq!(handle.nearest(&Threads::single()), anew, "case {case}, step {step}");
         }
     }
 }
@@ -356,7 +365,7 @@ fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
 fn a_vertex_deep_inside_is_told_however_short_the_reach() {
     let (points, two) = bodies(&[cube().scaled(0.1).shifted([0.45; 3]), cube()]);
     let options = Options { within: 0.01, ..Options::default() };
-    let gaps = Contact::new(points, two, options).unwrap().measure(&Threads::single());
+    let gaps = Contact::new(points, two, options, &Threads::single()).unwrap().measure(&Threads::single());
     assert_eq!((gaps.pairs[0].n_wrong, gaps.pairs[0].nearest), ([8, 0], None));
     assert!(gaps.bodies[0].gap.iter().all(|gap| (gap + 0.45).abs() < 1e-12), "{:?}", gaps.bodies[0].gap);
     assert!((gaps.pairs[0].depth - 0.45).abs() < 1e-12);
@@ -405,7 +414,10 @@ fn a_surface_beside_a_far_larger_one_loses_nothing() {
                     .map(|(i, j)| triangle_triangle::closest(pair[0].corners(i), pair[1].corners(j)))
                     .map(|closest| closest.distance_squared.sqrt())
                     .fold(f64::INFINITY, f64::min);
-                let got = contact(&pair, Options::default()).nearest()[0].1.expect("no limit").distance;
+                let got = contact(&pair, Options::default()).nearest(&Threads::single())[0]
+                    .1
+                    .expect("no limit")
+                    .distance;
                 assert!(
                     (got - expected).abs() <= 1e-15 * size,
                     "size {size}, case {case}: {got} for {expected}"

@@ -80,7 +80,7 @@ fn exact(points: &[Point], bodies: &[Triangles]) -> Vec<f64> {
     let mut gap = vec![f64::INFINITY; points.len()];
     for (a, own) in bodies.iter().enumerate() {
         for (_, other) in bodies.iter().enumerate().filter(|(b, _)| *b != a) {
-            let tree = NearestTriangle::new(points, other);
+            let tree = NearestTriangle::new(points, other, &Threads::single());
             for v in own.as_flattened() {
                 let found = tree.closest(points[v.index()]).unwrap().distance_squared.sqrt();
                 gap[v.index()] = gap[v.index()].min(found);

@@ -22,7 +22,7 @@ fn joined(shapes: &[Shape]) -> Shape {
 fn own(shape: &Shape, within: f64) -> Gaps {
     let (points, one) = bodies(std::slice::from_ref(shape));
     let options = Options { own: true, within, ..Options::default() };
-    let mut contact = Contact::new(points, one, options).expect("the shape is sound");
+    let mut contact = Contact::new(points, one, options, &Threads::single()).expect("the shape is sound");
     let gaps = contact.measure(&Threads::single());
     assert_eq!(contact.measure(&Threads::single()), gaps, "a guess changed an answer");
     let two = Threads::new(2).expect("two threads start");
@@ -87,8 +87,8 @@ fn nothing_is_seen_through_the_thickness_of_a_plate() {
         plate.triangles.extend([[v, u, u + half], [v, u + half, v + half]]);
     }
     let (points, one) = bodies(std::slice::from_ref(&plate));
-    let contact =
-        Contact::new(points, one, Options { own: true, ..Options::default() }).expect("it is sound");
+    let contact = Contact::new(points, one, Options { own: true, ..Options::default() }, &Threads::single())
+        .expect("it is sound");
     assert!(contact.is_closed(0));
     let gaps = own(&plate, 0.5);
     assert!(gaps.bodies[0].closest_body.iter().all(|&b| b == NONE), "{:?}", gaps.bodies[0].gap);

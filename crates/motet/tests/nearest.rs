@@ -38,7 +38,7 @@ proptest! {
     ) {
         let points: Vec<Point> = points.iter().map(|x| scale(*x, unit)).collect();
         let p = scale(p, unit);
-        let found = NearestTriangle::new(&points, &triangles).closest(p).unwrap();
+        let found = NearestTriangle::new(&points, &triangles, &Threads::single()).closest(p).unwrap();
         prop_assert_eq!((found.triangle, found.distance_squared), by_brute_force(&points, &triangles, p));
         let weights = found.weights;
         prop_assert!(weights.iter().all(|w| (0.0..=1.0).contains(w)));
@@ -46,7 +46,7 @@ proptest! {
         let corners = triangles[found.triangle].map(|v| points[v.index()]);
         prop_assert_eq!(triangle::at(corners, weights), found.point);
         let far = found.distance_squared.sqrt();
-        let tree = NearestTriangle::new(&points, &triangles);
+        let tree = NearestTriangle::new(&points, &triangles, &Threads::single());
         prop_assert_eq!(tree.closest_within(p, far * 1.001 + 1e-300), Some(found));
         prop_assert_eq!(tree.closest_within(p, far * 0.999), None.or((far == 0.0).then_some(found)));
     }
@@ -70,25 +70,37 @@ proptest! {
 fn needles_and_points_count_as_what_they_are() {
     let line = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
     let ids = [[0, 1, 2].map(VertexId)];
-    let on_line = NearestTriangle::new(&line, &ids).closest([2.0, 1.0, 0.0]).unwrap();
+    let on_line = NearestTriangle::new(&line, &ids, &Threads::single()).closest([2.0, 1.0, 0.0]).unwrap();
     assert_eq!((on_line.point, on_line.distance_squared), ([2.0, 0.0, 0.0], 1.0));
     let dot = [[1.0, 2.0, 3.0]; 3];
-    assert_eq!(NearestTriangle::new(&dot, &ids).closest([1.0, 2.0, 5.0]).unwrap().distance_squared, 4.0);
+    assert_eq!(
+        NearestTriangle::new(&dot, &ids, &Threads::single())
+            .closest([1.0, 2.0, 5.0])
+            .unwrap()
+            .distance_squared,
+        4.0
+    );
     let needle = [[0.0, 0.0, 0.0], [1.0, 1e-17, 0.0], [2.0, 0.0, 1e-18]];
-    let found = NearestTriangle::new(&needle, &ids).closest([1.5, 1.0, 0.0]).unwrap();
+    let found = NearestTriangle::new(&needle, &ids, &Threads::single()).closest([1.5, 1.0, 0.0]).unwrap();
     assert!((found.distance_squared - 1.0).abs() < 1e-15 && (found.point[0] - 1.5).abs() < 1e-15);
 }
 
 #[test]
 fn a_search_without_an_answer_says_so() {
-    assert!(NearestTriangle::new(&[], &[]).closest([0.0; 3]).is_none());
+    assert!(NearestTriangle::new(&[], &[], &Threads::single()).closest([0.0; 3]).is_none());
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, f64::NAN, 0.0], [0.0, 1.0, 0.0]];
-    let tree = NearestTriangle::new(&corners, &[[0, 1, 2].map(VertexId), [0, 1, 3].map(VertexId)]);
+    let tree = NearestTriangle::new(
+        &corners,
+        &[[0, 1, 2].map(VertexId), [0, 1, 3].map(VertexId)],
+        &Threads::single(),
+    );
     assert_eq!(tree.closest([0.1, 0.1, 1.0]).map(|c| c.triangle), Some(1));
     assert!(tree.closest([f64::NAN, 0.0, 0.0]).is_none());
     assert!(tree.closest([f64::INFINITY, 0.0, 0.0]).is_none());
     let huge = [[-3.4e38, 0.0, 0.0], [3.4e38, 0.0, 0.0], [0.0, 3.4e38, 0.0]];
-    let found = NearestTriangle::new(&huge, &[[0, 1, 2].map(VertexId)]).closest([0.0, 1.0, 2e38]).unwrap();
+    let found = NearestTriangle::new(&huge, &[[0, 1, 2].map(VertexId)], &Threads::single())
+        .closest([0.0, 1.0, 2e38])
+        .unwrap();
     assert!((found.distance_squared / 4e76 - 1.0).abs() < 1e-14);
 }
 
@@ -99,7 +111,7 @@ fn distances_to_a_sphere_are_those_of_the_radius() {
     let sphere = mesh.patches().unwrap().find("sphere").unwrap();
     let mut patches = surface.patches.iter();
     surface.triangles.retain(|_| patches.next() == Some(&sphere));
-    let tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    let tree = NearestTriangle::new(&surface.points, &surface.triangles, &Threads::single());
     for p in &mesh.points {
         let found = tree.closest(*p).unwrap().distance_squared.sqrt();
         // The surface lies within the sphere by at most the sagitta of its longest edge.
@@ -229,7 +241,7 @@ proptest! {
         };
         let queries = placed(&queries);
         let mut now = placed(&points);
-        let mut tree = NearestTriangle::new(&now, &triangles);
+        let mut tree = NearestTriangle::new(&now, &triangles, &Threads::single());
         let threads = Threads::new(2).unwrap();
         let mut guesses = guesses[..queries.len()].to_vec();
         for step in 0..=moves.len() {
@@ -243,7 +255,7 @@ proptest! {
             if let Some((by, how_far)) = moves.get(step) {
                 let moved: Vec<Point> = points.iter().zip(by).map(|(p, d)| add(*p, scale(*d, *how_far))).collect();
                 now = placed(&moved);
-                tree.refit(&now);
+                tree.refit(&now, &Threads::single());
             }
         }
     }
@@ -252,11 +264,11 @@ proptest! {
 #[test]
 fn a_large_surface_is_searched_alike_on_any_number_of_threads() {
     let surface = Surface::of(&sphere_in_box(16, 4));
-    let mut tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    let two = Threads::new(2).unwrap();
+    let mut tree = NearestTriangle::new(&surface.points, &surface.triangles, &two);
     let queries: Vec<Point> =
         surface.points.iter().map(|p| p.map(|x| 0.9 * x + 0.05 * (7.0 * x).sin())).collect();
     let one = tree.closest_all(&queries, None, &Threads::single());
-    let two = Threads::new(2).unwrap();
     assert_eq!(tree.closest_all(&queries, None, &two), one);
     for (p, found) in queries.iter().zip(&one).step_by(17) {
         let found = found.unwrap();
@@ -264,8 +276,8 @@ fn a_large_surface_is_searched_alike_on_any_number_of_threads() {
         assert_eq!((found.triangle, found.distance_squared), expected);
     }
     let moved: Vec<Point> = surface.points.iter().map(|p| [p[0] + 0.1 * p[1], p[1], 1.5 * p[2]]).collect();
-    tree.refit(&moved);
-    let anew = NearestTriangle::new(&moved, &surface.triangles);
+    tree.refit(&moved, &two);
+    let anew = NearestTriangle::new(&moved, &surface.triangles, &Threads::single());
     let guesses: Vec<u32> = one.iter().map(|c| c.unwrap().triangle as u32).collect();
     assert_eq!(tree.closest_all(&queries, Some(&guesses), &two), anew.closest_all(&queries, None, &two));
 }
@@ -281,7 +293,7 @@ proptest! {
     ) {
         let a: Vec<Point> = a.iter().map(|p| p.map(|x| (x + offset) * unit)).collect();
         let b: Vec<Point> = b.iter().map(|p| p.map(|x| (0.01 * x + offset + apart) * unit)).collect();
-        let (one, two) = (NearestTriangle::new(&a, &s), NearestTriangle::new(&b, &t));
+        let (one, two) = (NearestTriangle::new(&a, &s, &Threads::single()), NearestTriangle::new(&b, &t, &Threads::single()));
         // Of the corners: any distance of things inside the triangles will do.
         let squared = |i: u32, j: u32| {
             let (p, q) = (s[i as usize].map(|v| a[v.index()]), t[j as usize].map(|v| b[v.index()]));
@@ -290,12 +302,14 @@ proptest! {
         };
         let all = (0..s.len() as u32).flat_map(|i| (0..t.len() as u32).map(move |j| (squared(i, j), i, j)));
         let expected = all.min_by(|x, y| x.partial_cmp(y).unwrap());
-        let found = one.closest_pair(&two, f64::INFINITY, |i, j, _| Some(squared(i, j)));
+        let threads = Threads::single();
+        let found = one.closest_pair(&two, f64::INFINITY, &threads, |(): &mut (), i, j, _| Some(squared(i, j)));
         prop_assert_eq!(found, expected);
         if let Some((least, ..)) = expected {
-            let again = one.closest_pair(&two, least, |i, j, bound| Some(squared(i, j)).filter(|d| *d <= bound));
+            let near = |(): &mut (), i, j, bound| Some(squared(i, j)).filter(|d| *d <= bound);
+            let again = one.closest_pair(&two, least, &threads, near);
             prop_assert_eq!(again, expected);
-            prop_assert_eq!(one.closest_pair(&two, least * 0.99, |i, j, _| Some(squared(i, j))), expected.filter(|e| e.0 == 0.0));
+            prop_assert_eq!(one.closest_pair(&two, least * 0.99, &threads, near), expected.filter(|e| e.0 == 0.0));
         }
     }
 }
@@ -309,8 +323,8 @@ proptest! {
         within in prop_oneof![Just(f64::INFINITY), 0.0f64..1.0],
     ) {
         let passes = |t: u32| t.wrapping_mul(2654435761).wrapping_add(salt * 7919).is_multiple_of(one_in);
-        let tree = NearestTriangle::new(&points, &triangles);
-        let alone = |t: &u32| NearestTriangle::new(&points, &[triangles[*t as usize]]).closest_within(p, within);
+        let tree = NearestTriangle::new(&points, &triangles, &Threads::single());
+        let alone = |t: &u32| NearestTriangle::new(&points, &[triangles[*t as usize]], &Threads::single()).closest_within(p, within);
         let all = (0..triangles.len() as u32).filter(|t| passes(*t)).filter_map(|t| {
             alone(&t).map(|found| motet::spatial::Closest { triangle: t as usize, ..found })
         });
@@ -334,7 +348,7 @@ proptest! {
 #[test]
 fn points_far_off_have_exact_answers_too() {
     let surface = Surface::of(&sphere_in_box(8, 2));
-    let tree = NearestTriangle::new(&surface.points, &surface.triangles);
+    let tree = NearestTriangle::new(&surface.points, &surface.triangles, &Threads::single());
     for power in 0..40 {
         let far = 3f64.powi(power);
         for direction in [[1.0, 0.3, -0.2], [-0.1, -0.7, 1.0]] {

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Numbers, data_meshes, random_mesh};
-use motet::base::{Point, TetId, VertexId};
+use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::distance;
@@ -225,8 +225,8 @@ fn bad_surfaces_give_way_within_the_distance() {
         let outcome = remesh(&part, &Options { surface, ..Options::default() }).unwrap();
         let (report, new) = (&outcome.report, &outcome.extract.mesh);
         let [before, after] = [&part, new].map(walls);
-        let trees =
-            [(&part, &before), (new, &after)].map(|(mesh, walls)| NearestTriangle::new(&mesh.points, walls));
+        let trees = [(&part, &before), (new, &after)]
+            .map(|(mesh, walls)| NearestTriangle::new(&mesh.points, walls, &Threads::single()));
         let out = strays(&after, &new.points, &trees[0]) / allowed;
         let back = strays(&before, &part.points, &trees[1]) / allowed;
         println!(

@@ -49,6 +49,14 @@ impl Threads {
         }
     }
 
+    /// `of` each of a few things that take long, in their order.
+    pub fn each<T: Send, U: Send>(&self, things: Vec<T>, of: impl Fn(T) -> U + Sync + Send) -> Vec<U> {
+        match &self.pool {
+            None => things.into_iter().map(of).collect(),
+            Some(pool) => pool.install(|| things.into_par_iter().map(of).collect()),
+        }
+    }
+
     /// The pool, where there is more than one thread. `None`: use a plain loop,
     /// since a parallel iterator outside a pool would start the global one.
     pub fn pool(&self) -> Option<&rayon::ThreadPool> {

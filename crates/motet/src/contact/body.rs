@@ -2,7 +2,7 @@
 
 use super::input::{check_finite, vertices_of};
 use super::side::Side;
-use crate::base::{Csr, Point, Result, VertexId};
+use crate::base::{Csr, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::dot;
 use crate::mesh::cone_volume;
@@ -41,16 +41,17 @@ pub(super) struct Prepared {
 }
 
 impl Prepared {
-    pub(super) fn new(body: Body, points: &[Point]) -> Result<Self> {
+    pub(super) fn new(body: Body, points: &[Point], threads: &Threads) -> Result<Self> {
         let Body { name, triangles, is_room } = body;
         let vertices = vertices_of(&format!("surface {name}"), &triangles, points)?;
-        let place = |v: &VertexId| vertices.binary_search(v).unwrap_or_default() as u32;
-        let places: Vec<[u32; 3]> = triangles.iter().map(|t| t.each_ref().map(place)).collect();
+        let mut place = vec![0; points.len()];
+        vertices.iter().zip(0..).for_each(|(v, k)| place[v.index()] = k);
+        let places: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| place[v.index()])).collect();
         let stars = Csr::from_pairs(vertices.len(), || {
             (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v as usize, i)))
         });
         let is_closed = super::inside::is_closed(&triangles);
-        let tree = NearestTriangle::new(points, &triangles);
+        let tree = NearestTriangle::new(points, &triangles, threads);
         let mut body = Self {
             name,
             triangles,
@@ -75,8 +76,8 @@ impl Prepared {
     }
 
     /// Takes over points that moved.
-    pub(super) fn refit(&mut self, points: &[Point]) {
-        self.tree.refit(points);
+    pub(super) fn refit(&mut self, points: &[Point], threads: &Threads) {
+        self.tree.refit(points, threads);
         self.free = self.free_side(points);
         if !self.normals.is_empty() {
             self.keep_normals(points);

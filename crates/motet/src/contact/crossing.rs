@@ -49,10 +49,10 @@ fn pairs(
 ) -> Vec<[u32; 2]> {
     let boxes: Vec<_> = b.iter().map(|&t| around(&corners(points, t))).collect();
     let tree = BoxTree::new(&boxes);
-    in_runs(a.len(), threads, |run| {
-        let (mut near, mut found) = (Vec::new(), Vec::new());
+    in_runs(a.len(), threads, |near, run| {
+        let mut found = Vec::new();
         for i in run {
-            tree.touching(around(&corners(points, a[i])), &mut near);
+            tree.touching(around(&corners(points, a[i])), near);
             let met = near.iter().filter(|&&j| admit(i as u32, j) && cross(points, a[i], b[j as usize]));
             found.extend(met.map(|&j| [i as u32, j]));
         }

@@ -39,9 +39,10 @@ impl Contact {
     /// # Errors
     /// When there is nothing to measure, a body has no triangles, a triangle names a point beyond `points`, one of their points is
     /// not finite, or a length of the options is not positive.
-    pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options) -> Result<Self> {
+    pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options, threads: &Threads) -> Result<Self> {
         check(&bodies, &options)?;
-        let mut bodies = bodies.into_iter().map(|b| Prepared::new(b, &points)).collect::<Result<Vec<_>>>()?;
+        let bodies = threads.each(bodies, |body| Prepared::new(body, &points, threads));
+        let mut bodies = bodies.into_iter().collect::<Result<Vec<_>>>()?;
         let n = bodies.len() as u32;
         let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
         let is_joined = |[a, b]: [u32; 2]| a == b || bodies[a as usize].is_joined(&bodies[b as usize]);
@@ -59,14 +60,14 @@ impl Contact {
     ///
     /// # Errors
     /// When there are not as many points as before, or one of the bodies' is not finite; then nothing is taken over.
-    pub fn refit(&mut self, points: &[Point]) -> Result<()> {
+    pub fn refit(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
         if points.len() != self.points.len() {
             return Err(Error::input(format!("{} points, expected {}", points.len(), self.points.len()))
                 .remedy("give all points in the same order as at first"));
         }
         self.bodies.iter().try_for_each(|body| body.check(points))?;
         self.points.copy_from_slice(points);
-        self.bodies.iter_mut().for_each(|body| body.refit(points));
+        threads.each(self.bodies.iter_mut().collect(), |body| body.refit(points, threads));
         Ok(())
     }
 
@@ -116,8 +117,8 @@ impl Contact {
 
     /// The nearest places of every pair of bodies, and nothing else: what a solver asks for at every iteration. `None` where
     /// nothing is within reach.
-    pub fn nearest(&mut self) -> Vec<([u32; 2], Option<Nearest>)> {
-        self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_alone(guesses)))
+    pub fn nearest(&mut self, threads: &Threads) -> Vec<([u32; 2], Option<Nearest>)> {
+        self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_alone(guesses, threads)))
     }
 
     fn for_each_pair<T>(&mut self, mut of: impl FnMut(&pair::Scene<'_>, &mut Guesses) -> T) -> Vec<T> {

@@ -23,9 +23,9 @@ pub(super) fn vertices_of(
             .at(format!("{name}, triangle {i}"))
             .remedy("give all points that the triangles are about"));
     }
-    let mut vertices = triangles.as_flattened().to_vec();
-    vertices.sort_unstable();
-    vertices.dedup();
+    let mut is_used = vec![false; points.len()];
+    triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+    let vertices: Vec<_> = (0..points.len()).filter(|&v| is_used[v]).map(VertexId::new).collect();
     check_finite(name, vertices.iter().copied(), points)?;
     Ok(vertices)
 }

@@ -8,7 +8,7 @@
 //! Not every vertex needs a ray: where a triangle does not meet the surface, all its corners are on the same side.
 
 use super::runs::{around, corners, in_runs};
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::distance::segment_triangle;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::is_finite;
@@ -17,12 +17,18 @@ use crate::spatial::{Bounds, BoxTree};
 /// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
 /// times.
 pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
-    let ways = |&[a, b, c]: &[VertexId; 3]| [[a, b], [b, c], [c, a]];
-    let mut edges: Vec<([VertexId; 2], bool)> =
-        triangles.iter().flat_map(ways).map(|[u, v]| ([u.min(v), u.max(v)], u < v)).collect();
-    edges.retain(|([u, v], _)| u != v);
-    edges.sort_unstable();
-    edges.chunk_by(|x, y| x.0 == y.0).all(|uses| 2 * uses.iter().filter(|x| x.1).count() == uses.len())
+    let n_points = triangles.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
+    let ways = |&[a, b, c]: &[VertexId; 3]| [[a, b], [b, c], [c, a]].into_iter().filter(|[u, v]| u != v);
+    let edges = Csr::from_pairs(n_points, || {
+        triangles.iter().flat_map(ways).map(|[u, v]| (u.min(v).index(), (u.max(v), u < v)))
+    });
+    let mut sorted = Vec::new();
+    edges.iter().all(|from_one| {
+        sorted.clear();
+        sorted.extend_from_slice(from_one);
+        sorted.sort_unstable();
+        sorted.chunk_by(|x, y| x.0 == y.0).all(|uses| 2 * uses.iter().filter(|x| x.1).count() == uses.len())
+    })
 }
 
 /// Which of `vertices` lie inside the closed surface `b`. Vertices on it do not.
@@ -49,10 +55,9 @@ pub fn inside(
         vertices.iter().filter(|v| !is_on[v.index()]).map(|v| part[v.index()]).collect();
     asked.sort_unstable();
     asked.dedup();
-    let rays = Rays::new(points, b);
-    let answers = in_runs(asked.len(), threads, |run| {
-        let mut near = Vec::new();
-        run.map(|i| rays.winding(points[asked[i] as usize], &mut near).is_some_and(|n| n != 0)).collect()
+    let rays = Rays::new(points, b, asked.len());
+    let answers = in_runs(asked.len(), threads, |near, run| {
+        run.map(|i| rays.winding(points[asked[i] as usize], near).is_some_and(|n| n != 0)).collect()
     });
     let of_part = |part| asked.binary_search(&part).is_ok_and(|i| answers[i]);
     vertices.iter().map(|v| !is_on[v.index()] && of_part(part[v.index()])).collect()
@@ -92,24 +97,50 @@ fn top(above: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
-/// A surface made ready for rays: turned so that they run along x.
-struct Rays {
-    triangles: Vec<[Point; 3]>,
-    tree: BoxTree,
-    bounds: Bounds,
+/// So few rays look at every triangle: a tree takes as long to make as 22 rays without it.
+const FEW: usize = 16;
+
+/// A surface that rays go through, along an axis that is called x.
+struct Rays<'a> {
+    points: &'a [Point],
+    triangles: &'a [[VertexId; 3]],
+    /// None where few rays go.
+    tree: Option<BoxTree>,
     /// The axis that became x.
     axis: usize,
 }
 
-impl Rays {
-    fn new(points: &[Point], b: &[[VertexId; 3]]) -> Self {
-        let sound = |t: &[Point; 3]| t.iter().all(|&p| is_finite(p));
-        let mut triangles: Vec<_> = b.iter().map(|&t| corners(points, t)).filter(sound).collect();
-        let bounds = around(triangles.as_flattened());
-        let axis = easiest_axis(&triangles, bounds);
-        triangles.iter_mut().for_each(|t| *t = t.map(|p| turned(p, axis)));
-        let boxes: Vec<_> = triangles.iter().map(|t| around(t)).collect();
-        Self { tree: BoxTree::new(&boxes), triangles, bounds: bounds.map(|p| turned(p, axis)), axis }
+impl<'a> Rays<'a> {
+    fn new(points: &'a [Point], triangles: &'a [[VertexId; 3]], n_rays: usize) -> Self {
+        let mut rays = Self { points, triangles, tree: None, axis: 0 };
+        if n_rays > FEW {
+            rays.axis = easiest_axis(&rays.boxes().collect::<Vec<_>>());
+            rays.tree = Some(BoxTree::new(&rays.boxes().collect::<Vec<_>>()));
+        }
+        rays
+    }
+
+    /// The corners, turned so that rays run along x.
+    fn corners(&self, j: u32) -> [Point; 3] {
+        corners(self.points, self.triangles[j as usize]).map(|p| turned(p, self.axis))
+    }
+
+    fn boxes(&self) -> impl Iterator<Item = Bounds> {
+        (0..self.triangles.len() as u32).map(|j| around(&self.corners(j)))
+    }
+
+    /// The triangles with finite corners that the ray from `q` may pass.
+    fn near(&self, q: Point, near: &mut Vec<u32>) {
+        if let Some(tree) = &self.tree {
+            return tree.touching([q, [f64::MAX, q[1], q[2]]], near);
+        }
+        let may_pass = |t: [Point; 3]| {
+            t.iter().any(|p| p[0] >= q[0])
+                && (1..3).all(|k| t.iter().any(|p| p[k] <= q[k]) && t.iter().any(|p| p[k] >= q[k]))
+                && t.iter().all(|&p| is_finite(p))
+        };
+        near.clear();
+        near.extend((0..self.triangles.len() as u32).filter(|&j| may_pass(self.corners(j))));
     }
 
     /// How often the surface winds round `q`; `None` on the surface.
@@ -118,10 +149,10 @@ impl Rays {
             return Some(0);
         }
         let q = turned(q, self.axis);
-        self.tree.touching([q, [self.bounds[1][0].max(q[0]), q[1], q[2]]], near);
+        self.near(q, near);
         let mut winding = 0;
         for &j in near.iter() {
-            let triangle = self.triangles[j as usize];
+            let triangle = self.corners(j);
             if triangle.iter().any(|p| p[0] <= q[0]) && segment_triangle::meet([q, q], triangle) {
                 return None;
             }
@@ -137,13 +168,14 @@ fn turned(p: Point, axis: usize) -> Point {
 }
 
 /// The axis along which a ray meets the fewest boxes: what they cover together of what the surface covers.
-fn easiest_axis(triangles: &[[Point; 3]], bounds: Bounds) -> usize {
+fn easiest_axis(boxes: &[Bounds]) -> usize {
     let size = |[low, high]: Bounds| [0, 1, 2].map(|k| high[k] - low[k]);
-    let whole = size(bounds);
+    let finite = || boxes.iter().filter(|bounds| bounds[0][0].is_finite());
+    let whole = size(around(&finite().copied().flatten().collect::<Vec<_>>()));
     let covers = |axis: usize| -> f64 {
         let [u, v] = [1, 2].map(|k| (axis + k) % 3);
         let part = |s: Point| (s[u] / whole[u]) * (s[v] / whole[v]);
-        triangles.iter().map(|t| part(size(around(t)))).sum()
+        finite().map(|bounds| part(size(*bounds))).sum()
     };
     let covered = [0, 1, 2].map(covers);
     (0..3).min_by(|&i, &j| covered[i].total_cmp(&covered[j])).unwrap_or(0)

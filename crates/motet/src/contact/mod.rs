@@ -23,7 +23,7 @@
 //!     is_room: false,
 //! };
 //! let options = Options { warn: Some(0.2), ..Options::default() };
-//! let mut contact = Contact::new(points, vec![body("lower", 0), body("upper", 3)], options)?;
+//! let mut contact = Contact::new(points, vec![body("lower", 0), body("upper", 3)], options, &Threads::single())?;
 //! let gaps = contact.measure(&Threads::single());
 //! assert!((gaps.least() - 0.1).abs() < 1e-15);
 //! assert!(gaps.is_warned());

@@ -3,9 +3,12 @@
 //! Distances of vertices from the other surface are not enough: two edges that cross at a distance come nearest between their ends.
 //! They are a good bound, though, so that few pairs of triangles are looked at.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 use super::along::Ways;
 use super::answer::Nearest;
 use super::rule::Rule;
+use crate::base::Threads;
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle;
 
@@ -13,20 +16,20 @@ use crate::geometry::triangle;
 const SLACK: f64 = 1e-9;
 
 /// The nearest pair of triangles within the root of `start`, which may be the squared distance of a known pair.
-pub(super) fn nearest(rule: &Rule<'_>, start: f64) -> Option<Nearest> {
+pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<Nearest> {
     let is_own = std::ptr::eq(rule.a, rule.b);
-    let mut ways = Ways::default();
     let corners = |[i, j]: [u32; 2]| (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
     let bound = start * (1.0 + SLACK) + f64::MIN_POSITIVE;
-    let (_, i, j) = rule.a.tree.closest_pair(&rule.b.tree, bound, |i, j, bound| {
+    let measured = |ways: &mut Ways, i: u32, j: u32, bound: f64| {
         if is_own && i >= j || !rule.may_admit([i, j]) {
             return None;
         }
         let (a, b) = corners([i, j]);
         // A pair at the bound counts as well: of those equally near the first one is told.
         let found = triangle_triangle::closest_below(a, b, bound.next_up())?;
-        rule.admits([i, j], &found, &mut ways).then_some(found.distance_squared)
-    })?;
+        rule.admits([i, j], &found, ways).then_some(found.distance_squared)
+    };
+    let (_, i, j) = rule.a.tree.closest_pair(&rule.b.tree, bound, threads, measured)?;
     let (a, b) = corners([i, j]);
     let closest = triangle_triangle::closest(a, b);
     Some(Nearest {
@@ -48,24 +51,18 @@ pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64>
     rule.admits([i, j], &found, &mut Ways::default()).then_some(found.distance_squared)
 }
 
-/// Marks the triangles of both surfaces that are nearer to the other than `warn`.
-pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, [near_a, near_b]: [&mut [bool]; 2]) {
+/// Marks the triangles of both surfaces that are nearer to the other than `warn`; those that are marked already cost no look.
+pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, near: [&[AtomicBool]; 2], threads: &Threads) {
     let is_own = std::ptr::eq(rule.a, rule.b);
-    let mut ways = Ways::default();
-    rule.a.tree.closest_pair(&rule.b.tree, warn * warn, |i, j, bound| {
-        let is_known = match is_own {
-            true => i >= j || near_a[i as usize] && near_a[j as usize],
-            false => near_a[i as usize] && near_b[j as usize],
-        };
-        if is_known || !rule.may_admit([i, j]) {
+    rule.a.tree.closest_pair(&rule.b.tree, warn * warn, threads, |ways: &mut Ways, i, j, bound| {
+        let flags = [&near[0][i as usize], &near[1][j as usize]];
+        if is_own && i >= j || flags.iter().all(|flag| flag.load(Relaxed)) || !rule.may_admit([i, j]) {
             return None;
         }
         let (a, b) = (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
         let found = triangle_triangle::closest_below(a, b, bound)?;
-        if rule.admits([i, j], &found, &mut ways) {
-            near_a[i as usize] = true;
-            let near_b: &mut [bool] = if is_own { near_a } else { near_b };
-            near_b[j as usize] = true;
+        if rule.admits([i, j], &found, ways) {
+            flags.iter().for_each(|flag| flag.store(true, Relaxed));
         }
         None
     });

@@ -1,5 +1,7 @@
 //! One pair of bodies measured: vertices against triangles both ways, the nearest triangles, what crosses, what is inside.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
 use super::along::{Along, Ways};
 use super::answer::{BodyGaps, Nearest, PairGap};
 use super::body::Prepared;
@@ -61,36 +63,36 @@ impl Scene<'_> {
     }
 
     /// Measures the pair; the second side is empty for a body with itself.
-    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, [Half; 2]) {
+    pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, Vec<Half>) {
         let found = [0, 1].map(|own| match self.is_own() && own == 1 {
             true => Vec::new(),
             false => self.of_vertices(own, &mut guesses.of_vertices[own], threads),
         });
         let all = found.iter().flatten().flatten();
         let start = all.map(|closest| closest.distance_squared).fold(f64::INFINITY, f64::min);
-        let nearest = self.nearest(start, guesses);
+        let nearest = self.nearest(start, guesses, threads);
         let crossings = self.crossings(nearest.as_ref(), threads);
-        let mut sides = [0, 1].map(|own| self.side(own, &crossings, threads));
+        let mut sides = threads.each(vec![0, 1], |own| self.side(own, &crossings, threads));
         for (side, found) in sides.iter_mut().zip(found) {
             side.found = found;
             self.look_again_where_wrong(side);
         }
-        self.warn(nearest.as_ref(), &mut sides);
+        self.warn(nearest.as_ref(), &mut sides, threads);
         let count = |flags: &[bool]| flags.iter().filter(|&&flag| flag).count();
         let gap = PairGap {
             bodies: self.ids,
             nearest,
             crossings,
-            n_wrong: sides.each_ref().map(|side| count(&side.is_wrong)),
+            n_wrong: [0, 1].map(|own| count(&sides[own].is_wrong)),
             depth: sides.iter().map(Half::depth).fold(0.0, f64::max),
-            n_warned: sides.each_ref().map(|side| count(&side.is_near)),
+            n_warned: [0, 1].map(|own| count(&sides[own].is_near)),
         };
         (gap, sides)
     }
 
     /// The nearest places and nothing else. A bound comes from the pair that was nearest last time, at first from
     /// some vertex.
-    pub(super) fn nearest_alone(&self, guesses: &mut Guesses) -> Option<Nearest> {
+    pub(super) fn nearest_alone(&self, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
         let rule = self.rule(0);
         let place = || self.points[rule.a.vertices[0].index()];
         let start = match guesses.pair {
@@ -99,15 +101,15 @@ impl Scene<'_> {
             }
             _ => f64::INFINITY,
         };
-        self.nearest(start, guesses)
+        self.nearest(start, guesses, threads)
     }
 
     /// The nearest places within the root of `start` and within reach.
-    fn nearest(&self, start: f64, guesses: &mut Guesses) -> Option<Nearest> {
+    fn nearest(&self, start: f64, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
         let rule = self.rule(0);
         let limit = self.options.within * self.options.within;
         let last = guesses.pair.and_then(|pair| distance_squared(&rule, pair));
-        let found = nearest(&rule, start.min(last.unwrap_or(limit)).min(limit));
+        let found = nearest(&rule, start.min(last.unwrap_or(limit)).min(limit), threads);
         guesses.pair = found.map(|found| found.triangles);
         found
     }
@@ -139,14 +141,13 @@ impl Scene<'_> {
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let within = self.options.within;
-        in_runs(rule.a.vertices.len(), threads, |run| {
-            let (mut ways, mut last) = (Ways::default(), u32::MAX);
-            let mut found = Vec::with_capacity(run.len());
+        in_runs(rule.a.vertices.len(), threads, |ways: &mut Ways, run| {
+            let (mut last, mut found) = (u32::MAX, Vec::with_capacity(run.len()));
             for i in run {
                 let place = self.points[rule.a.vertices[i].index()];
                 let guess = guesses.get(i).map_or(last, |&guess| guess);
-                let bound = rule.distance(i, guess, &mut ways).map_or(within, |d| within.min(d * SLACK));
-                let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, &mut ways));
+                let bound = rule.distance(i, guess, ways).map_or(within, |d| within.min(d * SLACK));
+                let closest = rule.b.tree.closest_where(place, bound, rule.at_vertex(i, ways));
                 last = closest.map_or(u32::MAX, |closest| closest.triangle as u32);
                 found.push(closest);
             }
@@ -188,17 +189,29 @@ impl Scene<'_> {
     }
 
     /// Marks the triangles nearer than the warning distance.
-    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Half; 2]) {
+    fn warn(&self, nearest: Option<&Nearest>, sides: &mut [Half], threads: &Threads) {
         let Some(warn) = self.options.warn else { return };
-        let [first, second] = sides;
-        for (side, body) in [&mut *first, &mut *second].into_iter().zip(self.bodies) {
-            side.is_near = vec![false; body.triangles.len()];
-        }
-        if self.is_own() {
-            second.is_near.clear();
-        }
+        let near = self.bodies.map(|body| body.triangles.iter().map(|_| false.into()).collect());
+        let both = [&near[0], &near[usize::from(!self.is_own())]].map(|near: &Vec<AtomicBool>| &near[..]);
         if nearest.is_some_and(|nearest| nearest.distance < warn) {
-            mark_nearer(&self.rule(0), warn, [&mut first.is_near, &mut second.is_near]);
+            if self.rule(0).admits_all() {
+                sides.iter().for_each(|side| self.mark_around(side, warn, both));
+            }
+            mark_nearer(&self.rule(0), warn, both, threads);
+        }
+        for (side, near) in sides.iter_mut().zip(near) {
+            side.is_near = near.into_iter().map(AtomicBool::into_inner).collect();
+        }
+    }
+
+    /// Marks the triangles around vertices that are near, and those that are nearest to these: most of all that are near.
+    fn mark_around(&self, side: &Half, warn: f64, near: [&[AtomicBool]; 2]) {
+        let stars = self.bodies[side.own].stars.iter();
+        for (found, star) in side.found.iter().zip(stars) {
+            if let Some(found) = found.filter(|found| found.distance_squared < warn * warn) {
+                star.iter().for_each(|&t| near[side.own][t as usize].store(true, Relaxed));
+                near[1 - side.own][found.triangle].store(true, Relaxed);
+            }
         }
     }
 }

@@ -67,7 +67,7 @@ impl Layer {
         let wall_nodes = wall_nodes.collect::<Result<Vec<u32>>>()?;
         let local = |v: VertexId| vertices.binary_search(&v).expect("collected from the same rings") as u32;
         let triangles: Vec<[VertexId; 3]> = wall.triangles().collect();
-        let search = NearestTriangle::new(points, &triangles);
+        let search = NearestTriangle::new(points, &triangles, &Threads::single());
         let triangles: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(local)).collect();
         let wall_points: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
         let reach = match extent {

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{Point, TetId, VertexId};
+use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::segment;
 use crate::geometry::triangle::{area_vector, closest};
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
@@ -57,7 +57,7 @@ impl Surface {
             (0..complex.n_vertex_slots()).map(|v| complex.point(VertexId::new(v))).collect();
         let patch = |triangles: Vec<[VertexId; 3]>| Patch {
             normals: triangles.iter().map(|t| area_vector(t.map(|v| points[v.index()]))).collect(),
-            tree: NearestTriangle::new(&points, &triangles),
+            tree: NearestTriangle::new(&points, &triangles, &Threads::single()),
         };
         let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
         let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();

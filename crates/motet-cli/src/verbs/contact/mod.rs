@@ -47,7 +47,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
             next = Some(frames.read(k + 1, console)?);
         }
         let measuring = Instant::now();
-        let mut contact = prepared(handle.take(), &frame, args)?;
+        let mut contact = prepared(handle.take(), &frame, args, &threads)?;
         let mut gaps = contact.measure(&threads);
         report.seconds.measure += measuring.elapsed().as_secs_f64();
         let beside = by_delaunay(&contact, &mut gaps, args, &threads, console)?;
@@ -82,7 +82,12 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
 }
 
 /// The handle of the frame before, where only points moved; else a new one.
-fn prepared(last: Option<(Contact, Frame)>, frame: &Frame, args: &ContactArgs) -> Result<Contact> {
+fn prepared(
+    last: Option<(Contact, Frame)>,
+    frame: &Frame,
+    args: &ContactArgs,
+    threads: &Threads,
+) -> Result<Contact> {
     let told = |e: Error| match (e.file(), frame.sources.as_slice()) {
         (None, [one]) => e.in_file(&one.file),
         _ => e,
@@ -90,10 +95,10 @@ fn prepared(last: Option<(Contact, Frame)>, frame: &Frame, args: &ContactArgs) -
     if let Some((mut contact, last)) = last
         && frame.is_moved_of(&last)
     {
-        contact.refit(&frame.points).map_err(told)?;
+        contact.refit(&frame.points, threads).map_err(told)?;
         return Ok(contact);
     }
-    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options()).map_err(told)
+    Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(told)
 }
 
 /// The gaps by Delaunay tets and the tets themselves, where they are asked for.

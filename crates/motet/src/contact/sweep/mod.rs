@@ -146,9 +146,8 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
 
     /// Finds the times of all triangles of one surface.
     fn search(&self, side: usize, other: &MovingTree, threads: &Threads) {
-        in_runs(self.surfaces[side].len(), threads, |run| {
-            let mut queue = Queue::default();
-            run.for_each(|i| self.follow(side, i as u32, other, &mut queue));
+        in_runs(self.surfaces[side].len(), threads, |queue: &mut Queue, run| {
+            run.for_each(|i| self.follow(side, i as u32, other, queue));
             Vec::<()>::new()
         });
     }

@@ -91,65 +91,6 @@ impl Boxes {
     }
 }
 
-/// Eight boxes, each turned so that it lies flat around its triangles: `low <= turn x <= high`. One without an inside holds nothing.
-///
-/// Seen askew, a flat piece of a surface fills a thick box with sides along the axes. For a point near a tube, 3 leaves are looked
-/// into; with such boxes it would be 8.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(super) struct TurnedBoxes {
-    turn: [[Eight; 3]; 3],
-    sides: Boxes,
-}
-
-impl TurnedBoxes {
-    pub(super) const EMPTY: Self = Self { turn: [[[0.0; 8]; 3]; 3], sides: Boxes::EMPTY };
-
-    /// From `p` to each box, but for rounding: 0 within, infinite where there is no box.
-    #[inline(always)]
-    pub(super) fn distances_squared<S: Simd>(&self, simd: S, p: [f32; 3]) -> Eight {
-        let mut out = [0.0; 8];
-        let zero = Lanes::splat(simd, 0.0);
-        let p = splat(simd, p);
-        for i in 0..parts::<S>() {
-            let (low, high) = (load(simd, &self.sides.low, i), load(simd, &self.sides.high, i));
-            let mut outside = [zero; 3];
-            for axis in 0..3 {
-                let x = dot(load(simd, &self.turn[axis], i), p);
-                outside[axis] = (low[axis] - x).max(x - high[axis]).max(zero);
-            }
-            dot(outside, outside).store(&mut out, i);
-        }
-        out
-    }
-
-    /// Makes one of the boxes that around the sound ones of eight triangles.
-    #[inline(always)]
-    pub(super) fn set<S: Simd>(&mut self, simd: S, lane: usize, triangles: &Triangles, is_sound: u8) {
-        let turn = triangles.turn(simd, is_sound);
-        for (axis, row) in turn.into_iter().enumerate() {
-            for (k, &x) in row.iter().enumerate() {
-                self.turn[axis][k][lane] = x;
-            }
-            let row = splat(simd, row);
-            let (mut low, mut high) = ([0.0; 8], [0.0; 8]);
-            for i in 0..parts::<S>() {
-                let mut least = Lanes::splat(simd, f32::INFINITY);
-                let mut most = Lanes::splat(simd, f32::NEG_INFINITY);
-                for corner in &triangles.corners {
-                    // NaN is left out.
-                    let x = dot(row, load(simd, corner, i));
-                    (least, most) = (x.min(least), x.max(most));
-                }
-                least.store(&mut low, i);
-                most.store(&mut high, i);
-            }
-            self.sides.low[axis][lane] = low.into_iter().fold(f32::INFINITY, smaller);
-            self.sides.high[axis][lane] = high.into_iter().fold(f32::NEG_INFINITY, larger);
-        }
-    }
-}
-
 /// One instruction each, where `f32::min` heeds NaN and takes three.
 #[inline(always)]
 pub(super) fn smaller(x: f32, y: f32) -> f32 {
@@ -187,55 +128,19 @@ impl Triangles {
         boxes
     }
 
-    /// Three directions at right angles that make no length longer: an edge of the first sound triangle as seen along the normal, what is
-    /// across both, and the normal, that of all sound triangles together. With the normal of the first one the box is twice as thick, and
-    /// searches take 6 % longer.
+    /// Where along a direction the first corner is and where the last, of those that are not NaN.
     #[inline(always)]
-    fn turn<S: Simd>(&self, simd: S, is_sound: u8) -> [[f32; 3]; 3] {
-        // Smaller than 1 by more than the rounding of what follows.
-        const SHORT: f32 = 1.0 - 4e-6;
-        let product = |x: [f32; 3], y: [f32; 3]| x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-        let short = |x: [f32; 3]| {
-            let per_length = SHORT / product(x, x).sqrt();
-            [x[0] * per_length, x[1] * per_length, x[2] * per_length]
-        };
-        let normal = short(self.area_vector(simd));
-        let lane = is_sound.trailing_zeros() as usize & 7;
-        let [a, b] = [0, 1].map(|k| [0, 1, 2].map(|axis| self.corners[k][axis][lane]));
-        let edge = short([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
-        let up = product(normal, edge);
-        let along = short([0, 1, 2].map(|axis| edge[axis] - up * normal[axis]));
-        let across = short([
-            normal[1] * along[2] - normal[2] * along[1],
-            normal[2] * along[0] - normal[0] * along[2],
-            normal[0] * along[1] - normal[1] * along[0],
-        ]);
-        // Not of triangles without area, nor of NaN.
-        let is_right = |x, y| product(x, y).abs() < 1e-6;
-        let is_long = |x| product(x, x) > 0.9;
-        let is_turn = is_right(along, normal) && is_right(along, across) && is_right(normal, across);
-        if is_turn && is_long(along) && is_long(normal) && is_long(across) {
-            [along, across, normal]
-        } else {
-            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-        }
-    }
-
-    /// Twice that of all together, but for those with a corner that is NaN.
-    #[inline(always)]
-    fn area_vector<S: Simd>(&self, simd: S) -> [f32; 3] {
-        let mut out = [0.0; 3];
-        let (zero, infinite) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, f32::INFINITY));
+    pub(super) fn along<S: Simd>(&self, simd: S, direction: [f32; 3]) -> [f32; 2] {
+        let direction = splat(simd, direction);
+        let mut low = Lanes::splat(simd, f32::INFINITY);
+        let mut high = Lanes::splat(simd, f32::NEG_INFINITY);
         for i in 0..parts::<S>() {
-            let a = load(simd, &self.corners[0], i);
-            let ab = sub(load(simd, &self.corners[1], i), a);
-            let ac = sub(load(simd, &self.corners[2], i), a);
-            let area = cross(ab, ac);
-            for axis in 0..3 {
-                out[axis] += area[axis].if_below(infinite, area[axis], zero).sum();
+            for corner in &self.corners {
+                let x = dot(direction, load(simd, corner, i));
+                (low, high) = (x.min(low), x.max(high));
             }
         }
-        out
+        [low.least(), high.most()]
     }
 
     /// A square below that of the distance from `p` to each, but for rounding: mostly equal to it. And one above that of

@@ -51,6 +51,12 @@ impl<S: Simd> Lanes<S> {
         Self(self.0, self.0.max_f32s(self.1, other.1))
     }
 
+    /// Without the sign.
+    #[inline(always)]
+    pub(super) fn size(self) -> Self {
+        Self(self.0, self.0.abs_f32s(self.1))
+    }
+
     /// `self * factor + summand`, fused where that is one instruction.
     #[inline(always)]
     pub(super) fn mul_add(self, factor: Self, summand: Self) -> Self {
@@ -67,6 +73,12 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub(super) fn least(self) -> f32 {
         self.0.reduce_min_f32s(self.1)
+    }
+
+    /// The largest of this part.
+    #[inline(always)]
+    pub(super) fn most(self) -> f32 {
+        self.0.reduce_max_f32s(self.1)
     }
 
     /// Where this is below `limit`: `yes`, elsewhere `no`, as where either is NaN.

@@ -6,6 +6,7 @@ mod nearby;
 mod packed;
 mod pairs;
 mod search;
+mod turned;
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -13,6 +14,7 @@ use rayon::prelude::*;
 use crate::base::{Point, Threads, VertexId};
 use nearby::Nearby;
 use packed::Packed;
+use pairs::{Pairs, Reach};
 use search::{Admit, All, Search, Where};
 
 /// The answer to a search.
@@ -47,20 +49,23 @@ const NO_GUESS: u32 = u32::MAX;
 /// Queries that are asked one after the other, each with the answer before as its guess.
 const RUN: usize = 256;
 
+/// Eights of leaves whose pairs one thread looks at in one go.
+const EIGHTS: usize = 16;
+
 impl NearestTriangle {
     /// Builds the tree. `n log n`.
     ///
     /// Panics when a triangle names a point beyond `points`.
-    pub fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
-        Self { tree: Packed::new(points, triangles) }
+    pub fn new(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Self {
+        Self { tree: Packed::new(points, triangles, threads) }
     }
 
     /// Takes over points that moved, of the same triangles: a fraction of the time of [`new`](Self::new).
     /// Answers stay exact however far points go; a motion that leaves no neighbours together makes searches slow.
     ///
     /// Panics when a triangle names a point beyond `points`.
-    pub fn refit(&mut self, points: &[Point]) {
-        self.tree.fit(points);
+    pub fn refit(&mut self, points: &[Point], threads: &Threads) {
+        self.tree.fit(points, threads);
     }
 
     /// Bytes that the tree takes.
@@ -108,43 +113,53 @@ impl NearestTriangle {
         threads: &Threads,
     ) -> Vec<Option<Closest>> {
         let order = match guesses {
-            None => packed::along_curve(points),
+            None => packed::along_curve(points, threads),
             Some(guesses) => {
                 assert_eq!(points.len(), guesses.len(), "a guess for each point");
                 self.tree.along_places(guesses)
             }
         };
         let runs = order.chunks(RUN).map(|order| Run { tree: &self.tree, points, guesses, order });
-        let mut found = vec![None; points.len()];
-        let mut put = |order: &[u32], answers: Vec<Option<Closest>>| {
-            order.iter().zip(answers).for_each(|(&i, answer)| found[i as usize] = answer);
-        };
         let arch = Arch::new();
-        match threads.pool() {
-            None => runs.for_each(|run| put(run.order, arch.dispatch(run))),
+        let answers: Vec<_> = match threads.pool() {
+            None => runs.map(|run| arch.dispatch(run)).collect(),
             Some(pool) => {
                 let runs: Vec<_> = runs.collect();
-                let answers: Vec<_> =
-                    pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect());
-                order.chunks(RUN).zip(answers).for_each(|(order, answers)| put(order, answers));
+                pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect())
             }
-        }
-        found
+        };
+        let mut place = vec![0u32; points.len()];
+        order.iter().zip(0..).for_each(|(&i, k)| place[i as usize] = k);
+        threads.map(points.len(), |i| answers[place[i] as usize / RUN][place[i] as usize % RUN])
     }
 
     /// The nearest pair of a triangle of this surface and one of another: the squared distance and the two triangles; of pairs equally near the
     /// first one. `None` when no pair is within the root of `start`.
     ///
-    /// `pair(i, j, bound)` says the squared distance of triangle `i` of this surface from triangle `j` of the other, or `None` where
-    /// that is above `bound`. It is asked for those pairs alone whose boxes are near enough. A good `start`, such as the squared distance of
-    /// any pair of points of the two surfaces, saves most of them.
-    pub fn closest_pair(
+    /// `pair(state, i, j, bound)` says the squared distance of triangle `i` of this surface from triangle `j` of the other, or `None` where
+    /// that is above `bound`. It is asked for those pairs alone whose boxes are near enough, on each thread with a state of its own. A good
+    /// `start`, such as the squared distance of any pair of points of the two surfaces, saves most of them.
+    pub fn closest_pair<T: Default>(
         &self,
         other: &Self,
         start: f64,
-        pair: impl FnMut(u32, u32, f64) -> Option<f64>,
+        threads: &Threads,
+        pair: impl Fn(&mut T, u32, u32, f64) -> Option<f64> + Sync,
     ) -> Option<(f64, u32, u32)> {
-        Arch::new().dispatch(pairs::Pairs { from: &self.tree, to: &other.tree, reach: start, pair })
+        let (reach, arch, n) = (Reach::new(start), Arch::new(), self.tree.turned.len());
+        let run = |state: &mut T, eights| {
+            let pair = |i: u32, j: u32, bound: f64| pair(state, i, j, bound);
+            arch.dispatch(Pairs { from: &self.tree, to: &other.tree, eights, reach: &reach, pair })
+        };
+        let nearer = |x: (f64, u32, u32), y| if y < x { y } else { x };
+        match threads.pool() {
+            None => run(&mut T::default(), 0..n),
+            Some(pool) => pool.install(|| {
+                let runs = (0..n.div_ceil(EIGHTS)).into_par_iter();
+                let runs = runs.map(|k| k * EIGHTS..n.min((k + 1) * EIGHTS));
+                runs.map_init(T::default, run).flatten().reduce_with(nearer)
+            }),
+        }
     }
 }
 

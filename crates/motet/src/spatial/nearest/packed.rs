@@ -5,17 +5,22 @@
 //! When points move, one pass from the leaves to the root makes it fit again.
 
 use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
 
-use super::eights::{Boxes, Triangles, TurnedBoxes, larger, smaller};
-use crate::base::{Point, VertexId};
+use super::eights::{Boxes, Triangles, larger, smaller};
+use super::turned::TurnedBoxes;
+use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::{add, is_finite, scale, sub};
 use crate::spatial::around;
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
 
+/// What is farther off than 2^30 in a frame is brought there.
+pub(super) const FARTHEST: f64 = 1_073_741_824.0;
+
 /// What to take from coordinates, and by what to multiply then, so that all lie between -1 and 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
-    centre: Point,
+    pub(super) centre: Point,
     pub(super) scale: f64,
     /// The largest coordinate, without the sign.
     pub(super) largest: f64,
@@ -37,9 +42,12 @@ impl Frame {
     /// In units of the frame; what is far off is brought to its border at 2^30, which is no farther from anything inside.
     #[inline(always)]
     pub(super) fn of(&self, p: Point) -> [f32; 3] {
-        const FAR: f64 = 1_073_741_824.0;
         let x = scale(sub(p, self.centre), self.scale);
-        [x[0].clamp(-FAR, FAR) as f32, x[1].clamp(-FAR, FAR) as f32, x[2].clamp(-FAR, FAR) as f32]
+        [
+            x[0].clamp(-FARTHEST, FARTHEST) as f32,
+            x[1].clamp(-FARTHEST, FARTHEST) as f32,
+            x[2].clamp(-FARTHEST, FARTHEST) as f32,
+        ]
     }
 
     /// Where a place in units of the frame is.
@@ -48,6 +56,9 @@ impl Frame {
         add(scale(x.map(f64::from), 1.0 / self.scale), self.centre)
     }
 }
+
+/// Boxes of the lowest level, each with 512 triangles, that a thread fits in one go.
+const BOXES: usize = 8;
 
 /// The tree. A triangle is known by its *place* in the order; leaf `i` has places `8 i` to `8 i + 7`.
 #[derive(Clone, Debug)]
@@ -80,8 +91,8 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    pub(super) fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
-        let ids = by_halves(points, triangles);
+    pub(super) fn new(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Self {
+        let ids = by_halves(points, triangles, threads);
         let mut id_to_place = vec![0; ids.len()];
         for (&id, place) in ids.iter().zip(0..) {
             id_to_place[id as usize] = place;
@@ -122,12 +133,12 @@ impl Packed {
             first_within: first_within(&levels, n_boxes),
             levels,
         };
-        tree.fit(points);
+        tree.fit(points, threads);
         tree
     }
 
     /// Takes over points that moved.
-    pub(super) fn fit(&mut self, points: &[Point]) {
+    pub(super) fn fit(&mut self, points: &[Point], threads: &Threads) {
         assert!(points.len() >= self.n_points, "{} points, not {}", points.len(), self.n_points);
         self.points.clear();
         self.points.extend(self.vertices.iter().map(|v| points[v.index()]));
@@ -136,7 +147,7 @@ impl Packed {
         self.framed.clear();
         self.framed
             .extend(self.points.iter().map(|p| if is_finite(*p) { frame.of(*p) } else { [f32::NAN; 3] }));
-        Arch::new().dispatch(FitLeaves(self));
+        self.fit_leaves(threads);
         for level in 1..self.levels.len() {
             let (start, below) = (self.levels[level], self.levels[level - 1]);
             for i in 0..self.n_at(level - 1) {
@@ -152,53 +163,35 @@ impl Packed {
         end - self.levels[level]
     }
 
-    /// The box around the leaf.
-    #[inline(always)]
-    fn fit_leaf(&mut self, leaf: usize) -> ([f32; 3], [f32; 3]) {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-        let mut is_sound = 0;
-        let triangles = &self.triangles[8 * leaf..self.triangles.len().min(8 * leaf + 8)];
-        let out = &mut self.leaves[leaf].corners;
-        for (lane, triangle) in triangles.iter().enumerate() {
-            let corners = triangle.map(|v| self.framed[v as usize]);
-            for k in 0..3 {
-                for axis in 0..3 {
-                    out[k][axis][lane] = corners[k][axis];
-                }
-            }
-            if corners.as_flattened().iter().any(|x| x.is_nan()) {
-                out.as_flattened_mut().iter_mut().for_each(|eight| eight[lane] = f32::NAN);
-                continue;
-            }
-            is_sound |= 1 << lane;
-            for [x, y, z] in corners {
-                low = [smaller(x, low[0]), smaller(y, low[1]), smaller(z, low[2])];
-                high = [larger(x, high[0]), larger(y, high[1]), larger(z, high[2])];
-            }
-        }
-        self.is_sound[leaf] = is_sound;
-        (low, high)
+    fn fit_leaves(&mut self, threads: &Threads) {
+        let arch = Arch::new();
+        let fit = |triangles, leaves, is_sound, turned, boxes| {
+            arch.dispatch(FitLeaves { triangles, framed: &self.framed, leaves, is_sound, turned, boxes });
+        };
+        let boxes = &mut self.boxes[self.levels[0]..];
+        let Some(pool) = threads.pool() else {
+            return fit(&self.triangles, &mut self.leaves, &mut self.is_sound, &mut self.turned, boxes);
+        };
+        let (leaves, is_sound) =
+            (self.leaves.par_chunks_mut(64 * BOXES), self.is_sound.par_chunks_mut(64 * BOXES));
+        let (turned, boxes) = (self.turned.par_chunks_mut(8 * BOXES), boxes.par_chunks_mut(BOXES));
+        let triangles = self.triangles.par_chunks(512 * BOXES);
+        let parts = triangles.zip(leaves).zip(is_sound).zip(turned).zip(boxes);
+        pool.install(|| {
+            parts.for_each(|((((t, leaves), is_sound), turned), b)| fit(t, leaves, is_sound, turned, b))
+        });
     }
 
-    /// Eight boxes with sides along the axes and the node of the first one, or the leaf that a node is. The boxes of
-    /// leaves are made anew, which only searches that ask seldom can afford.
+    /// The box around eight leaves.
     #[inline(always)]
-    pub(super) fn within<S: Simd>(&self, simd: S, node: u32) -> Result<(Boxes, u32), usize> {
-        let (node, n_boxes) = (node as usize, self.boxes.len());
-        if node < n_boxes {
-            return Ok((self.boxes[node], self.first_within[node]));
-        }
-        let n_above = n_boxes + self.turned.len();
-        if node >= n_above {
-            return Err(node - n_above);
-        }
-        let first = 8 * (node - n_boxes);
-        let mut boxes = Boxes::EMPTY;
-        for leaf in first..self.leaves.len().min(first + 8) {
-            let [low, high] = self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into());
-            boxes.set(leaf - first, (low, high));
-        }
-        Ok((boxes, (n_above + first) as u32))
+    pub(super) fn around_turned(&self, turned: usize) -> [[f32; 3]; 2] {
+        self.boxes[self.levels[0] + turned / 8].get(turned % 8)
+    }
+
+    /// The box around the sound triangles of a leaf, which is not kept.
+    #[inline(always)]
+    pub(super) fn around_leaf<S: Simd>(&self, simd: S, leaf: usize) -> [[f32; 3]; 2] {
+        self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into())
     }
 
     pub(super) fn knows(&self, id: u32) -> bool {
@@ -233,26 +226,63 @@ impl Packed {
     }
 }
 
-struct FitLeaves<'a>(&'a mut Packed);
+/// Some of the leaves, with what is around them.
+struct FitLeaves<'a> {
+    triangles: &'a [[u32; 3]],
+    framed: &'a [[f32; 3]],
+    leaves: &'a mut [Triangles],
+    is_sound: &'a mut [u8],
+    turned: &'a mut [TurnedBoxes],
+    boxes: &'a mut [Boxes],
+}
 
 impl WithSimd for FitLeaves<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let tree = self.0;
-        for i in 0..tree.turned.len() {
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        for i in 0..self.turned.len() {
             let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-            for leaf in 8 * i..tree.leaves.len().min(8 * i + 8) {
-                let around = tree.fit_leaf(leaf);
-                tree.turned[i].set(simd, leaf % 8, &tree.leaves[leaf], tree.is_sound[leaf]);
+            for leaf in 8 * i..self.leaves.len().min(8 * i + 8) {
+                let around = self.fit_leaf(leaf);
+                self.turned[i].set(simd, leaf % 8, &self.leaves[leaf], self.is_sound[leaf]);
                 for axis in 0..3 {
                     low[axis] = smaller(around.0[axis], low[axis]);
                     high[axis] = larger(around.1[axis], high[axis]);
                 }
             }
-            tree.boxes[tree.levels[0] + i / 8].set(i % 8, (low, high));
+            self.boxes[i / 8].set(i % 8, (low, high));
         }
+    }
+}
+
+impl FitLeaves<'_> {
+    /// The box around the leaf.
+    #[inline(always)]
+    fn fit_leaf(&mut self, leaf: usize) -> ([f32; 3], [f32; 3]) {
+        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let mut is_sound = 0;
+        let triangles = &self.triangles[8 * leaf..self.triangles.len().min(8 * leaf + 8)];
+        let out = &mut self.leaves[leaf].corners;
+        for (lane, triangle) in triangles.iter().enumerate() {
+            let corners = triangle.map(|v| self.framed[v as usize]);
+            for k in 0..3 {
+                for axis in 0..3 {
+                    out[k][axis][lane] = corners[k][axis];
+                }
+            }
+            if corners.as_flattened().iter().any(|x| x.is_nan()) {
+                out.as_flattened_mut().iter_mut().for_each(|eight| eight[lane] = f32::NAN);
+                continue;
+            }
+            is_sound |= 1 << lane;
+            for [x, y, z] in corners {
+                low = [smaller(x, low[0]), smaller(y, low[1]), smaller(z, low[2])];
+                high = [larger(x, high[0]), larger(y, high[1]), larger(z, high[2])];
+            }
+        }
+        self.is_sound[leaf] = is_sound;
+        (low, high)
     }
 }
 
@@ -295,7 +325,7 @@ fn ordered(bits: u32) -> i32 {
 /// Ids of the triangles, neighbours together: halved across the longest side of the box of their middles, down to eights.
 ///
 /// A Hilbert curve takes a third of the time of this, but a search then looks at twice the boxes.
-fn by_halves(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
+fn by_halves(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<u32> {
     let used = || triangles.iter().map(|t| points[t[0].index()]).filter(|p| is_finite(*p));
     let (corner, extent) = cube(used());
     let per_extent = 1.0 / extent.max(1e-300);
@@ -303,8 +333,11 @@ fn by_halves(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<u32> {
         let corners = t.map(|v| scale(sub(points[v.index()], corner), per_extent).map(|x| x as f32));
         middle_of_longest(corners).map(|x| ordered(x.to_bits()))
     };
-    let mut items: Vec<Item> = triangles.iter().map(middle).zip(0..).collect();
-    halve(&mut items, None);
+    let mut items = threads.map(triangles.len(), |i| (middle(&triangles[i]), i as u32));
+    match threads.pool() {
+        None => halve(&mut items, None, false),
+        Some(pool) => pool.install(|| halve(&mut items, None, true)),
+    }
     items.into_iter().map(|item| item.1).collect()
 }
 
@@ -327,10 +360,13 @@ fn middle_of_longest([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
     [x[0] + y[0], x[1] + y[1], x[2] + y[2]]
 }
 
+/// No more items than this are halved by one thread.
+const SHARED: usize = 2048;
+
 /// Halves are of eight times a power of two, so that leaves and boxes of leaves are halves, too.
 ///
 /// Every other time, the box is what the halving before left of it: 4 % of the time of a build.
-fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>) {
+fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     if items.len() <= 8 {
         return;
     }
@@ -353,16 +389,23 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>) {
     let (mut below, mut above) = (high, low);
     (below[axis], above[axis]) = (cut, cut);
     let is_known = known.is_none();
-    halve(left, is_known.then_some([low, below]));
-    halve(right, is_known.then_some([above, high]));
+    let is_shared = is_shared && left.len() > SHARED;
+    let mut left = || halve(left, is_known.then_some([low, below]), is_shared);
+    let mut right = || halve(right, is_known.then_some([above, high]), is_shared);
+    if is_shared {
+        rayon::join(left, right);
+    } else {
+        left();
+        right();
+    }
 }
 
 /// Numbers of the points along a Hilbert curve through the finite ones.
-pub(super) fn along_curve(points: &[Point]) -> Vec<u32> {
+pub(super) fn along_curve(points: &[Point], threads: &Threads) -> Vec<u32> {
     assert!(points.len() < 1 << (64 - KEY_BITS), "{} are too many", points.len());
     let (corner, extent) = cube(points.iter().copied().filter(|p| is_finite(*p)));
     let curve = Curve::new(corner, extent);
-    sorted_by_key(points.iter().map(|p| curve.key(*p)))
+    sorted_by_key(threads.map(points.len(), |i| curve.key(points[i])).into_iter())
 }
 
 /// Numbers in the order of keys of at most [`KEY_BITS`].

@@ -1,23 +1,49 @@
 //! The nearest pair of triangles of two surfaces: which pairs are worth an exact look.
 //!
-//! Each leaf of one tree goes down the other as a box. What two triangles are apart is the caller's to say.
+//! Eight leaves of one tree go down the other together, as one box. Two leaves are then seen along the direction in which each lies
+//! flat, which parts most surfaces that are a small gap apart: of 12,000 pairs of leaves of a stent and a wall whose boxes are near
+//! enough, 700 are left. What two triangles are apart is the caller's to say.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use pulp::{Simd, WithSimd};
 
-use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, ROUNDING_OF_SQUARE};
+use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, ROUNDING_OF_SQUARE, Triangles, larger};
 use super::lanes::at_most;
-use super::packed::{Frame, Packed};
+use super::packed::{FARTHEST, Packed};
 use super::search::{ROUNDING_OF_EXACT, UNDERFLOW};
+use crate::geometry::vector::{scale, sub};
 
 /// A box of `f64` beyond `f32` has no place in sums of squares.
 const MOST: f64 = 1e38;
 
-/// The search over all leaves of `from`.
+/// The square of the least distance so far, which all threads share. Whoever reads it late looks at more pairs, and finds the same.
+pub(super) struct Reach(AtomicU64);
+
+impl Reach {
+    pub(super) fn new(start: f64) -> Self {
+        Self(AtomicU64::new(start.to_bits()))
+    }
+
+    #[inline(always)]
+    fn get(&self) -> f64 {
+        f64::from_bits(self.0.load(Relaxed))
+    }
+
+    /// Bits of numbers that are not negative are in the order of the numbers.
+    fn lower(&self, to: f64) {
+        self.0.fetch_min(to.to_bits(), Relaxed);
+    }
+}
+
+/// The search from some eights of leaves of `from`.
 pub(super) struct Pairs<'a, F> {
     pub(super) from: &'a Packed,
     pub(super) to: &'a Packed,
-    /// What is not nearer than its root does not count.
-    pub(super) reach: f64,
+    pub(super) eights: Range<usize>,
+    /// What is farther does not count.
+    pub(super) reach: &'a Reach,
     pub(super) pair: F,
 }
 
@@ -30,27 +56,19 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
         if self.to.leaves.is_empty() {
             return best;
         }
-        let mut open = Vec::new();
-        for leaf in 0..self.from.leaves.len() {
-            if self.from.is_sound[leaf] == 0 {
-                continue;
-            }
-            let own = self.leaf(simd, leaf);
-            open.clear();
-            open.push(0);
-            while let Some(node) = open.pop() {
-                let bound = self.bound(&own);
-                let (bounds, first) = match self.to.within(simd, node) {
-                    Ok(within) => (within.0.distances_squared_to(simd, own.around), within.1),
-                    Err(other) => {
-                        self.look_into(simd, &own, other, &mut best);
-                        continue;
+        let (mut open, mut nearby) = (Vec::new(), Vec::new());
+        for eight in self.eights.clone() {
+            self.descend(simd, eight, &mut open, &mut nearby);
+            let all = nearby.iter().fold(0, |all, (_, leaves)| all | leaves);
+            for lane in (0..8).filter(|lane| all >> lane & 1 == 1) {
+                let own = self.leaf(simd, 8 * eight + lane);
+                for &(turned, _) in nearby.iter().filter(|(_, leaves)| leaves >> lane & 1 == 1) {
+                    let bounds = self.to.turned[turned].distances_squared_to(simd, own.around);
+                    let mut near = at_most(simd, &bounds, self.bound(own.rounding));
+                    while near != 0 {
+                        self.look_into(simd, &own, 8 * turned + near.trailing_zeros() as usize, &mut best);
+                        near &= near - 1;
                     }
-                };
-                let mut near = at_most(simd, &bounds, bound);
-                while near != 0 {
-                    open.push(first + near.trailing_zeros());
-                    near &= near - 1;
                 }
             }
         }
@@ -59,26 +77,94 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
 }
 
 impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
-    /// A leaf of `from` in the frame of `to`.
+    /// Which of `to.turned` are near eight leaves of `from`, and near which of the eight, by bits.
+    #[inline(always)]
+    fn descend<S: Simd>(&self, simd: S, eight: usize, open: &mut Vec<u32>, nearby: &mut Vec<(usize, u32)>) {
+        nearby.clear();
+        let around = self.framed(self.from.around_turned(eight));
+        let bound = self.bound(self.rounding(around));
+        let mut leaves = None;
+        open.push(0);
+        while let Some(node) = open.pop() {
+            let node = node as usize;
+            if let Some(boxes) = self.to.boxes.get(node) {
+                let mut near = at_most(simd, &boxes.distances_squared_to(simd, around), bound);
+                while near != 0 {
+                    open.push(self.to.first_within[node] + near.trailing_zeros());
+                    near &= near - 1;
+                }
+                continue;
+            }
+            let turned = node - self.to.boxes.len();
+            // No closure: it would not be compiled for the instructions that are at hand.
+            let own = match leaves {
+                None => self.leaves(simd, eight),
+                Some(known) => known,
+            };
+            leaves = Some(own);
+            let bounds = own.distances_squared_to(simd, self.to.around_turned(turned));
+            let near = at_most(simd, &bounds, bound);
+            if near != 0 {
+                nearby.push((turned, near));
+            }
+        }
+    }
+
+    /// Around each of eight leaves of `from`, in the frame of `to`; nothing around those without a sound triangle.
+    #[inline(always)]
+    fn leaves<S: Simd>(&self, simd: S, eight: usize) -> Boxes {
+        let mut out = Boxes::EMPTY;
+        for leaf in 8 * eight..self.from.leaves.len().min(8 * eight + 8) {
+            if self.from.is_sound[leaf] != 0 {
+                out.set(leaf % 8, self.framed(self.from.around_leaf(simd, leaf)).into());
+            }
+        }
+        out
+    }
+
+    /// A leaf of `from` that has a sound triangle, in the frame of `to`.
     #[inline(always)]
     fn leaf<S: Simd>(&self, simd: S, leaf: usize) -> Leaf {
+        let triangles = self.triangles(leaf);
+        let (is_sound, boxes) = (u32::from(self.from.is_sound[leaf]), triangles.boxes(simd));
+        let around = boxes.around_some(is_sound);
+        let is_far = around.iter().flatten().any(|x| f64::from(x.abs()) > MOST_OF_SLABS);
+        let (flat, _) = self.from.turned[leaf / 8].flat(leaf % 8);
+        let (rounding, ends) = (self.rounding(around), triangles.along(simd, flat));
+        Leaf { place: leaf, is_sound, triangles, boxes, around, flat, ends, rounding, is_far }
+    }
+
+    /// The triangles of a leaf of `from`, in the frame of `to`.
+    #[inline(always)]
+    fn triangles(&self, leaf: usize) -> Triangles {
         let (from, to) = (&self.from.frame, &self.to.frame);
-        let boxes = self.from.leaves[leaf].boxes(simd);
-        let around = framed(from, to, boxes.around_some(self.from.is_sound[leaf].into()));
-        let mut own = Boxes::EMPTY;
-        for lane in (0..8).filter(|lane| self.from.is_sound[leaf] >> lane & 1 == 1) {
-            own.set(lane, framed(from, to, boxes.get(lane)).into());
+        // Of a larger ratio, too, all but 0 is brought to the border.
+        let ratio = (to.scale / from.scale).min(1e300);
+        let shift = scale(sub(from.centre, to.centre), to.scale);
+        let mut out = self.from.leaves[leaf];
+        for corner in &mut out.corners {
+            for (axis, shift) in corner.iter_mut().zip(shift) {
+                for x in axis {
+                    *x = (f64::from(*x) * ratio + shift).clamp(-FARTHEST, FARTHEST) as f32;
+                }
+            }
         }
+        out
+    }
+
+    /// How far rounding may bring a bound off, for what is in this box of the frame of `to`.
+    #[inline(always)]
+    fn rounding(&self, around: [[f32; 3]; 2]) -> f64 {
+        let (from, to) = (&self.from.frame, &self.to.frame);
         let size = around.iter().flatten().fold(0.0, |most: f64, x| most.max(f64::from(x.abs())));
         let exact = (ROUNDING_OF_EXACT * (from.largest + to.largest) + UNDERFLOW) * to.scale;
-        let rounding = ROUNDING * (1.0 + size + to.scale / from.scale) + exact;
-        Leaf { place: leaf, around, boxes: own, rounding, is_far: size > MOST_OF_SLABS }
+        ROUNDING * (1.0 + size + to.scale / from.scale) + exact
     }
 
     /// What has a lower bound above this is farther than `reach`, whatever rounding did.
     #[inline(always)]
-    fn bound(&self, own: &Leaf) -> f32 {
-        let reach = self.reach.sqrt() * self.to.frame.scale + own.rounding;
+    fn bound(&self, rounding: f64) -> f32 {
+        let reach = self.reach.get().sqrt() * self.to.frame.scale + rounding;
         let bound = reach * reach * (1.0 + 2.0 * ROUNDING_OF_SQUARE);
         if bound < MOST { bound as f32 } else { MOST as f32 }
     }
@@ -87,15 +173,23 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     #[inline(always)]
     fn look_into<S: Simd>(&mut self, simd: S, own: &Leaf, other: usize, best: &mut Option<(f64, u32, u32)>) {
         let others = &self.to.leaves[other];
+        let bound = self.bound(own.rounding);
+        if !own.is_far {
+            let (flat, ends) = self.to.turned[other / 8].flat(other % 8);
+            if apart_squared(own.triangles.along(simd, flat), ends) > bound
+                || apart_squared(others.along(simd, own.flat), own.ends) > bound
+            {
+                return;
+            }
+        }
         let boxes = others.boxes(simd);
-        let bound = self.bound(own);
         let around = boxes.distances_squared_to(simd, own.around);
         let theirs = at_most(simd, &around, bound) & u32::from(self.to.is_sound[other]);
         if theirs == 0 {
             return;
         }
         let ours = own.boxes.distances_squared_to(simd, boxes.around_some(theirs));
-        let mut ours = at_most(simd, &ours, bound);
+        let mut ours = at_most(simd, &ours, bound) & own.is_sound;
         while ours != 0 {
             let lane = ours.trailing_zeros() as usize & 7;
             ours &= ours - 1;
@@ -105,40 +199,53 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
                 continue;
             }
             if !own.is_far {
-                let corners = self.from.leaves[own.place].corners.map(|corner| corner.map(|axis| axis[lane]));
-                let corners = corners.map(|x| self.to.frame.of(self.from.frame.back(x)));
+                let corners = own.triangles.corners.map(|corner| corner.map(|axis| axis[lane]));
                 near &= at_most(simd, &others.slabs_squared(simd, corners), bound);
             }
             while near != 0 {
                 let place = 8 * other + near.trailing_zeros() as usize;
                 near &= near - 1;
                 let (i, j) = (self.from.ids[8 * own.place + lane], self.to.ids[place]);
-                let Some(distance_squared) = (self.pair)(i, j, self.reach) else { continue };
+                let reach = self.reach.get();
+                let Some(distance_squared) = (self.pair)(i, j, reach) else { continue };
                 let is_better = best.is_none_or(|best| (distance_squared, i, j) < best);
-                if distance_squared <= self.reach && is_better {
-                    self.reach = distance_squared;
+                if distance_squared <= reach && is_better {
+                    self.reach.lower(distance_squared);
                     *best = Some((distance_squared, i, j));
                 }
             }
         }
     }
+
+    /// A box of the frame of `from` in that of `to`.
+    #[inline(always)]
+    fn framed(&self, corners: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
+        corners.map(|x| self.to.frame.of(self.from.frame.back(x)))
+    }
 }
 
-/// A leaf that goes down the other tree.
+/// How far two intervals are apart, squared.
+#[inline(always)]
+fn apart_squared([a, b]: [f32; 2], [c, d]: [f32; 2]) -> f32 {
+    let apart = larger(larger(c - b, a - d), 0.0);
+    apart * apart
+}
+
+/// A leaf of `from`, in the frame of `to`.
 struct Leaf {
     place: usize,
-    /// Around all its sound triangles.
-    around: [[f32; 3]; 2],
-    /// Around each; nothing around those that are not sound.
+    /// Which of its triangles are, by bits.
+    is_sound: u32,
+    triangles: Triangles,
+    /// Around each; anything around those that are not sound.
     boxes: Boxes,
+    /// Around all that are sound.
+    around: [[f32; 3]; 2],
+    /// In which direction they lie flat, and from where to where they reach along it.
+    flat: [f32; 3],
+    ends: [f32; 2],
     /// How far rounding may bring a bound off.
     rounding: f64,
     /// Too far off in the frame of `to` for slabs.
     is_far: bool,
-}
-
-/// A box of one frame in another.
-#[inline(always)]
-fn framed(from: &Frame, to: &Frame, corners: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
-    corners.map(|x| to.of(from.back(x)))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{CellRow, Labelled, LocalChange};
-use crate::base::{Error, Result, VertexId};
+use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::spatial::NearestTriangle;
 
@@ -17,7 +17,7 @@ pub(super) fn trace(change: &LocalChange<'_>) -> Result<Vec<CellRow>> {
         .into_iter()
         .map(|(patch, removed)| {
             let vertices: Vec<[VertexId; 3]> = removed.iter().map(|t| t.vertices).collect();
-            (patch, (NearestTriangle::new(change.old_points, &vertices), removed))
+            (patch, (NearestTriangle::new(change.old_points, &vertices, &Threads::single()), removed))
         })
         .collect();
     let row = |new: &Labelled<3>| {
