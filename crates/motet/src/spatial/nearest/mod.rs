@@ -121,13 +121,17 @@ impl NearestTriangle {
         };
         let runs = order.chunks(RUN).map(|order| Run { tree: &self.tree, points, guesses, order });
         let arch = Arch::new();
-        let answers: Vec<_> = match threads.pool() {
-            None => runs.map(|run| arch.dispatch(run)).collect(),
-            Some(pool) => {
-                let runs: Vec<_> = runs.collect();
-                pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect())
+        let Some(pool) = threads.pool() else {
+            // Each run is put in its place at once: its memory serves the next.
+            let mut found = vec![None; points.len()];
+            for run in runs {
+                let answers = arch.dispatch(run);
+                run.order.iter().zip(answers).for_each(|(&i, answer)| found[i as usize] = answer);
             }
+            return found;
         };
+        let runs: Vec<_> = runs.collect();
+        let answers: Vec<_> = pool.install(|| runs.par_iter().map(|&run| arch.dispatch(run)).collect());
         let mut place = vec![0u32; points.len()];
         order.iter().zip(0..).for_each(|(&i, k)| place[i as usize] = k);
         threads.map(points.len(), |i| answers[place[i] as usize / RUN][place[i] as usize % RUN])
