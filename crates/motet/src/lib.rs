@@ -25,6 +25,7 @@ pub mod kernel;
 pub mod mesh;
 pub mod motion;
 pub mod ops;
+pub mod refine;
 pub mod remesh;
 pub mod spatial;
 

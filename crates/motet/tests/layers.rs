@@ -15,6 +15,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("kernel", 4),
     ("ops", 5),
     ("delaunay", 6),
+    ("refine", 6),
     ("remesh", 6),
     ("motion", 7),
     ("contact", 7),

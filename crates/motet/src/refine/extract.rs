@@ -1,0 +1,201 @@
+//! The mesh of a closed forest: tets, triangles, edges that stay, and vertices in an order that follows from what is divided alone.
+
+use super::close::Cut;
+use super::forest::{Forest, NONE};
+use super::patterns::{self, patterns};
+use crate::base::{Error, Point, Result, TetId, VertexId};
+use crate::geometry::vector::{add, scale};
+use crate::mesh::TetMesh;
+
+/// The mesh, and what its things are in the forest.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extracted {
+    pub(super) mesh: TetMesh,
+    /// Of each vertex, the one of the forest.
+    pub(super) vertices: Vec<u32>,
+    /// Of each tet, the one of the forest that it is, or a piece of.
+    pub(super) nodes: Vec<u32>,
+}
+
+/// `points` are those of the vertices of the forest that were in the mesh before, which `before` lists.
+///
+/// # Errors
+/// When the mesh would have more tets or vertices than ids.
+pub(super) fn extract(
+    forest: &Forest,
+    first: &TetMesh,
+    cuts: &[Cut],
+    points: &[Point],
+    before: &[u32],
+) -> Result<Extracted> {
+    let mut numbers = Numbers::new(forest, points, before);
+    let mut out = Extracted::default();
+    let mut open = Vec::new();
+    for root in 0..forest.n_roots as u32 {
+        let region = first.regions[root as usize];
+        open.push(root);
+        while let Some(node) = open.pop() {
+            let tet = &forest.nodes[node as usize];
+            if tet.is_divided {
+                open.extend((tet.first_child..tet.first_child + 8).rev());
+                continue;
+            }
+            let cut = cuts.binary_search_by_key(&node, |cut| cut.node).ok().map(|i| cuts[i]);
+            match cut {
+                // A tet of the first mesh as it was given, which may be negative.
+                None if node == root => out.mesh.tets.push(first.tets[root as usize]),
+                None => out.mesh.tets.push(tet.vertices.map(|v| numbers.of(v))),
+                Some(cut) => {
+                    let local = forest.local(node);
+                    for piece in &patterns(cut.mask, cut.cuts)[usize::from(cut.way)] {
+                        out.mesh.tets.push(piece.map(|v| numbers.of(local[usize::from(v)])));
+                    }
+                }
+            }
+            out.nodes.resize(out.mesh.tets.len(), node);
+            out.mesh.regions.resize(out.mesh.tets.len(), region);
+        }
+    }
+    if out.mesh.tets.len() > TetId::MAX_COUNT || numbers.vertices.len() > VertexId::MAX_COUNT {
+        return Err(Error::options(format!("{} tets are more than ids can count", out.mesh.tets.len()))
+            .remedy("mark fewer tets, or limit the generation"));
+    }
+    for (triangle, &patch) in first.triangles.iter().zip(&first.patches) {
+        numbers.triangle(triangle.map(|v| v.0), &mut out.mesh.triangles);
+        out.mesh.patches.resize(out.mesh.triangles.len(), patch);
+    }
+    for edge in &first.fixed_edges {
+        numbers.edge(edge.map(|v| v.0), &mut out.mesh.fixed_edges);
+    }
+    out.mesh.fixed_vertices.clone_from(&first.fixed_vertices);
+    (out.mesh.points, out.vertices) = (numbers.points, numbers.vertices);
+    Ok(out)
+}
+
+/// The numbers of vertices: those of the first mesh as they were, then each as a tet has it first.
+struct Numbers<'a> {
+    forest: &'a Forest,
+    known: &'a [Point],
+    was_there: Vec<bool>,
+    number: Vec<u32>,
+    vertices: Vec<u32>,
+    points: Vec<Point>,
+}
+
+impl<'a> Numbers<'a> {
+    fn new(forest: &'a Forest, known: &'a [Point], before: &[u32]) -> Self {
+        let (n, n_first) = (forest.reference.len(), forest.n_first_vertices);
+        let mut was_there = vec![false; n];
+        before.iter().for_each(|&v| was_there[v as usize] = true);
+        let mut number = vec![NONE; n];
+        number.iter_mut().zip(0..n_first as u32).for_each(|(number, v)| *number = v);
+        let (vertices, points) = ((0..n_first as u32).collect(), known[..n_first].to_vec());
+        Self { forest, known, was_there, number, vertices, points }
+    }
+
+    fn of(&mut self, v: u32) -> VertexId {
+        if self.number[v as usize] == NONE {
+            let point = self.place(v);
+            self.number[v as usize] = self.vertices.len() as u32;
+            self.vertices.push(v);
+            self.points.push(point);
+        }
+        VertexId(self.number[v as usize])
+    }
+
+    /// Where a vertex is: a new one is in the middle of its edge as it is now.
+    fn place(&self, v: u32) -> Point {
+        let i = v as usize;
+        if self.number[i] != NONE {
+            return self.points[self.number[i] as usize];
+        }
+        if self.was_there[i] {
+            return self.known[i];
+        }
+        let [p, q] = self.forest.edges[self.forest.origin[i - self.forest.n_first_vertices] as usize].ends;
+        scale(add(self.place(p), self.place(q)), 0.5)
+    }
+
+    /// The parts of a triangle of the first mesh.
+    fn triangle(&mut self, corners: [u32; 3], out: &mut Vec<[VertexId; 3]>) {
+        let edges = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| self.forest.known_edge([corners[i], corners[j]]));
+        self.part(corners, edges.map(|edge| edge.unwrap_or(NONE)), out);
+    }
+
+    /// Edge `k` is opposite corner `k`.
+    fn part(&mut self, corners: [u32; 3], edges: [u32; 3], out: &mut Vec<[VertexId; 3]>) {
+        let forest = self.forest;
+        let middles = edges.map(|edge| forest.split_middle(edge));
+        let half = |edge: u32, end: u32| forest.half(edge, end);
+        if let [Some(x), Some(y), Some(z)] = middles {
+            let [a, b, c] = corners;
+            let between = |u, v| forest.known_edge([u, v]).unwrap_or(NONE);
+            let (xy, yz, zx) = (between(x, y), between(y, z), between(z, x));
+            self.part([a, z, y], [yz, half(edges[1], a), half(edges[2], a)], out);
+            self.part([z, b, x], [half(edges[0], b), zx, half(edges[2], b)], out);
+            self.part([y, x, c], [half(edges[0], c), half(edges[1], c), xy], out);
+            self.part([x, y, z], [yz, zx, xy], out);
+            return;
+        }
+        let is_second = forest.is_cut_from_second(edges, middles);
+        let parts = patterns::cut(corners, middles, is_second);
+        out.extend(parts.into_iter().map(|part| part.map(|v| self.of(v))));
+    }
+
+    /// The parts of an edge of the first mesh.
+    fn edge(&mut self, ends: [u32; 2], out: &mut Vec<[VertexId; 2]>) {
+        let edge = self.forest.known_edge(ends).unwrap_or(NONE);
+        self.edge_part(ends, edge, out);
+    }
+
+    fn edge_part(&mut self, [u, v]: [u32; 2], edge: u32, out: &mut Vec<[VertexId; 2]>) {
+        match self.forest.split_middle(edge) {
+            None => out.push([self.of(u), self.of(v)]),
+            Some(middle) => {
+                self.edge_part([u, middle], self.forest.half(edge, u), out);
+                self.edge_part([middle, v], self.forest.half(edge, v), out);
+            }
+        }
+    }
+}
+
+impl Forest {
+    /// The corners of a tet, then the middles of its edges.
+    fn local(&self, node: u32) -> [u32; 10] {
+        let node = &self.nodes[node as usize];
+        let mut local = [NONE; 10];
+        local[..4].copy_from_slice(&node.vertices);
+        for (e, edge) in node.edges.iter().enumerate() {
+            local[4 + e] = self.edges[*edge as usize].middle;
+        }
+        local
+    }
+
+    /// The vertex in the middle of an edge that is split.
+    fn split_middle(&self, edge: u32) -> Option<u32> {
+        self.edges.get(edge as usize).filter(|edge| edge.is_split).map(|edge| edge.middle)
+    }
+
+    /// The half of an edge at one of its ends.
+    fn half(&self, edge: u32, end: u32) -> u32 {
+        let edge = &self.edges[edge as usize];
+        edge.halves[usize::from(edge.ends[0] != end)]
+    }
+
+    /// The tet of the first mesh that a tet lies in.
+    pub(super) fn root(&self, mut node: u32) -> u32 {
+        while self.nodes[node as usize].parent != NONE {
+            node = self.nodes[node as usize].parent;
+        }
+        node
+    }
+
+    /// Bytes.
+    pub(super) fn memory(&self) -> usize {
+        size_of_val(&self.reference[..])
+            + size_of_val(&self.origin[..])
+            + size_of_val(&self.edges[..])
+            + size_of_val(&self.nodes[..])
+            + self.memory_of_names()
+    }
+}

@@ -1,0 +1,232 @@
+//! The handle: a mesh that is refined and coarsened again and again.
+
+use super::close::{Closed, Need, close};
+use super::extract::{Extracted, extract};
+use super::forest::{Forest, NONE};
+use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
+use crate::geometry::predicates::orient3d;
+use crate::geometry::quality::eas;
+use crate::mesh::TetMesh;
+
+/// How to divide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// No tet is cut into pieces below this part of the first mesh's worst EAS, where there is another way. Default: 0.95.
+    pub keep: f64,
+    /// Nor into pieces below this part of its own EAS. Above 0.5 even regular tets may not be cut, and refinement spreads far. Default: 0.5.
+    pub share: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { keep: 0.95, share: 0.5 }
+    }
+}
+
+/// What a step came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// How many tets the mesh has.
+    pub n_tets: usize,
+    /// How many tets were divided into eight, though nobody asked, so that all fit.
+    pub n_promoted: usize,
+    /// How many tets were cut to fit their neighbours.
+    pub n_cut: usize,
+    /// How often all tets were looked at.
+    pub n_sweeps: usize,
+}
+
+/// A mesh with its memory: which tets it started with, and which of them and of their parts are to be divided.
+///
+/// ```
+/// use motet::base::{TetId, Threads, VertexId};
+/// use motet::mesh::TetMesh;
+/// use motet::refine::{Options, Refinement};
+/// # fn main() -> motet::Result<()> {
+/// let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mesh = TetMesh::new(points, vec![[0, 1, 2, 3].map(VertexId)]);
+/// let threads = Threads::single();
+/// let mut refinement = Refinement::new(&mesh, Options::default(), &threads)?;
+/// refinement.refine(&[TetId(0)], &threads)?;
+/// assert_eq!(refinement.mesh().tets.len(), 8);
+/// let all: Vec<_> = (0..8).map(TetId).collect();
+/// refinement.coarsen(&all, &threads)?;
+/// assert_eq!(refinement.mesh(), &mesh);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Refinement {
+    first: TetMesh,
+    forest: Forest,
+    need: Need,
+    /// Where each vertex of the forest is now, if the mesh has it.
+    points: Vec<Point>,
+    now: Extracted,
+    summary: Summary,
+}
+
+impl Refinement {
+    /// Starts with a mesh whose tets become roots.
+    ///
+    /// # Errors
+    /// When the mesh is not [valid](TetMesh::validate), or a tet has no volume.
+    pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
+        mesh.validate()?;
+        let corners = |tet: [VertexId; 4]| tet.map(|v| mesh.points[v.index()]);
+        let side = threads.map(mesh.tets.len(), |i| {
+            let [a, b, c, d] = corners(mesh.tets[i]);
+            orient3d(a, b, c, d)
+        });
+        if let Some(i) = side.iter().position(|side| *side == 0) {
+            return Err(Error::input("has no volume")
+                .at(format!("tet {i}"))
+                .remedy("`motet remesh` repairs such tets"));
+        }
+        // In a negative tet two vertices change places.
+        let positive = mesh.tets.iter().zip(&side).map(|(&[a, b, c, d], side)| match *side > 0 {
+            true => [a, b, c, d],
+            false => [b, a, c, d],
+        });
+        let forest = Forest::new(&mesh.points, positive.map(|tet| tet.map(|v| v.0)));
+        let worst = threads.map(mesh.tets.len(), |i| eas(corners(mesh.tets[i])).abs());
+        let worst = worst.into_iter().fold(f64::INFINITY, f64::min);
+        let need = Need { floor: options.keep * worst, share: options.share };
+        let mut refinement = Self {
+            first: mesh.clone(),
+            forest,
+            need,
+            points: mesh.points.clone(),
+            now: Extracted::default(),
+            summary: Summary::default(),
+        };
+        refinement.settle(threads)?;
+        Ok(refinement)
+    }
+
+    /// The mesh as it is now. While nothing is divided it is the first one, but for the points, if these moved.
+    pub fn mesh(&self) -> &TetMesh {
+        &self.now.mesh
+    }
+
+    /// How often each tet's place was divided into eight. Pieces of a tet that was cut count as the tet.
+    pub fn generations(&self) -> impl Iterator<Item = u8> + '_ {
+        self.now.nodes.iter().map(|&node| self.forest.nodes[node as usize].generation)
+    }
+
+    /// Which tet of the first mesh each tet lies in.
+    pub fn roots(&self) -> impl Iterator<Item = TetId> + '_ {
+        self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
+    }
+
+    /// What the last step came to.
+    pub fn summary(&self) -> Summary {
+        self.summary
+    }
+
+    /// Bytes that the memory takes beside the mesh.
+    pub fn memory(&self) -> usize {
+        self.forest.memory() + size_of_val(&self.points[..]) + size_of_val(&self.now.nodes[..])
+    }
+
+    /// Takes over points that moved. Shapes are judged as they were at first all the same.
+    ///
+    /// # Errors
+    /// When there are not as many points as the mesh has.
+    pub fn set_points(&mut self, points: &[Point]) -> Result<()> {
+        let expected = self.now.mesh.points.len();
+        if points.len() != expected {
+            return Err(Error::input(format!("{} points, expected {expected}", points.len()))
+                .remedy("give all points in the order of the mesh"));
+        }
+        self.now.mesh.points.copy_from_slice(points);
+        for (&vertex, &point) in self.now.vertices.iter().zip(points) {
+            self.points[vertex as usize] = point;
+        }
+        Ok(())
+    }
+
+    /// Divides these tets into eight, once; a piece of a tet that was cut stands for the whole.
+    ///
+    /// # Errors
+    /// When there is no such tet, or ids would not suffice; then nothing has changed.
+    pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
+        self.check(marked)?;
+        let before = self.asked();
+        for tet in marked {
+            // What is asked of a tet is asked of those it lies in.
+            let mut node = self.now.nodes[tet.index()];
+            while node != NONE && !self.forest.nodes[node as usize].is_asked {
+                self.forest.nodes[node as usize].is_asked = true;
+                node = self.forest.nodes[node as usize].parent;
+            }
+        }
+        self.settle_or_else(&before, threads)
+    }
+
+    /// Takes back divisions whose eight tets are all marked and not divided themselves, pieces included. A tet that its neighbours need
+    /// divided stays so.
+    ///
+    /// # Errors
+    /// When there is no such tet; then nothing has changed.
+    pub fn coarsen(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
+        self.check(marked)?;
+        let before = self.asked();
+        let mut is_marked = vec![false; self.now.nodes.len()];
+        marked.iter().for_each(|tet| is_marked[tet.index()] = true);
+        // Of each tet of the forest, whether all its pieces are marked.
+        let mut is_whole = vec![true; self.forest.nodes.len()];
+        for (&node, is_marked) in self.now.nodes.iter().zip(is_marked) {
+            is_whole[node as usize] &= is_marked;
+        }
+        for node in 0..self.forest.nodes.len() {
+            let first = self.forest.nodes[node].first_child;
+            if self.forest.nodes[node].is_asked
+                && (first..first + 8).all(|child| self.forest.is_leaf(child) && is_whole[child as usize])
+            {
+                self.forest.nodes[node].is_asked = false;
+            }
+        }
+        self.settle_or_else(&before, threads)
+    }
+
+    fn check(&self, marked: &[TetId]) -> Result<()> {
+        let n = self.now.mesh.tets.len();
+        match marked.iter().find(|tet| tet.index() >= n) {
+            None => Ok(()),
+            Some(tet) => Err(Error::input(format!("tet {tet} is marked, but there are {n}"))),
+        }
+    }
+
+    fn asked(&self) -> Vec<bool> {
+        self.forest.nodes.iter().map(|node| node.is_asked).collect()
+    }
+
+    fn settle_or_else(&mut self, before: &[bool], threads: &Threads) -> Result<Summary> {
+        if let Err(error) = self.settle(threads) {
+            let before = before.iter().chain(std::iter::repeat(&false));
+            self.forest.nodes.iter_mut().zip(before).for_each(|(node, &asked)| node.is_asked = asked);
+            self.settle(threads)?;
+            return Err(error);
+        }
+        Ok(self.summary)
+    }
+
+    /// Closes what is asked, and gives it out.
+    fn settle(&mut self, threads: &Threads) -> Result<()> {
+        let closed: Closed = close(&mut self.forest, self.need, threads);
+        let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
+        self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
+        for (&vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
+            self.points[vertex as usize] = point;
+        }
+        self.summary = Summary {
+            n_tets: now.mesh.tets.len(),
+            n_promoted: closed.n_promoted,
+            n_cut: closed.cuts.len(),
+            n_sweeps: closed.n_sweeps,
+        };
+        self.now = now;
+        Ok(())
+    }
+}

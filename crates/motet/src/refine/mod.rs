@@ -1,0 +1,21 @@
+//! Floor 6: tets divided, many generations deep, without loss of shape; and the way back.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | divide | `forest` | a tet into eight along its shortest diagonal; parents, children and edges are remembered |
+//! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
+//! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
+//! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
+//!
+//! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is remembered. A tet that was cut
+//! to fit its neighbours is never divided itself: asked for one of its pieces, the whole is divided into eight (Bank, Sherman and Weiser 1983,
+//! *Refinement algorithms and data structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That a piece at a border gets the
+//! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
+
+mod close;
+mod extract;
+mod forest;
+mod handle;
+mod patterns;
+
+pub use handle::{Options, Refinement, Summary};

@@ -1,0 +1,238 @@
+//! All ways to divide a tet whose edges are partly split, without a vertex inside.
+//!
+//! Local vertices 0 to 3 are the corners, and 4 + e is the middle of edge e. Which edges are split is a mask of six bits; a facet with two
+//! of them is cut into a triangle and a quadrilateral, and which way that is cut is a bit for each facet. Given both, the surface of the tet is
+//! known, and what fills it is found by trying: facet by facet, any vertex in front of it. Positive tets whose facets match in pairs but for
+//! the surface fill the tet once everywhere: the count of tets around a place does not change across a facet.
+
+use std::sync::OnceLock;
+
+use crate::geometry::tet::{EDGES, FACETS};
+
+/// All edges split.
+pub(super) const FULL: u8 = 0b11_1111;
+
+/// The tets of one way, by their local vertices; positive where the tet is.
+pub(super) type Pattern = Vec<[u8; 4]>;
+
+/// The edges of facet `i`: its corners are `FACETS[i]`, and edge `k` is opposite corner `k` of them.
+pub(super) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
+
+/// All ways to fill a tet with these edges split, where facet `i` is cut from the middle of the second of its two split edges if bit `i` of
+/// `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. Mostly one or two; none for 14 of them, in which the cuts go round.
+pub(super) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
+    static TABLE: OnceLock<Vec<Vec<Pattern>>> = OnceLock::new();
+    let table =
+        TABLE.get_or_init(|| (0..64 * 16).map(|key| all_ways((key / 16) as u8, (key % 16) as u8)).collect());
+    &table[usize::from(mask & FULL) * 16 + usize::from(cuts & 15)]
+}
+
+/// The split edges of a facet, in the order of [`FACET_EDGES`], and how many they are.
+pub(super) fn split_edges(facet: usize, mask: u8) -> ([usize; 3], usize) {
+    let (mut edges, mut n) = ([0; 3], 0);
+    for edge in FACET_EDGES[facet] {
+        if mask >> edge & 1 == 1 {
+            edges[n] = edge;
+            n += 1;
+        }
+    }
+    (edges, n)
+}
+
+const fn facet_edges() -> [[usize; 3]; 4] {
+    let mut out = [[6; 3]; 4];
+    let mut facet = 0;
+    while facet < 4 {
+        let mut k = 0;
+        while k < 3 {
+            let (u, v) = (FACETS[facet][(k + 1) % 3], FACETS[facet][(k + 2) % 3]);
+            let mut edge = 0;
+            while edge < 6 {
+                let [a, b] = EDGES[edge];
+                if a == u && b == v || a == v && b == u {
+                    out[facet][k] = edge;
+                }
+                edge += 1;
+            }
+            k += 1;
+        }
+        facet += 1;
+    }
+    out
+}
+
+/// Triangles that a triangle is cut into, counter-clockwise as it is. `middles[k]` is that of the edge opposite corner `k`, where it is split; with
+/// two of them the quadrilateral is cut from the middle of the second split edge where `second` says so.
+pub(super) fn cut<T: Copy>(corners: [T; 3], middles: [Option<T>; 3], second: bool) -> Vec<[T; 3]> {
+    let turned = |k: usize| [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]];
+    match middles {
+        [None, None, None] => vec![corners],
+        [Some(x), Some(y), Some(z)] => {
+            let [a, b, c] = corners;
+            vec![[a, z, y], [z, b, x], [y, x, c], [x, y, z]]
+        }
+        _ => {
+            let n = middles.iter().flatten().count();
+            if n == 1 {
+                let k = middles.iter().position(Option::is_some).unwrap_or(0);
+                let ([a, b, c], Some(m)) = (turned(k), middles[k]) else { return vec![corners] };
+                return vec![[a, b, m], [a, m, c]];
+            }
+            let whole = middles.iter().position(Option::is_none).unwrap_or(0);
+            let [apex, b, c] = turned(whole);
+            // Opposite b lies the edge from c to the apex, opposite c the one from the apex to b.
+            let (k_b, k_c) = ((whole + 1) % 3, (whole + 2) % 3);
+            let (Some(on_c), Some(on_b)) = (middles[k_b], middles[k_c]) else { return vec![corners] };
+            // The second split edge is that of the larger place.
+            let from_on_c = (k_b > k_c) == second;
+            let mut out = vec![[apex, on_b, on_c]];
+            out.extend(if from_on_c {
+                [[on_b, b, on_c], [on_c, b, c]]
+            } else {
+                [[on_b, b, c], [on_b, c, on_c]]
+            });
+            out
+        }
+    }
+}
+
+/// The oriented triangles of the surface, seen from outside.
+fn surface(mask: u8, cuts: u8) -> Vec<[u8; 3]> {
+    (0..4)
+        .flat_map(|facet| {
+            let corners = FACETS[facet].map(|v| v as u8);
+            let middle = |edge: usize| (mask >> edge & 1 == 1).then_some(4 + edge as u8);
+            cut(corners, FACET_EDGES[facet].map(middle), cuts >> facet & 1 == 1)
+        })
+        .collect()
+}
+
+fn all_ways(mask: u8, cuts: u8) -> Vec<Pattern> {
+    // A cut that no facet needs changes nothing.
+    if (0..4).any(|facet| cuts >> facet & 1 == 1 && split_edges(facet, mask).1 != 2) {
+        return Vec::new();
+    }
+    let vertices: Vec<u8> = (0..4).chain((0..6).filter(|e| mask >> e & 1 == 1).map(|e| 4 + e)).collect();
+    let mut search = Search { vertices, tets: Vec::new(), found: Vec::new() };
+    search.fill(surface(mask, cuts), 64);
+    search.found
+}
+
+struct Search {
+    vertices: Vec<u8>,
+    tets: Pattern,
+    found: Vec<Pattern>,
+}
+
+impl Search {
+    /// Fills what is behind the open triangles, which are seen from outside of it, with so much volume left.
+    fn fill(&mut self, open: Vec<[u8; 3]>, left: i32) {
+        let Some(&[a, b, c]) = open.first() else {
+            if left == 0 {
+                self.found.push(self.tets.clone());
+            }
+            return;
+        };
+        for v in self.vertices.clone() {
+            // Seen from outside the triangle runs counter-clockwise, so a positive tet has it the other way round.
+            let tet = [a, c, b, v];
+            let volume = volume(tet);
+            if volume <= 0 || volume > left {
+                continue;
+            }
+            let mut rest = open.clone();
+            let fits = FACETS.iter().all(|facet| {
+                let seen = facet.map(|i| tet[i]);
+                match rest.iter().position(|other| is_turn(*other, seen)) {
+                    Some(at) => {
+                        rest.remove(at);
+                        true
+                    }
+                    None => {
+                        let [x, y, z] = seen;
+                        let from_beyond = [x, z, y];
+                        let is_new = !rest.iter().any(|other| is_turn(*other, from_beyond));
+                        rest.push(from_beyond);
+                        is_new
+                    }
+                }
+            });
+            if fits {
+                self.tets.push(tet);
+                self.fill(rest, left - volume);
+                self.tets.pop();
+            }
+        }
+    }
+}
+
+/// Whether two triangles are the same, seen from the same side.
+fn is_turn([a, b, c]: [u8; 3], other: [u8; 3]) -> bool {
+    other == [a, b, c] || other == [b, c, a] || other == [c, a, b]
+}
+
+/// Twice the corners of a tet of volume 8/6, and of its middles, which are whole numbers.
+fn place(v: u8) -> [i32; 3] {
+    const CORNERS: [[i32; 3]; 4] = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
+    match v {
+        0..4 => CORNERS[usize::from(v)].map(|x| 2 * x),
+        _ => {
+            let [a, b] = EDGES[usize::from(v) - 4].map(|v| CORNERS[v]);
+            [0, 1, 2].map(|k| a[k] + b[k])
+        }
+    }
+}
+
+/// Six times the volume: that of the whole tet is 64.
+fn volume(tet: [u8; 4]) -> i32 {
+    let [a, b, c, d] = tet.map(place);
+    let sub = |p: [i32; 3]| [0, 1, 2].map(|k| p[k] - a[k]);
+    let ([x, y, z], v, w) = (sub(b), sub(c), sub(d));
+    x * (v[1] * w[2] - v[2] * w[1]) - y * (v[0] * w[2] - v[2] * w[0]) + z * (v[0] * w[1] - v[1] * w[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn halves(mask: u8, cuts: u8) -> bool {
+        (0..4).all(|facet| cuts >> facet & 1 == 0 || split_edges(facet, mask).1 == 2)
+    }
+
+    #[test]
+    fn the_table_has_what_the_experiment_counted() {
+        let keys = || (0..64u8).flat_map(|mask| (0..16u8).map(move |cuts| (mask, cuts)));
+        let needed: Vec<_> = keys().filter(|&(mask, cuts)| halves(mask, cuts)).collect();
+        let n = |of: usize| needed.iter().filter(|&&(mask, cuts)| patterns(mask, cuts).len() == of).count();
+        println!("{} keys: none {}, one {}, two {}, three {}", needed.len(), n(0), n(1), n(2), n(3));
+        assert_eq!((needed.len(), n(0)), (239, 14));
+        assert_eq!(n(0) + n(1) + n(2) + n(3), 239);
+        // The three diagonals of the octahedron, each with four corners and four tets around the diagonal.
+        assert_eq!(patterns(FULL, 0).len(), 3);
+        assert!(patterns(FULL, 0).iter().all(|pattern| pattern.len() == 8));
+    }
+
+    #[test]
+    fn every_pattern_fills_the_tet_and_has_its_surface() {
+        for mask in 0..64u8 {
+            for cuts in 0..16u8 {
+                for pattern in patterns(mask, cuts) {
+                    assert_eq!(pattern.iter().map(|t| volume(*t)).sum::<i32>(), 64);
+                    let mut facets: Vec<_> =
+                        pattern.iter().flat_map(|t| FACETS.map(|facet| facet.map(|i| t[i]))).collect();
+                    facets.retain(|f| {
+                        let [a, b, c] = *f;
+                        let back = [a, c, b];
+                        !pattern
+                            .iter()
+                            .flat_map(|t| FACETS.map(|g| g.map(|i| t[i])))
+                            .any(|g| is_turn(g, back))
+                    });
+                    let expected = surface(mask, cuts);
+                    assert_eq!(facets.len(), expected.len());
+                    assert!(facets.iter().all(|f| expected.iter().any(|g| is_turn(*f, *g))));
+                }
+            }
+        }
+    }
+}
