@@ -4,9 +4,8 @@ mod common;
 
 use std::collections::HashMap;
 
-use common::Numbers;
+use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
-use motet::delaunay::Triangulation;
 use motet::geometry::quality::{eas, mean_ratio};
 use motet::geometry::tet::{FACETS, centroid, volume};
 use motet::geometry::triangle::area;
@@ -95,31 +94,29 @@ fn median_eas(mesh: &TetMesh) -> f64 {
     *all.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-fn near(mesh: &TetMesh, place: Point, radius: f64) -> Vec<TetId> {
-    let is_near = |t: &[VertexId; 4]| distance(centroid(corners(mesh, *t)), place) < radius;
-    (0..).zip(&mesh.tets).filter(|(_, t)| is_near(t)).map(|(i, _)| TetId(i)).collect()
-}
-
 fn ball_in_box() -> TetMesh {
     TetPart::of(&sphere_in_box(6, 2)).unwrap().mesh
 }
 
-fn random(n: usize, salt: u64) -> TetMesh {
-    let mut numbers = Numbers(salt);
-    let points: Vec<Point> = (0..n).map(|_| [(); 3].map(|()| numbers.unit())).collect();
-    let made = Triangulation::new(&points, &Threads::single()).unwrap();
-    TetMesh::new(points, made.tets().to_vec())
+/// The `n` tets nearest to a place.
+fn nearest(mesh: &TetMesh, place: Point, n: usize) -> Vec<TetId> {
+    let far = |i: &TetId| distance(centroid(corners(mesh, mesh.tets[i.index()])), place);
+    let mut all: Vec<TetId> = (0..mesh.tets.len()).map(TetId::new).collect();
+    all.sort_by(|a, b| far(a).total_cmp(&far(b)));
+    all.truncate(n);
+    all
 }
 
 #[test]
 fn eight_generations_about_a_point_keep_the_shape() {
     let threads = Threads::single();
-    for (name, first) in [("ball in a box", ball_in_box()), ("random", random(300, 5))] {
+    for (name, first) in [("ball in a box", ball_in_box()), ("random", random_mesh(300, 5))] {
         let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
         let w = worst(&first, eas);
-        let place = add(first.points[7], [0.01, 0.02, 0.03]);
-        for generation in 0..8 {
-            let marked = near(refinement.mesh(), place, 0.4 * 0.5f64.powi(generation));
+        let place = add(first.points[27], [0.01, 0.02, 0.03]);
+        let mut n = first.tets.len();
+        for generation in 1..=8 {
+            let marked = nearest(refinement.mesh(), place, 300);
             let summary = refinement.refine(&marked, &threads).unwrap();
             let mesh = refinement.mesh();
             println!(
@@ -128,7 +125,10 @@ fn eight_generations_about_a_point_keep_the_shape() {
                 worst(mesh, mean_ratio) / worst(&first, mean_ratio),
                 median_eas(mesh)
             );
+            assert!(summary.n_tets > n + 300);
+            n = summary.n_tets;
         }
+        assert!(refinement.generations().max() >= Some(4));
         fits(&first, refinement.mesh());
         assert!(worst(refinement.mesh(), eas) >= 0.9 * w);
     }
@@ -137,32 +137,81 @@ fn eight_generations_about_a_point_keep_the_shape() {
 #[test]
 fn coarsening_brings_the_first_mesh_back_bit_for_bit() {
     let threads = Threads::single();
+    for first in [ball_in_box(), random_mesh(300, 8)] {
+        let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
+        assert_eq!(refinement.mesh(), &first);
+        for _ in 0..5 {
+            let marked = nearest(refinement.mesh(), first.points[27], 200);
+            refinement.refine(&marked, &threads).unwrap();
+        }
+        let deepest = refinement.generations().max().unwrap();
+        assert!(deepest >= 3);
+        for step in 0..=deepest {
+            assert!(refinement.mesh() != &first, "not before step {step}");
+            let all: Vec<TetId> = (0..refinement.mesh().tets.len()).map(TetId::new).collect();
+            refinement.coarsen(&all, &threads).unwrap();
+            fits(&first, refinement.mesh());
+            if refinement.mesh() == &first {
+                break;
+            }
+        }
+        assert_eq!(refinement.mesh(), &first);
+    }
+}
+
+#[test]
+fn the_mesh_follows_from_what_is_divided_whatever_came_before() {
+    let threads = Threads::single();
+    let first = random_mesh(300, 11);
+    let new = || Refinement::new(&first, Options::default(), &threads).unwrap();
+    let (mut straight, mut astray) = (new(), new());
+    let there = nearest(&first, [0.2; 3], 60);
+    straight.refine(&there, &threads).unwrap();
+    // Elsewhere first, then there, and elsewhere taken back.
+    astray.refine(&nearest(&first, [0.9; 3], 60), &threads).unwrap();
+    let centres: Vec<Point> =
+        there.iter().map(|t| centroid(corners(&first, first.tets[t.index()]))).collect();
+    let roots: Vec<TetId> = astray.roots().collect();
+    let marked: Vec<TetId> =
+        (0..roots.len()).filter(|&i| there.contains(&roots[i])).map(TetId::new).collect();
+    assert_eq!(centres.len(), there.len());
+    astray.refine(&marked, &threads).unwrap();
+    let roots: Vec<TetId> = astray.roots().collect();
+    let back: Vec<TetId> = (0..roots.len()).filter(|&i| !there.contains(&roots[i])).map(TetId::new).collect();
+    astray.coarsen(&back, &threads).unwrap();
+    assert_eq!(astray.mesh(), straight.mesh());
+}
+
+#[test]
+fn points_that_moved_stay_where_they_are() {
+    let threads = Threads::single();
     let first = ball_in_box();
     let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
-    assert_eq!(refinement.mesh(), &first);
-    let mut meshes = Vec::new();
-    for generation in 0..5 {
-        meshes.push(refinement.mesh().clone());
-        let marked = near(refinement.mesh(), [0.5; 3], 0.4 * 0.6f64.powi(generation));
-        refinement.refine(&marked, &threads).unwrap();
-    }
-    for expected in meshes.iter().rev() {
-        let deepest = refinement.generations().max().unwrap();
-        let marked: Vec<TetId> = (0..)
-            .zip(refinement.generations())
-            .filter(|(_, g)| *g == deepest)
-            .map(|(i, _)| TetId(i))
-            .collect();
-        refinement.coarsen(&marked, &threads).unwrap();
-        println!("{} tets, expected {}", refinement.mesh().tets.len(), expected.tets.len());
-    }
-    assert_eq!(refinement.mesh(), &first);
+    let place = first.points[27];
+    refinement.refine(&nearest(&first, place, 200), &threads).unwrap();
+    let sheared = |p: &Point| [p[0] + 0.2 * p[1], p[1] - 0.1 * p[2], 1.1 * p[2]];
+    let moved: Vec<Point> = refinement.mesh().points.iter().map(sheared).collect();
+    refinement.set_points(&moved).unwrap();
+    refinement.refine(&nearest(refinement.mesh(), sheared(&place), 200), &threads).unwrap();
+    // A shear takes middles to middles.
+    let mut straight = Refinement::new(&first, Options::default(), &threads).unwrap();
+    straight.refine(&nearest(&first, place, 200), &threads).unwrap();
+    let mut again = first.clone();
+    again.points = first.points.iter().map(sheared).collect();
+    fits(&again, refinement.mesh());
+    let all: Vec<TetId> = (0..refinement.mesh().tets.len()).map(TetId::new).collect();
+    refinement.coarsen(&all, &threads).unwrap();
+    let all: Vec<TetId> = (0..refinement.mesh().tets.len()).map(TetId::new).collect();
+    refinement.coarsen(&all, &threads).unwrap();
+    assert_eq!(refinement.mesh(), &again);
+    assert!(refinement.set_points(&moved).is_err());
+    assert!(refinement.refine(&[TetId(1 << 30)], &threads).is_err());
 }
 
 #[test]
 fn the_order_of_marks_and_threads_change_nothing() {
     let (one, three) = (Threads::single(), Threads::new(3).unwrap());
-    let first = random(400, 9);
+    let first = random_mesh(400, 9);
     let mut numbers = Numbers(3);
     let mut a = Refinement::new(&first, Options::default(), &one).unwrap();
     let mut b = Refinement::new(&first, Options::default(), &three).unwrap();

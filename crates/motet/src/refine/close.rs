@@ -3,8 +3,10 @@
 //! What holds at the end follows from what was asked alone: each sweep looks at all tets as the sweep before left them. So no order of visiting, no
 //! number of threads and no earlier division changes it, and taking back what was asked brings back the mesh that was there before.
 
-use super::forest::{Forest, NONE, with_middles};
-use super::patterns::{FULL, patterns};
+use std::sync::OnceLock;
+
+use super::forest::{Forest, NONE, Way, with_middles};
+use super::patterns::{FACET_EDGES, FULL, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
@@ -36,11 +38,13 @@ pub(super) struct Cut {
 
 /// What one tet needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Verdict {
-    Fits,
-    /// More of its edges split.
-    Grow(u8),
-    Divide,
+struct Verdict {
+    /// Its split edges.
+    mask: u8,
+    /// Those that it needs split: the same where it fits, more where it has to grow, all where it has to be divided.
+    goal: u8,
+    /// Whether shapes were looked at, which is worth remembering.
+    is_new: bool,
 }
 
 /// What closing came to.
@@ -55,7 +59,7 @@ pub(super) struct Closed {
 
 /// Divides what is asked, and what that asks for.
 pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Closed {
-    forest.edges.iter_mut().for_each(|edge| edge.is_split = false);
+    forest.is_split.fill(false);
     forest.nodes.iter_mut().for_each(|node| node.is_divided = false);
     for node in 0..forest.nodes.len() as u32 {
         if forest.nodes[node as usize].is_asked {
@@ -64,133 +68,179 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
     }
     let mut leaves: Vec<u32> = (0..forest.nodes.len() as u32).filter(|&node| forest.is_leaf(node)).collect();
     let mut closed = Closed::default();
-    // The split edges for which each tet was looked at last.
-    let mut seen = vec![0u8; forest.nodes.len()];
+    let mut masks = vec![0u8; leaves.len()];
     loop {
         closed.n_sweeps += 1;
         let shared: &Forest = forest;
-        let verdicts =
-            threads.map(leaves.len(), |i| verdict(shared, leaves[i], seen[leaves[i] as usize], need));
-        if verdicts.iter().all(|verdict| *verdict == Verdict::Fits) {
-            break;
-        }
-        for &leaf in &leaves {
-            seen[leaf as usize] = forest.mask(leaf);
-        }
-        let mut came = Vec::new();
-        for (&leaf, verdict) in leaves.iter().zip(&verdicts) {
-            match *verdict {
-                Verdict::Fits => {}
-                Verdict::Grow(mask) => {
-                    let edges = forest.nodes[leaf as usize].edges;
-                    for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| mask >> e & 1 == 1) {
-                        forest.middle(edge);
-                        forest.edges[edge as usize].is_split = true;
-                    }
-                }
-                Verdict::Divide => {
-                    closed.n_promoted += 1;
-                    let first = divide(forest, leaf, need);
-                    came.extend(first..first + 8);
+        let verdicts = threads.map(leaves.len(), |i| verdict(shared, leaves[i], need));
+        let mut is_done = true;
+        let (mut came, mut n) = (Vec::new(), 0);
+        for (i, Verdict { mask, goal, is_new }) in verdicts.into_iter().enumerate() {
+            let leaf = leaves[i];
+            if is_new {
+                forest.goals.insert((leaf, mask), goal);
+            }
+            is_done &= goal == mask && goal != FULL;
+            if goal == FULL {
+                closed.n_promoted += 1;
+                let first = divide(forest, leaf, need);
+                came.extend(first..first + 8);
+                continue;
+            }
+            if goal != mask {
+                let edges = forest.edges_of[leaf as usize];
+                for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal >> e & 1 == 1) {
+                    forest.middle(edge);
+                    forest.is_split[edge as usize] = true;
                 }
             }
+            (leaves[n], masks[n]) = (leaf, mask);
+            n += 1;
         }
-        leaves.retain(|&leaf| !forest.nodes[leaf as usize].is_divided);
+        if is_done {
+            break;
+        }
+        leaves.truncate(n);
         leaves.extend(came);
-        seen.resize(forest.nodes.len(), 0);
+        masks.resize(leaves.len(), 0);
     }
-    leaves.sort_unstable();
     let shared: &Forest = forest;
-    let cuts = threads.map(leaves.len(), |i| cut(shared, leaves[i]));
-    closed.cuts = cuts.into_iter().flatten().collect();
+    let cut_leaves: Vec<u32> =
+        leaves.into_iter().zip(masks).filter(|(_, mask)| *mask != 0).map(|(leaf, _)| leaf).collect();
+    closed.cuts = threads.map(cut_leaves.len(), |i| cut(shared, cut_leaves[i]));
+    closed.cuts.sort_unstable_by_key(|cut| cut.node);
     closed
 }
 
 fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
-    let first = forest.divide(node, |forest| diagonal(&forest.places(node), need.floor));
-    for edge in forest.nodes[node as usize].edges {
-        forest.edges[edge as usize].is_split = true;
+    let first = forest.divide(node, |forest| {
+        let shape = forest.nodes[node as usize].eas;
+        best_way(&forest.places(node), shape, need.floor)
+    });
+    for edge in forest.edges_of[node as usize] {
+        forest.is_split[edge as usize] = true;
     }
     first
 }
 
-fn verdict(forest: &Forest, leaf: u32, seen: u8, need: Need) -> Verdict {
+fn verdict(forest: &Forest, leaf: u32, need: Need) -> Verdict {
     let mask = forest.mask(leaf);
+    let known = |goal| Verdict { mask, goal, is_new: false };
     if mask == 0 {
-        return Verdict::Fits;
+        return known(0);
     }
     if mask == FULL || forest.is_split_within(leaf, mask) {
-        return Verdict::Divide;
+        return known(FULL);
     }
-    if mask == seen {
-        return Verdict::Fits;
+    match forest.goals.get(&(leaf, mask)) {
+        Some(goal) => known(*goal),
+        None => Verdict { mask, goal: goal(forest, leaf, mask, need), is_new: true },
     }
+}
+
+/// Which edges a tet needs split to be cut well, given those that are; all where only division helps. It follows from the reference alone.
+fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> u8 {
     let places = forest.places(leaf);
-    let whole = eas(forest.corners(leaf));
+    let whole = forest.nodes[leaf as usize].eas;
     let need = need.of(whole);
-    let (_, _, worst) = best_cut(forest, leaf, mask, &places);
-    if worst >= need {
-        return Verdict::Fits;
+    if best_cut(forest, leaf, mask, &places, need).is_some() {
+        return mask;
     }
     // The fewest edges more, then the best shape.
     let larger = (mask + 1..FULL).filter(|m| m & mask == mask);
-    let good = larger.map(|m| (m, best_cut(forest, leaf, m, &places).2)).filter(|(_, worst)| *worst >= need);
-    let better = |x: (u8, f64), y: (u8, f64)| {
-        let order = x.0.count_ones().cmp(&y.0.count_ones()).then(y.1.total_cmp(&x.1));
-        if order.is_le() { x } else { y }
-    };
-    match good.reduce(better) {
-        Some((mask, _)) => Verdict::Grow(mask),
-        None if worst_of_eight(&places, diagonal(&places, need)) > worst => Verdict::Divide,
-        None => Verdict::Fits,
+    for n in mask.count_ones() + 1..6 {
+        let good = larger.clone().filter(|m| m.count_ones() == n);
+        let good =
+            good.filter_map(|m| best_cut(forest, leaf, m, &places, need).map(|(_, _, worst)| (m, worst)));
+        if let Some((mask, _)) = good.reduce(|x, y| if y.1 > x.1 { y } else { x }) {
+            return mask;
+        }
     }
+    let worst = best_cut(forest, leaf, mask, &places, f64::NEG_INFINITY).map_or(0.0, |(_, _, worst)| worst);
+    if best_way(&places, whole, need).worst(whole) > worst { FULL } else { mask }
 }
 
 /// The cut of a tet that has split edges.
-fn cut(forest: &Forest, leaf: u32) -> Option<Cut> {
+fn cut(forest: &Forest, leaf: u32) -> Cut {
     let mask = forest.mask(leaf);
-    if mask == 0 {
-        return None;
-    }
-    let (cuts, way, _) = best_cut(forest, leaf, mask, &forest.places(leaf));
-    Some(Cut { node: leaf, mask, cuts, way })
+    let best = best_cut(forest, leaf, mask, &forest.places(leaf), f64::NEG_INFINITY);
+    let (cuts, way, _) = best.unwrap_or_default();
+    Cut { node: leaf, mask, cuts, way }
 }
 
-/// Of all ways to fill a tet with these edges split the one whose worst tet is best, with the cuts of the facets and that EAS.
-fn best_cut(forest: &Forest, leaf: u32, mask: u8, places: &[Point; 10]) -> (u8, u8, f64) {
+/// Of all ways to fill a tet with these edges split the one whose worst tet is best, with the cuts of the facets and that EAS; `None` where it is below
+/// `least`.
+fn best_cut(forest: &Forest, leaf: u32, mask: u8, places: &[Point; 10], least: f64) -> Option<(u8, u8, f64)> {
     let cuts = forest.cuts(leaf, mask);
-    let worst = |way: &Vec<[u8; 4]>| worst_of(places, way);
-    let ways = patterns(mask, cuts).iter().zip(0u8..);
-    let best = ways.map(|(way, k)| (k, worst(way))).reduce(|x, y| if y.1 > x.1 { y } else { x });
-    let (way, worst) = best.unwrap_or((0, f64::NEG_INFINITY));
-    (cuts, way, worst)
+    let mut best = None;
+    let mut least = least;
+    for (way, k) in patterns(mask, cuts).iter().zip(0u8..) {
+        let mut worst = f64::INFINITY;
+        for tet in way {
+            worst = eas(corners_at(places, tet)).min(worst);
+            if worst < least {
+                break;
+            }
+        }
+        if worst >= least && best.is_none_or(|(_, _, best)| worst > best) {
+            (best, least) = (Some((cuts, k, worst)), worst);
+        }
+    }
+    best
 }
 
 fn worst_of(places: &[Point; 10], tets: &[[u8; 4]]) -> f64 {
-    tets.iter().map(|tet| eas(tet.map(|v| places[usize::from(v)]))).fold(f64::INFINITY, f64::min)
+    tets.iter().map(|tet| eas(corners_at(places, tet))).fold(f64::INFINITY, f64::min)
 }
 
-fn worst_of_eight(places: &[Point; 10], way: usize) -> f64 {
-    worst_of(places, &patterns(FULL, 0)[way])
-}
-
-/// Which of the three ways to divide a tet into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive
+/// Which of the three ways to divide a tet of this EAS into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive
 /// subdivisions of tetrahedra and multigrid methods on tetrahedral meshes*), unless one of the eight, or of theirs, is then below
 /// the floor: then along the one that leaves the best.
-fn diagonal(places: &[Point; 10], floor: f64) -> usize {
-    let length = |way: usize| {
-        let [p, q] = ends(way).map(|v| places[v]);
-        let along = sub(q, p);
+fn best_way(places: &[Point; 10], whole: f64, floor: f64) -> Way {
+    let length = |place: usize| {
+        let [p, q] = ends(place);
+        let along = sub(places[q], places[p]);
         dot(along, along)
     };
     let shortest = (0..3).reduce(|x, y| if length(y) < length(x) { y } else { x }).unwrap_or(0);
+    let way = Way::new(places, shortest);
     // Two generations hardly more than halve the quality.
-    let worst = worst_of_eight(places, shortest);
+    let worst = way.worst(whole);
     if worst >= 2.0 * floor || worst >= floor && worst_below(places, shortest, 1) >= floor {
-        return shortest;
+        return way;
     }
-    let worst = [0, 1, 2].map(|way| worst_below(places, way, 2));
-    (0..3).reduce(|x, y| if worst[y] > worst[x] { y } else { x }).unwrap_or(shortest)
+    let worst = [0, 1, 2].map(|place| worst_below(places, place, 2));
+    Way::new(places, (0..3).reduce(|x, y| if worst[y] > worst[x] { y } else { x }).unwrap_or(shortest))
+}
+
+impl Way {
+    /// Of the eight, those at the corners have the shape of the whole, and the others are two and their images in the centre.
+    fn new(places: &[Point; 10], place: usize) -> Self {
+        let pattern = &patterns(FULL, 0)[place];
+        let mut inner = [None; 8];
+        for (k, tet) in pattern.iter().enumerate() {
+            if inner[k].is_some() || tet.iter().any(|v| *v < 4) {
+                continue;
+            }
+            let shape = eas(corners_at(places, tet));
+            let is_image = |other: &[u8; 4]| tet.iter().all(|v| other.contains(&(13 - v)));
+            let image = pattern.iter().position(is_image).unwrap_or(k);
+            (inner[k], inner[image]) = (Some(shape), Some(shape));
+        }
+        Self { place, inner }
+    }
+
+    fn worst(&self, whole: f64) -> f64 {
+        self.inner.iter().flatten().copied().fold(whole, f64::min)
+    }
+}
+
+fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
+    let mut corners = [[0.0; 3]; 4];
+    for (corner, v) in corners.iter_mut().zip(tet) {
+        *corner = places[usize::from(*v)];
+    }
+    corners
 }
 
 /// The worst of the eight and of so many generations below, each along its best diagonal.
@@ -211,11 +261,17 @@ fn worst_below(places: &[Point; 10], way: usize, generations: usize) -> f64 {
 }
 
 /// The local vertices at the ends of the diagonal of each way.
-fn ends(way: usize) -> [usize; 2] {
-    let pattern = &patterns(FULL, 0)[way];
-    let has =
-        |e: usize| pattern.iter().any(|tet| tet.contains(&(4 + e as u8)) && tet.contains(&(9 - e as u8)));
-    (0..3).find(|&e| has(e)).map_or([4, 9], |e| [4 + e, 9 - e])
+fn ends(place: usize) -> [usize; 2] {
+    static ENDS: OnceLock<[[usize; 2]; 3]> = OnceLock::new();
+    ENDS.get_or_init(|| {
+        [0, 1, 2].map(|place| {
+            let pattern = &patterns(FULL, 0)[place];
+            let has = |e: usize| {
+                pattern.iter().any(|tet| tet.contains(&(4 + e as u8)) && tet.contains(&(9 - e as u8)))
+            };
+            (0..3).find(|&e| has(e)).map_or([4, 9], |e| [4 + e, 9 - e])
+        })
+    })[place]
 }
 
 impl Forest {
@@ -228,20 +284,21 @@ impl Forest {
     /// Whether an edge is split that only appears when the tet is divided: half of a split edge, or one between the middles of
     /// two edges of a facet.
     fn is_split_within(&self, leaf: u32, mask: u8) -> bool {
-        let edges = self.nodes[leaf as usize].edges;
-        let is_split = |edge: u32| edge != NONE && self.edges[edge as usize].is_split;
+        let edges = self.edges_of[leaf as usize];
+        let is_split = |edge: u32| edge != NONE && self.is_split[edge as usize];
         let split = (0..6).filter(|e| mask >> e & 1 == 1);
         if split.clone().any(|e| self.edges[edges[e] as usize].halves.into_iter().any(is_split)) {
             return true;
         }
-        (0..4).any(|facet| {
-            let (split, n) = super::patterns::split_edges(facet, mask);
-            (0..n).any(|i| {
-                (0..i).any(|j| {
-                    let ends = [split[i], split[j]].map(|e| self.edges[edges[e] as usize].middle);
-                    self.known_edge(ends).is_some_and(is_split)
-                })
-            })
+        FACET_EDGES.iter().any(|facet| {
+            let [x, y, z] = facet.map(|e| mask >> e & 1 == 1);
+            // One split edge has no edge to another middle.
+            if u8::from(x) + u8::from(y) + u8::from(z) < 2 {
+                return false;
+            }
+            let middles = facet.map(|e| self.edges[edges[e] as usize].middle);
+            !middles.contains(&NONE)
+                && self.inner_edges(middles).is_some_and(|inner| inner.into_iter().any(is_split))
         })
     }
 }

@@ -40,7 +40,10 @@ pub(super) fn extract(
                 open.extend((tet.first_child..tet.first_child + 8).rev());
                 continue;
             }
-            let cut = cuts.binary_search_by_key(&node, |cut| cut.node).ok().map(|i| cuts[i]);
+            let cut = match forest.mask(node) {
+                0 => None,
+                _ => cuts.binary_search_by_key(&node, |cut| cut.node).ok().map(|i| cuts[i]),
+            };
             match cut {
                 // A tet of the first mesh as it was given, which may be negative.
                 None if node == root => out.mesh.tets.push(first.tets[root as usize]),
@@ -118,7 +121,7 @@ impl<'a> Numbers<'a> {
 
     /// The parts of a triangle of the first mesh.
     fn triangle(&mut self, corners: [u32; 3], out: &mut Vec<[VertexId; 3]>) {
-        let edges = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| self.forest.known_edge([corners[i], corners[j]]));
+        let edges = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| self.forest.root_edge([corners[i], corners[j]]));
         self.part(corners, edges.map(|edge| edge.unwrap_or(NONE)), out);
     }
 
@@ -129,8 +132,7 @@ impl<'a> Numbers<'a> {
         let half = |edge: u32, end: u32| forest.half(edge, end);
         if let [Some(x), Some(y), Some(z)] = middles {
             let [a, b, c] = corners;
-            let between = |u, v| forest.known_edge([u, v]).unwrap_or(NONE);
-            let (xy, yz, zx) = (between(x, y), between(y, z), between(z, x));
+            let [yz, zx, xy] = forest.inner_edges([x, y, z]).unwrap_or([NONE; 3]);
             self.part([a, z, y], [yz, half(edges[1], a), half(edges[2], a)], out);
             self.part([z, b, x], [half(edges[0], b), zx, half(edges[2], b)], out);
             self.part([y, x, c], [half(edges[0], c), half(edges[1], c), xy], out);
@@ -144,7 +146,7 @@ impl<'a> Numbers<'a> {
 
     /// The parts of an edge of the first mesh.
     fn edge(&mut self, ends: [u32; 2], out: &mut Vec<[VertexId; 2]>) {
-        let edge = self.forest.known_edge(ends).unwrap_or(NONE);
+        let edge = self.forest.root_edge(ends).unwrap_or(NONE);
         self.edge_part(ends, edge, out);
     }
 
@@ -162,10 +164,9 @@ impl<'a> Numbers<'a> {
 impl Forest {
     /// The corners of a tet, then the middles of its edges.
     fn local(&self, node: u32) -> [u32; 10] {
-        let node = &self.nodes[node as usize];
         let mut local = [NONE; 10];
-        local[..4].copy_from_slice(&node.vertices);
-        for (e, edge) in node.edges.iter().enumerate() {
+        local[..4].copy_from_slice(&self.nodes[node as usize].vertices);
+        for (e, edge) in self.edges_of[node as usize].iter().enumerate() {
             local[4 + e] = self.edges[*edge as usize].middle;
         }
         local
@@ -173,7 +174,7 @@ impl Forest {
 
     /// The vertex in the middle of an edge that is split.
     fn split_middle(&self, edge: u32) -> Option<u32> {
-        self.edges.get(edge as usize).filter(|edge| edge.is_split).map(|edge| edge.middle)
+        (edge != NONE && self.is_split[edge as usize]).then(|| self.edges[edge as usize].middle)
     }
 
     /// The half of an edge at one of its ends.
@@ -188,14 +189,5 @@ impl Forest {
             node = self.nodes[node as usize].parent;
         }
         node
-    }
-
-    /// Bytes.
-    pub(super) fn memory(&self) -> usize {
-        size_of_val(&self.reference[..])
-            + size_of_val(&self.origin[..])
-            + size_of_val(&self.edges[..])
-            + size_of_val(&self.nodes[..])
-            + self.memory_of_names()
     }
 }

@@ -7,6 +7,7 @@ use hashbrown::HashMap;
 
 use super::patterns::{FACET_EDGES, FULL, patterns};
 use crate::base::Point;
+use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
 
@@ -21,18 +22,17 @@ pub(super) struct Edge {
     pub(super) middle: u32,
     /// The halves, each at its end, where there are any.
     pub(super) halves: [u32; 2],
-    /// Whether it is split now.
-    pub(super) is_split: bool,
 }
 
 /// A tet of the first mesh, or one of eight that a tet was divided into.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     pub(super) vertices: [u32; 4],
-    pub(super) edges: [u32; 6],
     pub(super) parent: u32,
     /// The first of the eight, which follow each other, where there ever were some.
     pub(super) first_child: u32,
+    /// The EAS in the reference.
+    pub(super) eas: f64,
     pub(super) generation: u8,
     /// Someone wants it divided.
     pub(super) is_asked: bool,
@@ -48,11 +48,19 @@ pub(super) struct Forest {
     /// The edge in whose middle a vertex is, for those after the first mesh's.
     pub(super) origin: Vec<u32>,
     pub(super) edges: Vec<Edge>,
+    /// Of each edge, whether it is split now; apart from the edges, since it is read most.
+    pub(super) is_split: Vec<bool>,
     pub(super) nodes: Vec<Node>,
+    /// Of each tet, its edges.
+    pub(super) edges_of: Vec<[u32; 6]>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
-    /// Edges by their ends, those alone that more than one tree may have: of roots, and between middles of one facet.
-    by_ends: HashMap<[u32; 2], u32>,
+    /// The edges of roots, by their ends.
+    of_roots: HashMap<[u32; 2], u32>,
+    /// The three edges between the middles of a facet's edges, by the first two of these: the first of them, see [`Self::inner_edges`].
+    of_facets: HashMap<[u32; 2], u32>,
+    /// Of tets with some edges split, which edges they need split: what was found once holds for good.
+    pub(super) goals: HashMap<(u32, u8), u8>,
 }
 
 impl Forest {
@@ -64,32 +72,51 @@ impl Forest {
             n_roots,
             n_first_vertices: points.len(),
             nodes: Vec::with_capacity(n_roots),
+            edges_of: Vec::with_capacity(n_roots),
             ..Self::default()
         };
         for vertices in tets {
-            let edges = EDGES.map(|[i, j]| forest.edge([vertices[i], vertices[j]]));
-            forest.nodes.push(Node {
-                vertices,
-                edges,
-                parent: NONE,
-                first_child: NONE,
-                generation: 0,
-                is_asked: false,
-                is_divided: false,
-            });
+            let edges = EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]]));
+            let eas = eas(vertices.map(|v| points[v as usize]));
+            forest.push(vertices, edges, NONE, 0, eas);
         }
         forest
     }
 
-    /// The edge between two vertices, of those that are known by their ends.
-    pub(super) fn known_edge(&self, [u, v]: [u32; 2]) -> Option<u32> {
-        self.by_ends.get(&[u.min(v), u.max(v)]).copied()
+    fn push(&mut self, vertices: [u32; 4], edges: [u32; 6], parent: u32, generation: u8, eas: f64) {
+        let (is_asked, is_divided) = (false, false);
+        self.nodes.push(Node { vertices, parent, first_child: NONE, eas, generation, is_asked, is_divided });
+        self.edges_of.push(edges);
+    }
+
+    /// The edge between two vertices of the first mesh.
+    pub(super) fn root_edge(&self, [u, v]: [u32; 2]) -> Option<u32> {
+        self.of_roots.get(&[u.min(v), u.max(v)]).copied()
     }
 
     /// The same, a new one if there is none.
-    fn edge(&mut self, [u, v]: [u32; 2]) -> u32 {
+    fn make_root_edge(&mut self, [u, v]: [u32; 2]) -> u32 {
         let ends = [u.min(v), u.max(v)];
-        *self.by_ends.entry(ends).or_insert_with(|| push_edge(&mut self.edges, ends))
+        *self.of_roots.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
+    }
+
+    /// The edges within a facet between the middles of its edges, if it was ever divided: edge `k` is that opposite middle `k`.
+    pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
+        let (order, key) = ordered(middles);
+        self.of_facets.get(&key).map(|&first| named(order, first))
+    }
+
+    /// The same, new ones if there are none.
+    fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
+        let (order, key) = ordered(middles);
+        let first = *self.of_facets.entry(key).or_insert_with(|| {
+            let [x, y, z] = order.map(|k| middles[k]);
+            let first = push_edge(&mut self.edges, &mut self.is_split, [y, z]);
+            push_edge(&mut self.edges, &mut self.is_split, [x, z]);
+            push_edge(&mut self.edges, &mut self.is_split, [x, y]);
+            first
+        });
+        named(order, first)
     }
 
     /// The vertex in the middle of an edge.
@@ -111,7 +138,7 @@ impl Forest {
         if halves[0] != NONE {
             return halves;
         }
-        let halves = ends.map(|end| push_edge(&mut self.edges, [end, middle]));
+        let halves = ends.map(|end| push_edge(&mut self.edges, &mut self.is_split, [end, middle]));
         self.edges[edge as usize].halves = halves;
         halves
     }
@@ -129,13 +156,17 @@ impl Forest {
     /// Which edges of a tet are split.
     #[inline]
     pub(super) fn mask(&self, node: u32) -> u8 {
-        let split = self.nodes[node as usize].edges.map(|edge| self.edges[edge as usize].is_split);
-        (0..6).fold(0, |mask, e| mask | u8::from(split[e]) << e)
+        let mut mask = 0;
+        for (e, edge) in self.edges_of[node as usize].iter().enumerate() {
+            mask |= u8::from(self.is_split[*edge as usize]) << e;
+        }
+        mask
     }
 
     /// Divides a tet into eight, along a diagonal of its octahedron, and gives the first; which it may have been before.
-    pub(super) fn divide(&mut self, node: u32, diagonal: impl FnOnce(&Self) -> usize) -> u32 {
-        let Node { vertices, edges, first_child, generation, .. } = self.nodes[node as usize];
+    pub(super) fn divide(&mut self, node: u32, way: impl FnOnce(&Self) -> Way) -> u32 {
+        let Node { vertices, first_child, generation, eas, .. } = self.nodes[node as usize];
+        let edges = self.edges_of[node as usize];
         self.nodes[node as usize].is_divided = true;
         if first_child != NONE {
             return first_child;
@@ -154,31 +185,30 @@ impl Forest {
             (between[i][4 + e], between[j][4 + e]) = (at_i, at_j);
         }
         for facet in FACET_EDGES {
-            for [a, b] in [[0, 1], [0, 2], [1, 2]].map(|[i, j]| [4 + facet[i], 4 + facet[j]]) {
-                between[a.min(b)][a.max(b)] = self.edge([local[a], local[b]]);
-            }
+            let [a, b, c] = [4 + facet[0], 4 + facet[1], 4 + facet[2]];
+            let [bc, ca, ab] = self.make_inner_edges([local[a], local[b], local[c]]);
+            between[b.min(c)][b.max(c)] = bc;
+            between[c.min(a)][c.max(a)] = ca;
+            between[a.min(b)][a.max(b)] = ab;
         }
-        let way = &patterns(FULL, 0)[diagonal(self)];
+        let way = way(self);
         let first = self.nodes.len() as u32;
         self.nodes[node as usize].first_child = first;
-        for tet in way {
-            let tet = tet.map(usize::from);
-            let edges = EDGES.map(|[i, j]| {
-                let (a, b) = (tet[i].min(tet[j]), tet[i].max(tet[j]));
-                if between[a][b] == NONE {
-                    between[a][b] = push_edge(&mut self.edges, [local[a], local[b]]);
+        for (tet, inner) in patterns(FULL, 0)[way.place].iter().zip(way.inner) {
+            let mut edges = [NONE; 6];
+            for (edge, [i, j]) in edges.iter_mut().zip(EDGES) {
+                let (i, j) = (usize::from(tet[i]), usize::from(tet[j]));
+                let known = &mut between[i.min(j)][i.max(j)];
+                if *known == NONE {
+                    *known = push_edge(&mut self.edges, &mut self.is_split, [local[i], local[j]]);
                 }
-                between[a][b]
-            });
-            self.nodes.push(Node {
-                vertices: tet.map(|i| local[i]),
-                edges,
-                parent: node,
-                first_child: NONE,
-                generation: generation + 1,
-                is_asked: false,
-                is_divided: false,
-            });
+                *edge = *known;
+            }
+            let mut vertices = [NONE; 4];
+            for (vertex, v) in vertices.iter_mut().zip(tet) {
+                *vertex = local[usize::from(*v)];
+            }
+            self.push(vertices, edges, node, generation + 1, inner.unwrap_or(eas));
         }
         first
     }
@@ -188,7 +218,7 @@ impl Forest {
     pub(super) fn cuts(&self, node: u32, mask: u8) -> u8 {
         (0..4).fold(0, |cuts, facet| {
             let (split, n) = super::patterns::split_edges(facet, mask);
-            let [first, second, _] = split.map(|e| self.nodes[node as usize].edges[e]);
+            let [first, second, _] = split.map(|e| self.edges_of[node as usize][e]);
             cuts | u8::from(n == 2 && self.is_longer(second, first)) << facet
         })
     }
@@ -216,9 +246,18 @@ impl Forest {
         first > second || first == second && (place(p), p) > (place(q), q)
     }
 
-    /// Bytes of the list of edges by their ends.
-    pub(super) fn memory_of_names(&self) -> usize {
-        self.by_ends.capacity() * size_of::<([u32; 2], u32)>() + self.by_ends.capacity()
+    /// Bytes.
+    pub(super) fn memory(&self) -> usize {
+        // An entry and a byte beside it.
+        let named =
+            (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<([u32; 2], u32)>() + 1);
+        size_of_val(&self.reference[..])
+            + size_of_val(&self.origin[..])
+            + size_of_val(&self.edges[..])
+            + size_of_val(&self.is_split[..])
+            + size_of_val(&self.nodes[..])
+            + size_of_val(&self.edges_of[..])
+            + named
     }
 }
 
@@ -232,7 +271,32 @@ pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
     places
 }
 
-fn push_edge(edges: &mut Vec<Edge>, ends: [u32; 2]) -> u32 {
-    edges.push(Edge { ends, middle: NONE, halves: [NONE; 2], is_split: false });
+/// The places of three middles in rising order, and the first two of them.
+fn ordered(middles: [u32; 3]) -> ([usize; 3], [u32; 2]) {
+    let mut order = [0, 1, 2];
+    order.sort_unstable_by_key(|&k| middles[k]);
+    (order, [middles[order[0]], middles[order[1]]])
+}
+
+/// Three edges that follow each other, each opposite a middle.
+fn named(order: [usize; 3], first: u32) -> [u32; 3] {
+    let mut edges = [NONE; 3];
+    for (k, edge) in order.into_iter().zip(first..) {
+        edges[k] = edge;
+    }
+    edges
+}
+
+/// One of the three ways to divide a tet into eight.
+pub(super) struct Way {
+    /// Its place among the patterns.
+    pub(super) place: usize,
+    /// The EAS of those of the eight that have not the shape of the whole.
+    pub(super) inner: [Option<f64>; 8],
+}
+
+fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [u32; 2]) -> u32 {
+    edges.push(Edge { ends, middle: NONE, halves: [NONE; 2] });
+    is_split.push(false);
     (edges.len() - 1) as u32
 }

@@ -5,7 +5,6 @@ use super::extract::{Extracted, extract};
 use super::forest::{Forest, NONE};
 use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
 
 /// How to divide.
@@ -89,8 +88,7 @@ impl Refinement {
             false => [b, a, c, d],
         });
         let forest = Forest::new(&mesh.points, positive.map(|tet| tet.map(|v| v.0)));
-        let worst = threads.map(mesh.tets.len(), |i| eas(corners(mesh.tets[i])).abs());
-        let worst = worst.into_iter().fold(f64::INFINITY, f64::min);
+        let worst = forest.nodes.iter().map(|root| root.eas).fold(f64::INFINITY, f64::min);
         let need = Need { floor: options.keep * worst, share: options.share };
         let mut refinement = Self {
             first: mesh.clone(),
