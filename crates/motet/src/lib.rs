@@ -10,6 +10,7 @@
 //! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
 //! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
 //! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
+//! | [`refine`] | 6 | tets divided, many generations deep, without loss of shape; and the way back |
 //! | [`remesh`] | 6 | bad tets found, classified, repaired, and only those |
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
 //! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |

@@ -1,5 +1,7 @@
 //! How many threads a call may use: always the caller's choice, never a global pool.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::base::{Error, Result};
@@ -46,6 +48,24 @@ impl Threads {
             Some(pool) => {
                 pool.install(|| (0..n).into_par_iter().with_min_len(SMALLEST_PART).map(of).collect())
             }
+        }
+    }
+
+    /// What `of` says of each run of so many of the numbers below `n`, joined in their order. It works on a state that is kept for the next run.
+    pub fn in_runs<S: Default, T: Send>(
+        &self,
+        n: usize,
+        length: usize,
+        of: impl Fn(&mut S, Range<usize>) -> Vec<T> + Sync + Send,
+    ) -> Vec<T> {
+        match &self.pool {
+            None => of(&mut S::default(), 0..n),
+            Some(pool) => pool.install(|| {
+                let runs =
+                    (0..n.div_ceil(length)).into_par_iter().map(|k| k * length..n.min((k + 1) * length));
+                let parts: Vec<Vec<T>> = runs.map_init(S::default, of).collect();
+                parts.into_iter().flatten().collect()
+            }),
         }
     }
 

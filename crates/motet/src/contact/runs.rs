@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
-
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
 use crate::spatial::{self, Bounds};
@@ -11,20 +9,13 @@ use crate::spatial::{self, Bounds};
 /// Things that a thread does in one go: a few microseconds each, so that sharing out costs nothing beside.
 const RUN: usize = 128;
 
-/// What `run` says of each run of the numbers below `n`, joined. It works on a state that is kept for the next run.
+/// [`Threads::in_runs`] of so many.
 pub(super) fn in_runs<S: Default, T: Send>(
     n: usize,
     threads: &Threads,
     run: impl Fn(&mut S, Range<usize>) -> Vec<T> + Sync + Send,
 ) -> Vec<T> {
-    match threads.pool() {
-        None => run(&mut S::default(), 0..n),
-        Some(pool) => pool.install(|| {
-            let runs = (0..n.div_ceil(RUN)).into_par_iter().map(|k| k * RUN..n.min((k + 1) * RUN));
-            let parts: Vec<Vec<T>> = runs.map_init(S::default, run).collect();
-            parts.into_iter().flatten().collect()
-        }),
-    }
+    threads.in_runs(n, RUN, run)
 }
 
 /// The corners of a triangle.

@@ -3,10 +3,8 @@
 //! What holds at the end follows from what was asked alone: each sweep looks at all tets as the sweep before left them. So no order of visiting, no
 //! number of threads and no earlier division changes it, and taking back what was asked brings back the mesh that was there before.
 
-use std::sync::OnceLock;
-
 use super::forest::{Forest, NONE, Way, with_middles};
-use super::patterns::{FACET_EDGES, FULL, patterns};
+use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
@@ -36,16 +34,29 @@ pub(super) struct Cut {
     pub(super) way: u8,
 }
 
-/// What one tet needs.
+/// What a tet with some edges split needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Verdict {
-    /// Its split edges.
+pub(super) struct Goal {
+    /// Which edges split: the same where it fits, more where it has to grow, all where it has to be divided.
     mask: u8,
-    /// Those that it needs split: the same where it fits, more where it has to grow, all where it has to be divided.
-    goal: u8,
+    /// The cuts of its facets, and which of the ways to fill it, where it fits.
+    cuts: u8,
+    way: u8,
+}
+
+/// What a sweep says of a tet with split edges.
+#[derive(Clone, Copy, Debug)]
+struct Verdict {
+    /// Its place among the leaves.
+    leaf: usize,
+    mask: u8,
+    goal: Goal,
     /// Whether shapes were looked at, which is worth remembering.
     is_new: bool,
 }
+
+/// Tets that a thread looks at in one go.
+const RUN: usize = 4096;
 
 /// What closing came to.
 #[derive(Debug, Default)]
@@ -68,48 +79,46 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
     }
     let mut leaves: Vec<u32> = (0..forest.nodes.len() as u32).filter(|&node| forest.is_leaf(node)).collect();
     let mut closed = Closed::default();
-    let mut masks = vec![0u8; leaves.len()];
     loop {
         closed.n_sweeps += 1;
         let shared: &Forest = forest;
-        let verdicts = threads.map(leaves.len(), |i| verdict(shared, leaves[i], need));
+        let verdicts = threads.in_runs(leaves.len(), RUN, |(): &mut (), run| {
+            run.filter_map(|i| verdict(shared, i, leaves[i], need)).collect()
+        });
         let mut is_done = true;
-        let (mut came, mut n) = (Vec::new(), 0);
-        for (i, Verdict { mask, goal, is_new }) in verdicts.into_iter().enumerate() {
+        let mut gone = Vec::new();
+        for &Verdict { leaf: i, mask, goal, is_new } in &verdicts {
             let leaf = leaves[i];
             if is_new {
                 forest.goals.insert((leaf, mask), goal);
             }
-            is_done &= goal == mask && goal != FULL;
-            if goal == FULL {
+            if goal.mask == FULL {
                 closed.n_promoted += 1;
                 let first = divide(forest, leaf, need);
-                came.extend(first..first + 8);
-                continue;
-            }
-            if goal != mask {
+                leaves.extend(first..first + 8);
+                gone.push(i);
+            } else if goal.mask != mask {
                 let edges = forest.edges_of[leaf as usize];
-                for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal >> e & 1 == 1) {
+                for (_, edge) in edges.into_iter().enumerate().filter(|(e, _)| goal.mask >> e & 1 == 1) {
                     forest.middle(edge);
                     forest.is_split[edge as usize] = true;
                 }
             }
-            (leaves[n], masks[n]) = (leaf, mask);
-            n += 1;
+            is_done &= goal.mask == mask && mask != FULL;
         }
         if is_done {
-            break;
+            let cut = |&Verdict { leaf, mask, goal: Goal { cuts, way, .. }, .. }: &Verdict| Cut {
+                node: leaves[leaf],
+                mask,
+                cuts,
+                way,
+            };
+            closed.cuts = verdicts.iter().map(cut).collect();
+            closed.cuts.sort_unstable_by_key(|cut| cut.node);
+            return closed;
         }
-        leaves.truncate(n);
-        leaves.extend(came);
-        masks.resize(leaves.len(), 0);
+        gone.into_iter().rev().for_each(|i| _ = leaves.swap_remove(i));
     }
-    let shared: &Forest = forest;
-    let cut_leaves: Vec<u32> =
-        leaves.into_iter().zip(masks).filter(|(_, mask)| *mask != 0).map(|(leaf, _)| leaf).collect();
-    closed.cuts = threads.map(cut_leaves.len(), |i| cut(shared, cut_leaves[i]));
-    closed.cuts.sort_unstable_by_key(|cut| cut.node);
-    closed
 }
 
 fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
@@ -123,28 +132,28 @@ fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
     first
 }
 
-fn verdict(forest: &Forest, leaf: u32, need: Need) -> Verdict {
+fn verdict(forest: &Forest, i: usize, leaf: u32, need: Need) -> Option<Verdict> {
     let mask = forest.mask(leaf);
-    let known = |goal| Verdict { mask, goal, is_new: false };
     if mask == 0 {
-        return known(0);
+        return None;
     }
+    let known = |goal| Some(Verdict { leaf: i, mask, goal, is_new: false });
     if mask == FULL || forest.is_split_within(leaf, mask) {
-        return known(FULL);
+        return known(Goal { mask: FULL, cuts: 0, way: 0 });
     }
     match forest.goals.get(&(leaf, mask)) {
         Some(goal) => known(*goal),
-        None => Verdict { mask, goal: goal(forest, leaf, mask, need), is_new: true },
+        None => Some(Verdict { leaf: i, mask, goal: goal(forest, leaf, mask, need), is_new: true }),
     }
 }
 
-/// Which edges a tet needs split to be cut well, given those that are; all where only division helps. It follows from the reference alone.
-fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> u8 {
+/// What a tet needs to be cut well. It follows from the reference alone.
+fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
     let places = forest.places(leaf);
     let whole = forest.nodes[leaf as usize].eas;
     let need = need.of(whole);
-    if best_cut(forest, leaf, mask, &places, need).is_some() {
-        return mask;
+    if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, need) {
+        return Goal { mask, cuts, way };
     }
     // The fewest edges more, then the best shape.
     let larger = (mask + 1..FULL).filter(|m| m & mask == mask);
@@ -153,19 +162,12 @@ fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> u8 {
         let good =
             good.filter_map(|m| best_cut(forest, leaf, m, &places, need).map(|(_, _, worst)| (m, worst)));
         if let Some((mask, _)) = good.reduce(|x, y| if y.1 > x.1 { y } else { x }) {
-            return mask;
+            return Goal { mask, cuts: 0, way: 0 };
         }
     }
-    let worst = best_cut(forest, leaf, mask, &places, f64::NEG_INFINITY).map_or(0.0, |(_, _, worst)| worst);
-    if best_way(&places, whole, need).worst(whole) > worst { FULL } else { mask }
-}
-
-/// The cut of a tet that has split edges.
-fn cut(forest: &Forest, leaf: u32) -> Cut {
-    let mask = forest.mask(leaf);
-    let best = best_cut(forest, leaf, mask, &forest.places(leaf), f64::NEG_INFINITY);
-    let (cuts, way, _) = best.unwrap_or_default();
-    Cut { node: leaf, mask, cuts, way }
+    let (cuts, way, worst) = best_cut(forest, leaf, mask, &places, f64::NEG_INFINITY).unwrap_or_default();
+    let mask = if best_way(&places, whole, need).worst(whole) > worst { FULL } else { mask };
+    Goal { mask, cuts, way }
 }
 
 /// Of all ways to fill a tet with these edges split the one whose worst tet is best, with the cuts of the facets and that EAS; `None` where it is below
@@ -189,10 +191,6 @@ fn best_cut(forest: &Forest, leaf: u32, mask: u8, places: &[Point; 10], least: f
     best
 }
 
-fn worst_of(places: &[Point; 10], tets: &[[u8; 4]]) -> f64 {
-    tets.iter().map(|tet| eas(corners_at(places, tet))).fold(f64::INFINITY, f64::min)
-}
-
 /// Which of the three ways to divide a tet of this EAS into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive
 /// subdivisions of tetrahedra and multigrid methods on tetrahedral meshes*), unless one of the eight, or of theirs, is then below
 /// the floor: then along the one that leaves the best.
@@ -206,32 +204,43 @@ fn best_way(places: &[Point; 10], whole: f64, floor: f64) -> Way {
     let way = Way::new(places, shortest);
     // Two generations hardly more than halve the quality.
     let worst = way.worst(whole);
-    if worst >= 2.0 * floor || worst >= floor && worst_below(places, shortest, 1) >= floor {
+    if worst >= 2.0 * floor || worst >= floor && worst_below(places, &way, whole, 1) >= floor {
         return way;
     }
-    let worst = [0, 1, 2].map(|place| worst_below(places, place, 2));
-    Way::new(places, (0..3).reduce(|x, y| if worst[y] > worst[x] { y } else { x }).unwrap_or(shortest))
+    let below = |place: usize| {
+        let way = Way::new(places, place);
+        (worst_below(places, &way, whole, 2), way)
+    };
+    let [mut best, second, third] = [0, 1, 2].map(below);
+    for other in [second, third] {
+        best = if other.0 > best.0 { other } else { best };
+    }
+    best.1
+}
+
+/// The worst of the eight and of so many generations below, each along its best diagonal.
+fn worst_below(places: &[Point; 10], way: &Way, whole: f64, generations: usize) -> f64 {
+    let mut worst = way.worst(whole);
+    if generations == 0 {
+        return worst;
+    }
+    // Those at the corners have the shape of the whole.
+    for tet in inner_tets(way.place) {
+        let corners = corners_at(places, &tet[0]);
+        let (shape, places) = (eas(corners), with_middles(corners));
+        let below = |place| worst_below(&places, &Way::new(&places, place), shape, generations - 1);
+        worst = (0..3).map(below).fold(f64::NEG_INFINITY, f64::max).min(worst);
+    }
+    worst
 }
 
 impl Way {
-    /// Of the eight, those at the corners have the shape of the whole, and the others are two and their images in the centre.
     fn new(places: &[Point; 10], place: usize) -> Self {
-        let pattern = &patterns(FULL, 0)[place];
-        let mut inner = [None; 8];
-        for (k, tet) in pattern.iter().enumerate() {
-            if inner[k].is_some() || tet.iter().any(|v| *v < 4) {
-                continue;
-            }
-            let shape = eas(corners_at(places, tet));
-            let is_image = |other: &[u8; 4]| tet.iter().all(|v| other.contains(&(13 - v)));
-            let image = pattern.iter().position(is_image).unwrap_or(k);
-            (inner[k], inner[image]) = (Some(shape), Some(shape));
-        }
-        Self { place, inner }
+        Self { place, inner: inner_tets(place).map(|pair| eas(corners_at(places, &pair[0]))) }
     }
 
     fn worst(&self, whole: f64) -> f64 {
-        self.inner.iter().flatten().copied().fold(whole, f64::min)
+        self.inner.into_iter().fold(whole, f64::min)
     }
 }
 
@@ -241,37 +250,6 @@ fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
         *corner = places[usize::from(*v)];
     }
     corners
-}
-
-/// The worst of the eight and of so many generations below, each along its best diagonal.
-fn worst_below(places: &[Point; 10], way: usize, generations: usize) -> f64 {
-    let pattern = &patterns(FULL, 0)[way];
-    let worst = worst_of(places, pattern);
-    if generations == 0 {
-        return worst;
-    }
-    // Those at the corners have the shape of the whole.
-    let inner = pattern.iter().filter(|tet| tet.iter().all(|v| *v >= 4));
-    inner.fold(worst, |worst, tet| {
-        let places = with_middles(tet.map(|v| places[usize::from(v)]));
-        let below =
-            (0..3).map(|way| worst_below(&places, way, generations - 1)).fold(f64::NEG_INFINITY, f64::max);
-        worst.min(below)
-    })
-}
-
-/// The local vertices at the ends of the diagonal of each way.
-fn ends(place: usize) -> [usize; 2] {
-    static ENDS: OnceLock<[[usize; 2]; 3]> = OnceLock::new();
-    ENDS.get_or_init(|| {
-        [0, 1, 2].map(|place| {
-            let pattern = &patterns(FULL, 0)[place];
-            let has = |e: usize| {
-                pattern.iter().any(|tet| tet.contains(&(4 + e as u8)) && tet.contains(&(9 - e as u8)))
-            };
-            (0..3).find(|&e| has(e)).map_or([4, 9], |e| [4 + e, 9 - e])
-        })
-    })[place]
 }
 
 impl Forest {

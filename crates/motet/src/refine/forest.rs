@@ -5,7 +5,8 @@
 
 use hashbrown::HashMap;
 
-use super::patterns::{FACET_EDGES, FULL, patterns};
+use super::close::Goal;
+use super::patterns::{FACET_EDGES, FULL, inner_tets, patterns};
 use crate::base::Point;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
@@ -59,8 +60,8 @@ pub(super) struct Forest {
     of_roots: HashMap<[u32; 2], u32>,
     /// The three edges between the middles of a facet's edges, by the first two of these: the first of them, see [`Self::inner_edges`].
     of_facets: HashMap<[u32; 2], u32>,
-    /// Of tets with some edges split, which edges they need split: what was found once holds for good.
-    pub(super) goals: HashMap<(u32, u8), u8>,
+    /// Of tets with some edges split, what they need: what was found once holds for good.
+    pub(super) goals: HashMap<(u32, u8), Goal>,
 }
 
 impl Forest {
@@ -194,7 +195,9 @@ impl Forest {
         let way = way(self);
         let first = self.nodes.len() as u32;
         self.nodes[node as usize].first_child = first;
-        for (tet, inner) in patterns(FULL, 0)[way.place].iter().zip(way.inner) {
+        let inner = inner_tets(way.place);
+        for tet in &patterns(FULL, 0)[way.place] {
+            let shape = (0..2).find(|&k| inner[k].contains(tet)).map_or(eas, |k| way.inner[k]);
             let mut edges = [NONE; 6];
             for (edge, [i, j]) in edges.iter_mut().zip(EDGES) {
                 let (i, j) = (usize::from(tet[i]), usize::from(tet[j]));
@@ -208,7 +211,7 @@ impl Forest {
             for (vertex, v) in vertices.iter_mut().zip(tet) {
                 *vertex = local[usize::from(*v)];
             }
-            self.push(vertices, edges, node, generation + 1, inner.unwrap_or(eas));
+            self.push(vertices, edges, node, generation + 1, shape);
         }
         first
     }
@@ -291,8 +294,8 @@ fn named(order: [usize; 3], first: u32) -> [u32; 3] {
 pub(super) struct Way {
     /// Its place among the patterns.
     pub(super) place: usize,
-    /// The EAS of those of the eight that have not the shape of the whole.
-    pub(super) inner: [Option<f64>; 8],
+    /// The EAS of [`inner_tets`]: the others of the eight have the shape of the whole.
+    pub(super) inner: [f64; 2],
 }
 
 fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [u32; 2]) -> u32 {

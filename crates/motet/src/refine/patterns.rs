@@ -27,6 +27,34 @@ pub(super) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
     &table[usize::from(mask & FULL) * 16 + usize::from(cuts & 15)]
 }
 
+/// The local vertices at the ends of the diagonal of each of the three ways to divide a tet into eight.
+pub(super) fn ends(way: usize) -> [usize; 2] {
+    static ENDS: OnceLock<[[usize; 2]; 3]> = OnceLock::new();
+    ENDS.get_or_init(|| {
+        [0, 1, 2].map(|way| {
+            let is_in = |tet: &[u8; 4], e: u8| tet.contains(&(4 + e)) && tet.contains(&(9 - e));
+            let diagonal = (0..3).find(|&e| patterns(FULL, 0)[way].iter().any(|tet| is_in(tet, e)));
+            diagonal.map_or([4, 9], |e| [4 + usize::from(e), 9 - usize::from(e)])
+        })
+    })[way]
+}
+
+/// The four of each way that lie around its diagonal: two, each with its image in the centre of the octahedron, which has the same shape.
+pub(super) fn inner_tets(way: usize) -> [[[u8; 4]; 2]; 2] {
+    static INNER: OnceLock<[[[[u8; 4]; 2]; 2]; 3]> = OnceLock::new();
+    INNER.get_or_init(|| {
+        [0, 1, 2].map(|way| {
+            let inner: Vec<_> =
+                patterns(FULL, 0)[way].iter().filter(|tet| tet.iter().all(|v| *v >= 4)).collect();
+            let is_image = |x: &[u8; 4], y: &[u8; 4]| x.iter().all(|v| y.contains(&(13 - v)));
+            let image = |x: &[u8; 4]| inner.iter().find(|y| is_image(x, y)).map_or(*x, |y| **y);
+            let first = *inner[0];
+            let second = inner.iter().find(|x| ***x != first && ***x != image(&first)).map_or(first, |x| **x);
+            [first, second].map(|x| [x, image(&x)])
+        })
+    })[way]
+}
+
 /// The split edges of a facet, in the order of [`FACET_EDGES`], and how many they are.
 pub(super) fn split_edges(facet: usize, mask: u8) -> ([usize; 3], usize) {
     let (mut edges, mut n) = ([0; 3], 0);
