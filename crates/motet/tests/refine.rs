@@ -7,12 +7,13 @@ use std::collections::HashMap;
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{eas, mean_ratio};
-use motet::geometry::tet::{FACETS, centroid, volume};
+use motet::geometry::tet::{self, FACETS, centroid, volume};
 use motet::geometry::triangle::area;
 use motet::geometry::vector::{add, distance};
 use motet::mesh::shapes::sphere_in_box;
 use motet::mesh::{TetMesh, TetPart};
-use motet::refine::{Options, Refinement};
+use motet::refine::{Options, Refinement, estimate, mark};
+use motet::spatial::NearestTriangle;
 
 fn corners(mesh: &TetMesh, tet: [VertexId; 4]) -> [Point; 4] {
     tet.map(|v| mesh.points[v.index()])
@@ -224,4 +225,181 @@ fn the_order_of_marks_and_threads_change_nothing() {
         assert_eq!(a.mesh(), b.mesh());
         fits(&first, a.mesh());
     }
+}
+
+#[test]
+fn a_linear_field_has_no_error_and_its_gradient_everywhere() {
+    let threads = Threads::single();
+    let mesh = random_mesh(200, 3);
+    let values: Vec<f64> = mesh.points.iter().map(|p| 3.0 + 2.0 * p[0] - p[1] + 0.5 * p[2]).collect();
+    for gradient in estimate::gradients(&mesh, &values, &threads) {
+        assert!(distance(gradient, [2.0, -1.0, 0.5]) < 1e-6, "{gradient:?}");
+    }
+    assert!(estimate::gradient_jump(&mesh, &values, &threads).iter().all(|e| *e < 1e-6));
+    assert!(estimate::recovery(&mesh, &values, &threads).iter().all(|e| *e < 1e-6));
+}
+
+#[test]
+fn estimates_are_the_integrals_that_they_are_said_to_be() {
+    let threads = Threads::single();
+    // Two tets at one facet in the plane z = 0, one above and one below.
+    let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]];
+    let mesh = TetMesh::new(points, vec![[0, 1, 2, 3].map(VertexId), [0, 1, 2, 4].map(VertexId)]);
+    // The field z above and -3 z below: its derivative jumps by 4 across a triangle of area 1/2.
+    let values = [0.0, 0.0, 0.0, 1.0, 6.0];
+    let jump = estimate::gradient_jump(&mesh, &values, &threads);
+    let expected = [2f64.sqrt(), 5f64.sqrt()].map(|h| (h / 24.0 * 16.0 * 0.5).sqrt());
+    assert!(jump.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-14), "{jump:?} {expected:?}");
+    // Recovered at the three shared vertices: (1/6 - 3 * 2/6) / (3/6); at the others their own.
+    let recovered = (1.0 / 6.0 - 1.0) / 0.5;
+    let by_quadrature = |own: f64, volume: f64| {
+        // Four points integrate squares of linear functions exactly.
+        let (a, b) = (0.138_196_601_125_010_5, 0.585_410_196_624_968_5);
+        let at = |weight_of_tip: f64| (1.0 - weight_of_tip) * (recovered - own);
+        (volume / 4.0 * (3.0 * at(a).powi(2) + at(b).powi(2))).sqrt()
+    };
+    let found = estimate::recovery(&mesh, &values, &threads);
+    let expected = [by_quadrature(1.0, 1.0 / 6.0), by_quadrature(-3.0, 2.0 / 6.0)];
+    assert!(found.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-14), "{found:?} {expected:?}");
+}
+
+#[test]
+fn a_turning_flow_has_vorticity_and_a_straining_one_none() {
+    let threads = Threads::single();
+    let mesh = ball_in_box();
+    let turning: Vec<Point> = mesh.points.iter().map(|p| [-2.0 * p[1], 2.0 * p[0], 0.0]).collect();
+    assert!(
+        estimate::vorticity(&mesh, &turning, &threads).iter().all(|w| distance(*w, [0.0, 0.0, 4.0]) < 1e-9)
+    );
+    assert!(estimate::q_criterion(&mesh, &turning, &threads).iter().all(|q| (q - 4.0).abs() < 1e-9));
+    let straining: Vec<Point> = mesh.points.iter().map(|p| [p[0], -p[1], 0.0]).collect();
+    assert!(estimate::vorticity(&mesh, &straining, &threads).iter().all(|w| distance(*w, [0.0; 3]) < 1e-9));
+    assert!(estimate::q_criterion(&mesh, &straining, &threads).iter().all(|q| (q + 1.0).abs() < 1e-9));
+}
+
+#[test]
+fn marks_are_those_that_are_asked_for() {
+    let threads = Threads::single();
+    let mesh = random_mesh(300, 4);
+    let centre = [0.4, 0.5, 0.6];
+    let by_samples = |t: &[VertexId; 4], radius: f64| {
+        let c = corners(&mesh, *t);
+        let steps = 12;
+        let near = |[i, j, k]: [usize; 3]| {
+            let l = steps - i - j - k;
+            let p = [0, 1, 2].map(|a| {
+                [i, j, k, l].iter().zip(c).map(|(w, c)| *w as f64 * c[a]).sum::<f64>() / steps as f64
+            });
+            distance(p, centre) <= radius
+        };
+        let all = (0..=steps)
+            .flat_map(|i| (0..=steps - i).flat_map(move |j| (0..=steps - i - j).map(move |k| [i, j, k])));
+        all.into_iter().any(near)
+    };
+    let marked = mark::in_ball(&mesh, centre, 0.2, &threads);
+    let (mut surely, mut n) = (0, 0);
+    for (i, t) in (0..).zip(&mesh.tets) {
+        // What a sample finds is marked, and what is marked is found within a little more.
+        let is_marked = marked.binary_search(&TetId(i)).is_ok();
+        assert!(is_marked || !by_samples(t, 0.2));
+        assert!(!is_marked || by_samples(t, 0.2 + 0.2));
+        surely += usize::from(by_samples(t, 0.2));
+        n += usize::from(is_marked);
+    }
+    assert!(surely > 50 && n >= surely && n < mesh.tets.len() / 2, "{surely} {n}");
+    let estimates = [3.0, 0.0, 1.0, 3.0, f64::NAN, 2.0];
+    // 9, 9, 4, 1 of 23.
+    assert_eq!(mark::largest_share(&estimates, 0.35), [TetId(0)]);
+    assert_eq!(mark::largest_share(&estimates, 0.5), [TetId(0), TetId(3)]);
+    assert_eq!(mark::largest_share(&estimates, 1.0), [0, 2, 3, 5].map(TetId));
+    assert_eq!(mark::largest_share(&estimates, 0.0), []);
+    assert_eq!(mark::to_count(&estimates, 6 + 14), [TetId(0), TetId(3)]);
+    assert_eq!(mark::to_count(&estimates, 2), []);
+}
+
+#[test]
+fn edges_get_as_short_as_is_wanted_near_a_surface() {
+    let threads = Threads::single();
+    let first = ball_in_box();
+    let plate = [[-0.3, -0.3, 0.02], [0.4, -0.3, 0.02], [0.0, 0.5, 0.02]].map(|p| add(p, [1.5, 0.0, 0.0]));
+    let surface = NearestTriangle::new(&plate, &[[0, 1, 2].map(VertexId)], &threads);
+    let (size, growth) = (0.12, 0.6);
+    let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
+    let mut n = 0;
+    loop {
+        let marked = mark::near_surface(refinement.mesh(), &surface, size, growth, &threads);
+        println!("{} marked of {}", marked.len(), refinement.mesh().tets.len());
+        if marked.is_empty() {
+            break;
+        }
+        refinement.refine(&marked, &threads).unwrap();
+        n += 1;
+        assert!(n < 12);
+    }
+    assert!(n > 2);
+    fits(&first, refinement.mesh());
+    // By the definition: no edge of a tet is longer than what is wanted at its place nearest to the surface.
+    let mesh = refinement.mesh();
+    for t in &mesh.tets {
+        let c = corners(mesh, *t);
+        let longest = (0..4)
+            .flat_map(|i| (0..i).map(move |j| (i, j)))
+            .map(|(i, j)| distance(c[i], c[j]))
+            .fold(0.0, f64::max);
+        // Of the tet, the place nearest to the place of the surface that is nearest to the centre.
+        let near = |p: Point| surface.closest(p).unwrap();
+        let foot = near(centroid(c)).point;
+        let weights = tet::closest(c, foot);
+        let place = [0, 1, 2].map(|k| (0..4).map(|i| weights[i] * c[i][k]).sum::<f64>());
+        assert!(longest <= size + growth * distance(place, foot) + 1e-12);
+    }
+}
+
+/// How many shapes there are, like each other but for size, place and which way round: by all distances of corners, in an order that does not
+/// depend on how the tet is numbered.
+fn n_shapes(mesh: &TetMesh) -> usize {
+    let key = |t: &[VertexId; 4]| {
+        let c = corners(mesh, *t);
+        let size = volume(c).abs().cbrt();
+        let orders =
+            (0..4).flat_map(|a| (0..4).flat_map(move |b| (0..4).map(move |c| [a, b, c, 6 - a - b - c])));
+        let orders = orders.filter(|o| (0..4).all(|v| o.contains(&v)));
+        let lengths =
+            |o: [usize; 4]| tet::EDGES.map(|[i, j]| (distance(c[o[i]], c[o[j]]) / size * 1e6).round() as i64);
+        orders.map(lengths).min().unwrap()
+    };
+    let mut all: Vec<_> = mesh.tets.iter().map(key).collect();
+    all.sort_unstable();
+    // Rounding may go either way.
+    all.dedup_by(|x, y| x.iter().zip(y).all(|(x, y)| x.abs_diff(*y) <= 2));
+    all.len()
+}
+
+#[test]
+fn few_shapes_come_of_one() {
+    let threads = Threads::single();
+    let one = |points: [Point; 4]| TetMesh::new(points.to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
+    let divided = |first: &TetMesh, generations: usize| {
+        let mut refinement = Refinement::new(first, Options::default(), &threads).unwrap();
+        for _ in 0..generations {
+            let all: Vec<TetId> = (0..refinement.mesh().tets.len()).map(TetId::new).collect();
+            refinement.refine(&all, &threads).unwrap();
+        }
+        n_shapes(refinement.mesh())
+    };
+    let regular = one([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]);
+    let path = one([[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]]);
+    for generations in 1..6 {
+        assert_eq!((divided(&regular, generations), divided(&path, generations)), (2, 1));
+    }
+    let mesh = random_mesh(100, 6);
+    let counts: Vec<usize> =
+        mesh.tets.iter().take(40).map(|t| divided(&one(corners(&mesh, *t)), 4)).collect();
+    let most = counts.iter().max().unwrap();
+    println!(
+        "40 random tets, four generations: {} shapes in the mean, at most {most}",
+        counts.iter().sum::<usize>() as f64 / 40.0
+    );
+    // Bey's rule has three; the shortest diagonal more, and better ones.
+    assert!(*most <= 40);
 }

@@ -2,6 +2,8 @@
 //!
 //! | step | file | how |
 //! |---|---|---|
+//! | estimate | [`estimate`] | how badly a field is resolved in each tet; what turns where |
+//! | mark | [`mark`] | which tets to divide: by place, size, distance to a surface, estimate |
 //! | divide | `forest` | a tet into eight along its shortest diagonal; parents, children and edges are remembered |
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
@@ -13,9 +15,11 @@
 //! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
 
 mod close;
+pub mod estimate;
 mod extract;
 mod forest;
 mod handle;
+pub mod mark;
 mod patterns;
 
 pub use handle::{Options, Refinement, Summary};

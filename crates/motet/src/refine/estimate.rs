@@ -1,0 +1,125 @@
+//! Where a field is badly resolved, and what turns where: one number for each tet, from values at the vertices.
+//!
+//! A field is linear in each tet. All estimates are 0 for a field that is linear throughout.
+
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::tet;
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::mesh::TetMesh;
+use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
+
+/// The derivatives of a velocity: row `i` is the gradient of its component `i`.
+pub type Tensor = [Point; 3];
+
+fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Point; 4] {
+    vertices.map(|v| mesh.points[v.index()])
+}
+
+/// The gradients of the weights of the four vertices; all 0 in a tet without volume.
+fn weight_gradients(corners: [Point; 4]) -> [Point; 4] {
+    let volume_6 = tet::volume_6(corners);
+    if volume_6 == 0.0 {
+        return [[0.0; 3]; 4];
+    }
+    // Each falls off towards the facet opposite, whose area vector points out of a positive tet.
+    tet::FACETS.map(|facet| scale(area_vector(facet.map(|i| corners[i])), -2.0 / volume_6))
+}
+
+/// The gradient in each tet of a field given at the vertices.
+///
+/// Panics when there is not a value for each point.
+pub fn gradients(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<Point> {
+    assert_eq!(values.len(), mesh.points.len(), "a value for each point");
+    threads.map(mesh.tets.len(), |t| gradient(mesh, mesh.tets[t], |v| values[v.index()]))
+}
+
+fn gradient(mesh: &TetMesh, vertices: [VertexId; 4], value: impl Fn(VertexId) -> f64) -> Point {
+    let weights = weight_gradients(corners(mesh, vertices));
+    // Differences, so that a constant adds nothing.
+    let first = value(vertices[0]);
+    (1..4).fold([0.0; 3], |sum, i| add(sum, scale(weights[i], value(vertices[i]) - first)))
+}
+
+/// How much the gradient jumps across the facets of each tet: the root of `h / 24` times the integral over its inner facets of the squared
+/// jump of the derivative across (Kelly, Gago, Zienkiewicz and Babuska 1983, *A posteriori error analysis and adaptive
+/// processes in the finite element method*); `h` is the longest edge. The unit is that of the field times the root of a volume over a length.
+///
+/// Panics when there is not a value for each point.
+pub fn gradient_jump(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
+    let gradients = gradients(mesh, values, threads);
+    let neighbors = tet_neighbors(&mesh.tets);
+    threads.map(mesh.tets.len(), |t| {
+        let corners = corners(mesh, mesh.tets[t]);
+        let jumps = (0..4).filter(|&i| neighbors[t][i] != NO_TET).map(|i| {
+            let normal = area_vector(tet::FACETS[i].map(|k| corners[k]));
+            let area = norm(normal);
+            let jump = dot(sub(gradients[neighbors[t][i] as usize], gradients[t]), normal);
+            // The square of the derivative along the unit normal, times the area.
+            if area > 0.0 { jump * jump / area } else { 0.0 }
+        });
+        (longest_edge(corners) / 24.0 * jumps.sum::<f64>()).sqrt()
+    })
+}
+
+/// How far the gradient in each tet is from the one that is recovered at the vertices, the mean of those around weighted by volume: the root of the
+/// integral of the square (Zienkiewicz and Zhu 1987, *A simple error estimator and adaptive procedure for practical engineering analysis*).
+///
+/// Panics when there is not a value for each point.
+pub fn recovery(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
+    let gradients = gradients(mesh, values, threads);
+    let volumes = threads.map(mesh.tets.len(), |t| tet::volume(corners(mesh, mesh.tets[t])).abs());
+    let mut recovered = vec![([0.0; 3], 0.0); mesh.points.len()];
+    for ((vertices, gradient), volume) in mesh.tets.iter().zip(&gradients).zip(&volumes) {
+        for v in vertices {
+            let (sum, weight) = &mut recovered[v.index()];
+            *sum = add(*sum, scale(*gradient, *volume));
+            *weight += volume;
+        }
+    }
+    threads.map(mesh.tets.len(), |t| {
+        let off = mesh.tets[t].map(|v| {
+            let (sum, weight) = recovered[v.index()];
+            if weight > 0.0 { sub(scale(sum, 1.0 / weight), gradients[t]) } else { [0.0; 3] }
+        });
+        // The integral of two weights is a twentieth of the volume, that of one's square a tenth.
+        let whole = off.into_iter().fold([0.0; 3], add);
+        let squares: f64 = off.iter().map(|d| dot(*d, *d)).sum();
+        (volumes[t] / 20.0 * (squares + dot(whole, whole))).sqrt()
+    })
+}
+
+/// The derivatives of a velocity in each tet.
+///
+/// Panics when there is not a velocity for each point.
+pub fn velocity_gradients(mesh: &TetMesh, velocity: &[Point], threads: &Threads) -> Vec<Tensor> {
+    assert_eq!(velocity.len(), mesh.points.len(), "a velocity for each point");
+    threads.map(mesh.tets.len(), |t| {
+        [0, 1, 2].map(|axis| gradient(mesh, mesh.tets[t], |v| velocity[v.index()][axis]))
+    })
+}
+
+/// The vorticity in each tet: the curl of the velocity.
+///
+/// Panics when there is not a velocity for each point.
+pub fn vorticity(mesh: &TetMesh, velocity: &[Point], threads: &Threads) -> Vec<Point> {
+    let curl = |[x, y, z]: Tensor| [z[1] - y[2], x[2] - z[0], y[0] - x[1]];
+    velocity_gradients(mesh, velocity, threads).into_iter().map(curl).collect()
+}
+
+/// Q in each tet: positive where a flow turns more than it shears (Hunt, Wray and Moin 1988, *Eddies, streams, and convergence
+/// zones in turbulent flows*): half of the square of the rate of rotation less that of the rate of strain.
+///
+/// Panics when there is not a velocity for each point.
+pub fn q_criterion(mesh: &TetMesh, velocity: &[Point], threads: &Threads) -> Vec<f64> {
+    let q = |du: Tensor| {
+        let products = (0..3).flat_map(|i| (0..3).map(move |j| (i, j))).map(|(i, j)| du[i][j] * du[j][i]);
+        -0.5 * products.sum::<f64>()
+    };
+    velocity_gradients(mesh, velocity, threads).into_iter().map(q).collect()
+}
+
+/// The length of the longest edge.
+pub(super) fn longest_edge(corners: [Point; 4]) -> f64 {
+    tet::EDGES.into_iter().map(|[i, j]| norm(sub(corners[i], corners[j]))).fold(0.0, f64::max)
+}

@@ -1,0 +1,100 @@
+//! Which tets to divide: by place, by size, by an estimate for each tet.
+
+use super::estimate::longest_edge;
+use crate::base::{Point, TetId, Threads};
+use crate::geometry::tet;
+use crate::geometry::vector::{distance, dot, sub};
+use crate::mesh::TetMesh;
+use crate::spatial::NearestTriangle;
+
+/// The tets for which `is_marked` says so, rising.
+fn those(
+    mesh: &TetMesh,
+    threads: &Threads,
+    is_marked: impl Fn([Point; 4]) -> bool + Sync + Send,
+) -> Vec<TetId> {
+    let flags = threads.map(mesh.tets.len(), |t| is_marked(mesh.tets[t].map(|v| mesh.points[v.index()])));
+    (0..).zip(flags).filter(|(_, is_marked)| *is_marked).map(|(t, _)| TetId(t)).collect()
+}
+
+/// Tets that have a place within `radius` of `centre`.
+pub fn in_ball(mesh: &TetMesh, centre: Point, radius: f64, threads: &Threads) -> Vec<TetId> {
+    those(mesh, threads, |corners| {
+        let weights = tet::closest(corners, centre);
+        let nearest = [0, 1, 2].map(|k| (0..4).map(|i| weights[i] * corners[i][k]).sum());
+        distance(nearest, centre) <= radius
+    })
+}
+
+/// Tets whose centre lies in a box with sides along the axes, borders included.
+pub fn in_box(mesh: &TetMesh, [low, high]: [Point; 2], threads: &Threads) -> Vec<TetId> {
+    those(mesh, threads, |corners| {
+        let centre = tet::centroid(corners);
+        (0..3).all(|k| low[k] <= centre[k] && centre[k] <= high[k])
+    })
+}
+
+/// Tets whose longest edge is longer than the size that is wanted at their centre.
+pub fn above_size(
+    mesh: &TetMesh,
+    size: impl Fn(Point) -> f64 + Sync + Send,
+    threads: &Threads,
+) -> Vec<TetId> {
+    those(mesh, threads, |corners| longest_edge(corners) > size(tet::centroid(corners)))
+}
+
+/// Tets whose longest edge is longer than `size` and `growth` times their distance from a surface: so small edges at a device, and larger
+/// ones away from it. The distance is that of the tet from the place of the surface that is nearest to its centre.
+pub fn near_surface(
+    mesh: &TetMesh,
+    surface: &NearestTriangle,
+    size: f64,
+    growth: f64,
+    threads: &Threads,
+) -> Vec<TetId> {
+    those(mesh, threads, |corners| {
+        // No farther than this from the centre has anything to do with the tet.
+        let (longest, centre) = (longest_edge(corners), tet::centroid(corners));
+        let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
+        let reach = if growth > 0.0 { (longest - size) / growth + radius } else { f64::INFINITY };
+        if longest <= size {
+            return false;
+        }
+        let Some(found) = surface.closest_within(centre, reach) else { return false };
+        let weights = tet::closest(corners, found.point);
+        let nearest = [0, 1, 2].map(|k| (0..4).map(|i| weights[i] * corners[i][k]).sum());
+        let off = sub(nearest, found.point);
+        longest > size + growth * dot(off, off).sqrt()
+    })
+}
+
+/// The fewest tets whose squared estimates sum to at least a share of all (Dörfler 1996, *A convergent adaptive algorithm for Poisson's
+/// equation*). Of tets with equal estimates the first ones; those with an estimate of 0 or NaN never.
+pub fn largest_share(estimates: &[f64], share: f64) -> Vec<TetId> {
+    let mut order: Vec<TetId> =
+        (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
+    let squared = |t: TetId| estimates[t.index()] * estimates[t.index()];
+    order.sort_by(|a, b| estimates[b.index()].total_cmp(&estimates[a.index()]).then(a.cmp(b)));
+    let all: f64 = order.iter().rev().map(|t| squared(*t)).sum();
+    let mut sum = 0.0;
+    let n = order.iter().take_while(|t| {
+        let is_short = sum < share * all;
+        sum += squared(**t);
+        is_short
+    });
+    let mut marked: Vec<TetId> = order[..n.count()].to_vec();
+    marked.sort_unstable();
+    marked
+}
+
+/// The tets with the largest estimates, so many that dividing them brings the mesh to about `target` tets: each adds seven, and those that are
+/// cut beside it, which are not counted, some more.
+pub fn to_count(estimates: &[f64], target: usize) -> Vec<TetId> {
+    let n = target.saturating_sub(estimates.len()).div_ceil(7);
+    let mut order: Vec<TetId> =
+        (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
+    order.sort_by(|a, b| estimates[b.index()].total_cmp(&estimates[a.index()]).then(a.cmp(b)));
+    order.truncate(n);
+    order.sort_unstable();
+    order
+}
