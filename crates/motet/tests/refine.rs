@@ -403,3 +403,26 @@ fn few_shapes_come_of_one() {
     // Bey's rule has three; the shortest diagonal more, and better ones.
     assert!(*most <= 40);
 }
+
+#[test]
+fn tets_that_no_division_keeps_are_told() {
+    let threads = Threads::single();
+    let mesh = random_mesh(100, 12);
+    let mut n_told = 0;
+    for t in &mesh.tets {
+        let first = TetMesh::new(corners(&mesh, *t).to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
+        let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
+        for _ in 0..2 {
+            refinement.refine(&nearest(refinement.mesh(), first.points[0], 2), &threads).unwrap();
+        }
+        let (floor, now) = (0.95 * worst(&first, eas), refinement.mesh());
+        let is_bad = |i: &u32| eas(corners(now, now.tets[*i as usize])) < floor * (1.0 - 1e-9);
+        let expected: Vec<TetId> = (0..now.tets.len() as u32).filter(is_bad).map(TetId).collect();
+        let left = refinement.left(&threads);
+        assert_eq!(left.iter().map(|left| left.tet).collect::<Vec<_>>(), expected);
+        assert!(left.iter().all(|left| left.root == TetId(0) && left.eas < floor));
+        n_told += usize::from(!left.is_empty());
+    }
+    println!("{n_told} of {} tets have parts that are worse", mesh.tets.len());
+    assert!(n_told > 0 && n_told < mesh.tets.len() / 2);
+}

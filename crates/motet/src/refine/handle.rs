@@ -5,6 +5,7 @@ use super::extract::{Extracted, extract};
 use super::forest::{Forest, NONE};
 use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
+use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
 
 /// How to divide.
@@ -33,6 +34,17 @@ pub struct Summary {
     pub n_cut: usize,
     /// How often all tets were looked at.
     pub n_sweeps: usize,
+}
+
+/// A tet that is worse than was to be kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left {
+    /// Its place in the mesh.
+    pub tet: TetId,
+    /// Its EAS in the reference.
+    pub eas: f64,
+    /// The tet of the first mesh that it lies in.
+    pub root: TetId,
 }
 
 /// A mesh with its memory: which tets it started with, and which of them and of their parts are to be divided.
@@ -115,6 +127,23 @@ impl Refinement {
     /// Which tet of the first mesh each tet lies in.
     pub fn roots(&self) -> impl Iterator<Item = TetId> + '_ {
         self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
+    }
+
+    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better.
+    pub fn left(&self, threads: &Threads) -> Vec<Left> {
+        let shape =
+            threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
+                0 => self.forest.nodes[self.now.nodes[i] as usize].eas,
+                _ => eas(self.now.mesh.tets[i]
+                    .map(|v| self.forest.reference[self.now.vertices[v.index()] as usize])),
+            });
+        let bad = (0..).zip(shape).filter(|(_, eas)| *eas < self.need.floor);
+        bad.map(|(i, eas): (u32, f64)| Left {
+            tet: TetId(i),
+            eas,
+            root: TetId(self.forest.root(self.now.nodes[i as usize])),
+        })
+        .collect()
     }
 
     /// What the last step came to.

@@ -22,4 +22,4 @@ mod handle;
 pub mod mark;
 mod patterns;
 
-pub use handle::{Options, Refinement, Summary};
+pub use handle::{Left, Options, Refinement, Summary};
