@@ -361,8 +361,9 @@ fn n_shapes(mesh: &TetMesh) -> usize {
     let key = |t: &[VertexId; 4]| {
         let c = corners(mesh, *t);
         let size = volume(c).abs().cbrt();
-        let orders =
-            (0..4).flat_map(|a| (0..4).flat_map(move |b| (0..4).map(move |c| [a, b, c, 6 - a - b - c])));
+        let orders = (0..4).flat_map(|a| {
+            (0..4).flat_map(move |b| (0..4).map(move |c| [a, b, c, 6usize.wrapping_sub(a + b + c)]))
+        });
         let orders = orders.filter(|o| (0..4).all(|v| o.contains(&v)));
         let lengths =
             |o: [usize; 4]| tet::EDGES.map(|[i, j]| (distance(c[o[i]], c[o[j]]) / size * 1e6).round() as i64);

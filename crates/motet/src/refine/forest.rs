@@ -3,6 +3,8 @@
 //! Shapes are those of the *reference*: the mesh as it was when its tets became roots. All that is decided about a division is decided there, so
 //! motion changes nothing of it, and the same division asked for again comes out the same.
 
+use std::hash::{BuildHasherDefault, Hasher};
+
 use hashbrown::HashMap;
 
 use super::close::Goal;
@@ -59,7 +61,7 @@ pub(super) struct Forest {
     /// The edges of roots, by their ends.
     of_roots: HashMap<[u32; 2], u32>,
     /// The three edges between the middles of a facet's edges, by the first two of these: the first of them, see [`Self::inner_edges`].
-    of_facets: HashMap<[u32; 2], u32>,
+    of_facets: HashMap<u64, u32, BuildHasherDefault<Near>>,
     /// Of tets with some edges split, what they need: what was found once holds for good.
     pub(super) goals: HashMap<(u32, u8), Goal>,
 }
@@ -252,8 +254,7 @@ impl Forest {
     /// Bytes.
     pub(super) fn memory(&self) -> usize {
         // An entry and a byte beside it.
-        let named =
-            (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<([u32; 2], u32)>() + 1);
+        let named = (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<(u64, u32)>() + 1);
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
             + size_of_val(&self.edges[..])
@@ -274,11 +275,31 @@ pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
     places
 }
 
-/// The places of three middles in rising order, and the first two of them.
-fn ordered(middles: [u32; 3]) -> ([usize; 3], [u32; 2]) {
+/// The places of three middles in rising order, and the first two of them as one number.
+fn ordered(middles: [u32; 3]) -> ([usize; 3], u64) {
     let mut order = [0, 1, 2];
     order.sort_unstable_by_key(|&k| middles[k]);
-    (order, [middles[order[0]], middles[order[1]]])
+    (order, u64::from(middles[order[0]]) << 32 | u64::from(middles[order[1]]))
+}
+
+/// Puts facets whose first middles follow each other next to each other, as they are asked for: the lower bits of a hash say where it begins to look,
+/// the upper seven are compared first.
+#[derive(Clone, Copy, Debug, Default)]
+struct Near(u64);
+
+impl Hasher for Near {
+    fn write_u64(&mut self, key: u64) {
+        let first = key >> 32;
+        self.0 = 2 * first ^ (key & 0xffff_ffff).wrapping_mul(0x9e37_79b9_7f4a_7c15) & 0xfe00_0000_0000_0000;
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(self.0 << 8 | u64::from(*byte)));
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
 }
 
 /// Three edges that follow each other, each opposite a middle.
