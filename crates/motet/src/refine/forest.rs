@@ -289,8 +289,9 @@ struct Near(u64);
 
 impl Hasher for Near {
     fn write_u64(&mut self, key: u64) {
-        let first = key >> 32;
-        self.0 = 2 * first ^ (key & 0xffff_ffff).wrapping_mul(0x9e37_79b9_7f4a_7c15) & 0xfe00_0000_0000_0000;
+        let (first, second) = (key >> 32, key & 0xffff_ffff);
+        let upper_seven = second.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 57;
+        self.0 = (2 * first) | (upper_seven << 57);
     }
 
     fn write(&mut self, bytes: &[u8]) {
