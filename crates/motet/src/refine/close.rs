@@ -28,20 +28,17 @@ impl Need {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     pub(super) node: u32,
-    /// Its split edges, the cuts of its facets, and which of the ways to fill it.
-    pub(super) mask: u8,
-    pub(super) cuts: u8,
-    pub(super) way: u8,
+    pub(super) goal: Goal,
 }
 
 /// What a tet with some edges split needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Goal {
     /// Which edges split: the same where it fits, more where it has to grow, all where it has to be divided.
-    mask: u8,
+    pub(super) mask: u8,
     /// The cuts of its facets, and which of the ways to fill it, where it fits.
-    cuts: u8,
-    way: u8,
+    pub(super) cuts: u8,
+    pub(super) way: u8,
 }
 
 /// What a sweep says of a tet with split edges.
@@ -107,12 +104,7 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
             is_done &= goal.mask == mask && mask != FULL;
         }
         if is_done {
-            let cut = |&Verdict { leaf, mask, goal: Goal { cuts, way, .. }, .. }: &Verdict| Cut {
-                node: leaves[leaf],
-                mask,
-                cuts,
-                way,
-            };
+            let cut = |verdict: &Verdict| Cut { node: leaves[verdict.leaf], goal: verdict.goal };
             closed.cuts = verdicts.iter().map(cut).collect();
             closed.cuts.sort_unstable_by_key(|cut| cut.node);
             return closed;
@@ -151,8 +143,8 @@ fn verdict(forest: &Forest, i: usize, leaf: u32, need: Need) -> Option<Verdict> 
 fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
     let places = forest.places(leaf);
     let whole = forest.nodes[leaf as usize].eas;
-    let need = need.of(whole);
-    if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, need) {
+    let least = need.of(whole);
+    if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, least) {
         return Goal { mask, cuts, way };
     }
     // The fewest edges more, then the best shape.
@@ -160,13 +152,13 @@ fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
     for n in mask.count_ones() + 1..6 {
         let good = larger.clone().filter(|m| m.count_ones() == n);
         let good =
-            good.filter_map(|m| best_cut(forest, leaf, m, &places, need).map(|(_, _, worst)| (m, worst)));
+            good.filter_map(|m| best_cut(forest, leaf, m, &places, least).map(|(_, _, worst)| (m, worst)));
         if let Some((mask, _)) = good.reduce(|x, y| if y.1 > x.1 { y } else { x }) {
             return Goal { mask, cuts: 0, way: 0 };
         }
     }
     let (cuts, way, worst) = best_cut(forest, leaf, mask, &places, f64::NEG_INFINITY).unwrap_or_default();
-    let mask = if best_way(&places, whole, need).worst(whole) > worst { FULL } else { mask };
+    let mask = if best_way(&places, whole, need.floor).worst(whole) > worst { FULL } else { mask };
     Goal { mask, cuts, way }
 }
 

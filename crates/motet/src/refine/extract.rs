@@ -48,9 +48,9 @@ pub(super) fn extract(
                 // A tet of the first mesh as it was given, which may be negative.
                 None if node == root => out.mesh.tets.push(first.tets[root as usize]),
                 None => out.mesh.tets.push(tet.vertices.map(|v| numbers.of(v))),
-                Some(cut) => {
+                Some(Cut { goal, .. }) => {
                     let local = forest.local(node);
-                    for piece in &patterns(cut.mask, cut.cuts)[usize::from(cut.way)] {
+                    for piece in &patterns(goal.mask, goal.cuts)[usize::from(goal.way)] {
                         out.mesh.tets.push(piece.map(|v| numbers.of(local[usize::from(v)])));
                     }
                 }
@@ -163,7 +163,7 @@ impl<'a> Numbers<'a> {
 
 impl Forest {
     /// The corners of a tet, then the middles of its edges.
-    fn local(&self, node: u32) -> [u32; 10] {
+    pub(super) fn local(&self, node: u32) -> [u32; 10] {
         let mut local = [NONE; 10];
         local[..4].copy_from_slice(&self.nodes[node as usize].vertices);
         for (e, edge) in self.edges_of[node as usize].iter().enumerate() {

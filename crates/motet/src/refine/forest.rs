@@ -174,11 +174,10 @@ impl Forest {
         if first_child != NONE {
             return first_child;
         }
-        let mut local = [NONE; 10];
-        local[..4].copy_from_slice(&vertices);
-        for (e, &edge) in edges.iter().enumerate() {
-            local[4 + e] = self.middle(edge);
+        for edge in edges {
+            self.middle(edge);
         }
+        let local = self.local(node);
         // The edges of the eight, by two local vertices.
         let mut between = [[NONE; 10]; 10];
         for (e, [i, j]) in EDGES.into_iter().enumerate() {
@@ -254,7 +253,8 @@ impl Forest {
     /// Bytes.
     pub(super) fn memory(&self) -> usize {
         // An entry and a byte beside it.
-        let named = (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<(u64, u32)>() + 1);
+        let named = (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<(u64, u32)>() + 1)
+            + self.goals.capacity() * (size_of::<((u32, u8), Goal)>() + 1);
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
             + size_of_val(&self.edges[..])

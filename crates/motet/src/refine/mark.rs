@@ -3,7 +3,7 @@
 use super::estimate::longest_edge;
 use crate::base::{Point, TetId, Threads};
 use crate::geometry::tet;
-use crate::geometry::vector::{distance, dot, sub};
+use crate::geometry::vector::distance;
 use crate::mesh::TetMesh;
 use crate::spatial::NearestTriangle;
 
@@ -19,11 +19,8 @@ fn those(
 
 /// Tets that have a place within `radius` of `centre`.
 pub fn in_ball(mesh: &TetMesh, centre: Point, radius: f64, threads: &Threads) -> Vec<TetId> {
-    those(mesh, threads, |corners| {
-        let weights = tet::closest(corners, centre);
-        let nearest = [0, 1, 2].map(|k| (0..4).map(|i| weights[i] * corners[i][k]).sum());
-        distance(nearest, centre) <= radius
-    })
+    let nearest = |corners| tet::at(corners, tet::closest(corners, centre));
+    those(mesh, threads, |corners| distance(nearest(corners), centre) <= radius)
 }
 
 /// Tets whose centre lies in a box with sides along the axes, borders included.
@@ -53,28 +50,33 @@ pub fn near_surface(
     threads: &Threads,
 ) -> Vec<TetId> {
     those(mesh, threads, |corners| {
-        // No farther than this from the centre has anything to do with the tet.
         let (longest, centre) = (longest_edge(corners), tet::centroid(corners));
-        let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
-        let reach = if growth > 0.0 { (longest - size) / growth + radius } else { f64::INFINITY };
         if longest <= size {
             return false;
         }
-        let Some(found) = surface.closest_within(centre, reach) else { return false };
-        let weights = tet::closest(corners, found.point);
-        let nearest = [0, 1, 2].map(|k| (0..4).map(|i| weights[i] * corners[i][k]).sum());
-        let off = sub(nearest, found.point);
-        longest > size + growth * dot(off, off).sqrt()
+        // No farther than this from the centre has anything to do with the tet.
+        let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
+        let reach = if growth > 0.0 { (longest - size) / growth + radius } else { f64::INFINITY };
+        surface.closest_within(centre, reach).is_some_and(|found| {
+            let nearest = tet::at(corners, tet::closest(corners, found.point));
+            longest > size + growth * distance(nearest, found.point)
+        })
     })
+}
+
+/// Tets with an estimate above 0, the largest first; of equal ones the first.
+fn by_estimate(estimates: &[f64]) -> Vec<TetId> {
+    let mut order: Vec<TetId> =
+        (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
+    order.sort_by(|a, b| estimates[b.index()].total_cmp(&estimates[a.index()]).then(a.cmp(b)));
+    order
 }
 
 /// The fewest tets whose squared estimates sum to at least a share of all (Dörfler 1996, *A convergent adaptive algorithm for Poisson's
 /// equation*). Of tets with equal estimates the first ones; those with an estimate of 0 or NaN never.
 pub fn largest_share(estimates: &[f64], share: f64) -> Vec<TetId> {
-    let mut order: Vec<TetId> =
-        (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
+    let mut order = by_estimate(estimates);
     let squared = |t: TetId| estimates[t.index()] * estimates[t.index()];
-    order.sort_by(|a, b| estimates[b.index()].total_cmp(&estimates[a.index()]).then(a.cmp(b)));
     let all: f64 = order.iter().rev().map(|t| squared(*t)).sum();
     let mut sum = 0.0;
     let n = order.iter().take_while(|t| {
@@ -82,18 +84,17 @@ pub fn largest_share(estimates: &[f64], share: f64) -> Vec<TetId> {
         sum += squared(**t);
         is_short
     });
-    let mut marked: Vec<TetId> = order[..n.count()].to_vec();
-    marked.sort_unstable();
-    marked
+    let n = n.count();
+    order.truncate(n);
+    order.sort_unstable();
+    order
 }
 
 /// The tets with the largest estimates, so many that dividing them brings the mesh to about `target` tets: each adds seven, and those that are
 /// cut beside it, which are not counted, some more.
 pub fn to_count(estimates: &[f64], target: usize) -> Vec<TetId> {
     let n = target.saturating_sub(estimates.len()).div_ceil(7);
-    let mut order: Vec<TetId> =
-        (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
-    order.sort_by(|a, b| estimates[b.index()].total_cmp(&estimates[a.index()]).then(a.cmp(b)));
+    let mut order = by_estimate(estimates);
     order.truncate(n);
     order.sort_unstable();
     order

@@ -1,22 +1,18 @@
 //! The nearest pair of triangles of two surfaces: which pairs are worth an exact look.
 //!
 //! Eight leaves of one tree go down the other together, as one box. Two leaves are then seen along the direction in which each lies
-//! flat, which parts most surfaces that are a small gap apart: of 12,000 pairs of leaves of a stent and a wall whose boxes are near
-//! enough, 700 are left. What two triangles are apart is the caller's to say.
+//! flat, which parts most surfaces that are a small gap apart. What two triangles are apart is the caller's to say.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use pulp::{Simd, WithSimd};
 
-use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, ROUNDING_OF_SQUARE, Triangles, larger};
+use super::eights::{Boxes, MOST_OF_SLABS, ROUNDING, Triangles, larger};
 use super::lanes::at_most;
 use super::packed::{FARTHEST, Packed};
-use super::search::{ROUNDING_OF_EXACT, UNDERFLOW};
+use super::search::{ROUNDING_OF_EXACT, UNDERFLOW, bound};
 use crate::geometry::vector::{scale, sub};
-
-/// A box of `f64` beyond `f32` has no place in sums of squares.
-const MOST: f64 = 1e38;
 
 /// The square of the least distance so far, which all threads share. Whoever reads it late looks at more pairs, and finds the same.
 pub(super) struct Reach(AtomicU64);
@@ -164,9 +160,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     /// What has a lower bound above this is farther than `reach`, whatever rounding did.
     #[inline(always)]
     fn bound(&self, rounding: f64) -> f32 {
-        let reach = self.reach.get().sqrt() * self.to.frame.scale + rounding;
-        let bound = reach * reach * (1.0 + 2.0 * ROUNDING_OF_SQUARE);
-        if bound < MOST { bound as f32 } else { MOST as f32 }
+        bound(self.reach.get().sqrt() * self.to.frame.scale + rounding)
     }
 
     /// All pairs of two leaves whose boxes are near enough, and whose triangles are not clearly farther.

@@ -309,7 +309,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
 
 /// The bound for squares of this distance, which holds for rounded ones, too.
 #[inline(always)]
-fn bound(distance: f64) -> f32 {
+pub(super) fn bound(distance: f64) -> f32 {
     let bound = distance * distance * (1.0 + 2.0 * ROUNDING_OF_SQUARE);
     if bound < MOST { bound as f32 } else { MOST as f32 }
 }

@@ -37,7 +37,7 @@ impl TurnedBoxes {
         out
     }
 
-    /// From a box with sides along the axes to each, but for rounding: how far apart they are as seen along the axes of each.
+    /// From a box with sides along the axes to each, but for rounding: how far apart they are as seen along the axes of the turned one.
     ///
     /// The other directions that could part two boxes (Gottschalk, Lin and Manocha 1996, *OBBTree*) are left out.
     #[inline(always)]
