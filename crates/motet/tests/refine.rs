@@ -2,111 +2,15 @@
 
 mod common;
 
-use std::collections::HashMap;
-
+use common::refined::{ball_in_box, corners, fits, median_eas, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{eas, mean_ratio};
-use motet::geometry::tet::{self, FACETS, centroid, volume};
-use motet::geometry::triangle::area;
+use motet::geometry::tet::{self, centroid, volume};
 use motet::geometry::vector::{add, distance};
-use motet::mesh::shapes::sphere_in_box;
-use motet::mesh::{TetMesh, TetPart};
+use motet::mesh::TetMesh;
 use motet::refine::{Options, Refinement, estimate, mark};
 use motet::spatial::NearestTriangle;
-
-fn corners(mesh: &TetMesh, tet: [VertexId; 4]) -> [Point; 4] {
-    tet.map(|v| mesh.points[v.index()])
-}
-
-/// Sums exactly enough: pairs of halves.
-fn sum(all: &[f64]) -> f64 {
-    match all {
-        [] => 0.0,
-        [one] => *one,
-        _ => sum(&all[..all.len() / 2]) + sum(&all[all.len() / 2..]),
-    }
-}
-
-fn volume_of(mesh: &TetMesh, region: Option<i32>) -> f64 {
-    let tets = mesh.tets.iter().zip(&mesh.regions).filter(|(_, r)| region.is_none_or(|region| **r == region));
-    sum(&tets.map(|(t, _)| volume(corners(mesh, *t)).abs()).collect::<Vec<_>>())
-}
-
-fn areas(mesh: &TetMesh) -> HashMap<i32, f64> {
-    let mut by_patch: HashMap<i32, Vec<f64>> = HashMap::new();
-    for (t, patch) in mesh.triangles.iter().zip(&mesh.patches) {
-        let area = area(t.map(|v| mesh.points[v.index()]));
-        by_patch.entry(*patch).or_default().push(area);
-    }
-    by_patch.into_iter().map(|(patch, areas)| (patch, sum(&areas))).collect()
-}
-
-/// Facets by their vertices, rising, and by how many tets they are used.
-fn facets(mesh: &TetMesh) -> HashMap<[VertexId; 3], u32> {
-    let mut uses = HashMap::new();
-    for tet in &mesh.tets {
-        for facet in FACETS {
-            let mut key = facet.map(|i| tet[i]);
-            key.sort_unstable();
-            *uses.entry(key).or_default() += 1;
-        }
-    }
-    uses
-}
-
-fn boundary_area(mesh: &TetMesh) -> f64 {
-    let boundary = facets(mesh).into_iter().filter(|(_, n)| *n == 1);
-    sum(&boundary.map(|(t, _)| area(t.map(|v| mesh.points[v.index()]))).collect::<Vec<_>>())
-}
-
-/// Holds a refined mesh against the first one.
-fn fits(first: &TetMesh, mesh: &TetMesh) {
-    mesh.validate().unwrap();
-    let uses = facets(mesh);
-    assert!(uses.values().all(|&n| n <= 2), "no facet has three tets");
-    // A facet of one tet inside would add to the area.
-    let (before, after) = (boundary_area(first), boundary_area(mesh));
-    assert!((after / before - 1.0).abs() < 1e-12, "boundary {before} became {after}");
-    let mut regions = first.regions.clone();
-    regions.sort_unstable();
-    regions.dedup();
-    for region in regions {
-        let (before, after) = (volume_of(first, Some(region)), volume_of(mesh, Some(region)));
-        assert!((after / before - 1.0).abs() < 1e-13, "region {region}: {before} became {after}");
-    }
-    let (before, after) = (areas(first), areas(mesh));
-    assert_eq!(before.len(), after.len());
-    assert!(before.iter().all(|(patch, area)| (after[patch] / area - 1.0).abs() < 1e-12));
-    for triangle in &mesh.triangles {
-        let mut key = *triangle;
-        key.sort_unstable();
-        assert!(uses.contains_key(&key), "a triangle is a facet");
-    }
-}
-
-fn worst(mesh: &TetMesh, of: impl Fn([Point; 4]) -> f64) -> f64 {
-    mesh.tets.iter().map(|t| of(corners(mesh, *t)).abs()).fold(f64::INFINITY, f64::min)
-}
-
-fn median_eas(mesh: &TetMesh) -> f64 {
-    let mut all: Vec<f64> = mesh.tets.iter().map(|t| eas(corners(mesh, *t)).abs()).collect();
-    let middle = all.len() / 2;
-    *all.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
-fn ball_in_box() -> TetMesh {
-    TetPart::of(&sphere_in_box(6, 2)).unwrap().mesh
-}
-
-/// The `n` tets nearest to a place.
-fn nearest(mesh: &TetMesh, place: Point, n: usize) -> Vec<TetId> {
-    let far = |i: &TetId| distance(centroid(corners(mesh, mesh.tets[i.index()])), place);
-    let mut all: Vec<TetId> = (0..mesh.tets.len()).map(TetId::new).collect();
-    all.sort_by(|a, b| far(a).total_cmp(&far(b)));
-    all.truncate(n);
-    all
-}
 
 #[test]
 fn eight_generations_about_a_point_keep_the_shape() {

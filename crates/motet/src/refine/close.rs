@@ -3,7 +3,8 @@
 //! What holds at the end follows from what was asked alone: each sweep looks at all tets as the sweep before left them. So no order of visiting, no
 //! number of threads and no earlier division changes it, and taking back what was asked brings back the mesh that was there before.
 
-use super::forest::{Forest, NONE, Way, with_middles};
+use super::forest::{Forest, NONE, with_middles};
+use super::handle::Options;
 use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
@@ -19,6 +20,13 @@ pub(super) struct Need {
 }
 
 impl Need {
+    /// The floor is a part of the worst EAS of the roots.
+    pub(super) fn new(options: Options, forest: &Forest) -> Self {
+        let roots = &forest.nodes[..forest.n_roots];
+        let worst = roots.iter().map(|root| root.eas).fold(f64::INFINITY, f64::min);
+        Self { floor: options.keep * worst, share: options.share }
+    }
+
     fn of(self, whole: f64) -> f64 {
         self.floor.max(self.share * whole)
     }
@@ -68,6 +76,9 @@ pub(super) struct Closed {
 /// Divides what is asked, and what that asks for.
 pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Closed {
     forest.is_split.fill(false);
+    for &edge in &forest.pinned {
+        forest.is_split[edge as usize] = true;
+    }
     forest.nodes.iter_mut().for_each(|node| node.is_divided = false);
     for node in 0..forest.nodes.len() as u32 {
         if forest.nodes[node as usize].is_asked {
@@ -226,8 +237,16 @@ fn worst_below(places: &[Point; 10], way: &Way, whole: f64, generations: usize) 
     worst
 }
 
+/// One of the three ways to divide a tet into eight.
+pub(super) struct Way {
+    /// Its place among the patterns.
+    pub(super) place: usize,
+    /// The EAS of [`inner_tets`]: the others of the eight have the shape of the whole.
+    pub(super) inner: [f64; 2],
+}
+
 impl Way {
-    fn new(places: &[Point; 10], place: usize) -> Self {
+    pub(super) fn new(places: &[Point; 10], place: usize) -> Self {
         Self { place, inner: inner_tets(place).map(|pair| eas(corners_at(places, &pair[0]))) }
     }
 

@@ -15,6 +15,8 @@ pub(super) struct Extracted {
     pub(super) vertices: Vec<u32>,
     /// Of each tet, the one of the forest that it is, or a piece of.
     pub(super) nodes: Vec<u32>,
+    /// Of each triangle, the one of the first mesh that it is a part of.
+    pub(super) triangles: Vec<u32>,
 }
 
 /// `points` are those of the vertices of the forest that were in the mesh before, which `before` lists.
@@ -33,6 +35,9 @@ pub(super) fn extract(
     let mut open = Vec::new();
     for root in 0..forest.n_roots as u32 {
         let region = first.regions[root as usize];
+        // Of a root that was numbered the other way round, all parts are, too.
+        let is_turned = first.tets[root as usize][0].0 != forest.nodes[root as usize].vertices[0];
+        let as_given = |[a, b, c, d]: [VertexId; 4]| if is_turned { [b, a, c, d] } else { [a, b, c, d] };
         open.push(root);
         while let Some(node) = open.pop() {
             let tet = &forest.nodes[node as usize];
@@ -45,13 +50,11 @@ pub(super) fn extract(
                 _ => cuts.binary_search_by_key(&node, |cut| cut.node).ok().map(|i| cuts[i]),
             };
             match cut {
-                // A tet of the first mesh as it was given, which may be negative.
-                None if node == root => out.mesh.tets.push(first.tets[root as usize]),
-                None => out.mesh.tets.push(tet.vertices.map(|v| numbers.of(v))),
+                None => out.mesh.tets.push(as_given(tet.vertices.map(|v| numbers.of(v)))),
                 Some(Cut { goal, .. }) => {
                     let local = forest.local(node);
                     for piece in &patterns(goal.mask, goal.cuts)[usize::from(goal.way)] {
-                        out.mesh.tets.push(piece.map(|v| numbers.of(local[usize::from(v)])));
+                        out.mesh.tets.push(as_given(piece.map(|v| numbers.of(local[usize::from(v)]))));
                     }
                 }
             }
@@ -63,9 +66,10 @@ pub(super) fn extract(
         return Err(Error::options(format!("{} tets are more than ids can count", out.mesh.tets.len()))
             .remedy("mark fewer tets, or limit the generation"));
     }
-    for (triangle, &patch) in first.triangles.iter().zip(&first.patches) {
+    for ((triangle, &patch), i) in first.triangles.iter().zip(&first.patches).zip(0..) {
         numbers.triangle(triangle.map(|v| v.0), &mut out.mesh.triangles);
         out.mesh.patches.resize(out.mesh.triangles.len(), patch);
+        out.triangles.resize(out.mesh.triangles.len(), i);
     }
     for edge in &first.fixed_edges {
         numbers.edge(edge.map(|v| v.0), &mut out.mesh.fixed_edges);

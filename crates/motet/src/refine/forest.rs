@@ -7,7 +7,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 
 use hashbrown::HashMap;
 
-use super::close::Goal;
+use super::close::{Goal, Way};
 use super::patterns::{FACET_EDGES, FULL, inner_tets, patterns};
 use crate::base::Point;
 use crate::geometry::quality::eas;
@@ -58,6 +58,8 @@ pub(super) struct Forest {
     pub(super) edges_of: Vec<[u32; 6]>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
+    /// Edges that stay split, since a root has a vertex in their middle.
+    pub(super) pinned: Vec<u32>,
     /// The edges of roots, by their ends.
     of_roots: HashMap<[u32; 2], u32>,
     /// The three edges between the middles of a facet's edges, by the first two of these: the first of them, see [`Self::inner_edges`].
@@ -103,10 +105,15 @@ impl Forest {
         *self.of_roots.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
     }
 
-    /// The edges within a facet between the middles of its edges, if it was ever divided: edge `k` is that opposite middle `k`.
+    /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by roots: edge `k` is that
+    /// opposite middle `k`, or [`NONE`].
     pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
         let (order, key) = ordered(middles);
-        self.of_facets.get(&key).map(|&first| named(order, first))
+        let first = self.of_facets.get(&key);
+        if first.is_none() && middles.iter().any(|v| (*v as usize) >= self.n_first_vertices) {
+            return None;
+        }
+        Some(self.or_root_edges(middles, first.map_or([NONE; 3], |&first| named(order, first))))
     }
 
     /// The same, new ones if there are none.
@@ -119,7 +126,32 @@ impl Forest {
             push_edge(&mut self.edges, &mut self.is_split, [x, y]);
             first
         });
-        named(order, first)
+        self.or_root_edges(middles, named(order, first))
+    }
+
+    /// Puts edges of roots in place of those between the same two of three middles.
+    fn or_root_edges(&self, middles: [u32; 3], mut edges: [u32; 3]) -> [u32; 3] {
+        for (k, edge) in edges.iter_mut().enumerate() {
+            *edge = self.known_edge([middles[(k + 1) % 3], middles[(k + 2) % 3]]).unwrap_or(*edge);
+        }
+        edges
+    }
+
+    /// The edge of a root between two vertices; without looking where one of them is of no root, as all are that divisions made, mostly.
+    #[inline]
+    fn known_edge(&self, ends: [u32; 2]) -> Option<u32> {
+        let are_of_roots = ends.iter().all(|v| (*v as usize) < self.n_first_vertices);
+        if are_of_roots { self.root_edge(ends) } else { None }
+    }
+
+    /// Finds the edges that stay split.
+    pub(super) fn pin(&mut self) {
+        let is_pinned = |edge: &u32| (self.edges[*edge as usize].middle as usize) < self.n_first_vertices;
+        self.pinned = (0..self.edges.len() as u32).filter(is_pinned).collect();
+        // Their halves may be edges of roots, whether a tet here was divided or not.
+        for i in 0..self.pinned.len() {
+            self.halves(self.pinned[i]);
+        }
     }
 
     /// The vertex in the middle of an edge.
@@ -141,7 +173,10 @@ impl Forest {
         if halves[0] != NONE {
             return halves;
         }
-        let halves = ends.map(|end| push_edge(&mut self.edges, &mut self.is_split, [end, middle]));
+        let halves = ends.map(|end| match self.known_edge([end, middle]) {
+            Some(edge) => edge,
+            None => push_edge(&mut self.edges, &mut self.is_split, [end, middle]),
+        });
         self.edges[edge as usize].halves = halves;
         halves
     }
@@ -204,7 +239,11 @@ impl Forest {
                 let (i, j) = (usize::from(tet[i]), usize::from(tet[j]));
                 let known = &mut between[i.min(j)][i.max(j)];
                 if *known == NONE {
-                    *known = push_edge(&mut self.edges, &mut self.is_split, [local[i], local[j]]);
+                    let ends = [local[i], local[j]];
+                    *known = match self.known_edge(ends) {
+                        Some(edge) => edge,
+                        None => push_edge(&mut self.edges, &mut self.is_split, ends),
+                    };
                 }
                 *edge = *known;
             }
@@ -310,14 +349,6 @@ fn named(order: [usize; 3], first: u32) -> [u32; 3] {
         edges[k] = edge;
     }
     edges
-}
-
-/// One of the three ways to divide a tet into eight.
-pub(super) struct Way {
-    /// Its place among the patterns.
-    pub(super) place: usize,
-    /// The EAS of [`inner_tets`]: the others of the eight have the shape of the whole.
-    pub(super) inner: [f64; 2],
 }
 
 fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [u32; 2]) -> u32 {

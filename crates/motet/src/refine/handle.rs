@@ -3,7 +3,7 @@
 use super::close::{Closed, Need, close};
 use super::extract::{Extracted, extract};
 use super::forest::{Forest, NONE};
-use crate::base::{Error, Point, Result, TetId, Threads, VertexId};
+use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
@@ -50,7 +50,7 @@ pub struct Left {
 /// A mesh with its memory: which tets it started with, and which of them and of their parts are to be divided.
 ///
 /// ```
-/// use motet::base::{TetId, Threads, VertexId};
+/// use motet::base::{TetId, Threads};
 /// use motet::mesh::TetMesh;
 /// use motet::refine::{Options, Refinement};
 /// # fn main() -> motet::Result<()> {
@@ -68,13 +68,13 @@ pub struct Left {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Refinement {
-    first: TetMesh,
-    forest: Forest,
-    need: Need,
+    pub(super) first: TetMesh,
+    pub(super) forest: Forest,
+    pub(super) need: Need,
     /// Where each vertex of the forest is now, if the mesh has it.
-    points: Vec<Point>,
-    now: Extracted,
-    summary: Summary,
+    pub(super) points: Vec<Point>,
+    pub(super) now: Extracted,
+    pub(super) summary: Summary,
 }
 
 impl Refinement {
@@ -84,24 +84,9 @@ impl Refinement {
     /// When the mesh is not [valid](TetMesh::validate), or a tet has no volume.
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
-        let corners = |tet: [VertexId; 4]| tet.map(|v| mesh.points[v.index()]);
-        let side = threads.map(mesh.tets.len(), |i| {
-            let [a, b, c, d] = corners(mesh.tets[i]);
-            orient3d(a, b, c, d)
-        });
-        if let Some(i) = side.iter().position(|side| *side == 0) {
-            return Err(Error::input("has no volume")
-                .at(format!("tet {i}"))
-                .remedy("`motet remesh` repairs such tets"));
-        }
-        // In a negative tet two vertices change places.
-        let positive = mesh.tets.iter().zip(&side).map(|(&[a, b, c, d], side)| match *side > 0 {
-            true => [a, b, c, d],
-            false => [b, a, c, d],
-        });
-        let forest = Forest::new(&mesh.points, positive.map(|tet| tet.map(|v| v.0)));
-        let worst = forest.nodes.iter().map(|root| root.eas).fold(f64::INFINITY, f64::min);
-        let need = Need { floor: options.keep * worst, share: options.share };
+        let roots = positive(mesh, threads)?;
+        let forest = Forest::new(&mesh.points, roots.into_iter());
+        let need = Need::new(options, &forest);
         let mut refinement = Self {
             first: mesh.clone(),
             forest,
@@ -191,8 +176,8 @@ impl Refinement {
         self.settle_or_else(&before, threads)
     }
 
-    /// Takes back divisions whose eight tets are all marked and not divided themselves, pieces included. A tet that its neighbours need
-    /// divided stays so.
+    /// Takes back divisions of which all that lies within is marked, and of which no part was asked to be divided again. A tet that its
+    /// neighbours need divided stays so.
     ///
     /// # Errors
     /// When there is no such tet; then nothing has changed.
@@ -201,18 +186,19 @@ impl Refinement {
         let before = self.asked();
         let mut is_marked = vec![false; self.now.nodes.len()];
         marked.iter().for_each(|tet| is_marked[tet.index()] = true);
-        // Of each tet of the forest, whether all its pieces are marked.
-        let mut is_whole = vec![true; self.forest.nodes.len()];
+        let nodes = &mut self.forest.nodes;
+        // Of each tet of the forest, whether all that lies within is marked. Parts come behind the whole.
+        let mut is_whole = vec![true; nodes.len()];
         for (&node, is_marked) in self.now.nodes.iter().zip(is_marked) {
             is_whole[node as usize] &= is_marked;
         }
-        for node in 0..self.forest.nodes.len() {
-            let first = self.forest.nodes[node].first_child;
-            if self.forest.nodes[node].is_asked
-                && (first..first + 8).all(|child| self.forest.is_leaf(child) && is_whole[child as usize])
-            {
-                self.forest.nodes[node].is_asked = false;
-            }
+        for node in (0..nodes.len()).rev().filter(|&node| nodes[node].is_divided) {
+            let first = nodes[node].first_child as usize;
+            is_whole[node] = is_whole[first..first + 8].iter().all(|&child| child);
+        }
+        for node in (0..nodes.len()).filter(|&node| is_whole[node] && before[node]) {
+            let first = nodes[node].first_child as usize;
+            nodes[node].is_asked = before[first..first + 8].iter().any(|&child| child);
         }
         self.settle_or_else(&before, threads)
     }
@@ -256,4 +242,22 @@ impl Refinement {
         self.now = now;
         Ok(())
     }
+}
+
+/// The tets of a mesh, two vertices exchanged where they are negative.
+pub(super) fn positive(mesh: &TetMesh, threads: &Threads) -> Result<Vec<[u32; 4]>> {
+    let side = threads.map(mesh.tets.len(), |i| {
+        let [a, b, c, d] = mesh.tets[i].map(|v| mesh.points[v.index()]);
+        orient3d(a, b, c, d)
+    });
+    if let Some(i) = side.iter().position(|side| *side == 0) {
+        return Err(Error::input("has no volume")
+            .at(format!("tet {i}"))
+            .remedy("`motet remesh` repairs such tets"));
+    }
+    let turned = mesh.tets.iter().zip(side).map(|(&[a, b, c, d], side)| match side > 0 {
+        true => [a.0, b.0, c.0, d.0],
+        false => [b.0, a.0, c.0, d.0],
+    });
+    Ok(turned.collect())
 }

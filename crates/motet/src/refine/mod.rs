@@ -20,6 +20,8 @@ mod extract;
 mod forest;
 mod handle;
 pub mod mark;
+mod memory;
 mod patterns;
 
 pub use handle::{Left, Options, Refinement, Summary};
+pub use memory::{Memory, UNKNOWN};

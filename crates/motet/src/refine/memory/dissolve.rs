@@ -1,0 +1,106 @@
+//! Which tets cannot come together as before, since what they fitted is no more.
+
+use std::collections::HashSet;
+
+use super::super::forest::NONE;
+use super::super::patterns::FACET_EDGES;
+use super::trees::{Knot, Trees};
+use crate::base::{Id, Point, VertexId};
+use crate::geometry::predicates::orient3d;
+use crate::geometry::quality::eas;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::mesh::TetMesh;
+use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
+
+/// Below this part of its EAS in the reference, motion has spoilt a tet.
+const SPOILT: f64 = 0.9;
+
+/// Dissolves what motion has spoilt, so that as a whole it would be worse than any tet of the mesh is, or inverted.
+pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point], worst: f64) {
+    for knot in 0..trees.knots.len() as u32 {
+        let vertices: [VertexId; 4] = std::array::from_fn(|i| trees.knots[knot as usize].vertices[i]);
+        let [was, is] = [reference, points].map(|points| vertices.map(|v| points[v.index()]));
+        let [a, b, c, d] = is;
+        let is_worse = || eas(is) < worst && eas(is) < SPOILT * eas(was);
+        if orient3d(a, b, c, d) <= 0 || is_worse() {
+            trees.dissolve(knot);
+        }
+    }
+}
+
+/// Dissolves what has an edge with a middle that a tet of others has without: beside a middle that moved out of the line there is room for that.
+pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
+    let of_others = mesh.tets.iter().zip(&trees.knot_of).filter(|(_, knot)| **knot == NONE);
+    let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| sorted([tet[i], tet[j]])));
+    let edges: HashSet<[VertexId; 2]> = edges.collect();
+    if edges.is_empty() {
+        return;
+    }
+    for knot in 0..trees.knots.len() as u32 {
+        let vertices = trees.knots[knot as usize].vertices;
+        let mut split = EDGES.iter().enumerate().filter(|(e, _)| vertices[4 + e] != VertexId::NONE);
+        if split.any(|(_, &[i, j])| edges.contains(&sorted([vertices[i], vertices[j]]))) {
+            trees.dissolve(knot);
+        }
+    }
+}
+
+fn sorted<const N: usize>(mut vertices: [VertexId; N]) -> [VertexId; N] {
+    vertices.sort_unstable();
+    vertices
+}
+
+/// Dissolves tets of several pieces that meet at a facet, cut by one or two middles, what has no such facet. Such a cut is not a step on the way to a facet divided in four, so
+/// its other side has to be able to take it back.
+pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
+    let pairs = meetings(trees, mesh);
+    let mut open: Vec<u32> =
+        pairs.iter().filter(|(_, other)| *other == NONE).map(|(knot, _)| *knot).collect();
+    let is_gone = |trees: &Trees, knot: u32| !trees.knots[knot as usize].is_whole;
+    open.extend(
+        pairs.iter().filter(|(_, other)| *other != NONE && is_gone(trees, *other)).map(|(knot, _)| *knot),
+    );
+    while let Some(knot) = open.pop() {
+        if is_gone(trees, knot) {
+            continue;
+        }
+        trees.dissolve(knot);
+        let first = pairs.partition_point(|(one, _)| *one < knot);
+        let others = pairs[first..].iter().take_while(|(one, _)| *one == knot).map(|(_, other)| *other);
+        open.extend(others.filter(|other| *other != NONE));
+    }
+}
+
+/// Each tet of several pieces with each that has the same facet, cut by one or two middles; [`NONE`] where the other side has not. Sorted.
+fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(u32, u32)> {
+    let neighbors = tet_neighbors(&mesh.tets);
+    let mut pairs = Vec::new();
+    for (t, behind) in neighbors.iter().enumerate() {
+        let knot = trees.knot_of[t];
+        if knot == NONE || trees.knots[knot as usize].vertices[4..].iter().all(|v| *v == VertexId::NONE) {
+            continue;
+        }
+        for (i, &other) in behind.iter().enumerate().filter(|(_, other)| **other != NO_TET) {
+            let triangle = FACETS[i].map(|k| mesh.tets[t][k]);
+            let Some(corners) = cut_facet(&trees.knots[knot as usize], triangle) else { continue };
+            let other = Some(trees.knot_of[other as usize]).filter(|&other| {
+                other != NONE && cut_facet(&trees.knots[other as usize], triangle) == Some(corners)
+            });
+            pairs.push((knot, other.unwrap_or(NONE)));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
+}
+
+/// The corners of the facet of a tet of several pieces that a triangle is a part of, if that is cut by one or two middles; rising.
+fn cut_facet(knot: &Knot, triangle: [VertexId; 3]) -> Option<[VertexId; 3]> {
+    let facet = (0..4).find(|&facet| {
+        let corners = FACETS[facet].map(|k| knot.vertices[k]);
+        let middles = FACET_EDGES[facet].map(|e| knot.vertices[4 + e]);
+        triangle.iter().all(|v| corners.contains(v) || middles.contains(v))
+    })?;
+    let n = FACET_EDGES[facet].iter().filter(|e| knot.vertices[4 + **e] != VertexId::NONE).count();
+    (n == 1 || n == 2).then(|| sorted(FACETS[facet].map(|k| knot.vertices[k])))
+}

@@ -1,0 +1,211 @@
+//! Builds the forest again from what was remembered.
+
+use super::super::close::{Need, Way, close};
+use super::super::extract::{Extracted, extract};
+use super::super::forest::{Forest, NONE};
+use super::super::handle::{Options, Refinement, Summary, positive};
+use super::trees::Trees;
+use super::triangles::Gathered;
+use super::{Memory, dissolve, triangles, unfit};
+use crate::base::{Id, Point, Result, Threads, VertexId};
+use crate::geometry::quality::eas;
+use crate::mesh::TetMesh;
+
+impl Refinement {
+    /// Goes on with a mesh that was refined before, with what was [kept](Self::memory_to_keep) with it; where it moved since, or tets and vertices were
+    /// changed by others, tets of unknown [roots](Memory::roots) being theirs. Then shapes are judged as the mesh is now, and cuts that fit tets to their neighbours may
+    /// come out another way as soon as anything is divided or taken back.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new), and when the memory is that of another mesh.
+    pub fn recall(mesh: &TetMesh, memory: &Memory, options: Options, threads: &Threads) -> Result<Self> {
+        mesh.validate()?;
+        memory.check(mesh)?;
+        let mut trees = Trees::gather(mesh, memory);
+        let is_changed = trees.knot_of.contains(&NONE);
+        let reference = if is_changed { &mesh.points } else { &memory.reference };
+        if is_changed {
+            let shape = |t: usize| eas(mesh.tets[t].map(|v| mesh.points[v.index()])).abs();
+            let worst = threads.map(mesh.tets.len(), shape).into_iter().fold(f64::INFINITY, f64::min);
+            dissolve::misshapen(&mut trees, &memory.reference, reference, worst);
+        }
+        dissolve::bridged(&mut trees, mesh);
+        dissolve::unmatched(&mut trees, mesh);
+        let roots = Roots::of(mesh, memory, &trees)?;
+        let is_changed = is_changed || roots.n_dissolved > 0;
+        let recalled = roots.recall(mesh, reference, &trees, options, threads)?;
+        if !is_changed && !recalled.is_as_given {
+            return Err(unfit("what it says of the tets makes another mesh"));
+        }
+        Ok(recalled.refinement)
+    }
+}
+
+/// What stands at the top of each tree.
+struct Roots {
+    /// As the mesh names vertices.
+    first: TetMesh,
+    /// The knot that each is, if it is not just a tet.
+    knots: Vec<u32>,
+    /// Of each tet, its root.
+    root_of: Vec<u32>,
+    /// Of each triangle of the mesh, its first.
+    triangle_of: Vec<u32>,
+    n_dissolved: usize,
+}
+
+impl Roots {
+    fn of(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<Self> {
+        let mut first = TetMesh { points: Vec::new(), tets: Vec::new(), regions: Vec::new(), ..mesh.clone() };
+        let Gathered { triangles, patches, part_of } = triangles::gather(mesh, memory, trees)?;
+        (first.triangles, first.patches) = (triangles, patches);
+        let mut knots = Vec::new();
+        let mut root_of = Vec::with_capacity(mesh.tets.len());
+        let mut root_of_knot = vec![NONE; trees.knots.len()];
+        for (t, &tet) in mesh.tets.iter().enumerate() {
+            let top = trees.top_of(t);
+            let known = top.map_or(NONE, |top| root_of_knot[top as usize]);
+            if known != NONE {
+                root_of.push(known);
+                continue;
+            }
+            let root = knots.len() as u32;
+            root_of.push(root);
+            knots.push(top.unwrap_or(NONE));
+            first.regions.push(mesh.regions[t]);
+            first.tets.push(top.map_or(tet, |top| {
+                root_of_knot[top as usize] = root;
+                let knot = &trees.knots[top as usize];
+                let [a, b, c, d]: [VertexId; 4] = std::array::from_fn(|i| knot.vertices[i]);
+                if knot.is_turned { [b, a, c, d] } else { [a, b, c, d] }
+            }));
+        }
+        let n_dissolved = trees.knots.iter().filter(|knot| !knot.is_whole).count();
+        Ok(Self { first, knots, root_of, triangle_of: part_of, n_dissolved })
+    }
+
+    /// Which vertices of the mesh are there only because something was divided.
+    fn middles(&self, mesh: &TetMesh, trees: &Trees) -> Vec<bool> {
+        let mut is_middle = vec![false; mesh.points.len()];
+        let whole = trees.knots.iter().filter(|knot| knot.is_whole);
+        let middles = whole.flat_map(|knot| &knot.vertices[4..]).filter(|v| **v != VertexId::NONE);
+        middles.for_each(|v| is_middle[v.index()] = true);
+        let stay = self.first.tets.iter().flatten().chain(&mesh.fixed_vertices);
+        let stay = stay.chain(mesh.fixed_edges.iter().flatten());
+        stay.for_each(|v| is_middle[v.index()] = false);
+        is_middle
+    }
+
+    fn recall(
+        mut self,
+        mesh: &TetMesh,
+        reference: &[Point],
+        trees: &Trees,
+        options: Options,
+        threads: &Threads,
+    ) -> Result<Recalled> {
+        let is_middle = self.middles(mesh, trees);
+        let mut to_forest = vec![NONE; mesh.points.len()];
+        let firsts: Vec<usize> = (0..is_middle.len()).filter(|&v| !is_middle[v]).collect();
+        firsts.iter().zip(0..).for_each(|(&v, number)| to_forest[v] = number);
+        self.rename(&to_forest);
+        self.first.points = firsts.iter().map(|&v| reference[v]).collect();
+        let roots = positive(&self.first, threads)?;
+        let forest = Forest::new(&self.first.points, roots.into_iter());
+        let need = Need::new(options, &forest);
+        self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();
+
+        let mut building = Building { trees, forest, to_forest, node_of: vec![NONE; trees.knots.len()] };
+        for (root, &knot) in (0..).zip(&self.knots).filter(|(_, knot)| **knot != NONE) {
+            building.build(root, knot)?;
+        }
+        let Building { mut forest, to_forest, node_of, .. } = building;
+        forest.pin();
+        let nodes = |t: usize| match trees.knot_of[t] {
+            knot if knot != NONE && node_of[knot as usize] != NONE => node_of[knot as usize],
+            _ => self.root_of[t],
+        };
+        let nodes: Vec<u32> = (0..mesh.tets.len()).map(nodes).collect();
+        let mut points = vec![[f64::NAN; 3]; forest.reference.len()];
+        for (v, &known) in to_forest.iter().enumerate() {
+            *points.get_mut(known as usize).ok_or_else(|| unfit("a point is not accounted for"))? =
+                mesh.points[v];
+        }
+        let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles: self.triangle_of };
+        let closed = close(&mut forest, need, threads);
+        points.resize(forest.reference.len(), [f64::NAN; 3]);
+        let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
+        let is_as_given = is_same(&same, &now);
+        let summary = Summary { n_tets: mesh.tets.len(), ..Summary::default() };
+        let refinement = Refinement { first: self.first, forest, need, points, now, summary };
+        Ok(Recalled { refinement, is_as_given })
+    }
+
+    /// Names the vertices as the forest does.
+    fn rename(&mut self, to_forest: &[u32]) {
+        let new = |v: &mut VertexId| *v = VertexId(to_forest[v.index()]);
+        self.first.tets.iter_mut().flatten().for_each(new);
+        self.first.triangles.iter_mut().flatten().for_each(new);
+        self.first.fixed_vertices.iter_mut().for_each(new);
+        self.first.fixed_edges.iter_mut().flatten().for_each(new);
+    }
+}
+
+struct Recalled {
+    refinement: Refinement,
+    /// Whether the forest gives out the mesh that was given.
+    is_as_given: bool,
+}
+
+fn is_same(one: &Extracted, other: &Extracted) -> bool {
+    let same = |x: &[VertexId], y: &[VertexId]| {
+        let of = |out: &Extracted, v: VertexId| out.vertices[v.index()];
+        x.iter().zip(y).all(|(&x, &y)| of(one, x) == of(other, y))
+    };
+    one.nodes == other.nodes
+        && one.triangles == other.triangles
+        && one.mesh.tets.len() == other.mesh.tets.len()
+        && same(one.mesh.tets.as_flattened(), other.mesh.tets.as_flattened())
+        && same(one.mesh.triangles.as_flattened(), other.mesh.triangles.as_flattened())
+}
+
+struct Building<'a> {
+    trees: &'a Trees,
+    forest: Forest,
+    /// Of each vertex of the mesh its id in the forest, once it has one.
+    to_forest: Vec<u32>,
+    node_of: Vec<u32>,
+}
+
+impl Building<'_> {
+    /// Divides a root as its knot is divided.
+    fn build(&mut self, root: u32, knot: u32) -> Result<()> {
+        let mut open = vec![(root, knot)];
+        while let Some((node, knot)) = open.pop() {
+            let of = &self.trees.knots[knot as usize];
+            self.node_of[knot as usize] = node;
+            for (e, middle) in of.vertices[4..].iter().enumerate().filter(|(_, v)| **v != VertexId::NONE) {
+                self.set_middle(self.forest.edges_of[node as usize][e], middle.index())?;
+            }
+            let Some((way, children)) = of.divided else { continue };
+            let first = self.forest.divide(node, |forest| Way::new(&forest.places(node), way));
+            self.forest.nodes[node as usize].is_asked = u32::from(of.asked) > of.generation;
+            open.extend((first..first + 8).zip(children));
+        }
+        Ok(())
+    }
+
+    fn set_middle(&mut self, edge: u32, middle: usize) -> Result<()> {
+        let known = self.forest.edges[edge as usize].middle;
+        let is_new = self.to_forest[middle] == NONE;
+        match (known, is_new) {
+            (NONE, true) => self.to_forest[middle] = self.forest.middle(edge),
+            (NONE, false) if (self.to_forest[middle] as usize) < self.forest.n_first_vertices => {
+                self.forest.edges[edge as usize].middle = self.to_forest[middle];
+            }
+            _ if known == self.to_forest[middle] => {}
+            _ => return Err(unfit("one point is in the middle of two edges")),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,208 @@
+//! Brings tets of one origin together again: into the tet that they are pieces of, eight of these into the one they were, and so on.
+
+use super::super::forest::NONE;
+use super::super::patterns::{FULL, patterns};
+use super::{Memory, UNKNOWN, generation, locals, step};
+use crate::base::{Id, VertexId};
+use crate::mesh::TetMesh;
+
+/// A tet of the mesh, of several pieces, or of eight such.
+#[derive(Clone, Debug)]
+pub(super) struct Knot {
+    /// The corners, then the middles of split edges; [`Id::NONE`] for those of others.
+    pub(super) vertices: [VertexId; 10],
+    pub(super) parent: u32,
+    /// Which of the eight it is.
+    pub(super) place: usize,
+    /// Where it is divided: along which diagonal, and into what.
+    pub(super) divided: Option<(usize, [u32; 8])>,
+    /// A tet of the mesh that lies in it.
+    pub(super) tet: u32,
+    pub(super) generation: u32,
+    /// How many divisions on the way down to it and beyond were asked for.
+    pub(super) asked: u8,
+    /// Whether all tets in it are numbered the other way round.
+    pub(super) is_turned: bool,
+    pub(super) region: i32,
+    /// Whether everything that lies in it is there.
+    pub(super) is_whole: bool,
+}
+
+/// All of them; those of one tree have their parents behind them.
+#[derive(Debug, Default)]
+pub(super) struct Trees {
+    pub(super) knots: Vec<Knot>,
+    /// Of each tet the knot that it is, or is a piece of; [`NONE`] where that cannot be told.
+    pub(super) knot_of: Vec<u32>,
+}
+
+impl Trees {
+    pub(super) fn gather(mesh: &TetMesh, memory: &Memory) -> Self {
+        let mut order: Vec<u32> = (0..mesh.tets.len() as u32).collect();
+        order.retain(|&t| memory.roots[t as usize] != UNKNOWN && memory.paths[t as usize] != 0);
+        let key = |t: u32| {
+            let path = memory.paths[t as usize];
+            (memory.roots[t as usize], path << path.leading_zeros() << 1, t)
+        };
+        order.sort_unstable_by_key(|&t| key(t));
+        let knots = Vec::new();
+        let mut gathering =
+            Gathering { mesh, memory, trees: Self { knots, knot_of: vec![NONE; mesh.tets.len()] } };
+        for tree in order.chunk_by(|&s, &t| memory.roots[s as usize] == memory.roots[t as usize]) {
+            gathering.gather(tree, 0);
+        }
+        gathering.trees
+    }
+
+    /// The largest whole knot that a tet lies in.
+    pub(super) fn top_of(&self, tet: usize) -> Option<u32> {
+        let is_whole = |knot: &u32| *knot != NONE && self.knots[*knot as usize].is_whole;
+        let mut top = Some(self.knot_of[tet]).filter(is_whole)?;
+        while let Some(parent) = Some(self.knots[top as usize].parent).filter(is_whole) {
+            top = parent;
+        }
+        Some(top)
+    }
+
+    /// Says that a knot is not to be had as a whole, nor those that it lies in.
+    pub(super) fn dissolve(&mut self, mut knot: u32) {
+        while knot != NONE && self.knots[knot as usize].is_whole {
+            self.knots[knot as usize].is_whole = false;
+            knot = self.knots[knot as usize].parent;
+        }
+    }
+}
+
+struct Gathering<'a> {
+    mesh: &'a TetMesh,
+    memory: &'a Memory,
+    trees: Trees,
+}
+
+impl Gathering<'_> {
+    /// The knot that these tets make, which all have the same way down so far.
+    fn gather(&mut self, tets: &[u32], depth: u32) -> Option<u32> {
+        let depth_of = |t: u32| generation(self.memory.paths[t as usize]);
+        if tets.iter().all(|&t| depth_of(t) == depth) {
+            return self.leaf(tets, depth);
+        }
+        if tets.iter().any(|&t| depth_of(t) <= depth) {
+            return None;
+        }
+        let memory = self.memory;
+        let step_of = |t: u32| {
+            let path = memory.paths[t as usize];
+            step(path, generation(path), depth)
+        };
+        let mut children = [NONE; 8];
+        for part in tets.chunk_by(|&s, &t| step_of(s) == step_of(t)) {
+            if let Some(child) = self.gather(part, depth + 1) {
+                children[step_of(part[0])] = child;
+            }
+        }
+        if children.contains(&NONE) { None } else { self.whole(children, depth) }
+    }
+
+    fn leaf(&mut self, tets: &[u32], generation: u32) -> Option<u32> {
+        let (mesh, memory) = (self.mesh, self.memory);
+        let mut vertices = [VertexId::NONE; 10];
+        let mut mask = 0;
+        for &t in tets {
+            for (place, v) in locals(memory.pieces[t as usize]).into_iter().zip(mesh.tets[t as usize]) {
+                put(&mut vertices, usize::from(place), v)?;
+                mask |= if place < 4 { 0 } else { 1 << (place - 4) };
+            }
+        }
+        let is_turned = is_turned(tets, memory, mask)?;
+        let first = tets[0] as usize;
+        let (region, asked) = (mesh.regions[first], memory.asked[first]);
+        let is_alike = |&t: &u32| mesh.regions[t as usize] == region && memory.asked[t as usize] == asked;
+        if !tets.iter().all(is_alike) || vertices[..4].contains(&VertexId::NONE) {
+            return None;
+        }
+        let id = self.trees.knots.len() as u32;
+        tets.iter().for_each(|&t| self.trees.knot_of[t as usize] = id);
+        let tet = tets.iter().copied().min()?;
+        self.trees.knots.push(Knot {
+            vertices,
+            parent: NONE,
+            place: 0,
+            divided: None,
+            tet,
+            generation,
+            asked,
+            is_turned,
+            region,
+            is_whole: true,
+        });
+        Some(id)
+    }
+
+    /// The knot that was divided into these eight.
+    fn whole(&mut self, children: [u32; 8], generation: u32) -> Option<u32> {
+        let knots = &mut self.trees.knots;
+        let of = |k: usize| &knots[children[k] as usize];
+        let (region, is_turned) = (of(0).region, of(0).is_turned);
+        let asked = (0..8).map(|k| of(k).asked).max()?;
+        let is_alike = |k: usize| {
+            let knot = of(k);
+            let is_asked = u32::from(knot.asked.min(asked)) > generation;
+            (knot.region, knot.is_turned) == (region, is_turned)
+                && is_asked == (u32::from(asked) > generation)
+        };
+        if !(0..8).all(is_alike) {
+            return None;
+        }
+        let fitted = (0..3).find_map(|way| {
+            let mut vertices = [VertexId::NONE; 10];
+            for (k, corners) in patterns(FULL, 0)[way].iter().enumerate() {
+                for (i, &place) in corners.iter().enumerate() {
+                    put(&mut vertices, usize::from(place), of(k).vertices[i])?;
+                }
+            }
+            Some((way, vertices))
+        });
+        let (way, vertices) = fitted?;
+        let tet = (0..8).map(|k| of(k).tet).min()?;
+        let id = knots.len() as u32;
+        for (place, child) in children.into_iter().enumerate() {
+            (knots[child as usize].parent, knots[child as usize].place) = (id, place);
+        }
+        knots.push(Knot {
+            vertices,
+            parent: NONE,
+            place: 0,
+            divided: Some((way, children)),
+            tet,
+            generation,
+            asked,
+            is_turned,
+            region,
+            is_whole: true,
+        });
+        Some(id)
+    }
+}
+
+/// Puts a vertex where there is none or the same one.
+fn put(vertices: &mut [VertexId; 10], place: usize, v: VertexId) -> Option<()> {
+    let there = vertices.get_mut(place)?;
+    if *there != VertexId::NONE && *there != v {
+        return None;
+    }
+    *there = v;
+    Some(())
+}
+
+/// Whether the pieces, which are one of the ways to fill a tet, have their first two vertices exchanged; `None` if they are no such way.
+fn is_turned(tets: &[u32], memory: &Memory, mask: u8) -> Option<bool> {
+    let pieces: Vec<[u8; 4]> = tets.iter().map(|&t| locals(memory.pieces[t as usize])).collect();
+    let turned: Vec<[u8; 4]> = pieces.iter().map(|&[a, b, c, d]| [b, a, c, d]).collect();
+    if mask == 0 {
+        let is_whole = |pieces: &[[u8; 4]]| pieces == [[0, 1, 2, 3]];
+        return (is_whole(&pieces) || is_whole(&turned)).then(|| is_whole(&turned));
+    }
+    let mut ways = (0..16).flat_map(|cuts| patterns(mask, cuts));
+    let way = ways.find(|way| **way == pieces || **way == turned)?;
+    Some(*way == turned)
+}

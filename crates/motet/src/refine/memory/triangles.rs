@@ -1,0 +1,115 @@
+//! Brings the triangles of a mesh together again, as its tets come together.
+
+use super::super::forest::NONE;
+use super::super::patterns::{FACET_EDGES, FULL, patterns};
+use super::trees::{Knot, Trees};
+use super::{Memory, unfit};
+use crate::base::{Result, TetId, VertexId};
+use crate::geometry::tet::FACETS;
+use crate::mesh::TetMesh;
+use crate::mesh::tet_facets::for_each_tet_facet;
+
+/// Triangles as they were.
+pub(super) struct Gathered {
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) patches: Vec<i32>,
+    /// Of each triangle of the mesh, which of them it is a part of.
+    pub(super) part_of: Vec<u32>,
+}
+
+/// The triangles as they were, in their order.
+pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<Gathered> {
+    let mut beside: Vec<Option<TetId>> = vec![None; mesh.triangles.len()];
+    for_each_tet_facet(&mesh.tets, &mesh.triangles, |sharing| {
+        let tet = sharing.tets.iter().map(|(tet, _)| *tet).min();
+        sharing.triangles.iter().for_each(|&t| beside[t as usize] = tet);
+    });
+    let mut keys = Vec::with_capacity(beside.len());
+    for (t, tet) in beside.iter().enumerate() {
+        let whole = match tet {
+            None => mesh.triangles[t],
+            Some(tet) => whole(mesh.triangles[t], memory.corners[t], trees, *tet)?,
+        };
+        let mut sorted = whole;
+        sorted.sort_unstable();
+        keys.push((sorted, t, whole));
+    }
+    // Triangles that name the same vertices twice over stay apart.
+    let mut firsts: Vec<(usize, [VertexId; 3])> = Vec::new();
+    let mut part_of = vec![0; keys.len()];
+    keys.sort_unstable();
+    for same in keys.chunk_by(|x, y| x.0 == y.0) {
+        let is_part = |t: usize, whole: [VertexId; 3]| mesh.triangles[t].iter().any(|v| !whole.contains(v));
+        for (i, &(_, t, whole)) in same.iter().enumerate() {
+            let is_new = i == 0 || !is_part(t, whole);
+            if is_new {
+                firsts.push((t, whole));
+            } else if mesh.patches[t] != mesh.patches[same[0].1] {
+                return Err(unfit(&format!(
+                    "triangle {t} has another patch than those that it was divided with"
+                )));
+            }
+            part_of[t] = if is_new { t } else { same[0].1 };
+        }
+    }
+    firsts.sort_unstable();
+    let of_first = |t: usize| firsts.partition_point(|(first, _)| *first < t) as u32;
+    let part_of = part_of.into_iter().map(of_first).collect();
+    let patches = firsts.iter().map(|(t, _)| mesh.patches[*t]).collect();
+    Ok(Gathered { triangles: firsts.into_iter().map(|(_, whole)| whole).collect(), patches, part_of })
+}
+
+/// The triangle that a triangle is a part of, if the tet is a part of one.
+fn whole(triangle: [VertexId; 3], corner: u8, trees: &Trees, tet: TetId) -> Result<[VertexId; 3]> {
+    let Some(top) = trees.top_of(tet.index()) else { return Ok(triangle) };
+    let mut knot = &trees.knots[trees.knot_of[tet.index()] as usize];
+    let place = |v: &VertexId| knot.vertices.iter().position(|other| other == v).unwrap_or(0);
+    let inside = || unfit("a triangle lies inside of a tet that was divided");
+    let mut facet = facet_of([0, 1, 2].map(|i| place(&triangle[i]))).ok_or_else(inside)?;
+    while knot.parent != NONE && !std::ptr::eq(knot, &trees.knots[top as usize]) {
+        let parent = &trees.knots[knot.parent as usize];
+        let Some((way, _)) = parent.divided else { break };
+        let child = patterns(FULL, 0)[way][knot.place];
+        facet = facet_of(facet.map(|k| usize::from(child[k]))).ok_or_else(inside)?;
+        knot = parent;
+    }
+    Ok(begin_at(facet, corner, knot, triangle))
+}
+
+/// The vertices of a facet, from a corner on if it has that.
+fn begin_at(facet: [usize; 3], corner: u8, knot: &Knot, triangle: [VertexId; 3]) -> [VertexId; 3] {
+    let vertices = facet.map(|k| knot.vertices[k]);
+    // A triangle that is no part begins as it does.
+    let begin = match vertices.iter().position(|v| *v == triangle[0]) {
+        Some(begin) if triangle.iter().all(|v| vertices.contains(v)) => begin,
+        _ => facet.iter().position(|k| *k == usize::from(corner)).unwrap_or(0),
+    };
+    [0, 1, 2].map(|i| vertices[(begin + i) % 3])
+}
+
+/// The corners of the facet that three local vertices lie on, facing as they do; `None` where there is no such facet.
+fn facet_of(locals: [usize; 3]) -> Option<[usize; 3]> {
+    (0..4).find_map(|facet| {
+        let mut rows = [[0; 3]; 3];
+        for (row, local) in rows.iter_mut().zip(locals) {
+            *row = place_on(facet, local)?;
+        }
+        let [a, b, c] = rows;
+        let turn: i32 =
+            (0..3).map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3])).sum();
+        let [x, y, z] = FACETS[facet];
+        if turn < 0 { Some([x, z, y]) } else { Some([x, y, z]) }
+    })
+}
+
+/// Twice the weights of a local vertex on a facet.
+fn place_on(facet: usize, local: usize) -> Option<[i32; 3]> {
+    let mut weights = [0; 3];
+    if let Some(k) = FACETS[facet].iter().position(|corner| *corner == local) {
+        weights[k] = 2;
+        return Some(weights);
+    }
+    let k = FACET_EDGES[facet].iter().position(|e| 4 + e == local)?;
+    (weights[(k + 1) % 3], weights[(k + 2) % 3]) = (1, 1);
+    Some(weights)
+}
