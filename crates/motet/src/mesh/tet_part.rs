@@ -50,6 +50,25 @@ impl TetPart {
         Ok(part)
     }
 
+    /// An error whose place is a tet or a triangle, with the cell that it is in its place.
+    pub fn at_cell(&self, error: Error) -> Error {
+        let cell = error.place().and_then(|place| {
+            let (what, id) = place.split_once(' ')?;
+            let to_cell = match what {
+                "tet" => &self.tet_to_cell,
+                "triangle" => &self.triangle_to_cell,
+                _ => return None,
+            };
+            to_cell.get(id.parse::<usize>().ok()?)
+        });
+        let Some(cell) = cell else { return error };
+        let told = Error::new(error.kind(), error.what()).at(format!("cell {cell}"));
+        match error.remedy_text() {
+            Some(remedy) => told.remedy(remedy),
+            None => told,
+        }
+    }
+
     /// Vertices of a cell of another kind stay, and every edge that might be one of its edges.
     fn hold(&mut self, vertices: &[VertexId]) {
         let fixed = &mut self.mesh;

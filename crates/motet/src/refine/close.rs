@@ -9,6 +9,7 @@ use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
+use crate::mesh::BAD_EAS;
 
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +28,10 @@ impl Need {
         Self { floor: options.keep * worst, share: options.share }
     }
 
+    /// What pieces of a tet have to be. Where all roots are good, no more is asked than that none becomes bad: else of a lattice, whose tets are all alike,
+    /// everything would be divided, since no piece is as good as the whole.
     fn of(self, whole: f64) -> f64 {
-        self.floor.max(self.share * whole)
+        self.floor.min(BAD_EAS).max(self.share * whole)
     }
 }
 

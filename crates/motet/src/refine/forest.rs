@@ -17,6 +17,9 @@ use crate::geometry::vector::{add, dot, scale, sub};
 /// As an id: none.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// The most divisions one in another: what a way down of 64 bits can tell, and far beyond what coordinates can.
+pub(super) const DEEPEST: u8 = 20;
+
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {

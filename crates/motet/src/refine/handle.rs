@@ -2,7 +2,8 @@
 
 use super::close::{Closed, Need, close};
 use super::extract::{Extracted, extract};
-use super::forest::{Forest, NONE};
+use super::forest::{DEEPEST, Forest, NONE};
+use super::held::{Near, split_though_fixed};
 use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
@@ -11,7 +12,7 @@ use crate::mesh::TetMesh;
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No tet is cut into pieces below this part of the first mesh's worst EAS, where there is another way. Default: 0.95.
+    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below 0.2 where that is less, if there is another way. Default: 0.95.
     pub keep: f64,
     /// Nor into pieces below this part of its own EAS. Above 0.5 even regular tets may not be cut, and refinement spreads far. Default: 0.5.
     pub share: f64,
@@ -32,6 +33,8 @@ pub struct Summary {
     pub n_promoted: usize,
     /// How many tets were cut to fit their neighbours.
     pub n_cut: usize,
+    /// How many marked tets were left as they are, since edges that are [fixed](TetMesh::fixed_edges) would have to be split.
+    pub n_held: usize,
     /// How often all tets were looked at.
     pub n_sweeps: usize,
 }
@@ -95,13 +98,19 @@ impl Refinement {
             now: Extracted::default(),
             summary: Summary::default(),
         };
-        refinement.settle(threads)?;
+        let closed = close(&mut refinement.forest, need, threads);
+        refinement.give_out(closed)?;
         Ok(refinement)
     }
 
     /// The mesh as it is now. While nothing is divided it is the first one, but for the points, if these moved.
     pub fn mesh(&self) -> &TetMesh {
         &self.now.mesh
+    }
+
+    /// Whether any tet of the first mesh is divided, or cut.
+    pub fn is_divided(&self) -> bool {
+        self.now.mesh.tets.len() != self.first.tets.len()
     }
 
     /// How often each tet's place was divided into eight. Pieces of a tet that was cut count as the tet.
@@ -114,7 +123,8 @@ impl Refinement {
         self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
     }
 
-    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better.
+    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better, or all of the first mesh are good and
+    /// these are not bad.
     pub fn left(&self, threads: &Threads) -> Vec<Left> {
         let shape =
             threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
@@ -158,22 +168,51 @@ impl Refinement {
         Ok(())
     }
 
-    /// Divides these tets into eight, once; a piece of a tet that was cut stands for the whole.
+    /// Divides these tets into eight, once; a piece of a tet that was cut stands for the whole. Where that would split [fixed](TetMesh::fixed_edges) edges,
+    /// tets near these are left out.
     ///
     /// # Errors
-    /// When there is no such tet, or ids would not suffice; then nothing has changed.
+    /// When there is no such tet, one was divided twenty times over, or ids would not suffice; then nothing has changed.
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
+        let is_deepest =
+            |tet: &&TetId| self.forest.nodes[self.now.nodes[tet.index()] as usize].generation >= DEEPEST;
+        if let Some(tet) = marked.iter().find(is_deepest) {
+            return Err(Error::options(format!(
+                "tet {tet} was divided {DEEPEST} times over, which is the most"
+            )));
+        }
         let before = self.asked();
+        let mut left = marked.to_vec();
+        let mut near = Near::default();
+        loop {
+            self.ask(&left);
+            let closed = close(&mut self.forest, self.need, threads);
+            let split = split_though_fixed(&self.forest, &self.first);
+            if split.is_empty() {
+                self.give_out_or_else(closed, &before, threads)?;
+                self.summary.n_held = marked.len() - left.len();
+                return Ok(self.summary);
+            }
+            if left.is_empty() {
+                return Err(self.restore(&before, threads).err().unwrap_or_else(|| {
+                    Error::input("an edge that is fixed is split as it is, before anything is divided")
+                }));
+            }
+            self.unask(&before);
+            near.keep_off(&self.now, &split, &mut left);
+        }
+    }
+
+    /// What is asked of a tet is asked of those it lies in.
+    fn ask(&mut self, marked: &[TetId]) {
         for tet in marked {
-            // What is asked of a tet is asked of those it lies in.
             let mut node = self.now.nodes[tet.index()];
             while node != NONE && !self.forest.nodes[node as usize].is_asked {
                 self.forest.nodes[node as usize].is_asked = true;
                 node = self.forest.nodes[node as usize].parent;
             }
         }
-        self.settle_or_else(&before, threads)
     }
 
     /// Takes back divisions of which all that lies within is marked, and of which no part was asked to be divided again. A tet that its
@@ -200,7 +239,9 @@ impl Refinement {
             let first = nodes[node].first_child as usize;
             nodes[node].is_asked = before[first..first + 8].iter().any(|&child| child);
         }
-        self.settle_or_else(&before, threads)
+        let closed = close(&mut self.forest, self.need, threads);
+        self.give_out_or_else(closed, &before, threads)?;
+        Ok(self.summary)
     }
 
     fn check(&self, marked: &[TetId]) -> Result<()> {
@@ -215,19 +256,28 @@ impl Refinement {
         self.forest.nodes.iter().map(|node| node.is_asked).collect()
     }
 
-    fn settle_or_else(&mut self, before: &[bool], threads: &Threads) -> Result<Summary> {
-        if let Err(error) = self.settle(threads) {
-            let before = before.iter().chain(std::iter::repeat(&false));
-            self.forest.nodes.iter_mut().zip(before).for_each(|(node, &asked)| node.is_asked = asked);
-            self.settle(threads)?;
-            return Err(error);
-        }
-        Ok(self.summary)
+    /// Asks for what was asked for before, and for nothing else.
+    fn unask(&mut self, before: &[bool]) {
+        let before = before.iter().chain(std::iter::repeat(&false));
+        self.forest.nodes.iter_mut().zip(before).for_each(|(node, &asked)| node.is_asked = asked);
     }
 
-    /// Closes what is asked, and gives it out.
-    fn settle(&mut self, threads: &Threads) -> Result<()> {
-        let closed: Closed = close(&mut self.forest, self.need, threads);
+    /// Goes back to what was asked for before.
+    fn restore(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
+        self.unask(before);
+        let closed = close(&mut self.forest, self.need, threads);
+        self.give_out(closed)
+    }
+
+    fn give_out_or_else(&mut self, closed: Closed, before: &[bool], threads: &Threads) -> Result<()> {
+        if let Err(error) = self.give_out(closed) {
+            self.restore(before, threads)?;
+            return Err(error);
+        }
+        Ok(())
+    }
+
+    fn give_out(&mut self, closed: Closed) -> Result<()> {
         let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
         self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
         for (&vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
@@ -237,6 +287,7 @@ impl Refinement {
             n_tets: now.mesh.tets.len(),
             n_promoted: closed.n_promoted,
             n_cut: closed.cuts.len(),
+            n_held: 0,
             n_sweeps: closed.n_sweeps,
         };
         self.now = now;

@@ -8,6 +8,9 @@
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
 //! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
+//! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are |
+//! | remember | `memory` | what has to be kept with the mesh, so that a later run goes on, and what is still true of it when others changed the mesh |
+//! | whole meshes | `whole`, `joined`, `origins`, `kept` | cells of other kinds put back, arrays carried across, the memory as arrays |
 //!
 //! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is remembered. A tet that was cut
 //! to fit its neighbours is never divided itself: asked for one of its pieces, the whole is divided into eight (Bank, Sherman and Weiser 1983,
@@ -19,9 +22,15 @@ pub mod estimate;
 mod extract;
 mod forest;
 mod handle;
+mod held;
+mod joined;
+mod kept;
 pub mod mark;
 mod memory;
+mod origins;
 mod patterns;
+mod whole;
 
 pub use handle::{Left, Options, Refinement, Summary};
 pub use memory::{Memory, UNKNOWN};
+pub use whole::MeshRefinement;

@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use crate::base::{CellId, Csr, Error, Id, Result, Threads, VertexId};
+use crate::base::{CellId, Csr, Id, Result, Threads, VertexId};
 use crate::geometry::tet::volume;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::dot;
-use crate::kernel::{Extract, NEW};
-use crate::mesh::history::{History, Origins, Rules};
-use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart, Values};
+use crate::kernel::Extract;
+use crate::mesh::history::{History, Origins, Rules, number_anew};
+use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 use crate::remesh::{Options, Report, remesh};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
 
@@ -34,7 +34,7 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
     let taken_out = begin.elapsed().as_secs_f64();
-    let outcome = remesh(&part.mesh, options).map_err(|error| at_cell(error, &part))?;
+    let outcome = remesh(&part.mesh, options).map_err(|error| part.at_cell(error))?;
     let mut report = outcome.report;
 
     let begin = Instant::now();
@@ -211,41 +211,6 @@ fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], 
     cells.map(|(cell, vertices, label)| Labelled { cell, vertices, label }).collect()
 }
 
-/// Arrays whose numbers tell points and cells apart: SimVascular's. An inherited number would stand there twice.
-const NODE_ID: &str = "GlobalNodeID";
-const ELEMENT_ID: &str = "GlobalElementID";
-
-/// Gives new points and new tets numbers of their own, after the largest.
-fn number_anew(mesh: &mut Mesh, vertex_to_old: &[u32], cell_to_old: &[CellId]) {
-    let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;
-    if let Some(ids) = mesh.point_data.iter_mut().find(|f| is_named(f, NODE_ID)) {
-        let new = (0..vertex_to_old.len()).filter(|&v| vertex_to_old[v] == NEW);
-        number(&mut ids.values, new);
-    }
-    if let Some(ids) = mesh.cell_data.iter_mut().find(|f| is_named(f, ELEMENT_ID)) {
-        let is_new = |c: &usize| cell_to_old[*c] == Id::NONE && mesh.cells.kinds()[*c] == CellKind::TETRA;
-        number(&mut ids.values, (0..cell_to_old.len()).filter(is_new));
-    }
-}
-
-fn number(ids: &mut Values, rows: impl Iterator<Item = usize>) {
-    macro_rules! number {
-        ($($variant:ident)*) => {
-            match ids {
-                $(Values::$variant(ids) => {
-                    let mut largest = ids.iter().copied().max().unwrap_or_default();
-                    for row in rows {
-                        largest = largest.saturating_add(1);
-                        ids[row] = largest;
-                    }
-                })*
-                _ => {}
-            }
-        };
-    }
-    number!(I32 U32 I64 U64);
-}
-
 /// Puts ids of cells in place of those of tets.
 fn tell_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
     let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
@@ -262,23 +227,4 @@ fn is_turned(mesh: &Mesh) -> bool {
         n_negative += usize::from(is_negative(tet));
     }
     2 * n_negative > n_tets
-}
-
-/// An error whose place is a tet or a triangle, with the cell that it is in its place.
-fn at_cell(error: Error, part: &TetPart) -> Error {
-    let cell = error.place().and_then(|place| {
-        let (what, id) = place.split_once(' ')?;
-        let to_cell = match what {
-            "tet" => &part.tet_to_cell,
-            "triangle" => &part.triangle_to_cell,
-            _ => return None,
-        };
-        to_cell.get(id.parse::<usize>().ok()?)
-    });
-    let Some(cell) = cell else { return error };
-    let told = Error::new(error.kind(), error.what()).at(format!("cell {cell}"));
-    match error.remedy_text() {
-        Some(remedy) => told.remedy(remedy),
-        None => told,
-    }
 }

@@ -14,12 +14,14 @@
 mod carry;
 mod fields;
 mod ledger;
+mod numbers;
 mod origins;
 mod row;
 mod rule;
 
 pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
+pub use numbers::{REFINE_ROOT, number_anew};
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
 pub use rule::{Rule, Rules};

@@ -111,6 +111,13 @@ impl Roots {
         self.rename(&to_forest);
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
         let roots = positive(&self.first, threads)?;
+        let is_turned = |(&knot, root): (&u32, &[u32; 4])| {
+            knot != NONE
+                && (0..4).any(|i| to_forest[trees.knots[knot as usize].vertices[i].index()] != root[i])
+        };
+        if self.knots.iter().zip(&roots).any(is_turned) {
+            return Err(unfit("a tet that was divided has its vertices in another order"));
+        }
         let forest = Forest::new(&self.first.points, roots.into_iter());
         let need = Need::new(options, &forest);
         self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();

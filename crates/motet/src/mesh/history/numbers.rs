@@ -1,0 +1,46 @@
+//! Arrays that tell points and cells apart: what comes new must not have the number of another.
+
+use crate::base::{CellId, Id};
+use crate::mesh::{CellKind, Field, Mesh, Values};
+
+/// SimVascular's numbers of points and cells.
+const NODE_ID: &str = "GlobalNodeID";
+const ELEMENT_ID: &str = "GlobalElementID";
+/// Which tets came from one by refinement: -1 where that is not known.
+pub const REFINE_ROOT: &str = "refine_root";
+
+/// Gives new points and new tets numbers of their own, after the largest. `point_to_old` has [`u32::MAX`] for a new point.
+pub fn number_anew(mesh: &mut Mesh, point_to_old: &[u32], cell_to_old: &[CellId]) {
+    let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;
+    let is_new = |c: &usize| cell_to_old[*c] == Id::NONE && mesh.cells.kinds()[*c] == CellKind::TETRA;
+    let new_cells: Vec<usize> = (0..cell_to_old.len()).filter(is_new).collect();
+    if let Some(ids) = mesh.point_data.iter_mut().find(|f| is_named(f, NODE_ID)) {
+        number(&mut ids.values, (0..point_to_old.len()).filter(|&v| point_to_old[v] == u32::MAX));
+    }
+    if let Some(ids) = mesh.cell_data.iter_mut().find(|f| is_named(f, ELEMENT_ID)) {
+        number(&mut ids.values, new_cells.iter().copied());
+    }
+    if let Some(Values::I32(roots)) =
+        mesh.cell_data.iter_mut().find(|f| is_named(f, REFINE_ROOT)).map(|field| &mut field.values)
+    {
+        new_cells.iter().for_each(|&c| roots[c] = -1);
+    }
+}
+
+fn number(ids: &mut Values, rows: impl Iterator<Item = usize>) {
+    macro_rules! number {
+        ($($variant:ident)*) => {
+            match ids {
+                $(Values::$variant(ids) => {
+                    let mut largest = ids.iter().copied().max().unwrap_or_default();
+                    for row in rows {
+                        largest = largest.saturating_add(1);
+                        ids[row] = largest;
+                    }
+                })*
+                _ => {}
+            }
+        };
+    }
+    number!(I32 U32 I64 U64);
+}

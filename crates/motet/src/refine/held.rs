@@ -1,0 +1,53 @@
+//! Edges that cells of other kinds hold are not split: tets near them are left as they are, as far as that needs.
+
+use super::extract::Extracted;
+use super::forest::{Forest, NONE};
+use crate::base::{TetId, VertexId};
+use crate::mesh::TetMesh;
+
+/// The vertices of the forest at edges that are split though they are fixed.
+pub(super) fn split_though_fixed(forest: &Forest, first: &TetMesh) -> Vec<u32> {
+    let is_split = |edge: &&[VertexId; 2]| {
+        forest.root_edge(edge.map(|v| v.0)).is_some_and(|edge| forest.is_split[edge as usize])
+    };
+    first.fixed_edges.iter().filter(is_split).flatten().map(|v| v.0).collect()
+}
+
+/// What lies near such edges: rings of tets, more each time.
+#[derive(Debug, Default)]
+pub(super) struct Near {
+    is_near: Vec<bool>,
+    n_rings: usize,
+}
+
+impl Near {
+    /// Takes marks near these vertices out, at least one.
+    pub(super) fn keep_off(&mut self, now: &Extracted, vertices: &[u32], marked: &mut Vec<TetId>) {
+        let mesh = &now.mesh;
+        self.is_near.resize(mesh.points.len(), false);
+        let largest = now.vertices.iter().max().map_or(0, |v| *v as usize + 1);
+        let mut number = vec![NONE; largest];
+        now.vertices.iter().zip(0..).for_each(|(&v, i)| number[v as usize] = i);
+        let known = vertices.iter().filter_map(|&v| number.get(v as usize)).filter(|v| **v != NONE);
+        known.for_each(|&v| self.is_near[v as usize] = true);
+        (0..self.n_rings).for_each(|_| self.grow(mesh));
+        self.n_rings += 1;
+        let n = marked.len();
+        while marked.len() == n && n > 0 {
+            let before = self.is_near.iter().filter(|near| **near).count();
+            marked.retain(|tet| !mesh.tets[tet.index()].iter().any(|v| self.is_near[v.index()]));
+            self.grow(mesh);
+            if self.is_near.iter().filter(|near| **near).count() == before {
+                marked.clear();
+            }
+        }
+    }
+
+    /// Adds the tets at all that is near.
+    fn grow(&mut self, mesh: &TetMesh) {
+        let is_near = self.is_near.clone();
+        for tet in mesh.tets.iter().filter(|tet| tet.iter().any(|v| is_near[v.index()])) {
+            tet.iter().for_each(|v| self.is_near[v.index()] = true);
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The cells of a whole mesh after a step: each root's parts in its place, cells of other kinds between them as they were.
+
+use super::extract::Extracted;
+use super::forest::NONE;
+use super::handle::Refinement;
+use super::whole::Slot;
+use crate::base::{CellId, Csr, Id, VertexId};
+use crate::mesh::{CellKind, Cells, Mesh};
+
+/// The cells of the new mesh, and which of the old ones each was.
+pub(super) struct Joined {
+    pub(super) cells: Cells,
+    /// [`Id::NONE`] for those that came.
+    pub(super) cell_to_old: Vec<CellId>,
+    /// [`NONE`] for those that came.
+    pub(super) vertex_to_old: Vec<u32>,
+    pub(super) tet_to_cell: Vec<CellId>,
+    pub(super) triangle_to_cell: Vec<CellId>,
+    pub(super) tets: Matched,
+    pub(super) triangles: Matched,
+}
+
+/// Which parts of a mesh are those of another.
+#[derive(Debug, Default)]
+pub(super) struct Matched {
+    /// [`NONE`] where there is none.
+    to_old: Vec<u32>,
+    /// Those of the old mesh that are no more, rising.
+    pub(super) gone: Vec<u32>,
+    /// Those that came, rising.
+    pub(super) came: Vec<u32>,
+}
+
+impl Joined {
+    /// `cells` are those that tets and triangles were in the old mesh; the refinements are that before and that after.
+    pub(super) fn of(
+        old: &Mesh,
+        slots: &[Slot],
+        cells: [&[CellId]; 2],
+        [before, after]: [&Refinement; 2],
+    ) -> Self {
+        let (was, is) = (&before.now, &after.now);
+        let root_of = |of: &Refinement| -> Vec<u32> { of.roots().map(|root| root.0).collect() };
+        let tet_roots = [before, after].map(root_of);
+        let tets = matched([was, is].map(|out| names(out, &out.mesh.tets)), [&tet_roots[0], &tet_roots[1]]);
+        let triangles =
+            matched([was, is].map(|out| names(out, &out.mesh.triangles)), [&was.triangles, &is.triangles]);
+        let vertices = Vertices::of(was, is);
+        let joined = Self {
+            cells: Cells::new(),
+            cell_to_old: Vec::new(),
+            vertex_to_old: vertices.new_to_old,
+            tet_to_cell: Vec::with_capacity(is.mesh.tets.len()),
+            triangle_to_cell: Vec::with_capacity(is.mesh.triangles.len()),
+            tets,
+            triangles,
+        };
+        joined.fill(old, slots, cells, is, &tet_roots[1], &vertices.old_to_new)
+    }
+
+    fn fill(
+        mut self,
+        old: &Mesh,
+        slots: &[Slot],
+        [old_tets, old_triangles]: [&[CellId]; 2],
+        is: &Extracted,
+        tet_roots: &[u32],
+        old_to_new: &[u32],
+    ) -> Self {
+        let new = |v: VertexId| VertexId(old_to_new[v.index()]);
+        let is_other = |kind: CellKind| kind != CellKind::TETRA && kind != CellKind::TRIANGLE;
+        let mut others = old.cells.iter().filter(|(_, kind, _)| is_other(*kind));
+        let mut faces = old.cells.polyhedron_faces().iter();
+        let mut parts_of_tets = tet_roots.chunk_by(|x, y| x == y);
+        let mut parts_of_triangles = is.triangles.chunk_by(|x, y| x == y);
+        for slot in slots {
+            match slot {
+                Slot::Tet => {
+                    for _ in 0..parts_of_tets.next().map_or(0, <[u32]>::len) {
+                        let t = self.tet_to_cell.len();
+                        let known = self.tets.old(t, old_tets);
+                        let cell = self.push(CellKind::TETRA, known, is.mesh.tets[t]);
+                        self.tet_to_cell.push(cell);
+                    }
+                }
+                Slot::Triangle => {
+                    for _ in 0..parts_of_triangles.next().map_or(0, <[u32]>::len) {
+                        let t = self.triangle_to_cell.len();
+                        let known = self.triangles.old(t, old_triangles);
+                        let cell = self.push(CellKind::TRIANGLE, known, is.mesh.triangles[t]);
+                        self.triangle_to_cell.push(cell);
+                    }
+                }
+                Slot::Other => {
+                    let Some((cell, kind, vertices)) = others.next() else { continue };
+                    let vertices = vertices.iter().map(|&v| new(v));
+                    if kind == CellKind::POLYHEDRON {
+                        let mut renamed = Csr::default();
+                        let named = faces.next().into_iter().flat_map(|faces| faces.iter());
+                        named.for_each(|face| renamed.push(face.iter().map(|&v| new(v))));
+                        self.cells.push_polyhedron(vertices, renamed);
+                    } else {
+                        self.cells.push(kind, vertices);
+                    }
+                    self.cell_to_old.push(cell);
+                }
+            }
+        }
+        self
+    }
+
+    fn push<const N: usize>(&mut self, kind: CellKind, old: CellId, vertices: [VertexId; N]) -> CellId {
+        let cell = CellId::new(self.cells.len());
+        self.cells.push(kind, vertices);
+        self.cell_to_old.push(old);
+        cell
+    }
+}
+
+impl Matched {
+    fn old(&self, i: usize, cells: &[CellId]) -> CellId {
+        match self.to_old[i] {
+            NONE => Id::NONE,
+            old => cells[old as usize],
+        }
+    }
+}
+
+struct Vertices {
+    new_to_old: Vec<u32>,
+    old_to_new: Vec<u32>,
+}
+
+impl Vertices {
+    fn of(was: &Extracted, is: &Extracted) -> Self {
+        let largest = was.vertices.iter().chain(&is.vertices).max().map_or(0, |v| *v as usize + 1);
+        let mut place = vec![NONE; largest];
+        was.vertices.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
+        let new_to_old: Vec<u32> = is.vertices.iter().map(|&v| place[v as usize]).collect();
+        let mut old_to_new = vec![NONE; was.vertices.len()];
+        let known = new_to_old.iter().zip(0..).filter(|(old, _)| **old != NONE);
+        known.for_each(|(&old, new)| old_to_new[old as usize] = new);
+        Self { new_to_old, old_to_new }
+    }
+}
+
+/// Tets or triangles by the ids of their vertices in the forest.
+fn names<const N: usize>(out: &Extracted, of: &[[VertexId; N]]) -> Vec<[u32; N]> {
+    of.iter().map(|vertices| vertices.map(|v| out.vertices[v.index()])).collect()
+}
+
+/// Which are the same, looked for in the same root.
+fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Matched {
+    let [was, is] = names;
+    let order = [by_root(roots[0]), by_root(roots[1])];
+    let mut matched = Matched { to_old: vec![NONE; is.len()], ..Matched::default() };
+    let mut stays = vec![false; was.len()];
+    let mut olds = order[0].chunk_by(|&x, &y| roots[0][x as usize] == roots[0][y as usize]);
+    for news in order[1].chunk_by(|&x, &y| roots[1][x as usize] == roots[1][y as usize]) {
+        // Both have the same roots, each at least one part of each.
+        let Some(olds) = olds.next() else { break };
+        let mut sorted: Vec<([u32; N], u32)> = olds.iter().map(|&t| (was[t as usize], t)).collect();
+        sorted.sort_unstable();
+        for &t in news {
+            if let Ok(i) = sorted.binary_search_by_key(&is[t as usize], |(name, _)| *name) {
+                matched.to_old[t as usize] = sorted[i].1;
+                stays[sorted[i].1 as usize] = true;
+            }
+        }
+    }
+    let flagged = |flags: &mut dyn Iterator<Item = bool>| -> Vec<u32> {
+        (0..).zip(flags).filter(|(_, flag)| *flag).map(|(i, _)| i).collect()
+    };
+    matched.gone = flagged(&mut stays.iter().map(|stays| !stays));
+    matched.came = flagged(&mut matched.to_old.iter().map(|old| *old == NONE));
+    matched
+}
+
+/// All of them, by root, in their order.
+fn by_root(roots: &[u32]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..roots.len() as u32).collect();
+    if !roots.is_sorted() {
+        order.sort_by_key(|&t| roots[t as usize]);
+    }
+    order
+}

@@ -1,0 +1,210 @@
+//! Where what came in a step came from, by the forest: a part of a tet lies in it, and a whole is made of its parts. Only where pieces that fit a tet to its neighbours give
+//! way to others has geometry to be asked, and then of few tets.
+//!
+//! A new vertex takes the mean of the ends of its edge, whose ends may be new, too.
+
+use std::collections::BTreeMap;
+
+use super::extract::Extracted;
+use super::forest::{Forest, NONE};
+use super::handle::Refinement;
+use super::joined::Joined;
+use crate::base::{CellId, Result, Threads, VertexId};
+use crate::geometry::overlap::Solid;
+use crate::geometry::tet::{self, centroid};
+use crate::geometry::vector::distance;
+use crate::mesh::history::{Ledger, RegionLedger, Rows};
+use crate::spatial::trace::{Labelled, LocalChange, trace};
+
+/// An overlap below this part of the smaller tet is rounding: they touch.
+const TOUCH: f64 = 1e-14;
+
+/// Rows for all that came.
+pub(super) struct Found {
+    pub(super) vertices: Rows<VertexId>,
+    pub(super) cells: Rows<CellId>,
+    pub(super) ledger: Ledger,
+}
+
+/// The refinements are that before and that after; `cells` are those that tets and triangles were before.
+pub(super) fn origins(
+    [before, after]: [&Refinement; 2],
+    joined: &Joined,
+    cells: [&[CellId]; 2],
+    threads: &Threads,
+) -> Result<Found> {
+    let kin = Kin::new(&after.forest, &before.now, &after.now);
+    let parts = threads.map(joined.tets.came.len(), |i| kin.parts(joined.tets.came[i] as usize));
+    let ledger = ledger(&kin, joined, &parts);
+    let mut rows: Vec<(CellId, Vec<(CellId, f64)>, CellId)> = Vec::with_capacity(parts.len());
+    for (&t, parts) in joined.tets.came.iter().zip(&parts) {
+        let of_old = parts.iter().map(|&(old, volume)| (cells[0][old as usize], volume));
+        let main = parts.iter().fold((NONE, -1.0), |best, &part| if part.1 > best.1 { part } else { best }).0;
+        rows.push((joined.tet_to_cell[t as usize], of_old.collect(), cells[0][main as usize]));
+    }
+    triangles(before, after, joined, cells[1], threads, &mut rows)?;
+    rows.sort_by_key(|row| row.0);
+    let mut of_cells = Rows::new();
+    rows.iter().for_each(|(cell, parts, main)| of_cells.push(*cell, parts, *main));
+    let mut of_vertices = Rows::new();
+    let means = Means::new(&after.forest, &before.now);
+    let came = joined.vertex_to_old.iter().enumerate().filter(|(_, old)| **old == NONE);
+    for (v, _) in came {
+        let parts = means.of(after.now.vertices[v]);
+        of_vertices.push(VertexId::new(v), &parts, parts[0].0);
+    }
+    Ok(Found { vertices: of_vertices, cells: of_cells, ledger })
+}
+
+/// Which tets before and after lie in which.
+struct Kin<'a> {
+    forest: &'a Forest,
+    was: &'a Extracted,
+    is: &'a Extracted,
+    /// Of each tet of the forest its pieces before: the first, and behind the last.
+    old: Vec<[u32; 2]>,
+    /// Of each tet of the forest that is coarser than it was, the tets before that lie in it.
+    within: BTreeMap<u32, Vec<u32>>,
+}
+
+impl<'a> Kin<'a> {
+    fn new(forest: &'a Forest, was: &'a Extracted, is: &'a Extracted) -> Self {
+        let pieces = |out: &Extracted| {
+            let mut pieces = vec![[0, 0]; forest.nodes.len()];
+            for (&node, t) in out.nodes.iter().zip(0..) {
+                let [first, end] = &mut pieces[node as usize];
+                *first = if *end == 0 { t } else { *first };
+                *end = t + 1;
+            }
+            pieces
+        };
+        let (old, new) = (pieces(was), pieces(is));
+        let mut within: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (&node, t) in was.nodes.iter().zip(0..) {
+            let coarser = above(forest, node).skip(1).find(|&node| new[node as usize][1] > 0);
+            if let Some(coarser) = coarser {
+                within.entry(coarser).or_default().push(t);
+            }
+        }
+        Self { forest, was, is, old, within }
+    }
+
+    /// The tets before that a tet is made of, with volumes of any sum.
+    fn parts(&self, t: usize) -> Vec<(u32, f64)> {
+        let node = self.is.nodes[t];
+        let holder = above(self.forest, node).map(|node| self.old[node as usize]).find(|old| old[1] > 0);
+        let candidates: Vec<u32> = match (holder, self.within.get(&node)) {
+            (Some([first, end]), _) if end == first + 1 => return vec![(first, 1.0)],
+            (Some([first, end]), _) => (first..end).collect(),
+            (None, Some(within)) => within.clone(),
+            (None, None) => Vec::new(),
+        };
+        let solid = Solid::new(corners(self.is, t));
+        let overlaps = candidates.iter().filter_map(|&old| {
+            let other = Solid::new(corners(self.was, old as usize));
+            let volume = solid.overlap(&other);
+            (volume > TOUCH * solid.volume().min(other.volume())).then_some((old, volume))
+        });
+        let overlaps: Vec<_> = overlaps.collect();
+        if !overlaps.is_empty() {
+            return overlaps;
+        }
+        // Points that moved may leave nothing in common: then the nearest.
+        let centre = centroid(corners(self.is, t));
+        let far = |old: &u32| distance(centroid(corners(self.was, *old as usize)), centre);
+        let nearest = candidates.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y)));
+        vec![(nearest.unwrap_or(0), 1.0)]
+    }
+}
+
+/// A tet of the forest and those that it lies in.
+fn above(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
+    let parent = |node: &u32| Some(forest.nodes[*node as usize].parent).filter(|parent| *parent != NONE);
+    std::iter::successors(Some(node), parent)
+}
+
+fn corners(out: &Extracted, t: usize) -> [crate::base::Point; 4] {
+    out.mesh.tets[t].map(|v| out.mesh.points[v.index()])
+}
+
+fn ledger(kin: &Kin, joined: &Joined, parts: &[Vec<(u32, f64)>]) -> Ledger {
+    let volume = |out: &Extracted, t: u32| tet::volume(corners(out, t as usize)).abs();
+    let mut regions: BTreeMap<i32, RegionLedger> = BTreeMap::new();
+    let mut taken: BTreeMap<u32, f64> = BTreeMap::new();
+    for (&t, parts) in joined.tets.came.iter().zip(parts) {
+        let (all, sum) = (volume(kin.is, t), parts.iter().map(|part| part.1).sum::<f64>());
+        regions.entry(kin.is.mesh.regions[t as usize]).or_default().volume_after += all;
+        parts.iter().for_each(|&(old, part)| *taken.entry(old).or_default() += all * (part / sum));
+    }
+    for &t in &joined.tets.gone {
+        let all = volume(kin.was, t);
+        let entry = regions.entry(kin.was.mesh.regions[t as usize]).or_default();
+        entry.volume_before += all;
+        entry.deviation += (taken.get(&t).copied().unwrap_or(0.0) - all).abs();
+    }
+    let regions = regions.into_iter().map(|(region, entry)| RegionLedger { region, ..entry }).collect();
+    Ledger { regions, ..Ledger::default() }
+}
+
+/// Triangles inherit from the nearest part of the same triangle of the first mesh.
+fn triangles(
+    before: &Refinement,
+    after: &Refinement,
+    joined: &Joined,
+    old_cells: &[CellId],
+    threads: &Threads,
+    rows: &mut Vec<(CellId, Vec<(CellId, f64)>, CellId)>,
+) -> Result<()> {
+    let labelled = |out: &Extracted, which: &[u32], cells: &[CellId]| -> Vec<Labelled<3>> {
+        let of = |&t: &u32| Labelled {
+            cell: cells[t as usize],
+            vertices: out.mesh.triangles[t as usize],
+            label: out.triangles[t as usize] as i32,
+        };
+        which.iter().map(of).collect()
+    };
+    let traced = trace(
+        &LocalChange {
+            old_points: &before.now.mesh.points,
+            new_points: &after.now.mesh.points,
+            removed_triangles: &labelled(&before.now, &joined.triangles.gone, old_cells),
+            new_triangles: &labelled(&after.now, &joined.triangles.came, &joined.triangle_to_cell),
+            ..LocalChange::default()
+        },
+        threads,
+    )?;
+    let inherited = traced.cells.ids().iter().zip(traced.cells.iter());
+    rows.extend(inherited.map(|(&cell, row)| (cell, vec![(row.main, 1.0)], row.main)));
+    Ok(())
+}
+
+/// Means of vertices that were there.
+struct Means<'a> {
+    forest: &'a Forest,
+    /// Of each vertex of the forest, which it was in the mesh before.
+    number: Vec<u32>,
+}
+
+impl<'a> Means<'a> {
+    fn new(forest: &'a Forest, was: &Extracted) -> Self {
+        let mut number = vec![NONE; forest.reference.len()];
+        was.vertices.iter().zip(0..).for_each(|(&v, i)| number[v as usize] = i);
+        Self { forest, number }
+    }
+
+    /// The vertices of the mesh before, rising, with their shares.
+    fn of(&self, vertex: u32) -> Vec<(VertexId, f64)> {
+        let mut parts: BTreeMap<VertexId, f64> = BTreeMap::new();
+        let mut open = vec![(vertex, 1.0)];
+        while let Some((v, share)) = open.pop() {
+            match self.number[v as usize] {
+                NONE => {
+                    let origin = self.forest.origin[v as usize - self.forest.n_first_vertices];
+                    open.extend(self.forest.edges[origin as usize].ends.map(|end| (end, 0.5 * share)));
+                }
+                known => *parts.entry(VertexId(known)).or_default() += share,
+            }
+        }
+        parts.into_iter().collect()
+    }
+}

@@ -1,0 +1,152 @@
+//! Refinement of everything that a file holds: cells of other kinds stay, arrays are carried, and the memory goes along as arrays.
+
+use super::handle::{Options, Refinement, Summary};
+use super::joined::Joined;
+use super::kept;
+use super::origins::origins;
+use crate::base::{CellId, Result, TetId, Threads, VertexId};
+use crate::mesh::history::{History, Origins, Rules, number_anew};
+use crate::mesh::{CellKind, Mesh, TetPart};
+
+/// A mesh of any cells, whose tets are divided and taken back again and again. Each cell that is divided is followed in its place by its parts; points that
+/// come are behind all others.
+#[derive(Clone, Debug)]
+pub struct MeshRefinement {
+    mesh: Mesh,
+    refinement: Refinement,
+    /// The cells of the first mesh, in their order.
+    slots: Vec<Slot>,
+    tet_to_cell: Vec<CellId>,
+    triangle_to_cell: Vec<CellId>,
+}
+
+/// What one cell of the first mesh was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    Tet,
+    Triangle,
+    Other,
+}
+
+impl MeshRefinement {
+    /// Starts with a mesh. Where it has the arrays that [`with_memory`](Self::with_memory) adds, it goes on with what they remember.
+    ///
+    /// # Errors
+    /// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when the arrays are of another mesh.
+    pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
+        let part = TetPart::of(mesh)?;
+        let memory = kept::memory(mesh, &part)?;
+        let refinement = match &memory {
+            Some(memory) => Refinement::recall(&part.mesh, memory, options, threads),
+            None => Refinement::new(&part.mesh, options, threads),
+        };
+        let refinement = refinement.map_err(|error| part.at_cell(error))?;
+        let slots = slots(mesh, &refinement);
+        let TetPart { tet_to_cell, triangle_to_cell, .. } = part;
+        Ok(Self { mesh: kept::without(mesh), refinement, slots, tet_to_cell, triangle_to_cell })
+    }
+
+    /// The mesh as it is now, with the arrays carried this far, without those of the memory.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Its tets and triangles, in the order of [`mesh`](Self::mesh), and their memory.
+    pub fn refinement(&self) -> &Refinement {
+        &self.refinement
+    }
+
+    /// The tets and triangles, and which cells these are.
+    pub fn part(&self) -> TetPart {
+        let (tet_to_cell, triangle_to_cell) = (self.tet_to_cell.clone(), self.triangle_to_cell.clone());
+        TetPart { mesh: self.refinement.mesh().clone(), tet_to_cell, triangle_to_cell }
+    }
+
+    /// The mesh with its memory as arrays, unless nothing is divided: `refine_root`, `refine_path`, `refine_piece` and `refine_asked` on cells and
+    /// `refine_reference` on points (see [`Memory`](super::Memory)).
+    pub fn with_memory(&self, threads: &Threads) -> Mesh {
+        let mut mesh = self.mesh.clone();
+        if self.refinement.is_divided() {
+            let memory = self.refinement.memory_to_keep(threads);
+            kept::put(&mut mesh, &memory, &self.tet_to_cell, &self.triangle_to_cell);
+        }
+        mesh
+    }
+
+    /// Divides these tets as [`Refinement::refine`] does, and carries the arrays by `rules`.
+    ///
+    /// # Errors
+    /// As there, and when a rule fits no array; then nothing has changed.
+    pub fn refine(
+        &mut self,
+        marked: &[TetId],
+        rules: &Rules,
+        threads: &Threads,
+    ) -> Result<(Summary, History)> {
+        self.change(rules, threads, |refinement| refinement.refine(marked, threads))
+    }
+
+    /// Takes divisions back as [`Refinement::coarsen`] does, and carries the arrays by `rules`.
+    ///
+    /// # Errors
+    /// As there, and when a rule fits no array; then nothing has changed.
+    pub fn coarsen(
+        &mut self,
+        marked: &[TetId],
+        rules: &Rules,
+        threads: &Threads,
+    ) -> Result<(Summary, History)> {
+        self.change(rules, threads, |refinement| refinement.coarsen(marked, threads))
+    }
+
+    fn change(
+        &mut self,
+        rules: &Rules,
+        threads: &Threads,
+        change: impl FnOnce(&mut Refinement) -> Result<Summary>,
+    ) -> Result<(Summary, History)> {
+        let mut refinement = self.refinement.clone();
+        let summary = change(&mut refinement)?;
+        let cells = [&self.tet_to_cell[..], &self.triangle_to_cell];
+        let joined = Joined::of(&self.mesh, &self.slots, cells, [&self.refinement, &refinement]);
+        let found = origins([&self.refinement, &refinement], &joined, cells, threads)?;
+        let vertex_to_old = joined.vertex_to_old.iter().map(|&v| VertexId(v)).collect();
+        let history = History {
+            vertices: Origins::new(self.mesh.points.len(), vertex_to_old, found.vertices)?,
+            cells: Origins::new(self.mesh.cells.len(), joined.cell_to_old.clone(), found.cells)?,
+            ledger: found.ledger,
+        };
+        let mut mesh = Mesh::new(refinement.mesh().points.clone(), joined.cells);
+        history.transfer(&self.mesh, &mut mesh, rules)?;
+        number_anew(&mut mesh, &joined.vertex_to_old, &joined.cell_to_old);
+        (self.mesh, self.refinement) = (mesh, refinement);
+        (self.tet_to_cell, self.triangle_to_cell) = (joined.tet_to_cell, joined.triangle_to_cell);
+        Ok((summary, history))
+    }
+}
+
+/// The cells that the parts of one root stand for come once.
+fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
+    let mut roots = refinement.roots().map(|root| root.0);
+    let mut triangles = refinement.now.triangles.iter();
+    let (mut next_root, mut next_triangle) = (0, 0);
+    let mut slots = Vec::new();
+    for (_, kind, _) in mesh.cells.iter() {
+        // Roots and triangles are numbered as the mesh has them first.
+        let (slot, is_first) = match kind {
+            CellKind::TETRA => (Slot::Tet, is_next(roots.next(), &mut next_root)),
+            CellKind::TRIANGLE => (Slot::Triangle, is_next(triangles.next().copied(), &mut next_triangle)),
+            _ => (Slot::Other, true),
+        };
+        if is_first {
+            slots.push(slot);
+        }
+    }
+    slots
+}
+
+fn is_next(found: Option<u32>, next: &mut u32) -> bool {
+    let is_next = found == Some(*next);
+    *next += u32::from(is_next);
+    is_next
+}
