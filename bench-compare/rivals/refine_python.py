@@ -195,8 +195,8 @@ def refine(name, case, folder, out, last, tell):
     raw = lambda file, kind, width: np.fromfile(folder / file, kind).reshape(-1, width)
     ids = lambda file, width: raw(file, np.uint32, width).astype(np.int64)
     near = raw(case["near"], np.float64, 3) if case["near"] else None
-    points, tets = raw("first.points", np.float64, 3), ids("first.tets", 4)
-    program = PROGRAMS[name](points, tets, ids("boundary.u32", 3))
+    program = PROGRAMS[name](raw("first.points", np.float64, 3), ids("first.tets", 4), ids("boundary.u32", 3))
+    points, tets = program.arrays()  # a program may number the first mesh anew
     for generation in range(1, last + 1):
         marked = np.arange(len(tets)) if near is None else marks(case, near, points, tets, generation)
         if not len(marked):
