@@ -8,11 +8,12 @@ import bench_contact
 import bench_delaunay
 import bench_files
 import bench_motion
+import bench_refine
 import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact}
+           "contact": bench_contact, "refine": bench_refine}
 
 
 def words():

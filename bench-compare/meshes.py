@@ -19,7 +19,15 @@ SIZES = {
 }
 
 
-def build(sphere_size, wall_size, grading, ahead=HALF_EDGE):
+def geometric(sphere_size, wall_size, depth):
+    return f"{sphere_size}*{wall_size / sphere_size}^({depth})"
+
+
+def linear(sphere_size, wall_size, depth):
+    return f"{sphere_size}+({wall_size}-{sphere_size})*({depth})"
+
+
+def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
     """Points (n, 3) and positive tets (m, 4) of the box without the ball; it reaches to `ahead` in x."""
     import gmsh
 
@@ -31,10 +39,10 @@ def build(sphere_size, wall_size, grading, ahead=HALF_EDGE):
     ball = occ.addSphere(0, 0, 0, RADIUS)
     occ.cut([(3, box)], [(3, ball)])
     occ.synchronize()
-    # Geometric grading from the sphere (depth 0) to the nearest point of a wall (depth 1) and beyond.
+    # Cell sizes grow from the sphere (depth 0) to the nearest point of a wall (depth 1) and beyond.
     depth = f"Min(1,Max(0,(Sqrt(x*x+y*y+z*z)-{RADIUS})/({HALF_EDGE - RADIUS})))"
     field = gmsh.model.mesh.field.add("MathEval")
-    gmsh.model.mesh.field.setString(field, "F", f"{sphere_size}*{wall_size / sphere_size}^({depth}^{grading})")
+    gmsh.model.mesh.field.setString(field, "F", growth(sphere_size, wall_size, f"{depth}^{grading}"))
     gmsh.model.mesh.field.setAsBackgroundMesh(field)
     for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)

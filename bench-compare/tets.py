@@ -49,6 +49,13 @@ def eas(points, tets):
     return np.sign(volumes(points, tets)) * (1 - np.maximum.reduce(skews))
 
 
+def mean_ratio(points, tets):
+    """12 (3 V)^(2/3) over the sum of squared edges, with the sign of V (Liu and Joe 1994)."""
+    volume = volumes(points, tets)
+    squares = sum(dot(edge, edge) for edge in (points[tets[:, i]] - points[tets[:, j]] for i, j in EDGES))
+    return np.sign(volume) * 12 * np.cbrt(3 * np.abs(volume)) ** 2 / squares
+
+
 def boundary(tets):
     """The facets that belong to one tet alone, turned outward."""
     facets = tets[:, FACETS].reshape(-1, 3)
