@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{contact, convert, demo, info, moving, remesh};
+use crate::verbs::{contact, convert, demo, info, moving, refine, remesh};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -27,6 +27,7 @@ pub(crate) enum Verb {
     Convert(convert::ConvertArgs),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
+    Refine(Box<refine::RefineArgs>),
     Contact(Box<contact::ContactArgs>),
     Demo(demo::DemoArgs),
 }

@@ -1,7 +1,7 @@
 //! The command line of motet: words in, calls of the library, words out.
 //!
 //! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
-//! here: how the call is read (`args`), how the user is spoken to (`console`,
+//! here: how the call is read (`args`, `words`), how the user is spoken to (`console`,
 //! `table`), how failures become exit statuses (`exit`), what outputs are refused
 //! (`outputs`).
 
@@ -11,6 +11,7 @@ mod exit;
 mod outputs;
 mod table;
 mod verbs;
+mod words;
 
 use std::process::ExitCode;
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Verb::Convert(args) => verbs::convert::run(&args, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
+        Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),
         Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };

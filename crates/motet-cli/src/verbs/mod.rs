@@ -5,4 +5,5 @@ pub(crate) mod convert;
 pub(crate) mod demo;
 pub(crate) mod info;
 pub(crate) mod moving;
+pub(crate) mod refine;
 pub(crate) mod remesh;

@@ -7,6 +7,7 @@ pub mod overlap;
 pub mod predicates;
 pub mod quality;
 pub mod segment;
+pub mod symmetric;
 pub mod tet;
 pub mod triangle;
 mod unit;

@@ -12,7 +12,7 @@ use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
 /// The derivatives of a velocity: row `i` is the gradient of its component `i`.
 pub type Tensor = [Point; 3];
 
-fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Point; 4] {
+pub(super) fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Point; 4] {
     vertices.map(|v| mesh.points[v.index()])
 }
 
@@ -69,24 +69,28 @@ pub fn gradient_jump(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f
 pub fn recovery(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
     let gradients = gradients(mesh, values, threads);
     let volumes = threads.map(mesh.tets.len(), |t| tet::volume(corners(mesh, mesh.tets[t])).abs());
-    let mut recovered = vec![([0.0; 3], 0.0); mesh.points.len()];
-    for ((vertices, gradient), volume) in mesh.tets.iter().zip(&gradients).zip(&volumes) {
-        for v in vertices {
-            let (sum, weight) = &mut recovered[v.index()];
-            *sum = add(*sum, scale(*gradient, *volume));
-            *weight += volume;
-        }
-    }
+    let recovered = at_vertices(mesh, &gradients, &volumes);
     threads.map(mesh.tets.len(), |t| {
-        let off = mesh.tets[t].map(|v| {
-            let (sum, weight) = recovered[v.index()];
-            if weight > 0.0 { sub(scale(sum, 1.0 / weight), gradients[t]) } else { [0.0; 3] }
-        });
+        let off = mesh.tets[t].map(|v| sub(recovered[v.index()], gradients[t]));
         // The integral of two weights is a twentieth of the volume, that of one's square a tenth.
         let whole = off.into_iter().fold([0.0; 3], add);
         let squares: f64 = off.iter().map(|d| dot(*d, *d)).sum();
         (volumes[t] / 20.0 * (squares + dot(whole, whole))).sqrt()
     })
+}
+
+/// At each vertex the mean of what is said of the tets round it, weighted; 0 where the weights are. It is exact for the gradient of a field
+/// that is quadratic, where the star of the vertex is its own mirror image.
+pub(super) fn at_vertices(mesh: &TetMesh, of_tets: &[Point], weights: &[f64]) -> Vec<Point> {
+    let mut sums = vec![([0.0; 3], 0.0); mesh.points.len()];
+    for ((vertices, value), weight) in mesh.tets.iter().zip(of_tets).zip(weights) {
+        for v in vertices {
+            let (sum, all) = &mut sums[v.index()];
+            *sum = add(*sum, scale(*value, *weight));
+            *all += weight;
+        }
+    }
+    sums.into_iter().map(|(sum, all)| if all > 0.0 { scale(sum, 1.0 / all) } else { [0.0; 3] }).collect()
 }
 
 /// The derivatives of a velocity in each tet.

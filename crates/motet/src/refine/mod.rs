@@ -3,7 +3,10 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | estimate | [`estimate`] | how badly a field is resolved in each tet; what turns where |
+//! | size | [`hessian`], [`sizes`] | how much a field bends at each vertex; how long edges are to be for that |
 //! | mark | [`mark`] | which tets to divide: by place, size, distance to a surface, estimate |
+//! | choose | [`Criterion`], [`wish`] | the same for whole meshes, by words for their arrays, regions and patches; and what may be taken back |
+//! | limit | `limits` | how far that goes: generations, sizes, the number of tets |
 //! | divide | `forest` | a tet into eight along its shortest diagonal; parents, children and edges are remembered |
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
@@ -18,19 +21,29 @@
 //! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
 
 mod close;
+mod criterion;
 pub mod estimate;
 mod extract;
 mod forest;
 mod handle;
 mod held;
+pub mod hessian;
 mod joined;
 mod kept;
+mod limits;
 pub mod mark;
 mod memory;
 mod origins;
 mod patterns;
+pub mod sizes;
 mod whole;
+pub mod wish;
 
+pub use criterion::{
+    Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Relation, Size, Target, marks_of_all,
+    wishes_of_all,
+};
 pub use handle::{Left, Options, Refinement, Summary};
+pub use limits::Limits;
 pub use memory::{Memory, UNKNOWN};
 pub use whole::MeshRefinement;

@@ -19,6 +19,9 @@ use crate::spatial::trace::{Labelled, LocalChange, trace};
 /// An overlap below this part of the smaller tet is rounding: they touch.
 const TOUCH: f64 = 1e-14;
 
+/// A new cell, the old cells it comes from with their shares, and the main one.
+type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
+
 /// Rows for all that came.
 pub(super) struct Found {
     pub(super) vertices: Rows<VertexId>,
@@ -36,7 +39,7 @@ pub(super) fn origins(
     let kin = Kin::new(&after.forest, &before.now, &after.now);
     let parts = threads.map(joined.tets.came.len(), |i| kin.parts(joined.tets.came[i] as usize));
     let ledger = ledger(&kin, joined, &parts);
-    let mut rows: Vec<(CellId, Vec<(CellId, f64)>, CellId)> = Vec::with_capacity(parts.len());
+    let mut rows: Vec<CellRow> = Vec::with_capacity(parts.len());
     for (&t, parts) in joined.tets.came.iter().zip(&parts) {
         let of_old = parts.iter().map(|&(old, volume)| (cells[0][old as usize], volume));
         let main = parts.iter().fold((NONE, -1.0), |best, &part| if part.1 > best.1 { part } else { best }).0;
@@ -153,7 +156,7 @@ fn triangles(
     joined: &Joined,
     old_cells: &[CellId],
     threads: &Threads,
-    rows: &mut Vec<(CellId, Vec<(CellId, f64)>, CellId)>,
+    rows: &mut Vec<CellRow>,
 ) -> Result<()> {
     let labelled = |out: &Extracted, which: &[u32], cells: &[CellId]| -> Vec<Labelled<3>> {
         let of = |&t: &u32| Labelled {

@@ -7,6 +7,7 @@ use motet::contact::Options;
 use motet::{Error, Result};
 
 use crate::verbs::convert::WritingArgs;
+use crate::words::positive;
 
 /// Tell how far apart surfaces are, where, and when they will touch
 ///
@@ -128,12 +129,5 @@ impl ContactArgs {
                 .remedy("give one mesh, or surfaces without --patches"));
         }
         Ok(())
-    }
-}
-
-fn positive(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("a positive number is wanted".into()),
     }
 }

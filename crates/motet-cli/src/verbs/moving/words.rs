@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use motet::base::Point;
 
+use crate::words::{named, number, numbers};
+
 /// `PATCH=dx,dy,dz`
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Translate {
@@ -88,29 +90,9 @@ pub(crate) fn layer(text: &str) -> Result<LayerWord, String> {
     }
 }
 
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match number(text) {
-        Ok(x) if x > 0.0 => Ok(x),
-        _ => Err("a number above 0 is expected".into()),
-    }
-}
-
-/// Parted at the last `=`, since numbers hold none and names might.
 fn patch_and_numbers(text: &str) -> Result<(String, Vec<f64>), String> {
-    match text.rsplit_once('=') {
-        Some((patch, rest)) if !patch.is_empty() => Ok((patch.into(), numbers(rest)?)),
-        _ => Err("PATCH=numbers is expected, such as wall=0,0,0.5".into()),
-    }
-}
-
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
-    let words = text.split([',', ';', ' ', '\n', '\t']).filter(|word| !word.is_empty());
-    words.map(number).collect()
-}
-
-fn number(word: &str) -> Result<f64, String> {
-    let number = word.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    number.ok_or_else(|| format!("`{word}` is no finite number"))
+    let (patch, rest) = named(text, "PATCH=numbers, such as wall=0,0,0.5,")?;
+    Ok((patch.into(), numbers(rest)?))
 }
 
 #[cfg(test)]

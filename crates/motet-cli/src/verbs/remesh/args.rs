@@ -9,6 +9,7 @@ use motet::mesh::history::{Rule, Rules};
 use motet::remesh::{self, Options, Sizes, SurfaceRule};
 
 use crate::verbs::convert::WritingArgs;
+use crate::words::positive;
 
 /// Find the bad tets of a mesh and repair them, and only them
 ///
@@ -62,7 +63,7 @@ pub(crate) struct RemeshArgs {
     pub(crate) surface: Surface,
     /// How far an adapting surface may stray from where it was, in units of the mesh [default: a
     /// thousandth of the largest extent]
-    #[arg(long, value_name = "D", value_parser = distance, help_heading = "Repair")]
+    #[arg(long, value_name = "D", value_parser = positive, help_heading = "Repair")]
     distance: Option<f64>,
     /// Bring edges to this length, or each to what a point array says there
     #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
@@ -186,31 +187,36 @@ impl RemeshArgs {
         }
     }
 
-    /// The rules for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
+    /// The rules for the arrays of `mesh`.
     pub(crate) fn rules(&self, mesh: &Mesh) -> motet::Result<Rules> {
-        let mut rules = Rules::default();
-        for (name, carry) in &self.carry {
-            let rule = |mean| match carry {
-                Carry::Mean => mean,
-                Carry::Inherit => Rule::Inherit,
-                Carry::Drop => Rule::Drop,
-            };
-            let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
-            if on_points {
-                rules.points.insert(name.clone(), rule(Rule::Interpolate));
-            }
-            if on_cells {
-                rules.cells.insert(name.clone(), rule(Rule::Conserve));
-            }
-            if !on_points && !on_cells {
-                let fields = mesh.point_data.iter().chain(&mesh.cell_data);
-                let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
-                return Err(Error::options(format!("--carry: the mesh has no array {name}"))
-                    .remedy(format!("its arrays: {}", known.join(", "))));
-            }
-        }
-        Ok(rules)
+        rules(&self.carry, mesh)
     }
+}
+
+/// The rules that `--carry` gives for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
+pub(crate) fn rules(carry: &[(String, Carry)], mesh: &Mesh) -> motet::Result<Rules> {
+    let mut rules = Rules::default();
+    for (name, carry) in carry {
+        let rule = |mean| match carry {
+            Carry::Mean => mean,
+            Carry::Inherit => Rule::Inherit,
+            Carry::Drop => Rule::Drop,
+        };
+        let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
+        if on_points {
+            rules.points.insert(name.clone(), rule(Rule::Interpolate));
+        }
+        if on_cells {
+            rules.cells.insert(name.clone(), rule(Rule::Conserve));
+        }
+        if !on_points && !on_cells {
+            let fields = mesh.point_data.iter().chain(&mesh.cell_data);
+            let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
+            return Err(Error::options(format!("--carry: the mesh has no array {name}"))
+                .remedy(format!("its arrays: {}", known.join(", "))));
+        }
+    }
+    Ok(rules)
 }
 
 fn eas(text: &str) -> Result<f64, String> {
@@ -227,13 +233,6 @@ fn degrees(text: &str) -> Result<f64, String> {
     }
 }
 
-fn distance(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(distance) if 0.0 < distance && distance < f64::INFINITY => Ok(distance),
-        _ => Err("a number above 0 is expected".into()),
-    }
-}
-
 fn sizes(text: &str) -> Result<Asked, String> {
     match text.parse::<f64>() {
         Ok(h) if 0.0 < h && h < f64::INFINITY => Ok(Asked::Length(h)),
@@ -242,7 +241,8 @@ fn sizes(text: &str) -> Result<Asked, String> {
     }
 }
 
-fn carry(text: &str) -> Result<(String, Carry), String> {
+/// `ARRAY=mean|inherit|drop`
+pub(crate) fn carry(text: &str) -> Result<(String, Carry), String> {
     let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
     let carry = match rule {
         "mean" => Carry::Mean,
@@ -260,7 +260,6 @@ mod tests {
     #[test]
     fn words_mean_what_the_help_says() {
         assert_eq!(eas("0.25"), Ok(0.25));
-        assert_eq!(distance("1e-3"), Ok(1e-3));
         assert_eq!(degrees("14.1"), Ok(14.1));
         assert_eq!(sizes("0.3"), Ok(Asked::Length(0.3)));
         assert_eq!(sizes("h"), Ok(Asked::Array("h".to_owned())));
@@ -274,7 +273,6 @@ mod tests {
         }
         assert!(["0", "-0.3", "nan", "inf"].into_iter().all(|text| sizes(text).is_err()));
         assert!(degrees("70.6").is_err() && degrees("0").is_err());
-        assert!(distance("0").is_err() && distance("inf").is_err());
         assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
     }
 }

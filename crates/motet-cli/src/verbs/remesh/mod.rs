@@ -11,7 +11,7 @@ use motet::mesh::history::{History, field_ledger};
 use motet::remesh::{MeshOutcome, remesh_mesh};
 use motet::{Error, ErrorKind, io};
 
-pub(crate) use args::RemeshArgs;
+pub(crate) use args::{Carry, RemeshArgs, carry, rules};
 
 use self::report::Report;
 use crate::args::Common;

@@ -1,0 +1,156 @@
+//! The words of `motet refine`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+use motet::refine::{Condition, Criterion, HessianSizes, Limits};
+
+use super::words::{self, Near, NearSize};
+use crate::verbs::convert::WritingArgs;
+use crate::verbs::remesh::{Carry, carry};
+use crate::words::positive;
+
+/// Divide tets where it matters, many generations deep, without loss of shape; and take it back
+///
+/// Every tet that a criterion marks is divided into eight; tets beside them are divided or cut so that all fit.
+/// Pieces that were cut are never divided themselves, so shapes stay as good as they were, however often.
+/// The file remembers what was divided: a later call goes on from there, and --coarsen takes it back.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("what").required(true).multiple(true).args([
+    "all", "near", "near_size", "within_box", "ball", "region", "patch", "size", "conditions", "gradient",
+    "jump", "recovery", "hessian", "vorticity", "q", "coarsen", "coarsen_where",
+]))]
+#[command(
+    override_usage = "motet refine MESH -o OUT [--near SURFACE=DISTANCE] [--size H] [--where 'ARRAY>VALUE'] .. [OPTIONS]"
+)]
+#[command(after_help = "\
+Several criteria mark what any of them does. Lengths are in units of the mesh, values in those of the array.
+ARRAY is an array on points (where cells are not named), or a part of one: v:x, v[0] a component, |v| its size.
+Ntets, such as 500000tets, asks for so many tets instead: where they help most.
+
+Examples:
+  Fine at a stent, growing with the distance from it:
+    motet refine lumen.vtu -o fine.vtu --near-size stent.stl=0.05,0.3
+  All tets within 0.5 of it, twice:
+    motet refine lumen.vtu -o fine.vtu --near stent.stl=0.5 --generations 2
+  Where the mean flow of a first simulation bends, by pressure and velocity; solve again, and repeat:
+    motet refine mean.vtu -o next.vtu --hessian pressure,velocity=2% --smallest 0.02
+  To half a million tets, by the jumps of a gradient:
+    motet refine mean.vtu -o next.vtu --jump pressure=500000tets
+  Where the wall shear is high now, and coarser where it no longer is:
+    motet refine step7.vtu -o step8.vtu --where 'wss>4' --limit-generation 3 --coarsen
+  One generation back, everywhere:
+    motet refine fine.vtu -o coarse.vtu --coarsen
+
+Exit status 2: no criterion, or an array, region or patch that is not there. 3: sizes that ids do not suffice for.
+4: a limit or the number of generations was reached before all edges were short enough; the mesh is written.")]
+pub(crate) struct RefineArgs {
+    /// The mesh file (or folder)
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+    /// Where the result goes, in any mesh format
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// Everything
+    #[arg(long, help_heading = "What to divide, by place")]
+    pub(crate) all: bool,
+    /// Tets within a distance of a surface (a file of one, or a mesh: its boundary). Repeatable
+    #[arg(long, value_name = "SURFACE=DISTANCE", value_parser = words::near, help_heading = "What to divide, by place")]
+    pub(crate) near: Vec<Near>,
+    /// Until no edge is longer than H at a surface, and GROWTH [default: 0.5] more per unit of distance
+    /// from it. Repeatable
+    #[arg(long, value_name = "SURFACE=H[,GROWTH]", value_parser = words::near_size, help_heading = "What to divide, by place")]
+    pub(crate) near_size: Vec<NearSize>,
+    /// Tets whose centre is in a box. Repeatable
+    #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = words::in_box, allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    pub(crate) within_box: Vec<Criterion>,
+    /// Tets with a place in a ball. Repeatable
+    #[arg(long, value_name = "X,Y,Z,R", value_parser = words::ball, allow_hyphen_values = true, help_heading = "What to divide, by place")]
+    pub(crate) ball: Vec<Criterion>,
+    /// Tets of a region, by name or number. Repeatable
+    #[arg(long, value_name = "REGION", value_parser = words::region, help_heading = "What to divide, by place")]
+    pub(crate) region: Vec<Criterion>,
+    /// Tets that touch a patch, or lie within a distance of it. Repeatable
+    #[arg(long, value_name = "PATCH[=DISTANCE]", value_parser = words::patch, help_heading = "What to divide, by place")]
+    pub(crate) patch: Vec<Criterion>,
+
+    /// Until no edge is longer than this, or than an array on points or cells says. Repeatable
+    #[arg(long, value_name = "H|ARRAY", value_parser = words::size, help_heading = "What to divide, by arrays")]
+    pub(crate) size: Vec<Criterion>,
+    /// Tets where an array is so, on cells or at one of their points: > >= < <= == !=. Repeatable
+    #[arg(long = "where", value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "What to divide, by arrays")]
+    pub(crate) conditions: Vec<Condition>,
+    /// Tets through which an array changes by more than this: gradient times longest edge. Repeatable
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::gradient, help_heading = "What to divide, by arrays")]
+    pub(crate) gradient: Vec<Criterion>,
+    /// Tets with most of the error, told by jumps of the gradient (Kelly): as few as have this share of
+    /// it, such as 0.5. Repeatable
+    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::jump, help_heading = "What to divide, by arrays")]
+    pub(crate) jump: Vec<Criterion>,
+    /// The same, told by a recovered gradient (Zienkiewicz and Zhu). Repeatable
+    #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::recovery, help_heading = "What to divide, by arrays")]
+    pub(crate) recovery: Vec<Criterion>,
+    /// Until edges are short enough for how much arrays bend (second derivatives), so that errors are
+    /// at most ERROR, or P percent of the range of each array. Repeatable
+    #[arg(long, value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = words::hessian, help_heading = "What to divide, by arrays")]
+    pub(crate) hessian: Vec<HessianSizes>,
+    /// Tets where the vorticity of a velocity is above this. Repeatable
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::vorticity, help_heading = "What to divide, by arrays")]
+    pub(crate) vorticity: Vec<Criterion>,
+    /// Tets where Q of a velocity is above this: it turns more than it shears. Repeatable
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::q, help_heading = "What to divide, by arrays")]
+    pub(crate) q: Vec<Criterion>,
+
+    /// At most so often [default: once; for sizes as often as it takes]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
+    pub(crate) generations: Option<u32>,
+    /// No tet is divided more often than this since the first mesh, earlier calls included
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=20), help_heading = "How far")]
+    limit_generation: Option<u8>,
+    /// No tet is divided whose parts would have no edge as long as this
+    #[arg(long, value_name = "H", value_parser = positive, help_heading = "How far")]
+    smallest: Option<f64>,
+    /// Divide only so many that there are about N tets; the largest wishes and tets first
+    #[arg(long, value_name = "N", help_heading = "How far")]
+    at_most: Option<usize>,
+
+    /// Take back divisions where no criterion marks
+    #[arg(long, help_heading = "Back")]
+    pub(crate) coarsen: bool,
+    /// Take back divisions where an array is so on all eight parts, and no criterion marks. Repeatable
+    #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "Back")]
+    pub(crate) coarsen_where: Vec<Condition>,
+    /// Begin anew: the mesh as it is now is the first one, whatever the file remembers
+    #[arg(long, conflicts_with_all = ["coarsen", "coarsen_where"], help_heading = "Back")]
+    pub(crate) forget: bool,
+
+    /// The true surface: new points of the boundary are put on it
+    #[arg(long, value_name = "FILE", help_heading = "Boundary")]
+    pub(crate) surface: Option<PathBuf>,
+
+    /// What becomes of an array where the mesh changes. Repeatable
+    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
+    pub(crate) carry: Vec<(String, Carry)>,
+    /// Add the cell array `eas`
+    #[arg(long, help_heading = "Arrays")]
+    pub(crate) quality: bool,
+    /// Write where each point and cell came from, with weights, as one JSON object
+    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
+    pub(crate) history: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+impl RefineArgs {
+    /// How far the call goes.
+    pub(crate) fn limits(&self) -> Limits {
+        Limits { generation: self.limit_generation, smallest: self.smallest, n_tets: self.at_most }
+    }
+
+    /// The smallest size that the call gives.
+    pub(super) fn smallest(&self) -> f64 {
+        self.smallest.unwrap_or(0.0)
+    }
+}

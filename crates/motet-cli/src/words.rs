@@ -1,0 +1,50 @@
+//! Words that several verbs know: numbers, lists of them, and what stands before an equals sign.
+
+/// One number.
+pub(crate) fn number(word: &str) -> Result<f64, String> {
+    let number = word.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    number.ok_or_else(|| format!("`{word}` is no finite number"))
+}
+
+/// One number above 0.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    match number(text) {
+        Ok(x) if x > 0.0 => Ok(x),
+        _ => Err("a number above 0 is expected".into()),
+    }
+}
+
+/// Numbers with commas, semicolons or space between.
+pub(crate) fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    let words = text.split([',', ';', ' ', '\n', '\t']).filter(|word| !word.is_empty());
+    words.map(number).collect()
+}
+
+/// `NAME=rest`, parted at the last `=`, since numbers hold none and names might; `example` is what is expected.
+pub(crate) fn named<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a str), String> {
+    let parts = text.rsplit_once('=').filter(|(name, _)| !name.is_empty());
+    parts.ok_or_else(|| format!("{example} is expected"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_and_names_kept_whole() {
+        assert_eq!(numbers("1, -2.5;3e-2\n4"), Ok(vec![1.0, -2.5, 0.03, 4.0]));
+        assert_eq!(named("a=b=0.5", "NAME=X"), Ok(("a=b", "0.5")));
+        assert_eq!(positive("0.5"), Ok(0.5));
+    }
+
+    #[test]
+    fn what_is_off_is_told() {
+        assert!(numbers("1,x").is_err_and(|told| told.contains("`x` is no finite number")));
+        for text in ["0", "-1", "nan", "inf", "x", ""] {
+            assert_eq!(positive(text), Err("a number above 0 is expected".into()));
+        }
+        for text in ["=3", "wall", ""] {
+            assert_eq!(named(text, "PATCH=D"), Err("PATCH=D is expected".into()));
+        }
+    }
+}

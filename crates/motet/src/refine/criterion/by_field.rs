@@ -1,0 +1,197 @@
+//! Criteria that ask what the arrays of a mesh say: sizes, gradients, estimates, what turns.
+
+use super::array::{On, column, point_columns, point_vectors};
+use super::{Aim, Amount, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
+use crate::base::{Error, Result, Threads};
+use crate::geometry::vector::{dot, norm, sub};
+use crate::mesh::{Mesh, TetPart, bounds};
+use crate::refine::estimate::{self, corners, longest_edge};
+use crate::refine::hessian::curvatures;
+use crate::refine::wish::Wish;
+use crate::refine::{mark, sizes};
+
+/// The square of an estimate of a tet by that of one of its eight parts, where the field is smooth: jumps and differences of gradients go with the length, areas with its
+/// square, and so the estimates with the power 5/2.
+const PARENT_SQUARED: f64 = 32.0;
+
+/// A field that over the extent of the mesh bends by less than this part of its range does not bend: that is rounding.
+const ROUNDING: f64 = 1e-9;
+
+pub(super) fn size(size: &Size, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<Wish>> {
+    let tets = &part.mesh;
+    let name = match size {
+        Size::Uniform(h) => return Ok(by_ratio(part, threads, |t| longest(part, t) / h)),
+        Size::Array(name) => name,
+    };
+    let column = column(mesh, name)?;
+    let check = |row: usize, what: &str| match column.values[row] {
+        h if h > 0.0 => Ok(()),
+        h => Err(Error::input(format!("the size {h} is no length of an edge"))
+            .at(format!("array {name}, {what} {row}"))
+            .remedy(format!("give every {what} of a tet a number above 0"))),
+    };
+    match column.on {
+        On::Points => {
+            tets.tets.as_flattened().iter().try_for_each(|v| check(v.index(), "point"))?;
+            Ok(sizes::wishes(tets, &column.values, threads))
+        }
+        On::Cells => {
+            part.tet_to_cell.iter().try_for_each(|cell| check(cell.index(), "cell"))?;
+            Ok(by_ratio(part, threads, |t| longest(part, t) / column.values[part.tet_to_cell[t].index()]))
+        }
+    }
+}
+
+fn longest(part: &TetPart, t: usize) -> f64 {
+    longest_edge(corners(&part.mesh, part.mesh.tets[t]))
+}
+
+fn by_ratio(part: &TetPart, threads: &Threads, ratio: impl Fn(usize) -> f64 + Sync + Send) -> Vec<Wish> {
+    threads.map(part.mesh.tets.len(), |t| Wish::of_ratio(ratio(t)))
+}
+
+pub(super) fn gradient(
+    array: &str,
+    above: f64,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let mut squares = vec![0.0; part.mesh.tets.len()];
+    for values in point_columns(mesh, array)? {
+        let gradients = estimate::gradients(&part.mesh, &values, threads);
+        squares.iter_mut().zip(gradients).for_each(|(sum, gradient)| *sum += dot(gradient, gradient));
+    }
+    let change = |t: usize| squares[t].sqrt() * longest(part, t);
+    // Through a tet twice as large it is twice as much. Fields may be steep all over, so it is not told how often.
+    Ok(threads.map(squares.len(), |t| match change(t) {
+        change if change > above => Wish::Divided(1),
+        change if 2.0 * change > above => Wish::Kept,
+        _ => Wish::Coarser,
+    }))
+}
+
+pub(super) fn estimate(
+    array: &str,
+    by: Estimator,
+    amount: Amount,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let estimator = match by {
+        Estimator::Jump => estimate::gradient_jump,
+        Estimator::Recovery => estimate::recovery,
+    };
+    let mut squares = vec![0.0; part.mesh.tets.len()];
+    for values in point_columns(mesh, array)? {
+        let estimates = estimator(&part.mesh, &values, threads);
+        squares.iter_mut().zip(estimates).for_each(|(sum, estimate)| *sum += estimate * estimate);
+    }
+    let estimates: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
+    let marks = match amount {
+        Amount::Share(share) => mark::largest_share(&estimates, share),
+        Amount::Tets(n) => mark::to_count(&estimates, n),
+    };
+    let least = marks.iter().map(|t| squares[t.index()]).fold(f64::INFINITY, f64::min);
+    let mut wishes: Vec<Wish> = squares
+        .iter()
+        .map(|square| if PARENT_SQUARED * square < least { Wish::Coarser } else { Wish::Kept })
+        .collect();
+    marks.iter().for_each(|t| wishes[t.index()] = Wish::Divided(1));
+    Ok(wishes)
+}
+
+pub(super) fn vorticity(
+    array: &str,
+    above: f64,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let vorticity = estimate::vorticity(&part.mesh, &point_vectors(mesh, array)?, threads);
+    Ok(vorticity.into_iter().map(|w| Wish::of_mark(norm(w) > above)).collect())
+}
+
+pub(super) fn q(
+    array: &str,
+    above: f64,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let q = estimate::q_criterion(&part.mesh, &point_vectors(mesh, array)?, threads);
+    Ok(q.into_iter().map(|q| Wish::of_mark(q > above)).collect())
+}
+
+impl HessianSizes {
+    pub(super) fn check(&self) -> Result<()> {
+        if self.arrays.is_empty() {
+            return Err(Error::options("sizes from second derivatives need an array"));
+        }
+        match self.aim {
+            Aim::Error(error) => above_0("the error", error)?,
+            Aim::RangePart(part) => a_part("the error as a part of the range", part)?,
+            Aim::Tets(_) => {}
+        }
+        not_below_0("the smallest size", self.limits.smallest)?;
+        if !(self.limits.largest >= self.limits.smallest && self.limits.largest > 0.0) {
+            return Err(Error::options(format!(
+                "the largest size, {}, is below the smallest, {}",
+                self.limits.largest, self.limits.smallest
+            )));
+        }
+        match self.limits.growth >= 0.0 {
+            true => Ok(()),
+            false => not_below_0("the growth of sizes", self.limits.growth),
+        }
+    }
+
+    pub(super) fn wishes(&self, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<Wish>> {
+        Ok(sizes::wishes(&part.mesh, &self.sizes(mesh, part, threads)?, threads))
+    }
+
+    /// The size at each vertex.
+    ///
+    /// # Errors
+    /// When the mesh has no such array on points; when a number means nothing.
+    pub fn sizes(&self, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<f64>> {
+        self.check()?;
+        let mut least = vec![f64::INFINITY; mesh.points.len()];
+        let [low, high] = bounds(&mesh.points).unwrap_or_default();
+        let extent_squared = dot(sub(high, low), sub(high, low));
+        for array in &self.arrays {
+            let columns = point_columns(mesh, array)?;
+            let mut bends = curvatures(&part.mesh, columns.iter().map(Vec::as_slice), threads);
+            let range = range(&columns, part);
+            let least_bend = ROUNDING * range / extent_squared;
+            bends.iter_mut().filter(|bend| **bend < least_bend).for_each(|bend| *bend = 0.0);
+            let error = match self.aim {
+                Aim::Error(error) => error,
+                Aim::RangePart(share) => share * range,
+                // Any part will do: all sizes are scaled.
+                Aim::Tets(_) => range,
+            };
+            let of_array = sizes::for_error(&bends, error);
+            // A constant array asks for nothing.
+            let pairs = least.iter_mut().zip(of_array).filter(|_| range > 0.0);
+            pairs.for_each(|(least, size)| *least = least.min(size));
+        }
+        if let Aim::Tets(n) = self.aim {
+            return Ok(sizes::for_count(&part.mesh, &least, &self.limits, n, threads));
+        }
+        self.limits.apply(&part.mesh, &mut least);
+        Ok(least)
+    }
+}
+
+/// The largest value less the smallest at vertices of tets; of several components the most.
+fn range(columns: &[Vec<f64>], part: &TetPart) -> f64 {
+    let of_column = |values: &Vec<f64>| {
+        let used = part.mesh.tets.as_flattened().iter().map(|v| values[v.index()]);
+        let [low, high] =
+            used.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        (high - low).max(0.0)
+    };
+    columns.iter().map(of_column).fold(0.0, f64::max)
+}

@@ -1,0 +1,111 @@
+//! Criteria that ask where a tet is: ball, box, surface, region, patch.
+
+use super::{Criterion, Target, finite};
+use crate::base::{Error, Point, Result, TetId, Threads};
+use crate::geometry::tet;
+use crate::mesh::{Labels, Mesh, Surface, TetMesh, TetPart};
+use crate::refine::estimate::{corners, longest_edge};
+use crate::refine::mark;
+use crate::refine::wish::Wish;
+
+/// # Errors
+/// When a coordinate is no finite number, or the second corner is lower than the first.
+pub(super) fn check_box([low, high]: [Point; 2]) -> Result<()> {
+    low.iter().chain(&high).try_for_each(|x| finite("a corner of a box", *x))?;
+    match (0..3).find(|&k| low[k] > high[k]) {
+        None => Ok(()),
+        Some(k) => Err(Error::options(format!(
+            "a box from {} to {} along {} is empty",
+            low[k],
+            high[k],
+            ["x", "y", "z"][k]
+        ))
+        .remedy("give the lowest corner first")),
+    }
+}
+
+/// The wishes of a criterion of place; of any other none.
+pub(super) fn wishes(
+    criterion: &Criterion,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let tets = &part.mesh;
+    Ok(match criterion {
+        Criterion::Ball { centre, radius } => of_marks(tets, &mark::in_ball(tets, *centre, *radius, threads)),
+        Criterion::Box(corners) => of_marks(tets, &mark::in_box(tets, *corners, threads)),
+        Criterion::Near { target, within } => near(tets, target, *within, threads),
+        Criterion::NearSize { target, size, growth } => near_size(tets, target, [*size, *growth], threads),
+        Criterion::Region(word) => {
+            let id = find(mesh.regions(), word, "region")?;
+            tets.regions.iter().map(|region| Wish::of_mark(*region == id)).collect()
+        }
+        Criterion::Patch { patch, within } => at_patch(patch, *within, mesh, part, threads)?,
+        _ => vec![Wish::Coarser; tets.tets.len()],
+    })
+}
+
+fn of_marks(mesh: &TetMesh, marks: &[TetId]) -> Vec<Wish> {
+    let mut wishes = vec![Wish::Coarser; mesh.tets.len()];
+    marks.iter().for_each(|tet| wishes[tet.index()] = Wish::Divided(1));
+    wishes
+}
+
+fn near(mesh: &TetMesh, target: &Target, within: f64, threads: &Threads) -> Vec<Wish> {
+    threads.map(mesh.tets.len(), |t| Wish::of_mark(target.is_within(within, corners(mesh, mesh.tets[t]))))
+}
+
+/// Which tets are too large is known exactly; how often they are to be divided from the sizes at their centres, and whether a tet twice as large would be
+/// too large from its distance less its own size.
+fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads: &Threads) -> Vec<Wish> {
+    let mut wishes = of_marks(mesh, &mark::near_surface(mesh, target.tree(), size, growth, threads));
+    let places: Vec<[Point; 4]> = threads.map(mesh.tets.len(), |t| corners(mesh, mesh.tets[t]));
+    let centres: Vec<Point> = threads.map(places.len(), |t| tet::centroid(places[t]));
+    let found = target.tree().closest_all(&centres, None, threads);
+    for ((wish, place), found) in wishes.iter_mut().zip(places).zip(found) {
+        let longest = longest_edge(place);
+        let away = found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt());
+        *wish = match wish {
+            Wish::Divided(_) => Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1)),
+            // The whole that it is a part of reaches no farther.
+            _ => Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept),
+        };
+    }
+    wishes
+}
+
+fn at_patch(
+    word: &str,
+    within: Option<f64>,
+    mesh: &Mesh,
+    part: &TetPart,
+    threads: &Threads,
+) -> Result<Vec<Wish>> {
+    let id = find(mesh.patches(), word, "patch")?;
+    let surface = Surface::of(mesh);
+    let of_patch = surface.triangles.iter().zip(&surface.patches).filter(|(_, patch)| **patch == id);
+    let triangles: Vec<_> = of_patch.map(|(triangle, _)| *triangle).collect();
+    if let Some(within) = within {
+        let target = Target::new(surface.points, triangles, threads)?;
+        return Ok(near(&part.mesh, &target, within, threads));
+    }
+    let mut is_at = vec![false; mesh.points.len()];
+    triangles.as_flattened().iter().for_each(|v| is_at[v.index()] = true);
+    let touches = |tet: usize| part.mesh.tets[tet].iter().any(|v| is_at[v.index()]);
+    Ok(threads.map(part.mesh.tets.len(), |tet| Wish::of_mark(touches(tet))))
+}
+
+/// The number of a region or patch.
+fn find(labels: Option<Labels>, word: &str, what: &str) -> Result<i32> {
+    if let Some(id) = labels.as_ref().and_then(|labels| labels.find(word)) {
+        return Ok(id);
+    }
+    let plural = if what == "patch" { "patches" } else { "regions" };
+    let known = |labels: &Labels| labels.used().into_iter().map(|id| labels.name(id)).collect::<Vec<_>>();
+    let remedy = match labels.as_ref().map(known) {
+        Some(known) if !known.is_empty() => format!("it has {}", known.join(", ")),
+        _ => format!("it has no {plural}"),
+    };
+    Err(Error::options(format!("the mesh has no {what} `{word}`")).remedy(remedy))
+}

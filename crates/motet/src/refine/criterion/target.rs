@@ -1,0 +1,91 @@
+//! A surface that refinement looks at from afar: a device, a wall, a patch.
+
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::distance::triangle_triangle;
+use crate::geometry::tet::{self, FACETS};
+use crate::geometry::vector::{distance, is_finite};
+use crate::mesh::{Mesh, Surface};
+use crate::spatial::{Closest, NearestTriangle};
+
+/// Triangles with a tree of boxes over them.
+#[derive(Clone, Debug)]
+pub struct Target {
+    points: Vec<Point>,
+    triangles: Vec<[VertexId; 3]>,
+    tree: NearestTriangle,
+}
+
+impl Target {
+    /// Of triangles over points.
+    ///
+    /// # Errors
+    /// When there is no triangle, or one has a corner that does not exist or has no place.
+    pub fn new(points: Vec<Point>, triangles: Vec<[VertexId; 3]>, threads: &Threads) -> Result<Self> {
+        if triangles.is_empty() {
+            return Err(Error::input(
+                "has no surface: neither surface cells nor volume cells with a boundary",
+            )
+            .remedy("give triangles or other surface cells"));
+        }
+        let is_astray = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !is_finite(*p));
+        if let Some(v) = triangles.as_flattened().iter().find(is_astray) {
+            return Err(Error::input("has no place: a coordinate is missing, or no finite number")
+                .at(format!("point {v}"))
+                .remedy("remove the point and its cells, or give it a place"));
+        }
+        let tree = NearestTriangle::new(&points, &triangles, threads);
+        Ok(Self { points, triangles, tree })
+    }
+
+    /// The surface cells of a mesh; where it has none, its boundary.
+    ///
+    /// # Errors
+    /// As for [`new`](Self::new).
+    pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Result<Self> {
+        let mut surface = Surface::of(mesh);
+        if surface.triangles.is_empty() {
+            surface = Surface::boundary_of(mesh);
+        }
+        Self::new(surface.points, surface.triangles, threads)
+    }
+
+    /// The points that triangles name.
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[[VertexId; 3]] {
+        &self.triangles
+    }
+
+    /// The tree over the triangles.
+    pub fn tree(&self) -> &NearestTriangle {
+        &self.tree
+    }
+
+    /// Whether a tet has a place within `reach` of the surface, or the surface one in the tet.
+    pub fn is_within(&self, reach: f64, corners: [Point; 4]) -> bool {
+        let centre = tet::centroid(corners);
+        // Nothing farther from the centre is near enough.
+        let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
+        // A hair more: what is decided by rounding is decided below.
+        let far = (reach + radius) * (1.0 + 1e-12);
+        let is_near = |triangle: u32, place: Point| {
+            let nearest = tet::at(corners, tet::closest(corners, place));
+            let triangle = self.triangles[triangle as usize].map(|v| self.points[v.index()]);
+            distance(nearest, place) <= reach || is_within_triangle(reach, corners, triangle)
+        };
+        let admit = |triangle: u32, found: &Closest| is_near(triangle, found.point);
+        self.tree.closest_where(centre, far, admit).is_some()
+    }
+}
+
+/// Whether a tet has a place so near to a triangle: one of its facets has, or it holds all of it.
+fn is_within_triangle(reach: f64, corners: [Point; 4], triangle: [Point; 3]) -> bool {
+    let bound = (reach * reach).next_up();
+    let is_near = |facet: [usize; 3]| {
+        triangle_triangle::closest_below(facet.map(|i| corners[i]), triangle, bound).is_some()
+    };
+    tet::holds(corners, triangle[0]) || FACETS.into_iter().any(is_near)
+}

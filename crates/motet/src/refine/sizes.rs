@@ -1,0 +1,146 @@
+//! How long edges are to be, vertex by vertex: from how much a field bends, limited, graded, and scaled to a number of tets.
+//!
+//! The size of an edge is the mean of those at its ends. A tet is too large where one of its edges is longer than that.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use super::hessian::vertex_to_tets;
+use super::wish::{Wish, expected_tets};
+use crate::base::{Threads, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::distance;
+use crate::mesh::TetMesh;
+
+/// A field and its linear interpolant in a tet differ by no more than this times its second derivative along the edge where that is largest, times the
+/// square of its length (Frey and Alauzet 2005, *Anisotropic mesh adaptation for CFD computations*: half of the square of 3/4).
+const LARGEST_ERROR: f64 = 9.0 / 32.0;
+
+/// How often the interval of scales is halved.
+const HALVINGS: usize = 40;
+/// How near the number of tets is to come from below, as a part.
+const NEAR: f64 = 0.01;
+
+/// What holds for sizes, whatever they come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeLimits {
+    /// No size is below this. Default: 0.
+    pub smallest: f64,
+    /// None is above this. Default: infinite.
+    pub largest: f64,
+    /// By how much the size may grow per unit of length along edges; infinite: as it likes. Default: 0.5.
+    pub growth: f64,
+}
+
+impl Default for SizeLimits {
+    fn default() -> Self {
+        Self { smallest: 0.0, largest: f64::INFINITY, growth: 0.5 }
+    }
+}
+
+impl SizeLimits {
+    /// Brings sizes within the limits.
+    pub fn apply(&self, mesh: &TetMesh, sizes: &mut [f64]) {
+        for size in sizes.iter_mut() {
+            // A size that is no number asks for nothing.
+            *size = if size.is_nan() { self.largest } else { size.max(self.smallest).min(self.largest) };
+        }
+        if self.growth < f64::INFINITY {
+            limit_growth(mesh, sizes, self.growth);
+        }
+    }
+}
+
+/// The sizes at which a field that bends so much is at most `error` away from its linear interpolant, in the units of the field. Infinite where it does not bend
+/// or [nothing is known](super::hessian::curvatures).
+pub fn for_error(curvatures: &[f64], error: f64) -> Vec<f64> {
+    let size = |bend: &f64| if *bend > 0.0 { (error / (LARGEST_ERROR * bend)).sqrt() } else { f64::INFINITY };
+    curvatures.iter().map(size).collect()
+}
+
+/// The sizes times one scale, within limits, such that dividing all tets that are too large brings the mesh to about `n_tets`, rather fewer. The
+/// scale is found by bisection.
+pub fn for_count(
+    mesh: &TetMesh,
+    sizes: &[f64],
+    limits: &SizeLimits,
+    n_tets: usize,
+    threads: &Threads,
+) -> Vec<f64> {
+    let scaled = |scale: f64| {
+        let mut scaled: Vec<f64> = sizes.iter().map(|size| size * scale).collect();
+        limits.apply(mesh, &mut scaled);
+        scaled
+    };
+    let count = |sizes: &[f64]| expected_tets(&wishes(mesh, sizes, threads));
+    let target = n_tets.max(mesh.tets.len()) as f64;
+    let ratios = ratios(mesh, sizes, threads);
+    let mut high = ratios.into_iter().filter(|ratio| ratio.is_finite()).fold(0.0, f64::max);
+    if high == 0.0 {
+        return scaled(1.0);
+    }
+    let mut low = high / (8.0 * target).cbrt();
+    // There no tet is too large, but where small sizes spread.
+    let mut found = scaled(high);
+    for _ in 0..HALVINGS {
+        if count(&found) <= target {
+            break;
+        }
+        (low, high) = (high, 2.0 * high);
+        found = scaled(high);
+    }
+    for _ in 0..HALVINGS {
+        let scale = (low * high).sqrt();
+        let sizes = scaled(scale);
+        let n = count(&sizes);
+        if n > target {
+            low = scale;
+            continue;
+        }
+        (high, found) = (scale, sizes);
+        if n > (1.0 - NEAR) * target {
+            break;
+        }
+    }
+    found
+}
+
+/// Lowers sizes until none grows by more than `growth` times the length along any edge: from each end of an edge of length `d` the other
+/// has at most the size there and `growth * d` (Borouchaki, Hecht and Frey 1998, *Mesh gradation control*). Smallest first, so that each is lowered once (Dijkstra 1959).
+pub fn limit_growth(mesh: &TetMesh, sizes: &mut [f64], growth: f64) {
+    let tets = vertex_to_tets(mesh);
+    // Sizes are positive, so their bits have their order.
+    let entry = |v: usize, size: f64| Reverse((size.to_bits(), VertexId::new(v)));
+    let finite = (0..sizes.len()).filter(|&v| sizes[v].is_finite());
+    let mut queue: BinaryHeap<_> = finite.map(|v| entry(v, sizes[v])).collect();
+    while let Some(Reverse((bits, v))) = queue.pop() {
+        let size = f64::from_bits(bits);
+        if size > sizes[v.index()] {
+            continue;
+        }
+        for u in tets.list(v.index()).iter().flat_map(|t| mesh.tets[t.index()]) {
+            let most = size + growth * distance(mesh.points[v.index()], mesh.points[u.index()]);
+            if most < sizes[u.index()] {
+                sizes[u.index()] = most;
+                queue.push(entry(u.index(), most));
+            }
+        }
+    }
+}
+
+/// By how much each tet is too large: the largest ratio of an edge and its size.
+pub fn ratios(mesh: &TetMesh, sizes: &[f64], threads: &Threads) -> Vec<f64> {
+    threads.map(mesh.tets.len(), |t| {
+        let ratio = |[i, j]: [usize; 2]| {
+            let ends = [i, j].map(|i| mesh.tets[t][i].index());
+            let [p, q] = ends.map(|v| mesh.points[v]);
+            distance(p, q) / (0.5 * (sizes[ends[0]] + sizes[ends[1]]))
+        };
+        EDGES.into_iter().map(ratio).fold(0.0, f64::max)
+    })
+}
+
+/// How often each tet is to be divided, so that no edge is longer than its size.
+pub fn wishes(mesh: &TetMesh, sizes: &[f64], threads: &Threads) -> Vec<Wish> {
+    ratios(mesh, sizes, threads).into_iter().map(Wish::of_ratio).collect()
+}

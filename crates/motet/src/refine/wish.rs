@@ -1,0 +1,112 @@
+//! What is wished of a tet: to be divided, and how often as far as can be told; to stay; or that its division may be taken back.
+
+use crate::base::{Error, Result, TetId};
+
+/// How many tets a mesh may be asked to have. Ids can tell a little more apart, but a forest also keeps the tets that were divided: one for each seven that came.
+pub const MOST_TETS: f64 = (TetId::MAX_COUNT / 8 * 7) as f64;
+
+/// What is wished of a tet. Of two wishes the larger counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Wish {
+    /// Not even a tet twice as large would be divided: a division that it came from may be taken back.
+    Coarser,
+    /// To stay as it is.
+    #[default]
+    Kept,
+    /// To be divided, and its parts again: so often in all, at least once. An estimate, beyond the first.
+    Divided(u8),
+}
+
+impl Wish {
+    /// Of a tet that is too large by this ratio: it is halved until it is not.
+    pub fn of_ratio(ratio: f64) -> Self {
+        match ratio {
+            r if r > 1.0 => Self::Divided(r.log2().ceil().clamp(1.0, 255.0) as u8),
+            r if r <= 0.5 => Self::Coarser,
+            _ => Self::Kept,
+        }
+    }
+
+    /// Of a tet that is marked for what lies in it, or is not.
+    pub fn of_mark(is_marked: bool) -> Self {
+        if is_marked { Self::Divided(1) } else { Self::Coarser }
+    }
+
+    /// Whether it is to be divided.
+    pub fn is_divided(self) -> bool {
+        self >= Self::Divided(0)
+    }
+}
+
+/// The tets that are to be divided, rising.
+pub fn marked(wishes: &[Wish]) -> Vec<TetId> {
+    those(wishes, Wish::is_divided)
+}
+
+/// The tets whose division may be taken back, rising.
+pub fn coarser(wishes: &[Wish]) -> Vec<TetId> {
+    those(wishes, |wish| wish == Wish::Coarser)
+}
+
+fn those(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
+    (0..wishes.len()).filter(|&t| is_one(wishes[t])).map(TetId::new).collect()
+}
+
+/// About how many tets there are once all wishes come true: eight to the power of how often each is divided. Those that are divided or cut
+/// since their neighbours are do not count.
+pub fn expected_tets(wishes: &[Wish]) -> f64 {
+    let tets = |wish: &Wish| match wish {
+        Wish::Divided(n) => 8f64.powi(i32::from(*n)),
+        _ => 1.0,
+    };
+    wishes.iter().map(tets).sum()
+}
+
+/// Refuses wishes for more tets than there can be, before any work.
+///
+/// # Errors
+/// When more than [`MOST_TETS`] are [expected](expected_tets).
+pub fn check_expected(wishes: &[Wish]) -> Result<()> {
+    let expected = expected_tets(wishes);
+    if expected <= MOST_TETS {
+        return Ok(());
+    }
+    let factor = (expected / MOST_TETS).cbrt();
+    let factor = if factor < 1e6 { format!("{:.1}", factor + 0.05) } else { format!("{factor:.1e}") };
+    Err(Error::input(format!(
+        "would be divided into about {expected:.1e} tets, and ids suffice for {MOST_TETS:.1e}"
+    ))
+    .remedy(format!(
+        "ask for sizes {factor} times as large, or set a limit: a smallest size, a number of tets"
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ratio_says_how_often() {
+        let all = [0.3, 0.5, 0.51, 1.0, 1.0 + 1e-15, 2.0, 2.1, 8.0, 1e300, f64::INFINITY, f64::NAN];
+        let found = all.map(Wish::of_ratio);
+        use Wish::{Coarser, Divided, Kept};
+        let expected = [Coarser, Coarser, Kept, Kept].into_iter();
+        let expected = expected.chain([1, 1, 2, 3, 255, 255].map(Divided)).chain([Kept]);
+        assert_eq!(found.to_vec(), expected.collect::<Vec<_>>());
+        assert!(Coarser < Kept && Kept < Divided(0) && Divided(1) < Divided(2));
+    }
+
+    #[test]
+    fn what_would_be_too_many_is_refused_before_work() {
+        let wishes = |n| vec![Wish::Divided(n), Wish::Kept, Wish::Coarser];
+        assert_eq!(expected_tets(&wishes(2)), 66.0);
+        assert!(check_expected(&wishes(10)).is_ok());
+        let error = check_expected(&wishes(11)).unwrap_err();
+        assert_eq!(error.kind(), crate::base::ErrorKind::Input);
+        assert!(error.to_string().contains("8.6e9 tets"), "{error}");
+        assert!(error.to_string().contains("sizes 1.4 times as large"), "{error}");
+        // Even where the number itself is beyond all numbers.
+        assert!(check_expected(&[Wish::Divided(255), Wish::Divided(255)]).is_err());
+        assert_eq!((marked(&wishes(1)), coarser(&wishes(1))), (vec![TetId(0)], vec![TetId(2)]));
+    }
+}

@@ -1,0 +1,221 @@
+//! Sizes from second derivatives: recovered, limited, graded, scaled to a number of tets, and what they bring.
+
+mod common;
+
+use common::random_mesh;
+use motet::base::{Point, TetId, Threads, VertexId};
+use motet::geometry::tet::{EDGES, at, volume};
+use motet::geometry::vector::{distance, norm};
+use motet::mesh::shapes::{ball, box_grid};
+use motet::mesh::{CellKind, Cells, Field, Mesh, TetMesh, TetPart};
+use motet::refine::hessian::{curvatures, hessians};
+use motet::refine::sizes::{SizeLimits, for_count, for_error, limit_growth, wishes};
+use motet::refine::wish::expected_tets;
+use motet::refine::{Aim, Criterion, HessianSizes, Options, Refinement};
+
+fn tets_of(mesh: &Mesh) -> TetMesh {
+    TetPart::of(mesh).unwrap().mesh
+}
+
+fn values(mesh: &TetMesh, f: impl Fn(Point) -> f64) -> Vec<f64> {
+    mesh.points.iter().map(|p| f(*p)).collect()
+}
+
+/// A quadratic field and its second derivatives.
+fn quadratic([x, y, z]: Point) -> f64 {
+    1.0 + x - 2.0 * z + 1.5 * x * x - 0.5 * y * y + 0.25 * z * z + 2.0 * x * y - y * z + 0.5 * x * z
+}
+
+const SECOND: [f64; 6] = [3.0, -1.0, 0.5, 2.0, -1.0, 0.5];
+
+fn off(found: [f64; 6], expected: [f64; 6]) -> f64 {
+    (0..6).map(|i| (found[i] - expected[i]).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn second_derivatives_of_a_quadratic_field_are_exact_in_a_lattice() {
+    let threads = Threads::single();
+    let mesh = tets_of(&box_grid([5, 6, 7], [[-1.0, 0.0, 0.5], [1.0, 1.5, 2.0]]));
+    let found = hessians(&mesh, &values(&mesh, quadratic), &threads);
+    let worst = found.iter().map(|h| off(*h, SECOND)).fold(0.0, f64::max);
+    println!("lattice: off by {worst:.1e}");
+    // At the boundary, too.
+    assert!(worst < 1e-11, "{worst}");
+    let straight = hessians(&mesh, &values(&mesh, |[x, y, z]| 3.0 + x - 2.0 * y + 0.1 * z), &threads);
+    assert!(straight.iter().all(|h| off(*h, [0.0; 6]) < 1e-11));
+    // All vertices of a single tet are on the boundary.
+    let one = TetMesh::new(mesh.points[..4].to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
+    assert_eq!(hessians(&one, &[1.0, 2.0, 0.0, 5.0], &threads).len(), 4);
+}
+
+#[test]
+fn second_derivatives_come_nearer_in_finer_lattices() {
+    let threads = Threads::single();
+    let f = |[x, y, z]: Point| (2.0 * x).sin() * (y + 0.5 * z).cos();
+    let second = |[x, y, z]: Point| {
+        let (s, c) = (2.0 * x).sin_cos();
+        let (t, d) = (y + 0.5 * z).sin_cos();
+        [-4.0 * s * d, -s * d, -0.25 * s * d, -2.0 * c * t, -0.5 * s * d, -c * t]
+    };
+    let errors = [6, 12, 24].map(|n| {
+        let mesh = tets_of(&box_grid([n; 3], [[0.0; 3], [1.0; 3]]));
+        let found = hessians(&mesh, &values(&mesh, f), &threads);
+        let is_inner = |p: &Point| p.iter().all(|x| (0.34..0.67).contains(x));
+        let pairs = mesh.points.iter().zip(&found);
+        pairs.filter(|(p, _)| is_inner(p)).map(|(p, h)| off(*h, second(*p))).fold(0.0, f64::max)
+    });
+    println!("errors inside, each lattice twice as fine: {errors:?}");
+    // Of second order, away from the boundary.
+    assert!(errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1]);
+}
+
+#[test]
+fn curvature_is_about_right_in_any_mesh() {
+    let threads = Threads::single();
+    // Eigenvalues -3, 1 and 2, along other axes than those of coordinates.
+    let f = |[x, y, z]: Point| {
+        let [u, v] = [(x + y) / 2f64.sqrt(), (x - y) / 2f64.sqrt()];
+        0.5 * (-3.0 * u * u + v * v + 2.0 * z * z)
+    };
+    for (name, mesh) in [("ball", tets_of(&ball(6, 5))), ("random", random_mesh(3000, 5))] {
+        let mut bends = curvatures(&mesh, [values(&mesh, f).as_slice()], &threads);
+        bends.sort_by(f64::total_cmp);
+        let at = |share: f64| bends[(share * (bends.len() - 1) as f64) as usize];
+        println!("{name}: 3 is found as {:.2} to {:.2}, median {:.2}", at(0.05), at(0.95), at(0.5));
+        assert!((2.6..3.5).contains(&at(0.5)), "{name}");
+        // The gradients of flat tets are beyond all bounds.
+        assert!(name == "random" || at(0.05) > 2.4 && at(0.95) < 3.6);
+    }
+}
+
+#[test]
+fn a_size_for_an_error_keeps_it() {
+    let size = for_error(&[4.0, 0.0, f64::NAN], 0.01);
+    assert!((size[0] - (32.0_f64 * 0.01 / (9.0 * 4.0)).sqrt()).abs() < 1e-15);
+    assert_eq!(size[1..], [f64::INFINITY, f64::INFINITY]);
+    let scale = size[0] / 8f64.sqrt();
+    let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]
+        .map(|p: Point| p.map(|x| x * scale));
+    let field = |p: Point| 2.0 * norm(p) * norm(p);
+    let centre = at(corners, [0.25; 4]);
+    let linear = corners.iter().map(|p| field(*p)).sum::<f64>() / 4.0;
+    let error = linear - field(centre);
+    // Half the curvature times the square of the radius, sqrt(3/8) of an edge; the bound is that of the worst shape.
+    assert!((error - 3.0 / 16.0 * 4.0 * size[0] * size[0]).abs() < 1e-12);
+    assert!(error < 0.01 && error > 0.005);
+}
+
+#[test]
+fn sizes_grow_no_faster_than_they_may() {
+    let mesh = random_mesh(500, 8);
+    let n = mesh.points.len();
+    let mut sizes: Vec<f64> =
+        (0..n).map(|i| if i % 50 == 0 { 0.01 * (i + 1) as f64 } else { f64::INFINITY }).collect();
+    let first = sizes.clone();
+    limit_growth(&mesh, &mut sizes, 0.3);
+    let edges = || mesh.tets.iter().flat_map(|t| EDGES.map(|[i, j]| [t[i].index(), t[j].index()]));
+    // By the definition, rounds until nothing changes (Bellman and Ford).
+    let mut expected = first;
+    loop {
+        let mut is_changed = false;
+        for [a, b] in edges().flat_map(|[a, b]| [[a, b], [b, a]]) {
+            let most = expected[a] + 0.3 * distance(mesh.points[a], mesh.points[b]);
+            is_changed |= most < expected[b];
+            expected[b] = expected[b].min(most);
+        }
+        if !is_changed {
+            break;
+        }
+    }
+    assert_eq!(sizes, expected);
+    assert!(sizes.iter().all(|h| h.is_finite()));
+}
+
+#[test]
+fn sizes_are_scaled_to_a_number_of_tets() {
+    let threads = Threads::single();
+    let mesh = tets_of(&ball(5, 4));
+    let bends = curvatures(&mesh, [values(&mesh, front).as_slice()], &threads);
+    for growth in [0.5, f64::INFINITY] {
+        let limits = SizeLimits { growth, ..SizeLimits::default() };
+        for target in [5_000, 50_000, 2_000_000] {
+            let sizes = for_count(&mesh, &for_error(&bends, 1.0), &limits, target, &threads);
+            let n = expected_tets(&wishes(&mesh, &sizes, &threads));
+            println!("{n} tets of {target}, growth {growth}");
+            assert!(n <= target as f64 && n > 0.8 * target as f64);
+        }
+        let few = for_count(&mesh, &for_error(&bends, 1.0), &limits, 3, &threads);
+        assert_eq!(expected_tets(&wishes(&mesh, &few, &threads)), mesh.tets.len() as f64);
+    }
+    let limits = SizeLimits { smallest: 0.1, largest: 0.2, ..SizeLimits::default() };
+    let mut sizes = for_error(&bends, 1e-3);
+    limits.apply(&mesh, &mut sizes);
+    assert!(sizes.iter().all(|h| (0.1..=0.2).contains(h)));
+}
+
+/// A front a tenth of the radius wide.
+fn front(p: Point) -> f64 {
+    ((norm(p) - 0.5) / 0.05).tanh()
+}
+
+/// How far the front is from its linear interpolant: the root of the mean square and the most, at five places a tet.
+fn error(mesh: &TetMesh) -> [f64; 2] {
+    let (mut squares, mut weights, mut most) = (0.0f64, 0.0f64, 0.0f64);
+    let (a, b) = (1.0 / 6.0, 0.5);
+    let places = [[0.25; 4], [b, a, a, a], [a, b, a, a], [a, a, b, a], [a, a, a, b]];
+    for tet in &mesh.tets {
+        let corners = tet.map(|v| mesh.points[v.index()]);
+        let weight = volume(corners).abs();
+        for place in places {
+            let linear: f64 = corners.iter().zip(place).map(|(p, w)| w * front(*p)).sum();
+            let off = (linear - front(at(corners, place))).abs();
+            squares += weight * off * off;
+            weights += weight;
+            most = most.max(off);
+        }
+    }
+    [(squares / weights).sqrt(), most]
+}
+
+fn with_front(tets: &TetMesh) -> (Mesh, TetPart) {
+    let mut cells = Cells::new();
+    tets.tets.iter().for_each(|t| cells.push(CellKind::TETRA, *t));
+    let mut mesh = Mesh::new(tets.points.clone(), cells);
+    mesh.set_point_field(Field::scalars("front", values(tets, front)));
+    let part = TetPart::of(&mesh).unwrap();
+    (mesh, part)
+}
+
+/// The loop of solving, estimating and refining, with the interpolant as the solution.
+#[test]
+fn a_loop_by_second_derivatives_resolves_a_front_with_fewer_tets_than_everywhere() {
+    let threads = Threads::single();
+    let first = TetMesh::new(tets_of(&ball(4, 4)).points, tets_of(&ball(4, 4)).tets);
+    let mut uniform = Refinement::new(&first, Options::default(), &threads).unwrap();
+    for _ in 0..2 {
+        let all: Vec<TetId> = (0..uniform.mesh().tets.len()).map(TetId::new).collect();
+        uniform.refine(&all, &threads).unwrap();
+    }
+    let n_uniform = uniform.mesh().tets.len();
+    let [mean, most] = error(uniform.mesh());
+    println!("everywhere: {n_uniform} tets, error {mean:.2e}, at most {most:.2e}");
+    // More from loop to loop: what a coarse mesh says of the front is smeared. Tets that the closing adds come on top.
+    let criterion = |n_tets: usize| {
+        let limits = SizeLimits { growth: f64::INFINITY, ..SizeLimits::default() };
+        Criterion::Hessian(HessianSizes { arrays: vec!["front".into()], aim: Aim::Tets(n_tets), limits })
+    };
+    let mut adapted = Refinement::new(&first, Options::default(), &threads).unwrap();
+    let mut errors = vec![error(adapted.mesh())];
+    for round in 1..=5 {
+        let (mesh, part) = with_front(adapted.mesh());
+        let marks = criterion(n_uniform / 2 >> (5 - round)).marks(&mesh, &part, &threads).unwrap();
+        adapted.refine(&marks, &threads).unwrap();
+        errors.push(error(adapted.mesh()));
+        let [mean, most] = errors[round];
+        println!("loop {round}: {} tets, error {mean:.2e}, at most {most:.2e}", adapted.mesh().tets.len());
+        assert!(adapted.mesh().tets.len() <= n_uniform);
+    }
+    assert!(errors.windows(2).all(|pair| pair[1][0] <= pair[0][0] * (1.0 + 1e-9)));
+    let [last_mean, last_most] = errors[errors.len() - 1];
+    assert!(last_mean < 0.6 * mean && last_most < 0.6 * most);
+}
