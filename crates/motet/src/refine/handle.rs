@@ -4,10 +4,13 @@ use super::close::{Closed, Need, close};
 use super::extract::{Extracted, extract};
 use super::forest::{DEEPEST, Forest, NONE};
 use super::held::{Near, split_though_fixed};
+use super::inverted::vertices_of_inverted;
+use super::true_surface::{OnSurface, put_on};
 use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
+use crate::spatial::NearestTriangle;
 
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +36,8 @@ pub struct Summary {
     pub n_promoted: usize,
     /// How many tets were cut to fit their neighbours.
     pub n_cut: usize,
-    /// How many marked tets were left as they are, since edges that are [fixed](TetMesh::fixed_edges) would have to be split.
+    /// How many marked tets were left as they are, since edges that are [fixed](TetMesh::fixed_edges) would have to be split; how many
+    /// divisions were not taken back, since a tet would be inverted.
     pub n_held: usize,
     /// How often all tets were looked at.
     pub n_sweeps: usize,
@@ -78,6 +82,8 @@ pub struct Refinement {
     pub(super) points: Vec<Point>,
     pub(super) now: Extracted,
     pub(super) summary: Summary,
+    /// Whether points are elsewhere than in the reference.
+    pub(super) is_moved: bool,
 }
 
 impl Refinement {
@@ -97,6 +103,7 @@ impl Refinement {
             points: mesh.points.clone(),
             now: Extracted::default(),
             summary: Summary::default(),
+            is_moved: false,
         };
         let closed = close(&mut refinement.forest, need, threads);
         refinement.give_out(closed)?;
@@ -106,6 +113,24 @@ impl Refinement {
     /// The mesh as it is now. While nothing is divided it is the first one, but for the points, if these moved.
     pub fn mesh(&self) -> &TetMesh {
         &self.now.mesh
+    }
+
+    /// The first mesh, its points where they are now.
+    pub fn first(&self) -> TetMesh {
+        let points = self.points[..self.forest.n_first_vertices].to_vec();
+        TetMesh { points, ..self.first.clone() }
+    }
+
+    /// Puts points of the boundary that divisions made on the true surface, if they are near it, and their edges lie on it: no tet is inverted, none made bad that
+    /// was good. New shapes are judged as if they were where they were before.
+    pub fn put_on_surface(&mut self, surface: &NearestTriangle) -> OnSurface {
+        let (points, done) = put_on(&self.now, &self.forest, surface);
+        self.is_moved = true;
+        self.now.mesh.points.copy_from_slice(&points);
+        for (&vertex, point) in self.now.vertices.iter().zip(points) {
+            self.points[vertex as usize] = point;
+        }
+        done
     }
 
     /// Whether any tet of the first mesh is divided, or cut.
@@ -161,6 +186,7 @@ impl Refinement {
             return Err(Error::input(format!("{} points, expected {expected}", points.len()))
                 .remedy("give all points in the order of the mesh"));
         }
+        self.is_moved = true;
         self.now.mesh.points.copy_from_slice(points);
         for (&vertex, &point) in self.now.vertices.iter().zip(points) {
             self.points[vertex as usize] = point;
@@ -216,7 +242,7 @@ impl Refinement {
     }
 
     /// Takes back divisions of which all that lies within is marked, and of which no part was asked to be divided again. A tet that its
-    /// neighbours need divided stays so.
+    /// neighbours need divided stays so, and one that would be inverted where its vertices are now.
     ///
     /// # Errors
     /// When there is no such tet; then nothing has changed.
@@ -239,9 +265,44 @@ impl Refinement {
             let first = nodes[node].first_child as usize;
             nodes[node].is_asked = before[first..first + 8].iter().any(|&child| child);
         }
-        let closed = close(&mut self.forest, self.need, threads);
-        self.give_out_or_else(closed, &before, threads)?;
+        self.keep_from_inverting(&before, threads)?;
         Ok(self.summary)
+    }
+
+    /// Gives out what is asked, but for divisions whose whole would be inverted where points are now.
+    fn keep_from_inverting(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
+        let inverted =
+            |this: &Self, out: &Extracted| vertices_of_inverted(&this.forest, &this.first, out, threads);
+        let known = if self.is_moved { inverted(self, &self.now) } else { Vec::new() };
+        let mut n_held = 0;
+        loop {
+            let closed = close(&mut self.forest, self.need, threads);
+            let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
+            let mut new = if self.is_moved { inverted(self, &now) } else { Vec::new() };
+            new.retain(|v| known.binary_search(v).is_err());
+            if new.is_empty() {
+                self.take(closed, now);
+                self.summary.n_held = n_held;
+                return Ok(());
+            }
+            let taken_back: Vec<u32> = (0..before.len() as u32)
+                .filter(|&n| before[n as usize] && !self.forest.nodes[n as usize].is_asked)
+                .collect();
+            let at = |&node: &u32| self.forest.local(node).iter().any(|v| new.binary_search(v).is_ok());
+            let near: Vec<u32> = taken_back.iter().copied().filter(at).collect();
+            let again = if near.is_empty() { taken_back } else { near };
+            if again.is_empty() {
+                self.take(closed, now);
+                return Ok(());
+            }
+            n_held += again.len();
+            for mut node in again {
+                while node != NONE {
+                    self.forest.nodes[node as usize].is_asked = true;
+                    node = self.forest.nodes[node as usize].parent;
+                }
+            }
+        }
     }
 
     fn check(&self, marked: &[TetId]) -> Result<()> {
@@ -279,6 +340,11 @@ impl Refinement {
 
     fn give_out(&mut self, closed: Closed) -> Result<()> {
         let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
+        self.take(closed, now);
+        Ok(())
+    }
+
+    fn take(&mut self, closed: Closed, now: Extracted) {
         self.points.resize(self.forest.reference.len(), [f64::NAN; 3]);
         for (&vertex, &point) in now.vertices.iter().zip(&now.mesh.points) {
             self.points[vertex as usize] = point;
@@ -291,7 +357,6 @@ impl Refinement {
             n_sweeps: closed.n_sweeps,
         };
         self.now = now;
-        Ok(())
     }
 }
 

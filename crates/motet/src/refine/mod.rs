@@ -12,6 +12,8 @@
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
 //! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
 //! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are |
+//! | the true surface | `true_surface` | new points of the boundary are put on it, as far as nothing inverts |
+//! | take back | `inverted` | no division is taken back whose whole would be inverted, where points moved |
 //! | remember | `memory` | what has to be kept with the mesh, so that a later run goes on, and what is still true of it when others changed the mesh |
 //! | whole meshes | `whole`, `joined`, `origins`, `kept` | cells of other kinds put back, arrays carried across, the memory as arrays |
 //!
@@ -28,6 +30,7 @@ mod forest;
 mod handle;
 mod held;
 pub mod hessian;
+mod inverted;
 mod joined;
 mod kept;
 mod limits;
@@ -35,15 +38,19 @@ pub mod mark;
 mod memory;
 mod origins;
 mod patterns;
+mod shapes;
 pub mod sizes;
+mod true_surface;
 mod whole;
 pub mod wish;
 
 pub use criterion::{
-    Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Relation, Size, Target, marks_of_all,
-    wishes_of_all,
+    Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Relation, Size, Target, fix_sizes,
+    marks_of_all, wishes_of_all,
 };
 pub use handle::{Left, Options, Refinement, Summary};
 pub use limits::Limits;
 pub use memory::{Memory, UNKNOWN};
+pub use shapes::Shapes;
+pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;

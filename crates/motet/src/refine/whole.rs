@@ -4,9 +4,11 @@ use super::handle::{Options, Refinement, Summary};
 use super::joined::Joined;
 use super::kept;
 use super::origins::origins;
+use super::true_surface::OnSurface;
 use crate::base::{CellId, Result, TetId, Threads, VertexId};
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
+use crate::spatial::NearestTriangle;
 
 /// A mesh of any cells, whose tets are divided and taken back again and again. Each cell that is divided is followed in its place by its parts; points that
 /// come are behind all others.
@@ -44,6 +46,18 @@ impl MeshRefinement {
         let slots = slots(mesh, &refinement);
         let TetPart { tet_to_cell, triangle_to_cell, .. } = part;
         Ok(Self { mesh: kept::without(mesh), refinement, slots, tet_to_cell, triangle_to_cell })
+    }
+
+    /// The mesh without what it remembers: as it is, it counts as the first.
+    pub fn forget(mesh: &Mesh) -> Mesh {
+        kept::without(mesh)
+    }
+
+    /// Puts new points of the boundary on the true surface, see [`Refinement::put_on_surface`].
+    pub fn put_on_surface(&mut self, surface: &NearestTriangle) -> OnSurface {
+        let done = self.refinement.put_on_surface(surface);
+        self.mesh.points.clone_from(&self.refinement.mesh().points);
+        done
     }
 
     /// The mesh as it is now, with the arrays carried this far, without those of the memory.

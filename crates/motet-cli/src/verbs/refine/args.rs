@@ -149,6 +149,11 @@ impl RefineArgs {
         Limits { generation: self.limit_generation, smallest: self.smallest, n_tets: self.at_most }
     }
 
+    /// How often anything is divided at most.
+    pub(super) fn most_generations(&self) -> u32 {
+        self.generations.unwrap_or(20)
+    }
+
     /// The smallest size that the call gives.
     pub(super) fn smallest(&self) -> f64 {
         self.smallest.unwrap_or(0.0)

@@ -43,7 +43,11 @@ pub(crate) fn criteria(args: &RefineArgs, threads: &Threads) -> Result<Vec<Crite
     Ok(all)
 }
 
-fn target(surface: &Path, threads: &Threads) -> Result<Arc<Target>> {
+/// A surface to look at from afar.
+///
+/// # Errors
+/// When it cannot be read, or is none.
+pub(super) fn target(surface: &Path, threads: &Threads) -> Result<Arc<Target>> {
     let mesh = io::read(surface)?;
     Target::of_mesh(&mesh, threads).map(Arc::new).map_err(|e| e.in_file(surface))
 }

@@ -1,63 +1,88 @@
-//! `motet refine`: tets divided where it matters.
+//! `motet refine`: tets divided where it matters, and taken back where it does not.
 
 mod args;
 mod criteria;
+mod report;
 mod words;
+mod work;
 
-use motet::mesh::{Field, TetPart};
-use motet::refine::wish::{check_expected, coarser, marked};
-use motet::refine::wishes_of_all;
+use std::time::Instant;
+
+use motet::geometry::quality::eas;
+use motet::mesh::history::History;
+use motet::refine::{MeshRefinement, Options, fix_sizes};
 use motet::{Error, io};
 
 pub(crate) use args::RefineArgs;
 
+use self::report::Report;
+use self::work::Work;
 use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
-use crate::table::count;
+use crate::outputs;
+use crate::table::seconds;
 use crate::verbs::remesh::rules;
 
-/// So far: says what would be divided in the first generation, and writes it as the cell array `marked`.
 pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
-    io::can_write(&args.output)?;
-    check_served(args)?;
+    let begin = Instant::now();
+    check_outputs(args)?;
     let threads = common.threads()?;
-    let criteria = criteria::criteria(args, &threads)?;
-    let (mut mesh, notes) = io::read_noted(&args.mesh)?;
-    notes.iter().for_each(|what| console.warn(what));
-    rules(&args.carry, &mesh).map_err(|e| e.in_file(&args.mesh))?;
-    let part = TetPart::of(&mesh).map_err(|e| e.in_file(&args.mesh))?;
-    let wishes = wishes_of_all(&criteria, &mesh, &part, &threads).map_err(|e| e.in_file(&args.mesh))?;
-    let mut limited = wishes.clone();
-    args.limits().apply(&part.mesh, &[], &mut limited);
-    check_expected(&limited).map_err(|e| e.in_file(&args.mesh))?;
-    let marks = marked(&limited);
-    let mut is_marked = vec![0u8; mesh.cells.len()];
-    marks.iter().for_each(|tet| is_marked[part.tet_to_cell[tet.index()].index()] = 1);
-    mesh.set_cell_field(Field::scalars("marked", is_marked));
+    let mut criteria = criteria::criteria(args, &threads)?;
+    let surface = args.surface.as_deref().map(|file| criteria::target(file, &threads)).transpose()?;
+    let (old, notes) = io::read_noted(&args.mesh)?;
+    let rules = rules(&args.carry, &old).map_err(|e| e.in_file(&args.mesh))?;
+    let mut given = if args.forget { MeshRefinement::forget(&old) } else { old };
+    let sizes = fix_sizes(&mut criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    let refinement =
+        MeshRefinement::new(&given, Options::default(), &threads).map_err(|e| hint(e).in_file(&args.mesh))?;
+    let read = begin.elapsed().as_secs_f64();
+
+    let mut work = Work {
+        args,
+        refinement,
+        surface,
+        rules: &rules,
+        history: History::identity(given.points.len(), given.cells.len()),
+        report: Report::new(args),
+        threads: &threads,
+    };
+    work.begin();
+    let bar = console.bar(u64::from(args.most_generations()), "refining");
+    let is_reached = work.run(&criteria, &bar).map_err(|e| e.in_file(&args.mesh))?;
+    bar.finish_and_clear();
+
+    let Work { refinement, history, mut report, .. } = work;
+    let mut mesh = refinement.with_memory(&threads);
+    mesh.point_data.retain(|field| !sizes.contains(&field.name));
+    if args.quality {
+        mesh.set_cell_field(mesh.tet_field("eas", eas));
+    }
+    let writing = Instant::now();
     let lost = io::write(&args.output, &mesh, &args.writing.options())?;
-    lost.iter().for_each(|what| console.warn(what));
-    let back = if args.coarsen { coarser(&wishes).len() } else { 0 };
-    console.say(format_args!(
-        "{} of {} tets would be divided, {} may be taken back",
-        count(marks.len()),
-        count(part.mesh.tets.len()),
-        count(back)
-    ));
-    Ok(Outcome::Done)
+    if let Some(file) = &args.history {
+        let json = serde_json::to_vec(&history).map_err(|e| Error::io(file, &e.into()))?;
+        io::replace(file, &json)?;
+    }
+    let write = writing.elapsed().as_secs_f64();
+    console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
+    console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
+    notes.iter().chain(&lost).for_each(|what| console.warn(what));
+    report.end(&refinement, &history, [read, write, begin.elapsed().as_secs_f64()], is_reached, &threads);
+    report.tell(console);
+    Ok(if is_reached { Outcome::Done } else { Outcome::NotReached })
 }
 
-fn check_served(args: &RefineArgs) -> motet::Result<()> {
-    let asked = [
-        (args.surface.is_some(), "--surface"),
-        (args.history.is_some(), "--history"),
-        (args.quality, "--quality"),
-        (args.forget, "--forget"),
-        (!args.coarsen_where.is_empty(), "--coarsen-where"),
-        (args.generations.is_some_and(|n| n > 1), "--generations"),
-    ];
-    match asked.into_iter().find(|(is_asked, _)| *is_asked) {
-        Some((_, word)) => Err(Error::options(format!("{word} is not served yet"))),
-        None => Ok(()),
-    }
+/// Refuses, before any work, outputs that cannot be written.
+fn check_outputs(args: &RefineArgs) -> motet::Result<()> {
+    io::can_write(&args.output)?;
+    let Some(history) = &args.history else { return Ok(()) };
+    outputs::check(history, [args.output.as_path(), args.mesh.as_path()], "a mesh")
+}
+
+/// The remedy in words of the command line.
+fn hint(error: Error) -> Error {
+    let is_memory =
+        error.what().contains("refinement does not fit") || error.what().contains("remembers how");
+    if is_memory { error.remedy("--forget: then the mesh as it is counts as the first") } else { error }
 }

@@ -7,6 +7,7 @@ mod array;
 mod by_field;
 mod by_place;
 mod condition;
+mod fixed;
 mod target;
 
 use std::sync::Arc;
@@ -17,6 +18,7 @@ use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::mesh::{Mesh, TetPart};
 
 pub use condition::{Condition, Relation};
+pub use fixed::fix_sizes;
 pub use target::Target;
 
 /// What to refine. Lengths are in the units of the mesh, values in those of its arrays; an array is named as in [`Condition::array`].
@@ -147,6 +149,11 @@ pub enum Aim {
 }
 
 impl Criterion {
+    /// Whether it asks for lengths, which are reached at some time; others mark the parts of what they mark.
+    pub fn lasts(&self) -> bool {
+        matches!(self, Self::NearSize { .. } | Self::Size(_) | Self::Hessian(_))
+    }
+
     /// Refuses numbers that mean nothing, before any mesh is looked at.
     ///
     /// # Errors

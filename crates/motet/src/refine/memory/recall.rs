@@ -144,7 +144,8 @@ impl Roots {
         let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
         let is_as_given = is_same(&same, &now);
         let summary = Summary { n_tets: mesh.tets.len(), ..Summary::default() };
-        let refinement = Refinement { first: self.first, forest, need, points, now, summary };
+        let is_moved = mesh.points != reference;
+        let refinement = Refinement { first: self.first, forest, need, points, now, summary, is_moved };
         Ok(Recalled { refinement, is_as_given })
     }
 

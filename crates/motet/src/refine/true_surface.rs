@@ -1,0 +1,92 @@
+//! New points of the boundary put on the true surface, as far as nothing inverts.
+
+use super::extract::Extracted;
+use super::forest::Forest;
+use crate::base::{Point, VertexId};
+use crate::geometry::quality::eas;
+use crate::geometry::tet::FACETS;
+use crate::geometry::vector::{add, distance, scale, sub};
+use crate::mesh::BAD_EAS;
+use crate::mesh::tet_facets::for_each_tet_facet;
+use crate::spatial::NearestTriangle;
+
+/// A point goes no farther than this part of its edge: an arc that bulges so much is two thirds of a half circle.
+const REACH: f64 = 0.3;
+/// Its edge is one of the surface where both ends lie within this part of its length of it.
+const ENDS: f64 = 0.05;
+/// A tet may lose so much of its EAS, unless it stays good.
+const LOSS: f64 = 0.5;
+/// A way is halved so often before a point stays where it is.
+const HALVINGS: usize = 3;
+
+/// What putting points on a surface came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OnSurface {
+    /// How many points were put on the surface.
+    pub n_moved: usize,
+    /// How many were put nearer to it only, or left, since a tet would have been spoilt.
+    pub n_short: usize,
+    /// The longest way, in the unit of coordinates.
+    pub farthest: f64,
+}
+
+/// New places for the points of a mesh.
+pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> (Vec<Point>, OnSurface) {
+    let mesh = &now.mesh;
+    let ways = ways(now, forest, surface);
+    let mut shares: Vec<f64> = ways.iter().map(|way| if way.is_some() { 1.0 } else { 0.0 }).collect();
+    let place = |v: VertexId, shares: &[f64]| match ways[v.index()] {
+        Some(way) => add(mesh.points[v.index()], scale(way, shares[v.index()])),
+        None => mesh.points[v.index()],
+    };
+    let moving: Vec<&[VertexId; 4]> =
+        mesh.tets.iter().filter(|tet| tet.iter().any(|v| ways[v.index()].is_some())).collect();
+    for round in 0.. {
+        let is_spoilt = |tet: &&&[VertexId; 4]| {
+            let (was, is) = (eas(tet.map(|v| mesh.points[v.index()])), eas(tet.map(|v| place(v, &shares))));
+            // The sign of an EAS is that of the volume.
+            let (was, is) = (was.abs(), is * was.signum());
+            is <= 0.0 || is < LOSS * was && is < BAD_EAS
+        };
+        let spoilt: Vec<VertexId> = moving.iter().filter(is_spoilt).flat_map(|tet| **tet).collect();
+        if !spoilt.iter().any(|v| shares[v.index()] > 0.0) {
+            break;
+        }
+        let mut vertices = spoilt;
+        vertices.sort_unstable();
+        vertices.dedup();
+        let factor = if round < HALVINGS { 0.5 } else { 0.0 };
+        vertices.iter().for_each(|v| shares[v.index()] *= factor);
+    }
+    let moved = || (0..ways.len()).filter_map(|v| ways[v].map(|way| (shares[v], way)));
+    let done = OnSurface {
+        n_moved: moved().filter(|(share, _)| *share == 1.0).count(),
+        n_short: moved().filter(|(share, _)| *share < 1.0).count(),
+        farthest: moved().map(|(share, way)| share * distance(way, [0.0; 3])).fold(0.0, f64::max),
+    };
+    let points = (0..mesh.points.len()).map(|v| place(VertexId::new(v), &shares)).collect();
+    (points, done)
+}
+
+/// Of each point the way to the surface, if it is one that a division made, at an edge of the surface.
+fn ways(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Option<Point>> {
+    let mesh = &now.mesh;
+    let mut is_boundary = vec![false; mesh.points.len()];
+    for_each_tet_facet(&mesh.tets, &[], |sharing| {
+        if let &[(tet, facet)] = sharing.tets {
+            FACETS[facet].iter().for_each(|&k| is_boundary[mesh.tets[tet.index()][k].index()] = true);
+        }
+    });
+    let mut number = vec![None; forest.reference.len()];
+    now.vertices.iter().enumerate().for_each(|(i, &v)| number[v as usize] = Some(i));
+    let way = |v: usize| {
+        let origin = (now.vertices[v] as usize).checked_sub(forest.n_first_vertices)?;
+        let [p, q] = forest.edges[forest.origin[origin] as usize].ends.map(|end| number[end as usize]);
+        let ([p, q], point) = ([mesh.points[p?], mesh.points[q?]], mesh.points[v]);
+        let length = distance(p, q);
+        let near = |p: Point, part: f64| surface.closest_within(p, part * length).map(|found| found.point);
+        let found = near(point, REACH)?;
+        (found != point && near(p, ENDS).is_some() && near(q, ENDS).is_some()).then(|| sub(found, point))
+    };
+    (0..mesh.points.len()).map(|v| if is_boundary[v] { way(v) } else { None }).collect()
+}
