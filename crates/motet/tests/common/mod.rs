@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
+pub(crate) mod kept;
+
 use std::path::Path;
 
 use motet::Mesh;
