@@ -8,14 +8,21 @@ use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{EDGES, centroid, volume};
 use motet::geometry::vector::{distance, sub};
-use motet::mesh::shapes::{box_grid, sphere_in_box};
+use motet::mesh::shapes::box_grid;
 use motet::mesh::{TetMesh, TetPart};
 use motet::refine::{Options, Refinement};
 use proptest::prelude::*;
 
-/// A box with a region on either side of a jagged interface, which is a patch as its sides are.
+/// A box with a region on either side of a jagged interface, which is a patch as its sides are. Vertices inside are a little off the grid.
 fn box_of_two() -> TetMesh {
-    let mut mesh = TetPart::of(&box_grid([4, 3, 3], [[0.0; 3], [4.0, 3.0, 3.0]])).unwrap().mesh;
+    let high = [5.0, 4.0, 4.0];
+    let mut mesh = TetPart::of(&box_grid([5, 4, 4], [[0.0; 3], high])).unwrap().mesh;
+    let mut numbers = Numbers(7);
+    for p in &mut mesh.points {
+        if (0..3).all(|k| p[k] > 0.0 && p[k] < high[k]) {
+            *p = p.map(|x| x + 0.4 * (numbers.unit() - 0.5));
+        }
+    }
     let is_left = |t: &[VertexId; 4]| centroid(corners(&mesh, *t))[0] < 1.7;
     let left: Vec<bool> = mesh.tets.iter().map(is_left).collect();
     mesh.regions = left.iter().map(|left| if *left { 3 } else { 7 }).collect();
@@ -32,9 +39,8 @@ fn box_of_two() -> TetMesh {
     mesh
 }
 
-fn meshes() -> [(&'static str, TetMesh); 3] {
-    let ball = TetPart::of(&sphere_in_box(4, 2)).unwrap().mesh;
-    [("box", box_of_two()), ("random", random_mesh(120, 5)), ("ball in a box", ball)]
+fn meshes() -> [(&'static str, TetMesh); 2] {
+    [("box", box_of_two()), ("random", random_mesh(120, 5))]
 }
 
 fn those(mesh: &TetMesh, is_marked: impl Fn(TetId, [Point; 4]) -> bool) -> Vec<TetId> {
@@ -43,7 +49,7 @@ fn those(mesh: &TetMesh, is_marked: impl Fn(TetId, [Point; 4]) -> bool) -> Vec<T
 }
 
 /// Eight generations: the tets in an ellipsoid about a place, with half axes in such proportions, that shrinks by these factors and holds
-/// forty tets at first.
+/// twelve tets at first.
 fn towards(axes: Point, factors: Point) {
     let threads = Threads::single();
     for (name, mesh) in meshes() {
@@ -57,7 +63,7 @@ fn towards(axes: Point, factors: Point) {
         let mut all: Vec<f64> = first.mesh.tets.iter().map(|t| out(corners(&first.mesh, *t), 0)).collect();
         all.sort_by(f64::total_cmp);
         for generation in 0..8 {
-            let marked = those(refinement.mesh(), |_, c| out(c, generation) <= all[39]);
+            let marked = those(refinement.mesh(), |_, c| out(c, generation) <= all[11]);
             assert!(!marked.is_empty());
             let summary = refinement.refine(&marked, &threads).unwrap();
             let kept = first.compare(&refinement, &threads);
@@ -83,6 +89,18 @@ fn towards_a_line_all_is_kept() {
 #[test]
 fn towards_a_surface_all_is_kept() {
     towards([4.0, 4.0, 1.0], [0.62, 0.62, 0.5]);
+}
+
+/// In an even box all tets are as bad as the worst, and any cut is worse. Now the whole box is divided, generation by generation.
+#[test]
+#[ignore = "fails: to keep the worst shape, all that is next to a division is divided"]
+fn in_an_even_box_a_division_stays_where_it_is() {
+    let threads = Threads::single();
+    let mesh = TetPart::of(&box_grid([4; 3], [[0.0; 3], [4.0; 3]])).unwrap().mesh;
+    let mut refinement = Refinement::new(&mesh, Options::default(), &threads).unwrap();
+    let summary = refinement.refine(&[TetId(0)], &threads).unwrap();
+    println!("{} tets: {summary:?}", mesh.tets.len());
+    assert!(summary.n_promoted < mesh.tets.len() / 4);
 }
 
 /// A front at x: what it reaches is divided, down to generation 2, what it has left is taken back.
