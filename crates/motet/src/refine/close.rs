@@ -9,29 +9,32 @@ use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
-use crate::mesh::BAD_EAS;
 
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Need {
     /// No tet below this EAS.
     pub(super) floor: f64,
-    /// Nor below this part of that of the tet that it is a piece of.
-    pub(super) share: f64,
+    /// No piece of a tet that is cut below this.
+    of_pieces: f64,
+    /// Nor below this part of what dividing the tet leaves.
+    share: f64,
 }
 
 impl Need {
-    /// The floor is a part of the worst EAS of the roots.
+    /// The floor is a part of the worst EAS of the roots. Of pieces no more is asked than of those of the median root: in a lattice all tets are as bad as the
+    /// worst, no piece is as good as the whole, and everything would be divided.
     pub(super) fn new(options: Options, forest: &Forest) -> Self {
-        let roots = &forest.nodes[..forest.n_roots];
-        let worst = roots.iter().map(|root| root.eas).fold(f64::INFINITY, f64::min);
-        Self { floor: options.keep * worst, share: options.share }
+        let mut shapes: Vec<f64> = forest.nodes[..forest.n_roots].iter().map(|root| root.eas).collect();
+        shapes.sort_unstable_by(f64::total_cmp);
+        let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
+        let floor = options.keep * worst;
+        Self { floor, of_pieces: floor.min(options.share * median), share: options.share }
     }
 
-    /// What pieces of a tet have to be. Where all roots are good, no more is asked than that none becomes bad: else of a lattice, whose tets are all alike,
-    /// everything would be divided, since no piece is as good as the whole.
-    fn of(self, whole: f64) -> f64 {
-        self.floor.min(BAD_EAS).max(self.share * whole)
+    /// What pieces of a tet have to be that could be divided into eight of this EAS or better.
+    fn of(self, divided: f64) -> f64 {
+        self.of_pieces.max(self.share * divided)
     }
 }
 
@@ -153,11 +156,17 @@ fn verdict(forest: &Forest, i: usize, leaf: u32, need: Need) -> Option<Verdict> 
     }
 }
 
-/// What a tet needs to be cut well. It follows from the reference alone.
+/// What a tet needs to be cut well. It follows from the reference alone. Pieces are held against what dividing would leave: were they held against the whole, a tet
+/// whose inner parts are bad could never be cut well enough, and in a mesh of such tets division would spread without end.
 fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
     let places = forest.places(leaf);
     let whole = forest.nodes[leaf as usize].eas;
-    let least = need.of(whole);
+    // What is good enough beside the whole is so beside its parts.
+    if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, need.of(whole)) {
+        return Goal { mask, cuts, way };
+    }
+    let divided = best_way(&places, whole, need.floor).worst(whole);
+    let least = need.of(divided);
     if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, least) {
         return Goal { mask, cuts, way };
     }
@@ -172,8 +181,7 @@ fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
         }
     }
     let (cuts, way, worst) = best_cut(forest, leaf, mask, &places, f64::NEG_INFINITY).unwrap_or_default();
-    let mask = if best_way(&places, whole, need.floor).worst(whole) > worst { FULL } else { mask };
-    Goal { mask, cuts, way }
+    Goal { mask: if divided > worst { FULL } else { mask }, cuts, way }
 }
 
 /// Of all ways to fill a tet with these edges split the one whose worst tet is best, with the cuts of the facets and that EAS; `None` where it is below

@@ -15,15 +15,17 @@ use crate::spatial::NearestTriangle;
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below 0.2 where that is less, if there is another way. Default: 0.95.
+    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below `share` of its median where that is less, if there is another way.
+    /// Default: 0.95.
     pub keep: f64,
-    /// Nor into pieces below this part of its own EAS. Above 0.5 even regular tets may not be cut, and refinement spreads far. Default: 0.5.
+    /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
+    /// refinement spreads far. Default: 0.55.
     pub share: f64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { keep: 0.95, share: 0.5 }
+        Self { keep: 0.95, share: 0.55 }
     }
 }
 
