@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use motet::{Error, Result, io};
+use motet::mesh::history::History;
+use motet::{Error, ErrorKind, Result, io};
 
 /// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names. A series is many files: its folder
 /// is made where there is none.
@@ -21,4 +22,28 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
             .remedy("give --output another name")),
         false => Ok(()),
     }
+}
+
+/// Refuses an output that cannot be written, and a place for the history that would overwrite a mesh or lies in no folder.
+pub(crate) fn check_with_history(output: &Path, mesh: &Path, history: Option<&Path>) -> Result<()> {
+    io::can_write(output)?;
+    let Some(history) = history else { return Ok(()) };
+    if history == output || history == mesh {
+        return Err(Error::options("the history would overwrite a mesh")
+            .in_file(history)
+            .remedy("give --history a file of its own"));
+    }
+    let folder = history.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.filter(|folder| !folder.is_dir()) {
+        None => Ok(()),
+        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
+            .in_file(history)
+            .remedy("make the folder first")),
+    }
+}
+
+/// Writes a history as one JSON object.
+pub(crate) fn write_history(file: &Path, history: &History) -> Result<()> {
+    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
+    io::replace(file, &json)
 }

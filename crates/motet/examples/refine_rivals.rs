@@ -8,7 +8,6 @@
 //! radius; with `whole` the radius is larger by the distance of its farthest corner from the centroid. Without `near` all tets are marked.
 
 use std::error::Error;
-use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -17,22 +16,14 @@ use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{EDGES, centroid};
 use motet::geometry::vector::distance;
 use motet::mesh::TetMesh;
-use motet::mesh::shapes::wire;
+use motet::mesh::shapes::Coil;
 use motet::refine::{Options, Refinement};
 use serde_json::{Map, Value, json};
 
 /// Five turns beside the sphere of the bench's mesh, of a wire of radius 0.05.
 fn coil() -> motet::Result<Vec<Point>> {
-    let (turns, per_turn, radius, pitch) = (5, 72, 0.6, 0.4);
-    let n = turns * per_turn;
-    let at = |i: usize| {
-        let turn = i as f64 / per_turn as f64;
-        let (sin, cos) = (TAU * turn).sin_cos();
-        [2.5 + radius * cos, radius * sin, pitch * (turn - turns as f64 / 2.0)]
-    };
-    let line: Vec<Point> = (0..=n).map(at).collect();
-    let segments: Vec<_> = (0..n).map(|i| [i, i + 1].map(VertexId::new)).collect();
-    Ok(wire(&line, &segments, 0.05, 12)?.points)
+    let coil = Coil { centre: [2.5, 0.0, 0.0], radius: 0.6, pitch: 0.4, turns: 5.0, wire_radius: 0.05 };
+    Ok(coil.mesh(72, 12)?.points)
 }
 
 fn raw<const N: usize>(path: &Path) -> std::io::Result<Vec<[u8; N]>> {

@@ -7,7 +7,7 @@ use motet::Mesh;
 use motet::base::{Point, VertexId};
 use motet::geometry::distance::{point_segment, triangle_triangle};
 use motet::geometry::vector::{distance, norm, sub};
-use motet::mesh::shapes::{CenterLine, Stent, chains, wire};
+use motet::mesh::shapes::{CenterLine, Coil, Stent, chains, wire};
 use motet::mesh::{Surface, cone_volume};
 
 type Triangles = [[VertexId; 3]];
@@ -222,4 +222,20 @@ fn a_wire_that_cannot_be_is_refused_with_the_segment() {
     // A sharp turn back has no middle, but gives a wire all the same.
     let back = [[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
     assert!(wire(&back, &segments(&[[0, 1], [1, 2]]), 0.1, 6).is_ok());
+}
+
+#[test]
+fn a_coil_is_a_closed_wire_of_its_length() {
+    let coil = Coil { centre: [1.0, 2.0, 3.0], radius: 2.0, pitch: 0.5, turns: 3.5, wire_radius: 0.1 };
+    let mesh = coil.mesh(90, 24).unwrap();
+    let surface = Surface::of(&mesh);
+    assert_eq!(euler_if_closed(&surface.triangles), 2);
+    let length = 3.5 * (TAU * 2.0).hypot(0.5);
+    let volume = volume(&surface.points, &surface.triangles);
+    assert!((volume / (PI * 0.01 * length) - 1.0).abs() < 0.02, "{volume}");
+    let middle = |k: usize| {
+        coil.line(90).iter().map(|p| p[k]).fold([f64::MAX, f64::MIN], |[a, b], x| [a.min(x), b.max(x)])
+    };
+    assert!((middle(2)[0] + middle(2)[1] - 6.0).abs() < 1e-12);
+    assert!(coil.line(90).iter().all(|p| ((p[0] - 1.0).hypot(p[1] - 2.0) - 2.0).abs() < 1e-12));
 }

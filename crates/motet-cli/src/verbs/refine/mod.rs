@@ -26,7 +26,7 @@ use crate::verbs::remesh::rules;
 
 pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    check_outputs(args)?;
+    outputs::check_with_history(&args.output, &args.mesh, args.history.as_deref())?;
     let threads = common.threads()?;
     let mut criteria = criteria::criteria(args, &threads)?;
     let surface = args.surface.as_deref().map(|file| criteria::target(file, &threads)).transpose()?;
@@ -43,7 +43,7 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
         refinement,
         surface,
         rules: &rules,
-        history: History::identity(given.points.len(), given.cells.len()),
+        history: args.history.as_ref().map(|_| History::identity(given.points.len(), given.cells.len())),
         report: Report::new(args),
         threads: &threads,
     };
@@ -60,24 +60,16 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     }
     let writing = Instant::now();
     let lost = io::write(&args.output, &mesh, &args.writing.options())?;
-    if let Some(file) = &args.history {
-        let json = serde_json::to_vec(&history).map_err(|e| Error::io(file, &e.into()))?;
-        io::replace(file, &json)?;
+    if let (Some(file), Some(history)) = (&args.history, &history) {
+        outputs::write_history(file, history)?;
     }
     let write = writing.elapsed().as_secs_f64();
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
-    report.end(&refinement, &history, [read, write, begin.elapsed().as_secs_f64()], is_reached, &threads);
+    report.end(&refinement, [read, write, begin.elapsed().as_secs_f64()], is_reached, &threads);
     report.tell(console);
     Ok(if is_reached { Outcome::Done } else { Outcome::NotReached })
-}
-
-/// Refuses, before any work, outputs that cannot be written.
-fn check_outputs(args: &RefineArgs) -> motet::Result<()> {
-    io::can_write(&args.output)?;
-    let Some(history) = &args.history else { return Ok(()) };
-    outputs::check(history, [args.output.as_path(), args.mesh.as_path()], "a mesh")
 }
 
 /// The remedy in words of the command line.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::Threads;
-use motet::mesh::history::{History, Ledger};
+use motet::mesh::history::Ledger;
 use motet::refine::{MeshRefinement, OnSurface, Refinement, Shapes, Summary};
 use serde::Serialize;
 
@@ -31,8 +31,8 @@ pub(crate) struct Report {
     /// How many tets are of each generation.
     generations: Vec<usize>,
     on_surface: Option<Surface>,
-    /// How well the volumes of old and new tets fit.
-    volumes: Ledger,
+    /// By how much new tets took more or less than the volume of old ones, at most in a step, as a part of what changed.
+    volume_deviation: f64,
     /// Bytes for each tet that the memory takes beside the mesh.
     memory_per_tet: f64,
     seconds: Seconds,
@@ -120,7 +120,7 @@ impl Report {
             left_roots: 0,
             generations: Vec::new(),
             on_surface: None,
-            volumes: Ledger::default(),
+            volume_deviation: 0.0,
             memory_per_tet: 0.0,
             seconds: Seconds::default(),
         }
@@ -129,6 +129,11 @@ impl Report {
     pub(super) fn add(&mut self, step: Step) {
         self.seconds.refine += step.seconds;
         self.steps.push(step);
+    }
+
+    pub(super) fn add_volumes(&mut self, ledger: &Ledger) {
+        let parts = ledger.regions.iter().map(|region| region.deviation / region.volume_before);
+        self.volume_deviation = parts.fold(self.volume_deviation, f64::max);
     }
 
     pub(super) fn add_on_surface(&mut self, done: OnSurface) {
@@ -141,7 +146,6 @@ impl Report {
     pub(super) fn end(
         &mut self,
         mesh: &MeshRefinement,
-        history: &History,
         [read, write, total]: [f64; 3],
         complete: bool,
         threads: &Threads,
@@ -157,7 +161,6 @@ impl Report {
             self.generations.resize(self.generations.len().max(generation + 1), 0);
             self.generations[generation] += 1;
         }
-        self.volumes = history.ledger.clone();
         self.memory_per_tet = refinement.memory() as f64 / refinement.mesh().tets.len() as f64;
         self.complete = complete;
         self.seconds = Seconds { read, write, total, refine: self.seconds.refine };

@@ -20,7 +20,8 @@ pub(super) struct Work<'a> {
     pub(super) refinement: MeshRefinement,
     pub(super) surface: Option<Arc<Target>>,
     pub(super) rules: &'a Rules,
-    pub(super) history: History,
+    /// From the mesh that came to this one, where the call asks for it.
+    pub(super) history: Option<History>,
     pub(super) report: Report,
     pub(super) threads: &'a Threads,
 }
@@ -69,8 +70,9 @@ impl Work<'_> {
     fn divide(&mut self, marks: &[TetId], generation: u32) -> Result<usize> {
         let begin = Instant::now();
         let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
-        self.history = self.history.then(&history);
         self.put_on_surface();
+        self.report.add_volumes(&history.ledger);
+        self.history = self.history.as_ref().map(|before| before.then(&history));
         self.tell(&(generation + 1).to_string(), summary, marks.len(), begin);
         Ok(summary.n_held)
     }
@@ -99,7 +101,8 @@ impl Work<'_> {
                 return Ok(());
             }
             self.refinement = next;
-            self.history = self.history.then(&history);
+            self.report.add_volumes(&history.ledger);
+            self.history = self.history.as_ref().map(|before| before.then(&history));
             self.tell("back", summary, 0, begin);
             if criteria.is_empty() && self.args.coarsen_where.is_empty() {
                 return Ok(());

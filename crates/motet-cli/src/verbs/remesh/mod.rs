@@ -3,13 +3,12 @@
 mod args;
 mod report;
 
-use std::path::Path;
 use std::time::Instant;
 
 use motet::geometry::quality::eas;
-use motet::mesh::history::{History, field_ledger};
+use motet::io;
+use motet::mesh::history::field_ledger;
 use motet::remesh::{MeshOutcome, remesh_mesh};
-use motet::{Error, ErrorKind, io};
 
 pub(crate) use args::{Carry, RemeshArgs, carry, rules};
 
@@ -17,12 +16,13 @@ use self::report::Report;
 use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::outputs;
 use crate::table::seconds;
 
 pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
     let mut options = args.options()?;
-    check_outputs(args)?;
+    outputs::check_with_history(&args.output, &args.mesh, args.history.as_deref())?;
     let threads = common.threads()?;
     let bar = console.bar(3, "remeshing");
     let (old, notes) = io::read_noted(&args.mesh)?;
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let writing = Instant::now();
     let lost = io::write(&args.output, &mesh, &args.writing.options())?;
     if let Some(file) = &args.history {
-        write_history(file, &history)?;
+        outputs::write_history(file, &history)?;
     }
     let write = writing.elapsed().as_secs_f64();
     bar.finish_and_clear();
@@ -60,29 +60,4 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     told.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
     told.tell(console);
     Ok(if report.is_complete() { Outcome::Done } else { Outcome::NotReached })
-}
-
-/// Refuses, before any work, outputs that cannot be written.
-fn check_outputs(args: &RemeshArgs) -> motet::Result<()> {
-    io::can_write(&args.output)?;
-    let Some(history) = &args.history else { return Ok(()) };
-    for other in [&args.output, &args.mesh] {
-        if history == other {
-            return Err(Error::options("the history would overwrite a mesh")
-                .in_file(history)
-                .remedy("give --history a file of its own"));
-        }
-    }
-    let folder = history.parent().filter(|folder| !folder.as_os_str().is_empty());
-    match folder.filter(|folder| !folder.is_dir()) {
-        None => Ok(()),
-        Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
-            .in_file(history)
-            .remedy("make the folder first")),
-    }
-}
-
-fn write_history(file: &Path, history: &History) -> motet::Result<()> {
-    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
-    io::replace(file, &json)
 }

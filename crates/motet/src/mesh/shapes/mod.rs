@@ -9,6 +9,7 @@
 //! | [`mixed`] | hexahedra, wedges, pyramids, tets | `surface` |
 //! | [`quadratic`] | quadratic tets, from any of the tet shapes | as they were |
 //! | [`Stent`] | triangles, the same at every radius | `stent` |
+//! | [`Coil`] | triangles, a wire wound round a line | `wire` |
 //! | [`wire`] | triangles, round tubes along line segments | `wire` |
 //!
 //! Each has a cell array `region` on its volume cells and `patch` on its surface
@@ -19,6 +20,7 @@
 
 mod ball;
 mod boxes;
+mod coil;
 mod cubed_sphere;
 mod frames;
 mod labelled;
@@ -31,6 +33,7 @@ mod wire;
 
 pub use ball::ball;
 pub use boxes::box_grid;
+pub use coil::Coil;
 pub use cubed_sphere::sphere_in_box;
 pub use frames::CenterLine;
 pub use mixed::mixed;

@@ -1,0 +1,48 @@
+//! A coil: a wire wound round a line, as it fills an aneurysm.
+
+use std::f64::consts::TAU;
+
+use crate::base::{Point, Result, VertexId};
+use crate::geometry::vector::add;
+use crate::mesh::Mesh;
+use crate::mesh::shapes::wire;
+
+/// A helix about a line along z. Lengths in one unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coil {
+    /// The middle of its axis.
+    pub centre: Point,
+    /// From the axis to the middle of the wire.
+    pub radius: f64,
+    /// From turn to turn.
+    pub pitch: f64,
+    /// How often it goes round; need not be whole.
+    pub turns: f64,
+    /// Half of the thickness of the wire.
+    pub wire_radius: f64,
+}
+
+impl Coil {
+    /// The middle of the wire: `steps` straight pieces a turn.
+    pub fn line(&self, steps: usize) -> Vec<Point> {
+        let n = (self.turns * steps as f64).ceil().max(1.0) as usize;
+        let place = |i: usize| {
+            let turn = self.turns * i as f64 / n as f64;
+            let (sin, cos) = (TAU * turn).sin_cos();
+            let along = self.pitch * (turn - 0.5 * self.turns);
+            add(self.centre, [self.radius * cos, self.radius * sin, along])
+        };
+        (0..=n).map(place).collect()
+    }
+
+    /// Its surface, closed, of the patch `wire`: `steps` pieces a turn, `around` sides.
+    ///
+    /// # Errors
+    /// As for [`wire`].
+    pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
+        let line = self.line(steps);
+        let segments: Vec<[VertexId; 2]> =
+            (1..line.len()).map(|i| [VertexId::new(i - 1), VertexId::new(i)]).collect();
+        wire(&line, &segments, self.wire_radius, around)
+    }
+}
