@@ -81,23 +81,23 @@ pub(super) struct Closed {
 
 /// Divides what is asked, and what that asks for.
 pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Closed {
-    forest.is_split.fill(false);
-    for &edge in &forest.pinned {
-        forest.is_split[edge as usize] = true;
-    }
-    forest.nodes.iter_mut().for_each(|node| node.is_divided = false);
+    forest.begin_anew();
     for node in 0..forest.nodes.len() as u32 {
-        if forest.nodes[node as usize].is_asked {
+        if forest.states[node as usize].is_asked {
             divide(forest, node, need);
         }
     }
-    let mut leaves: Vec<u32> = (0..forest.nodes.len() as u32).filter(|&node| forest.is_leaf(node)).collect();
+    let mut leaves = forest.leaves();
     let mut closed = Closed::default();
     loop {
         closed.n_sweeps += 1;
         let shared: &Forest = forest;
         let verdicts = threads.in_runs(leaves.len(), RUN, |(): &mut (), run| {
-            run.filter_map(|i| verdict(shared, i, leaves[i], need)).collect()
+            run.filter_map(|i| match shared.mask(leaves[i]) {
+                0 => None,
+                mask => Some(verdict(shared, i, leaves[i], mask, need)),
+            })
+            .collect()
         });
         let mut is_done = true;
         let mut gone = Vec::new();
@@ -124,6 +124,7 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
             let cut = |verdict: &Verdict| Cut { node: leaves[verdict.leaf], goal: verdict.goal };
             closed.cuts = verdicts.iter().map(cut).collect();
             closed.cuts.sort_unstable_by_key(|cut| cut.node);
+            closed.cuts.iter().for_each(|cut| forest.states[cut.node as usize].is_cut = true);
             return closed;
         }
         gone.into_iter().rev().for_each(|i| _ = leaves.swap_remove(i));
@@ -141,18 +142,14 @@ fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
     first
 }
 
-fn verdict(forest: &Forest, i: usize, leaf: u32, need: Need) -> Option<Verdict> {
-    let mask = forest.mask(leaf);
-    if mask == 0 {
-        return None;
-    }
-    let known = |goal| Some(Verdict { leaf: i, mask, goal, is_new: false });
+fn verdict(forest: &Forest, i: usize, leaf: u32, mask: u8, need: Need) -> Verdict {
+    let known = |goal| Verdict { leaf: i, mask, goal, is_new: false };
     if mask == FULL || forest.is_split_within(leaf, mask) {
         return known(Goal { mask: FULL, cuts: 0, way: 0 });
     }
     match forest.goals.get(&(leaf, mask)) {
         Some(goal) => known(*goal),
-        None => Some(Verdict { leaf: i, mask, goal: goal(forest, leaf, mask, need), is_new: true }),
+        None => Verdict { leaf: i, mask, goal: goal(forest, leaf, mask, need), is_new: true },
     }
 }
 
@@ -275,10 +272,35 @@ fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
 }
 
 impl Forest {
-    /// Whether a tet is there and not divided.
-    pub(super) fn is_leaf(&self, node: u32) -> bool {
-        let node = &self.nodes[node as usize];
-        !node.is_divided && (node.parent == NONE || self.nodes[node.parent as usize].is_divided)
+    /// Nothing is divided, and no edge is split but those that stay so.
+    fn begin_anew(&mut self) {
+        self.is_split.fill(false);
+        for &edge in &self.pinned {
+            self.is_split[edge as usize] = true;
+        }
+        let mut n_new = 0;
+        for (state, node) in self.states.iter_mut().zip(&self.nodes) {
+            (state.is_divided, state.is_cut) = (false, false);
+            n_new += usize::from(state.is_asked && node.first_child == NONE);
+        }
+        self.nodes.reserve(8 * n_new);
+        self.states.reserve(8 * n_new);
+        self.edges_of.reserve(8 * n_new);
+    }
+
+    /// The tets that are there and not divided, in their order.
+    fn leaves(&self) -> Vec<u32> {
+        let n_divided = self.states.iter().filter(|state| state.is_divided).count();
+        let mut leaves = Vec::with_capacity(self.n_roots + 7 * n_divided);
+        let is_whole = |node: &u32| !self.states[*node as usize].is_divided;
+        leaves.extend((0..self.n_roots as u32).filter(is_whole));
+        // Behind the roots are eight of one parent each time.
+        for first in (self.n_roots as u32..self.nodes.len() as u32).step_by(8) {
+            if self.states[self.nodes[first as usize].parent as usize].is_divided {
+                leaves.extend((first..first + 8).filter(is_whole));
+            }
+        }
+        leaves
     }
 
     /// Whether an edge is split that only appears when the tet is divided: half of a split edge, or one between the middles of

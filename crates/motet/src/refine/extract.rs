@@ -32,35 +32,37 @@ pub(super) fn extract(
 ) -> Result<Extracted> {
     let mut numbers = Numbers::new(forest, points, before);
     let mut out = Extracted::default();
+    let n = n_tets(forest, cuts);
+    out.mesh.tets.reserve_exact(n);
+    out.mesh.regions.reserve_exact(n);
+    out.nodes.reserve_exact(n);
     let mut open = Vec::new();
     for root in 0..forest.n_roots as u32 {
-        let region = first.regions[root as usize];
         // Of a root that was numbered the other way round, all parts are, too.
         let is_turned = first.tets[root as usize][0].0 != forest.nodes[root as usize].vertices[0];
-        let as_given = |[a, b, c, d]: [VertexId; 4]| if is_turned { [b, a, c, d] } else { [a, b, c, d] };
         open.push(root);
         while let Some(node) = open.pop() {
+            let state = forest.states[node as usize];
             let tet = &forest.nodes[node as usize];
-            if tet.is_divided {
+            if state.is_divided {
                 open.extend((tet.first_child..tet.first_child + 8).rev());
-                continue;
-            }
-            let cut = match forest.mask(node) {
-                0 => None,
-                _ => cuts.binary_search_by_key(&node, |cut| cut.node).ok().map(|i| cuts[i]),
-            };
-            match cut {
-                None => out.mesh.tets.push(as_given(tet.vertices.map(|v| numbers.of(v)))),
-                Some(Cut { goal, .. }) => {
-                    let local = forest.local(node);
-                    for piece in &patterns(goal.mask, goal.cuts)[usize::from(goal.way)] {
-                        out.mesh.tets.push(as_given(piece.map(|v| numbers.of(local[usize::from(v)]))));
+            } else if state.is_cut {
+                let cut = cuts.binary_search_by_key(&node, |cut| cut.node).ok();
+                let local = forest.local(node);
+                for piece in cut.into_iter().flat_map(|i| pieces(&cuts[i])) {
+                    let mut vertices = [NONE; 4];
+                    for i in 0..4 {
+                        vertices[i] = local[usize::from(piece[i])];
                     }
+                    out.mesh.tets.push(numbers.tet(vertices, is_turned));
+                    out.nodes.push(node);
                 }
+            } else {
+                out.mesh.tets.push(numbers.tet(tet.vertices, is_turned));
+                out.nodes.push(node);
             }
-            out.nodes.resize(out.mesh.tets.len(), node);
-            out.mesh.regions.resize(out.mesh.tets.len(), region);
         }
+        out.mesh.regions.resize(out.mesh.tets.len(), first.regions[root as usize]);
     }
     if out.mesh.tets.len() > TetId::MAX_COUNT || numbers.vertices.len() > VertexId::MAX_COUNT {
         return Err(Error::options(format!("{} tets are more than ids can count", out.mesh.tets.len()))
@@ -79,11 +81,23 @@ pub(super) fn extract(
     Ok(out)
 }
 
+/// What a tet that is cut is cut into.
+fn pieces(cut: &Cut) -> &'static [[u8; 4]] {
+    &patterns(cut.goal.mask, cut.goal.cuts)[usize::from(cut.goal.way)]
+}
+
+fn n_tets(forest: &Forest, cuts: &[Cut]) -> usize {
+    let n_divided = forest.states.iter().filter(|state| state.is_divided).count();
+    forest.n_roots + 7 * n_divided + cuts.iter().map(|cut| pieces(cut).len() - 1).sum::<usize>()
+}
+
+/// As a number: none yet, but the mesh had the vertex before.
+const WAS_THERE: u32 = NONE - 1;
+
 /// The numbers of vertices: those of the first mesh as they were, then each as a tet has it first.
 struct Numbers<'a> {
     forest: &'a Forest,
     known: &'a [Point],
-    was_there: Vec<bool>,
     number: Vec<u32>,
     vertices: Vec<u32>,
     points: Vec<Point>,
@@ -92,35 +106,55 @@ struct Numbers<'a> {
 impl<'a> Numbers<'a> {
     fn new(forest: &'a Forest, known: &'a [Point], before: &[u32]) -> Self {
         let (n, n_first) = (forest.reference.len(), forest.n_first_vertices);
-        let mut was_there = vec![false; n];
-        before.iter().for_each(|&v| was_there[v as usize] = true);
         let mut number = vec![NONE; n];
+        before.iter().for_each(|&v| number[v as usize] = WAS_THERE);
         number.iter_mut().zip(0..n_first as u32).for_each(|(number, v)| *number = v);
-        let (vertices, points) = ((0..n_first as u32).collect(), known[..n_first].to_vec());
-        Self { forest, known, was_there, number, vertices, points }
+        let (mut vertices, mut points) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        vertices.extend(0..n_first as u32);
+        points.extend_from_slice(&known[..n_first]);
+        Self { forest, known, number, vertices, points }
     }
 
+    #[inline]
     fn of(&mut self, v: u32) -> VertexId {
-        if self.number[v as usize] == NONE {
-            let point = self.place(v);
-            self.number[v as usize] = self.vertices.len() as u32;
-            self.vertices.push(v);
-            self.points.push(point);
+        let number = self.number[v as usize];
+        if number < WAS_THERE { VertexId(number) } else { self.add(v) }
+    }
+
+    fn add(&mut self, v: u32) -> VertexId {
+        let point = self.place(v);
+        let number = self.vertices.len() as u32;
+        self.number[v as usize] = number;
+        self.vertices.push(v);
+        self.points.push(point);
+        VertexId(number)
+    }
+
+    /// A tet; the first two vertices are exchanged where it is to be turned, after they were numbered.
+    #[inline]
+    fn tet(&mut self, vertices: [u32; 4], is_turned: bool) -> [VertexId; 4] {
+        let mut tet = [VertexId(NONE); 4];
+        for i in 0..4 {
+            tet[i] = self.of(vertices[i]);
         }
-        VertexId(self.number[v as usize])
+        if is_turned {
+            tet.swap(0, 1);
+        }
+        tet
     }
 
     /// Where a vertex is: a new one is in the middle of its edge as it is now.
     fn place(&self, v: u32) -> Point {
         let i = v as usize;
-        if self.number[i] != NONE {
-            return self.points[self.number[i] as usize];
+        match self.number[i] {
+            NONE => {
+                let origin = self.forest.origin[i - self.forest.n_first_vertices];
+                let [p, q] = self.forest.edges[origin as usize].ends;
+                scale(add(self.place(p), self.place(q)), 0.5)
+            }
+            WAS_THERE => self.known[i],
+            number => self.points[number as usize],
         }
-        if self.was_there[i] {
-            return self.known[i];
-        }
-        let [p, q] = self.forest.edges[self.forest.origin[i - self.forest.n_first_vertices] as usize].ends;
-        scale(add(self.place(p), self.place(q)), 0.5)
     }
 
     /// The parts of a triangle of the first mesh.

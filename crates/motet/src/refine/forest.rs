@@ -3,12 +3,10 @@
 //! Shapes are those of the *reference*: the mesh as it was when its tets became roots. All that is decided about a division is decided there, so
 //! motion changes nothing of it, and the same division asked for again comes out the same.
 
-use std::hash::{BuildHasherDefault, Hasher};
-
 use hashbrown::HashMap;
 
-use super::close::{Goal, Way};
-use super::patterns::{FACET_EDGES, FULL, inner_tets, patterns};
+use super::close::Goal;
+use super::facets::{Facets, Middles};
 use crate::base::Point;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
@@ -39,11 +37,18 @@ pub(super) struct Node {
     pub(super) first_child: u32,
     /// The EAS in the reference.
     pub(super) eas: f64,
+}
+
+/// What changes of a tet; apart from the rest, since all of it is looked at each time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct State {
     pub(super) generation: u8,
     /// Someone wants it divided.
     pub(super) is_asked: bool,
     /// It is divided into eight now.
     pub(super) is_divided: bool,
+    /// It is cut to fit its neighbours now.
+    pub(super) is_cut: bool,
 }
 
 /// The whole of it.
@@ -57,6 +62,7 @@ pub(super) struct Forest {
     /// Of each edge, whether it is split now; apart from the edges, since it is read most.
     pub(super) is_split: Vec<bool>,
     pub(super) nodes: Vec<Node>,
+    pub(super) states: Vec<State>,
     /// Of each tet, its edges.
     pub(super) edges_of: Vec<[u32; 6]>,
     pub(super) n_roots: usize,
@@ -65,8 +71,8 @@ pub(super) struct Forest {
     pub(super) pinned: Vec<u32>,
     /// The edges of roots, by their ends.
     of_roots: HashMap<[u32; 2], u32>,
-    /// The three edges between the middles of a facet's edges, by the first two of these: the first of them, see [`Self::inner_edges`].
-    of_facets: HashMap<u64, u32, BuildHasherDefault<Near>>,
+    /// The three edges between the middles of a facet's edges, see [`Self::inner_edges`].
+    of_facets: Facets,
     /// Of tets with some edges split, what they need: what was found once holds for good.
     pub(super) goals: HashMap<(u32, u8), Goal>,
 }
@@ -80,21 +86,18 @@ impl Forest {
             n_roots,
             n_first_vertices: points.len(),
             nodes: Vec::with_capacity(n_roots),
+            states: Vec::with_capacity(n_roots),
             edges_of: Vec::with_capacity(n_roots),
             ..Self::default()
         };
         for vertices in tets {
             let edges = EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]]));
             let eas = eas(vertices.map(|v| points[v as usize]));
-            forest.push(vertices, edges, NONE, 0, eas);
+            forest.nodes.push(Node { vertices, parent: NONE, first_child: NONE, eas });
+            forest.states.push(State::default());
+            forest.edges_of.push(edges);
         }
         forest
-    }
-
-    fn push(&mut self, vertices: [u32; 4], edges: [u32; 6], parent: u32, generation: u8, eas: f64) {
-        let (is_asked, is_divided) = (false, false);
-        self.nodes.push(Node { vertices, parent, first_child: NONE, eas, generation, is_asked, is_divided });
-        self.edges_of.push(edges);
     }
 
     /// The edge between two vertices of the first mesh.
@@ -111,31 +114,43 @@ impl Forest {
     /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by roots: edge `k` is that
     /// opposite middle `k`, or [`NONE`].
     pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
-        let (order, key) = ordered(middles);
-        let first = self.of_facets.get(&key);
-        if first.is_none() && middles.iter().any(|v| (*v as usize) >= self.n_first_vertices) {
+        let middles = Middles::new(middles);
+        let first = self.of_facets.get(&middles);
+        if first.is_none() && middles.rising.iter().any(|v| (*v as usize) >= self.n_first_vertices) {
             return None;
         }
-        Some(self.or_root_edges(middles, first.map_or([NONE; 3], |&first| named(order, first))))
+        Some(self.or_root_edges(&middles, first.map_or([NONE; 3], |first| middles.named(first))))
     }
 
     /// The same, new ones if there are none.
-    fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
-        let (order, key) = ordered(middles);
-        let first = *self.of_facets.entry(key).or_insert_with(|| {
-            let [x, y, z] = order.map(|k| middles[k]);
+    #[inline]
+    pub(super) fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
+        let middles = Middles::new(middles);
+        let first = self.of_facets.get(&middles).unwrap_or_else(|| {
+            let [x, y, z] = middles.rising;
             let first = push_edge(&mut self.edges, &mut self.is_split, [y, z]);
             push_edge(&mut self.edges, &mut self.is_split, [x, z]);
             push_edge(&mut self.edges, &mut self.is_split, [x, y]);
+            self.of_facets.add(&middles, first);
             first
         });
-        self.or_root_edges(middles, named(order, first))
+        self.or_root_edges(&middles, middles.named(first))
     }
 
     /// Puts edges of roots in place of those between the same two of three middles.
-    fn or_root_edges(&self, middles: [u32; 3], mut edges: [u32; 3]) -> [u32; 3] {
-        for (k, edge) in edges.iter_mut().enumerate() {
-            *edge = self.known_edge([middles[(k + 1) % 3], middles[(k + 2) % 3]]).unwrap_or(*edge);
+    #[inline]
+    fn or_root_edges(&self, middles: &Middles, edges: [u32; 3]) -> [u32; 3] {
+        let are_of_roots = (middles.rising[1] as usize) < self.n_first_vertices;
+        if are_of_roots { self.root_edges_or(middles, edges) } else { edges }
+    }
+
+    #[cold]
+    fn root_edges_or(&self, middles: &Middles, mut edges: [u32; 3]) -> [u32; 3] {
+        let [x, y, z] = middles.rising;
+        let places = middles.named(0);
+        for (edge, place) in edges.iter_mut().zip(places) {
+            let opposite = [[y, z], [x, z], [x, y]][place as usize];
+            *edge = self.known_edge(opposite).unwrap_or(*edge);
         }
         edges
     }
@@ -145,6 +160,15 @@ impl Forest {
     fn known_edge(&self, ends: [u32; 2]) -> Option<u32> {
         let are_of_roots = ends.iter().all(|v| (*v as usize) < self.n_first_vertices);
         if are_of_roots { self.root_edge(ends) } else { None }
+    }
+
+    /// That one, or a new one.
+    #[inline]
+    pub(super) fn make_edge(&mut self, ends: [u32; 2]) -> u32 {
+        match self.known_edge(ends) {
+            Some(edge) => edge,
+            None => push_edge(&mut self.edges, &mut self.is_split, ends),
+        }
     }
 
     /// Finds the edges that stay split.
@@ -158,6 +182,7 @@ impl Forest {
     }
 
     /// The vertex in the middle of an edge.
+    #[inline]
     pub(super) fn middle(&mut self, edge: u32) -> u32 {
         let Edge { ends: [u, v], middle, .. } = self.edges[edge as usize];
         if middle != NONE {
@@ -171,15 +196,13 @@ impl Forest {
         new
     }
 
-    fn halves(&mut self, edge: u32) -> [u32; 2] {
-        let Edge { ends, middle, halves, .. } = self.edges[edge as usize];
+    #[inline]
+    pub(super) fn halves(&mut self, edge: u32) -> [u32; 2] {
+        let Edge { ends: [u, v], middle, halves, .. } = self.edges[edge as usize];
         if halves[0] != NONE {
             return halves;
         }
-        let halves = ends.map(|end| match self.known_edge([end, middle]) {
-            Some(edge) => edge,
-            None => push_edge(&mut self.edges, &mut self.is_split, [end, middle]),
-        });
+        let halves = [self.make_edge([u, middle]), self.make_edge([v, middle])];
         self.edges[edge as usize].halves = halves;
         halves
     }
@@ -202,61 +225,6 @@ impl Forest {
             mask |= u8::from(self.is_split[*edge as usize]) << e;
         }
         mask
-    }
-
-    /// Divides a tet into eight, along a diagonal of its octahedron, and gives the first; which it may have been before.
-    pub(super) fn divide(&mut self, node: u32, way: impl FnOnce(&Self) -> Way) -> u32 {
-        let Node { vertices, first_child, generation, eas, .. } = self.nodes[node as usize];
-        let edges = self.edges_of[node as usize];
-        self.nodes[node as usize].is_divided = true;
-        if first_child != NONE {
-            return first_child;
-        }
-        for edge in edges {
-            self.middle(edge);
-        }
-        let local = self.local(node);
-        // The edges of the eight, by two local vertices.
-        let mut between = [[NONE; 10]; 10];
-        for (e, [i, j]) in EDGES.into_iter().enumerate() {
-            let halves = self.halves(edges[e]);
-            let is_turned = self.edges[edges[e] as usize].ends[0] != vertices[i];
-            let [at_i, at_j] = if is_turned { [halves[1], halves[0]] } else { halves };
-            (between[i][4 + e], between[j][4 + e]) = (at_i, at_j);
-        }
-        for facet in FACET_EDGES {
-            let [a, b, c] = [4 + facet[0], 4 + facet[1], 4 + facet[2]];
-            let [bc, ca, ab] = self.make_inner_edges([local[a], local[b], local[c]]);
-            between[b.min(c)][b.max(c)] = bc;
-            between[c.min(a)][c.max(a)] = ca;
-            between[a.min(b)][a.max(b)] = ab;
-        }
-        let way = way(self);
-        let first = self.nodes.len() as u32;
-        self.nodes[node as usize].first_child = first;
-        let inner = inner_tets(way.place);
-        for tet in &patterns(FULL, 0)[way.place] {
-            let shape = (0..2).find(|&k| inner[k].contains(tet)).map_or(eas, |k| way.inner[k]);
-            let mut edges = [NONE; 6];
-            for (edge, [i, j]) in edges.iter_mut().zip(EDGES) {
-                let (i, j) = (usize::from(tet[i]), usize::from(tet[j]));
-                let known = &mut between[i.min(j)][i.max(j)];
-                if *known == NONE {
-                    let ends = [local[i], local[j]];
-                    *known = match self.known_edge(ends) {
-                        Some(edge) => edge,
-                        None => push_edge(&mut self.edges, &mut self.is_split, ends),
-                    };
-                }
-                *edge = *known;
-            }
-            let mut vertices = [NONE; 4];
-            for (vertex, v) in vertices.iter_mut().zip(tet) {
-                *vertex = local[usize::from(*v)];
-            }
-            self.push(vertices, edges, node, generation + 1, shape);
-        }
-        first
     }
 
     /// Whether the facets that have two split edges are cut from the middle of the second, by bits: from that of the longer one, as both tets at a
@@ -295,14 +263,16 @@ impl Forest {
     /// Bytes.
     pub(super) fn memory(&self) -> usize {
         // An entry and a byte beside it.
-        let named = (self.of_roots.capacity() + self.of_facets.capacity()) * (size_of::<(u64, u32)>() + 1)
+        let named = self.of_roots.capacity() * (size_of::<(u64, u32)>() + 1)
             + self.goals.capacity() * (size_of::<((u32, u8), Goal)>() + 1);
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
             + size_of_val(&self.edges[..])
             + size_of_val(&self.is_split[..])
             + size_of_val(&self.nodes[..])
+            + size_of_val(&self.states[..])
             + size_of_val(&self.edges_of[..])
+            + self.of_facets.memory()
             + named
     }
 }
@@ -317,43 +287,7 @@ pub(super) fn with_middles(corners: [Point; 4]) -> [Point; 10] {
     places
 }
 
-/// The places of three middles in rising order, and the first two of them as one number.
-fn ordered(middles: [u32; 3]) -> ([usize; 3], u64) {
-    let mut order = [0, 1, 2];
-    order.sort_unstable_by_key(|&k| middles[k]);
-    (order, u64::from(middles[order[0]]) << 32 | u64::from(middles[order[1]]))
-}
-
-/// Puts facets whose first middles follow each other next to each other, as they are asked for: the lower bits of a hash say where it begins to look,
-/// the upper seven are compared first.
-#[derive(Clone, Copy, Debug, Default)]
-struct Near(u64);
-
-impl Hasher for Near {
-    fn write_u64(&mut self, key: u64) {
-        let (first, second) = (key >> 32, key & 0xffff_ffff);
-        let upper_seven = second.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 57;
-        self.0 = (2 * first) | (upper_seven << 57);
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u64(self.0 << 8 | u64::from(*byte)));
-    }
-
-    fn finish(&self) -> u64 {
-        self.0
-    }
-}
-
-/// Three edges that follow each other, each opposite a middle.
-fn named(order: [usize; 3], first: u32) -> [u32; 3] {
-    let mut edges = [NONE; 3];
-    for (k, edge) in order.into_iter().zip(first..) {
-        edges[k] = edge;
-    }
-    edges
-}
-
+#[inline]
 fn push_edge(edges: &mut Vec<Edge>, is_split: &mut Vec<bool>, ends: [u32; 2]) -> u32 {
     edges.push(Edge { ends, middle: NONE, halves: [NONE; 2] });
     is_split.push(false);

@@ -142,7 +142,7 @@ impl Refinement {
 
     /// How often each tet's place was divided into eight. Pieces of a tet that was cut count as the tet.
     pub fn generations(&self) -> impl Iterator<Item = u8> + '_ {
-        self.now.nodes.iter().map(|&node| self.forest.nodes[node as usize].generation)
+        self.now.nodes.iter().map(|&node| self.forest.states[node as usize].generation)
     }
 
     /// Which tet of the first mesh each tet lies in.
@@ -204,7 +204,7 @@ impl Refinement {
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
         let is_deepest =
-            |tet: &&TetId| self.forest.nodes[self.now.nodes[tet.index()] as usize].generation >= DEEPEST;
+            |tet: &&TetId| self.forest.states[self.now.nodes[tet.index()] as usize].generation >= DEEPEST;
         if let Some(tet) = marked.iter().find(is_deepest) {
             return Err(Error::options(format!(
                 "tet {tet} was divided {DEEPEST} times over, which is the most"
@@ -236,8 +236,8 @@ impl Refinement {
     fn ask(&mut self, marked: &[TetId]) {
         for tet in marked {
             let mut node = self.now.nodes[tet.index()];
-            while node != NONE && !self.forest.nodes[node as usize].is_asked {
-                self.forest.nodes[node as usize].is_asked = true;
+            while node != NONE && !self.forest.states[node as usize].is_asked {
+                self.forest.states[node as usize].is_asked = true;
                 node = self.forest.nodes[node as usize].parent;
             }
         }
@@ -253,19 +253,19 @@ impl Refinement {
         let before = self.asked();
         let mut is_marked = vec![false; self.now.nodes.len()];
         marked.iter().for_each(|tet| is_marked[tet.index()] = true);
-        let nodes = &mut self.forest.nodes;
+        let Forest { nodes, states, .. } = &mut self.forest;
         // Of each tet of the forest, whether all that lies within is marked. Parts come behind the whole.
         let mut is_whole = vec![true; nodes.len()];
         for (&node, is_marked) in self.now.nodes.iter().zip(is_marked) {
             is_whole[node as usize] &= is_marked;
         }
-        for node in (0..nodes.len()).rev().filter(|&node| nodes[node].is_divided) {
+        for node in (0..nodes.len()).rev().filter(|&node| states[node].is_divided) {
             let first = nodes[node].first_child as usize;
             is_whole[node] = is_whole[first..first + 8].iter().all(|&child| child);
         }
         for node in (0..nodes.len()).filter(|&node| is_whole[node] && before[node]) {
             let first = nodes[node].first_child as usize;
-            nodes[node].is_asked = before[first..first + 8].iter().any(|&child| child);
+            states[node].is_asked = before[first..first + 8].iter().any(|&child| child);
         }
         self.keep_from_inverting(&before, threads)?;
         Ok(self.summary)
@@ -316,13 +316,13 @@ impl Refinement {
     }
 
     fn asked(&self) -> Vec<bool> {
-        self.forest.nodes.iter().map(|node| node.is_asked).collect()
+        self.forest.states.iter().map(|state| state.is_asked).collect()
     }
 
     /// Asks for what was asked for before, and for nothing else.
     fn unask(&mut self, before: &[bool]) {
         let before = before.iter().chain(std::iter::repeat(&false));
-        self.forest.nodes.iter_mut().zip(before).for_each(|(node, &asked)| node.is_asked = asked);
+        self.forest.states.iter_mut().zip(before).for_each(|(state, &asked)| state.is_asked = asked);
     }
 
     /// Goes back to what was asked for before.

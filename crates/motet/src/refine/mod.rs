@@ -7,7 +7,8 @@
 //! | mark | [`mark`] | which tets to divide: by place, size, distance to a surface, estimate |
 //! | choose | [`Criterion`], [`wish`] | the same for whole meshes, by words for their arrays, regions and patches; and what may be taken back |
 //! | limit | `limits` | how far that goes: generations, sizes, the number of tets |
-//! | divide | `forest` | a tet into eight along its shortest diagonal; parents, children and edges are remembered |
+//! | divide | `divide` | a tet into eight along its shortest diagonal |
+//! | know | `forest`, `facets` | parents, children, edges and facets are remembered |
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
 //! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
@@ -24,8 +25,10 @@
 
 mod close;
 mod criterion;
+mod divide;
 pub mod estimate;
 mod extract;
+mod facets;
 mod forest;
 mod handle;
 mod held;

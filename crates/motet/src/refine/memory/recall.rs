@@ -197,7 +197,7 @@ impl Building<'_> {
             }
             let Some((way, children)) = of.divided else { continue };
             let first = self.forest.divide(node, |forest| Way::new(&forest.places(node), way));
-            self.forest.nodes[node as usize].is_asked = u32::from(of.asked) > of.generation;
+            self.forest.states[node as usize].is_asked = u32::from(of.asked) > of.generation;
             open.extend((first..first + 8).zip(children));
         }
         Ok(())

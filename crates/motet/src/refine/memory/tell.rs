@@ -46,7 +46,7 @@ fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
         let above = &forest.nodes[parent as usize];
         path |= u64::from(node - above.first_child) << shift;
         shift += 3;
-        asked += u8::from(above.is_asked);
+        asked += u8::from(forest.states[parent as usize].is_asked);
         node = parent;
     }
     Entry { root: node, path: path | 1 << shift, piece, asked }

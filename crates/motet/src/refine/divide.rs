@@ -1,0 +1,116 @@
+//! A tet divided into eight: which of its parts each of them has.
+//!
+//! The parts are numbered, so that a table says for each of the three ways which ones make which tet: the halves of edge `e` at its first and second end are `2e` and
+//! `2e + 1`; the edge within facet `f` opposite its middle `k` is `12 + 3f + k`; the diagonal is the last.
+
+use std::sync::OnceLock;
+
+use super::close::Way;
+use super::forest::{Forest, NONE, Node, State};
+use super::patterns::{FACET_EDGES, FULL, inner_tets, patterns};
+use crate::geometry::tet::EDGES;
+
+const DIAGONAL: usize = 24;
+
+/// One of eight.
+#[derive(Clone, Copy, Debug, Default)]
+struct Eighth {
+    /// Local vertices: corners, then middles.
+    vertices: [u8; 4],
+    /// Parts.
+    edges: [u8; 6],
+    /// Which shape it has: that of the whole, or of one of the pairs inside.
+    shape: u8,
+}
+
+/// The eight of each way.
+fn eighths(way: usize) -> &'static [Eighth; 8] {
+    static TABLE: OnceLock<[[Eighth; 8]; 3]> = OnceLock::new();
+    &TABLE.get_or_init(|| {
+        let part_of = parts_between();
+        [0, 1, 2].map(|way| {
+            let mut eight = [Eighth::default(); 8];
+            for (eighth, tet) in eight.iter_mut().zip(&patterns(FULL, 0)[way]) {
+                let edge = |[i, j]: [usize; 2]| part_of[usize::from(tet[i])][usize::from(tet[j])];
+                let inner = inner_tets(way).iter().position(|pair| pair.contains(tet));
+                let shape = inner.map_or(0, |k| 1 + k as u8);
+                *eighth = Eighth { vertices: *tet, edges: EDGES.map(edge), shape };
+            }
+            eight
+        })
+    })[way]
+}
+
+/// The part between two local vertices.
+fn parts_between() -> [[u8; 10]; 10] {
+    let mut part_of = [[DIAGONAL as u8; 10]; 10];
+    let mut put = |i: usize, j: usize, part: usize| {
+        (part_of[i][j], part_of[j][i]) = (part as u8, part as u8);
+    };
+    for (e, [i, j]) in EDGES.into_iter().enumerate() {
+        put(i, 4 + e, 2 * e);
+        put(j, 4 + e, 2 * e + 1);
+    }
+    for (f, facet) in FACET_EDGES.into_iter().enumerate() {
+        for k in 0..3 {
+            put(4 + facet[(k + 1) % 3], 4 + facet[(k + 2) % 3], 12 + 3 * f + k);
+        }
+    }
+    part_of
+}
+
+impl Forest {
+    /// Divides a tet into eight, along a diagonal of its octahedron, and gives the first; which it may have been before.
+    pub(super) fn divide(&mut self, node: u32, way: impl FnOnce(&Self) -> Way) -> u32 {
+        self.states[node as usize].is_divided = true;
+        let Node { vertices, first_child, eas, .. } = self.nodes[node as usize];
+        if first_child != NONE {
+            return first_child;
+        }
+        let edges = self.edges_of[node as usize];
+        let mut local = [NONE; 10];
+        local[..4].copy_from_slice(&vertices);
+        for e in 0..6 {
+            local[4 + e] = self.middle(edges[e]);
+        }
+        let mut parts = self.parts(&edges, &local);
+        let way = way(self);
+        let eighths = eighths(way.place);
+        parts[DIAGONAL] = self.make_edge(super::patterns::ends(way.place).map(|v| local[v]));
+        let first = self.nodes.len() as u32;
+        self.nodes[node as usize].first_child = first;
+        let shapes = [eas, way.inner[0], way.inner[1]];
+        let mut tets = [Node { vertices: [NONE; 4], parent: node, first_child: NONE, eas }; 8];
+        let mut edges_of = [[NONE; 6]; 8];
+        for (k, eighth) in eighths.iter().enumerate() {
+            tets[k].eas = shapes[usize::from(eighth.shape)];
+            for i in 0..4 {
+                tets[k].vertices[i] = local[usize::from(eighth.vertices[i])];
+            }
+            for e in 0..6 {
+                edges_of[k][e] = parts[usize::from(eighth.edges[e])];
+            }
+        }
+        let generation = self.states[node as usize].generation + 1;
+        self.nodes.extend_from_slice(&tets);
+        self.edges_of.extend_from_slice(&edges_of);
+        self.states.extend_from_slice(&[State { generation, ..State::default() }; 8]);
+        first
+    }
+
+    /// All but the diagonal.
+    fn parts(&mut self, edges: &[u32; 6], local: &[u32; 10]) -> [u32; DIAGONAL + 1] {
+        let mut parts = [NONE; DIAGONAL + 1];
+        for (e, [i, _]) in EDGES.into_iter().enumerate() {
+            let [at_first, at_second] = self.halves(edges[e]);
+            let is_turned = self.edges[edges[e] as usize].ends[0] != local[i];
+            parts[2 * e] = if is_turned { at_second } else { at_first };
+            parts[2 * e + 1] = if is_turned { at_first } else { at_second };
+        }
+        for (f, [a, b, c]) in FACET_EDGES.into_iter().enumerate() {
+            let within = self.make_inner_edges([local[4 + a], local[4 + b], local[4 + c]]);
+            parts[12 + 3 * f..15 + 3 * f].copy_from_slice(&within);
+        }
+        parts
+    }
+}
