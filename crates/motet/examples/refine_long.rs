@@ -183,7 +183,7 @@ impl Run {
         let threads = Threads::new(call.threads)?;
         let first = First::new(mesh(&call.mesh)?, &threads);
         let refinement = Refinement::new(&first.mesh, call.options, &threads)?;
-        let free = Options { keep: 0.0, share: 0.0 };
+        let free = Options { keep: 0.0, share: 0.0, ..Options::default() };
         let without = call.is_priced.then(|| Refinement::new(&first.mesh, free, &threads)).transpose()?;
         let quality = first.quality;
         println!(

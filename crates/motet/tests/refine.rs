@@ -9,7 +9,7 @@ use motet::geometry::quality::{eas, mean_ratio};
 use motet::geometry::tet::{self, centroid, volume};
 use motet::geometry::vector::{add, distance};
 use motet::mesh::TetMesh;
-use motet::refine::{Options, Refinement, estimate, mark};
+use motet::refine::{Options, Refinement, Rule, estimate, mark};
 use motet::spatial::NearestTriangle;
 
 #[test]
@@ -284,14 +284,16 @@ fn n_shapes(mesh: &TetMesh) -> usize {
 fn few_shapes_come_of_one() {
     let threads = Threads::single();
     let one = |points: [Point; 4]| TetMesh::new(points.to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
-    let divided = |first: &TetMesh, generations: usize| {
-        let mut refinement = Refinement::new(first, Options::default(), &threads).unwrap();
+    let divided_by = |rule: Rule, first: &TetMesh, generations: usize| {
+        let options = Options { rule, ..Options::default() };
+        let mut refinement = Refinement::new(first, options, &threads).unwrap();
         for _ in 0..generations {
             let all: Vec<TetId> = (0..refinement.mesh().tets.len()).map(TetId::new).collect();
             refinement.refine(&all, &threads).unwrap();
         }
         n_shapes(refinement.mesh())
     };
+    let divided = |first: &TetMesh, generations| divided_by(Rule::Shortest, first, generations);
     let regular = one([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]);
     let path = one([[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]]);
     for generations in 1..6 {
@@ -305,8 +307,11 @@ fn few_shapes_come_of_one() {
         "40 random tets, four generations: {} shapes in the mean, at most {most}",
         counts.iter().sum::<usize>() as f64 / 40.0
     );
-    // Bey's rule has three; the shortest diagonal more, and better ones.
     assert!(*most <= 40);
+    // By Bey's rule never more than three, and mostly worse ones.
+    for tet in mesh.tets.iter().take(40) {
+        assert!(divided_by(Rule::Bey, &one(corners(&mesh, *tet)), 4) <= 3);
+    }
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn refined(first: &TetMesh, place: Point, generations: usize) -> Refinement {
 
 /// Little is divided for its shape alone.
 fn loose() -> Options {
-    Options { keep: 0.5, share: 0.3 }
+    Options { keep: 0.5, share: 0.3, ..Options::default() }
 }
 
 fn all(mesh: &TetMesh) -> Vec<TetId> {

@@ -3,8 +3,9 @@
 //! What holds at the end follows from what was asked alone: each sweep looks at all tets as the sweep before left them. So no order of visiting, no
 //! number of threads and no earlier division changes it, and taking back what was asked brings back the mesh that was there before.
 
+use super::bey;
 use super::forest::{Forest, NONE, with_middles};
-use super::handle::Options;
+use super::handle::{Options, Rule};
 use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::base::{Point, Threads};
 use crate::geometry::quality::eas;
@@ -19,6 +20,7 @@ pub(super) struct Need {
     of_pieces: f64,
     /// Nor below this part of what dividing the tet leaves.
     share: f64,
+    rule: Rule,
 }
 
 impl Need {
@@ -29,7 +31,7 @@ impl Need {
         shapes.sort_unstable_by(f64::total_cmp);
         let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
         let floor = options.keep * worst;
-        Self { floor, of_pieces: floor.min(options.share * median), share: options.share }
+        Self { floor, of_pieces: floor.min(options.share * median), share: options.share, rule: options.rule }
     }
 
     /// What pieces of a tet have to be that could be divided into eight of this EAS or better.
@@ -132,10 +134,7 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
 }
 
 fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
-    let first = forest.divide(node, |forest| {
-        let shape = forest.nodes[node as usize].eas;
-        best_way(&forest.places(node), shape, need.floor)
-    });
+    let first = forest.divide(node, |forest| chosen_way(forest, node, &forest.places(node), need));
     for edge in forest.edges_of[node as usize] {
         forest.is_split[edge as usize] = true;
     }
@@ -162,7 +161,7 @@ fn goal(forest: &Forest, leaf: u32, mask: u8, need: Need) -> Goal {
     if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, need.of(whole)) {
         return Goal { mask, cuts, way };
     }
-    let divided = best_way(&places, whole, need.floor).worst(whole);
+    let divided = chosen_way(forest, leaf, &places, need).worst(whole);
     let least = need.of(divided);
     if let Some((cuts, way, _)) = best_cut(forest, leaf, mask, &places, least) {
         return Goal { mask, cuts, way };
@@ -200,6 +199,14 @@ fn best_cut(forest: &Forest, leaf: u32, mask: u8, places: &[Point; 10], least: f
         }
     }
     best
+}
+
+/// Which of the three ways to divide a tet into eight.
+fn chosen_way(forest: &Forest, node: u32, places: &[Point; 10], need: Need) -> Way {
+    match need.rule {
+        Rule::Shortest => best_way(places, forest.nodes[node as usize].eas, need.floor),
+        Rule::Bey => Way::new(places, bey::way(forest, node)),
+    }
 }
 
 /// Which of the three ways to divide a tet of this EAS into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive

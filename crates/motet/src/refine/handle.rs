@@ -21,11 +21,23 @@ pub struct Options {
     /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
     /// refinement spreads far. Default: 0.55.
     pub share: f64,
+    /// Along which diagonal a tet is divided. Default: the shortest.
+    pub rule: Rule,
+}
+
+/// Along which diagonal of the octahedron in its middle a tet is divided into eight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Rule {
+    /// The shortest one, unless its parts are too bad: then the one that leaves the best, three generations deep.
+    #[default]
+    Shortest,
+    /// By the order of vertices: never more than three shapes come of one, but worse ones (Bey 1995).
+    Bey,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { keep: 0.95, share: 0.55 }
+        Self { keep: 0.95, share: 0.55, rule: Rule::Shortest }
     }
 }
 
@@ -288,7 +300,7 @@ impl Refinement {
                 return Ok(());
             }
             let taken_back: Vec<u32> = (0..before.len() as u32)
-                .filter(|&n| before[n as usize] && !self.forest.nodes[n as usize].is_asked)
+                .filter(|&n| before[n as usize] && !self.forest.states[n as usize].is_asked)
                 .collect();
             let at = |&node: &u32| self.forest.local(node).iter().any(|v| new.binary_search(v).is_ok());
             let near: Vec<u32> = taken_back.iter().copied().filter(at).collect();
@@ -300,7 +312,7 @@ impl Refinement {
             n_held += again.len();
             for mut node in again {
                 while node != NONE {
-                    self.forest.nodes[node as usize].is_asked = true;
+                    self.forest.states[node as usize].is_asked = true;
                     node = self.forest.nodes[node as usize].parent;
                 }
             }

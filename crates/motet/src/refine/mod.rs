@@ -7,6 +7,7 @@
 //! | mark | [`mark`] | which tets to divide: by place, size, distance to a surface, estimate |
 //! | choose | [`Criterion`], [`wish`] | the same for whole meshes, by words for their arrays, regions and patches; and what may be taken back |
 //! | limit | `limits` | how far that goes: generations, sizes, the number of tets |
+//! | Bey's rule | `bey` | another diagonal, for no more than three shapes |
 //! | divide | `divide` | a tet into eight along its shortest diagonal |
 //! | know | `forest`, `facets` | parents, children, edges and facets are remembered |
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
@@ -23,6 +24,7 @@
 //! *Refinement algorithms and data structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That a piece at a border gets the
 //! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
 
+mod bey;
 mod close;
 mod criterion;
 mod divide;
@@ -51,7 +53,7 @@ pub use criterion::{
     Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Relation, Size, Target, fix_sizes,
     marks_of_all, wishes_of_all,
 };
-pub use handle::{Left, Options, Refinement, Summary};
+pub use handle::{Left, Options, Refinement, Rule, Summary};
 pub use limits::Limits;
 pub use memory::{Memory, UNKNOWN};
 pub use shapes::Shapes;

@@ -206,7 +206,10 @@ impl Report {
         }
         let Seconds { read, refine, write, total } = self.seconds;
         let [read, refine, write, total] = [read, refine, write, total].map(seconds);
-        console.say(format_args!("read {read}, refined {refine}, wrote {write}, all {total}"));
+        console.say(format_args!(
+            "read {read}, refined {refine}, wrote {write}, all {total}; {:.0} bytes a tet remember what was divided",
+            self.memory_per_tet
+        ));
     }
 
     fn table(&self) -> Table {
