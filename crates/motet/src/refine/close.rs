@@ -7,7 +7,7 @@ use super::bey;
 use super::forest::{Forest, NONE, with_middles};
 use super::handle::{Options, Rule};
 use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
-use crate::base::{Point, Threads};
+use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
 
@@ -82,10 +82,14 @@ pub(super) struct Closed {
 }
 
 /// Divides what is asked, and what that asks for.
-pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Closed {
+///
+/// # Errors
+/// When the forest would have more tets than it may.
+pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Result<Closed> {
     forest.begin_anew();
     for node in 0..forest.nodes.len() as u32 {
         if forest.states[node as usize].is_asked {
+            forest.check_room()?;
             divide(forest, node, need);
         }
     }
@@ -110,6 +114,7 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
             }
             if goal.mask == FULL {
                 closed.n_promoted += 1;
+                forest.check_room()?;
                 let first = divide(forest, leaf, need);
                 leaves.extend(first..first + 8);
                 gone.push(i);
@@ -127,7 +132,7 @@ pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Close
             closed.cuts = verdicts.iter().map(cut).collect();
             closed.cuts.sort_unstable_by_key(|cut| cut.node);
             closed.cuts.iter().for_each(|cut| forest.states[cut.node as usize].is_cut = true);
-            return closed;
+            return Ok(closed);
         }
         gone.into_iter().rev().for_each(|i| _ = leaves.swap_remove(i));
     }
@@ -279,6 +284,15 @@ fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
 }
 
 impl Forest {
+    /// Refuses to grow beyond all bounds.
+    fn check_room(&self) -> Result<()> {
+        if self.nodes.len() < self.most_nodes {
+            return Ok(());
+        }
+        Err(Error::options(format!("more than {} tets would be divided or come of it", self.most_nodes))
+            .remedy("mark fewer tets, or limit the generation"))
+    }
+
     /// Nothing is divided, and no edge is split but those that stay so.
     fn begin_anew(&mut self) {
         self.is_split.fill(false);

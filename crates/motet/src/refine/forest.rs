@@ -18,6 +18,9 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The most divisions one in another: what a way down of 64 bits can tell, and far beyond what coordinates can.
 pub(super) const DEEPEST: u8 = 20;
 
+/// Edges, which are a fifth more, are to have ids.
+const MOST_NODES: usize = 3_000_000_000;
+
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
@@ -67,6 +70,8 @@ pub(super) struct Forest {
     pub(super) edges_of: Vec<[u32; 6]>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
+    /// No more tets may be divided once there are so many.
+    pub(super) most_nodes: usize,
     /// Edges that stay split, since a root has a vertex in their middle.
     pub(super) pinned: Vec<u32>,
     /// The edges of roots, by their ends.
@@ -85,6 +90,7 @@ impl Forest {
             reference: points.to_vec(),
             n_roots,
             n_first_vertices: points.len(),
+            most_nodes: MOST_NODES,
             nodes: Vec::with_capacity(n_roots),
             states: Vec::with_capacity(n_roots),
             edges_of: Vec::with_capacity(n_roots),

@@ -119,7 +119,7 @@ impl Refinement {
             summary: Summary::default(),
             is_moved: false,
         };
-        let closed = close(&mut refinement.forest, need, threads);
+        let closed = close(&mut refinement.forest, need, threads)?;
         refinement.give_out(closed)?;
         Ok(refinement)
     }
@@ -227,7 +227,10 @@ impl Refinement {
         let mut near = Near::default();
         loop {
             self.ask(&left);
-            let closed = close(&mut self.forest, self.need, threads);
+            let closed = match close(&mut self.forest, self.need, threads) {
+                Ok(closed) => closed,
+                Err(error) => return Err(self.restore(&before, threads).err().unwrap_or(error)),
+            };
             let split = split_though_fixed(&self.forest, &self.first);
             if split.is_empty() {
                 self.give_out_or_else(closed, &before, threads)?;
@@ -279,8 +282,10 @@ impl Refinement {
             let first = nodes[node].first_child as usize;
             states[node].is_asked = before[first..first + 8].iter().any(|&child| child);
         }
-        self.keep_from_inverting(&before, threads)?;
-        Ok(self.summary)
+        match self.keep_from_inverting(&before, threads) {
+            Ok(()) => Ok(self.summary),
+            Err(error) => Err(self.restore(&before, threads).err().unwrap_or(error)),
+        }
     }
 
     /// Gives out what is asked, but for divisions whose whole would be inverted where points are now.
@@ -290,7 +295,7 @@ impl Refinement {
         let known = if self.is_moved { inverted(self, &self.now) } else { Vec::new() };
         let mut n_held = 0;
         loop {
-            let closed = close(&mut self.forest, self.need, threads);
+            let closed = close(&mut self.forest, self.need, threads)?;
             let now = extract(&self.forest, &self.first, &closed.cuts, &self.points, &self.now.vertices)?;
             let mut new = if self.is_moved { inverted(self, &now) } else { Vec::new() };
             new.retain(|v| known.binary_search(v).is_err());
@@ -340,7 +345,7 @@ impl Refinement {
     /// Goes back to what was asked for before.
     fn restore(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
         self.unask(before);
-        let closed = close(&mut self.forest, self.need, threads);
+        let closed = close(&mut self.forest, self.need, threads)?;
         self.give_out(closed)
     }
 

@@ -139,7 +139,10 @@ impl Roots {
                 mesh.points[v];
         }
         let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles: self.triangle_of };
-        let closed = close(&mut forest, need, threads);
+        // Numbers of another mesh may ask for anything.
+        let most_nodes = std::mem::replace(&mut forest.most_nodes, 100 * forest.nodes.len() + 100_000);
+        let closed = close(&mut forest, need, threads).map_err(|_| unfit("what it divides has no end"))?;
+        forest.most_nodes = most_nodes;
         points.resize(forest.reference.len(), [f64::NAN; 3]);
         let same = extract(&forest, &self.first, &closed.cuts, &points, &now.vertices)?;
         let is_as_given = is_same(&same, &now);
