@@ -1,6 +1,6 @@
 //! The loop of solving, sizes from the second derivatives of the solution, and adapting, beside refinement everywhere.
 //!
-//! `refine_loop [MESH] [--rounds N] [--tets N] [--factor F] [--error E] [--threads N]` begins with a mesh file, or a tube. In each of the rounds (default 3) a formula stands in for the
+//! `refine_loop [MESH] [--rounds N] [--tets N] [--factor F] [--error E] [--threads N]` begins with a mesh file, or a tube. In each of the rounds (default 4) a formula stands in for the
 //! solver, the mesh is coarsened and refined to sizes for so many tets (default 10000, and `F` times as many from round to round, default 2.5) or, with `--error`, for an error of
 //! at most `E`, one generation a round. Errors are relative to the fastest flow: the root of the mean square, and the most.
 
@@ -17,7 +17,7 @@ use motet::refine::wish::{coarser, marked};
 use motet::refine::{Aim, HessianSizes, MeshRefinement, Options, Refinement};
 use motet::{Mesh, io};
 
-/// A front round the middle of the mesh that stands in for a solution: fast within, a hundredth of the extent wide.
+/// A front round the middle of the mesh that stands in for a solution: fast within a tenth of the extent, a hundredth wide.
 struct Front {
     middle: Point,
     extent: f64,
@@ -31,7 +31,7 @@ impl Front {
     }
 
     fn speed(&self, p: Point) -> f64 {
-        0.5 * (1.0 - ((distance(p, self.middle) / self.extent - 0.25) / 0.01).tanh())
+        0.5 * (1.0 - ((distance(p, self.middle) / self.extent - 0.1) / 0.01).tanh())
     }
 
     fn solve(&self, mesh: &mut Mesh) {
@@ -75,10 +75,8 @@ fn everywhere(front: &Front, first: &TetMesh, n: usize, threads: &Threads) -> mo
 
 /// Between two generations the error goes with a power of the number of tets.
 fn with_as_many(found: &[[f64; 2]], n: f64) -> f64 {
-    let pairs = || found.windows(2);
-    let Some(pair) = pairs().find(|pair| n <= pair[1][0]).or_else(|| pairs().last()) else {
-        return found[0][1];
-    };
+    // The last generation has no fewer tets.
+    let Some(pair) = found.windows(2).find(|pair| n <= pair[1][0]) else { return found[0][1] };
     let [[n0, e0], [n1, e1]] = [pair[0], pair[1]];
     e0 * (n / n0).powf((e1 / e0).ln() / (n1 / n0).ln())
 }
@@ -109,7 +107,7 @@ fn adapt(mesh: &mut Mesh, sizes: &HessianSizes, most: usize, threads: &Threads) 
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (mut file, mut rounds, mut n_tets, mut factor, mut error, mut threads) =
-        (None, 3, 10_000, 2.5, None, 1);
+        (None, 4, 10_000, 2.5, None, 1);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
