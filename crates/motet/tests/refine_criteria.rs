@@ -5,6 +5,7 @@ mod common;
 use std::sync::Arc;
 
 use common::Numbers;
+use motet::ErrorKind;
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::distance::triangle_triangle;
 use motet::geometry::tet::{self, EDGES, FACETS, centroid, holds};
@@ -388,7 +389,7 @@ fn limits_hold() {
 fn what_is_not_there_is_told_with_what_is() {
     let threads = Threads::single();
     let (mesh, part) = case();
-    let told = |criterion: Criterion| criterion.wishes(&mesh, &part, &threads).unwrap_err().to_string();
+    let refused = |criterion: Criterion| criterion.wishes(&mesh, &part, &threads).unwrap_err();
     let array = |text: &str| Criterion::Where(text.parse().unwrap());
     let jump = |array: &str, amount| Criterion::Estimate { array: array.into(), by: Estimator::Jump, amount };
     let hessian = |arrays: &[&str], aim| {
@@ -419,8 +420,12 @@ fn what_is_not_there_is_told_with_what_is() {
         (hessian(&["p", "nothing"], Aim::RangePart(0.1)), ["no array `nothing`", "point arrays"]),
         (hessian(&[], Aim::Error(1.0)), ["need an array", "second derivatives"]),
     ] {
-        let told = told(criterion);
+        // Numbers are words of the call; what is in the mesh is not.
+        let kind = if criterion.check().is_err() { ErrorKind::Options } else { ErrorKind::Input };
+        let error = refused(criterion);
+        let told = error.to_string();
         assert!(parts.iter().all(|part| told.contains(part)), "{told}");
+        assert_eq!(error.kind(), kind, "{told}");
     }
     let bare = Mesh::new(mesh.points.clone(), mesh.cells.clone());
     let told = Criterion::Region("1".into()).wishes(&bare, &part, &threads).unwrap_err().to_string();

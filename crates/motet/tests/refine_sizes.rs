@@ -1,17 +1,16 @@
-//! Sizes from second derivatives: recovered, limited, graded, scaled to a number of tets, and what they bring.
+//! Sizes from second derivatives: recovered, limited, graded, scaled to a number of tets.
 
 mod common;
 
 use common::random_mesh;
-use motet::base::{Point, TetId, Threads, VertexId};
-use motet::geometry::tet::{EDGES, at, volume};
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::tet::{EDGES, at};
 use motet::geometry::vector::{distance, norm};
 use motet::mesh::shapes::{ball, box_grid};
-use motet::mesh::{CellKind, Cells, Field, Mesh, TetMesh, TetPart};
+use motet::mesh::{Mesh, TetMesh, TetPart};
 use motet::refine::hessian::{curvatures, hessians};
-use motet::refine::sizes::{SizeLimits, for_count, for_error, limit_growth, wishes};
+use motet::refine::sizes::{SizeLimits, for_count, for_error, for_mean_square, limit_growth, wishes};
 use motet::refine::wish::expected_tets;
-use motet::refine::{Aim, Criterion, HessianSizes, Options, Refinement};
 
 fn tets_of(mesh: &Mesh) -> TetMesh {
     TetPart::of(mesh).unwrap().mesh
@@ -158,64 +157,18 @@ fn front(p: Point) -> f64 {
     ((norm(p) - 0.5) / 0.05).tanh()
 }
 
-/// How far the front is from its linear interpolant: the root of the mean square and the most, at five places a tet.
-fn error(mesh: &TetMesh) -> [f64; 2] {
-    let (mut squares, mut weights, mut most) = (0.0f64, 0.0f64, 0.0f64);
-    let (a, b) = (1.0 / 6.0, 0.5);
-    let places = [[0.25; 4], [b, a, a, a], [a, b, a, a], [a, a, b, a], [a, a, a, b]];
-    for tet in &mesh.tets {
-        let corners = tet.map(|v| mesh.points[v.index()]);
-        let weight = volume(corners).abs();
-        for place in places {
-            let linear: f64 = corners.iter().zip(place).map(|(p, w)| w * front(*p)).sum();
-            let off = (linear - front(at(corners, place))).abs();
-            squares += weight * off * off;
-            weights += weight;
-            most = most.max(off);
-        }
-    }
-    [(squares / weights).sqrt(), most]
-}
-
-fn with_front(tets: &TetMesh) -> (Mesh, TetPart) {
-    let mut cells = Cells::new();
-    tets.tets.iter().for_each(|t| cells.push(CellKind::TETRA, *t));
-    let mut mesh = Mesh::new(tets.points.clone(), cells);
-    mesh.set_point_field(Field::scalars("front", values(tets, front)));
-    let part = TetPart::of(&mesh).unwrap();
-    (mesh, part)
-}
-
-/// The loop of solving, estimating and refining, with the interpolant as the solution.
 #[test]
-fn a_loop_by_second_derivatives_resolves_a_front_with_fewer_tets_than_everywhere() {
-    let threads = Threads::single();
-    let first = TetMesh::new(tets_of(&ball(4, 4)).points, tets_of(&ball(4, 4)).tets);
-    let mut uniform = Refinement::new(&first, Options::default(), &threads).unwrap();
-    for _ in 0..2 {
-        let all: Vec<TetId> = (0..uniform.mesh().tets.len()).map(TetId::new).collect();
-        uniform.refine(&all, &threads).unwrap();
-    }
-    let n_uniform = uniform.mesh().tets.len();
-    let [mean, most] = error(uniform.mesh());
-    println!("everywhere: {n_uniform} tets, error {mean:.2e}, at most {most:.2e}");
-    // More from loop to loop: what a coarse mesh says of the front is smeared. Tets that the closing adds come on top.
-    let criterion = |n_tets: usize| {
-        let limits = SizeLimits { growth: f64::INFINITY, ..SizeLimits::default() };
-        Criterion::Hessian(HessianSizes { arrays: vec!["front".into()], aim: Aim::Tets(n_tets), limits })
+fn sizes_for_the_mean_square_leave_the_least_of_it() {
+    // Two places with as much room: bends 1 and 100, sizes h and g, h^-3 and g^-3 tets, errors h^2 and 100 g^2.
+    let sizes = for_mean_square(&[1.0, 100.0, 0.0, f64::NAN]);
+    assert_eq!(sizes[2..], [f64::INFINITY, f64::INFINITY]);
+    let ratio = sizes[0] / sizes[1];
+    let squares = |ratio: f64| {
+        // One of both sizes is free where the number of tets is given.
+        let g = (1.0 + ratio.powi(-3)).cbrt();
+        (ratio * g).powi(4) + (100.0 * g * g).powi(2)
     };
-    let mut adapted = Refinement::new(&first, Options::default(), &threads).unwrap();
-    let mut errors = vec![error(adapted.mesh())];
-    for round in 1..=5 {
-        let (mesh, part) = with_front(adapted.mesh());
-        let marks = criterion(n_uniform / 2 >> (5 - round)).marks(&mesh, &part, &threads).unwrap();
-        adapted.refine(&marks, &threads).unwrap();
-        errors.push(error(adapted.mesh()));
-        let [mean, most] = errors[round];
-        println!("loop {round}: {} tets, error {mean:.2e}, at most {most:.2e}", adapted.mesh().tets.len());
-        assert!(adapted.mesh().tets.len() <= n_uniform);
-    }
-    assert!(errors.windows(2).all(|pair| pair[1][0] <= pair[0][0] * (1.0 + 1e-9)));
-    let [last_mean, last_most] = errors[errors.len() - 1];
-    assert!(last_mean < 0.6 * mean && last_most < 0.6 * most);
+    assert!(squares(ratio) < squares(1.01 * ratio) && squares(ratio) < squares(0.99 * ratio));
+    // Equal errors everywhere cost more of the mean.
+    assert!(squares(ratio) < 0.75 * squares(10.0));
 }

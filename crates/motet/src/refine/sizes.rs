@@ -28,13 +28,14 @@ pub struct SizeLimits {
     pub smallest: f64,
     /// None is above this. Default: infinite.
     pub largest: f64,
-    /// By how much the size may grow per unit of length along edges; infinite: as it likes. Default: 0.5.
+    /// By how much the size may grow per unit of length along edges; infinite: as it likes. Default: 1, with which sizes double from one edge to
+    /// the next, as edges of divided tets do at their border. Less only spreads small tets.
     pub growth: f64,
 }
 
 impl Default for SizeLimits {
     fn default() -> Self {
-        Self { smallest: 0.0, largest: f64::INFINITY, growth: 0.5 }
+        Self { smallest: 0.0, largest: f64::INFINITY, growth: 1.0 }
     }
 }
 
@@ -56,6 +57,18 @@ impl SizeLimits {
 pub fn for_error(curvatures: &[f64], error: f64) -> Vec<f64> {
     let size = |bend: &f64| if *bend > 0.0 { (error / (LARGEST_ERROR * bend)).sqrt() } else { f64::INFINITY };
     curvatures.iter().map(size).collect()
+}
+
+/// The power of how much a field bends that sizes go with, where the mean square of the error is to be least for so many tets (Loseille and Alauzet 2011, *Continuous
+/// mesh framework part I*, in space, where all edges at a place are equal): the square of `bend * h^2` summed over all space, with `h^-3` tets in each part
+/// of it, is least where `h^7` goes with `bend^-2`.
+const MEAN_SQUARE: f64 = -2.0 / 7.0;
+
+/// The sizes, but for one scale, at which a field that bends so much is nearest to its linear interpolant in the mean square, for so many tets. Fields can be compared where
+/// `bends` are relative to their ranges. Infinite as for [`for_error`].
+pub fn for_mean_square(bends: &[f64]) -> Vec<f64> {
+    let size = |bend: &f64| if *bend > 0.0 { bend.powf(MEAN_SQUARE) } else { f64::INFINITY };
+    bends.iter().map(size).collect()
 }
 
 /// The sizes times one scale, within limits, such that dividing all tets that are too large brings the mesh to about `n_tets`, rather fewer. The

@@ -42,7 +42,8 @@ Examples:
   One generation back, everywhere:
     motet refine fine.vtu -o coarse.vtu --coarsen
 
-Exit status 2: no criterion, or an array, region or patch that is not there. 3: sizes that ids do not suffice for.
+Exit status 2: no criterion, or one that means nothing. 3: an array, region or patch that is not there, or sizes that
+ids do not suffice for; nothing is written.
 4: a limit or the number of generations was reached before all edges were short enough; the mesh is written.")]
 pub(crate) struct RefineArgs {
     /// The mesh file (or folder)

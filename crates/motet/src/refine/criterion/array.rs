@@ -72,7 +72,7 @@ pub(super) fn point_vectors(mesh: &Mesh, word: &str) -> Result<Vec<Point>> {
     check_on_points(mesh, &found, word)?;
     match found.part {
         Part::Whole => found.field.to_vectors(),
-        _ => Err(Error::options(format!("`{word}` is no velocity"))
+        _ => Err(Error::input(format!("`{word}` is no velocity"))
             .remedy("give a point array of three components as it is")),
     }
 }
@@ -81,7 +81,7 @@ fn check_on_points(mesh: &Mesh, found: &Found<'_>, word: &str) -> Result<()> {
     match found.on {
         On::Points => Ok(()),
         On::Cells => {
-            Err(Error::options(format!("`{word}` has values on cells, and derivatives need them on points"))
+            Err(Error::input(format!("`{word}` has values on cells, and derivatives need them on points"))
                 .remedy(format!("average it to the points; point arrays: {}", names(&mesh.point_data))))
         }
     }
@@ -97,13 +97,13 @@ fn find<'a>(mesh: &'a Mesh, word: &str) -> Result<Found<'a>> {
     if let Part::Component(k) = part
         && k >= field.components
     {
-        return Err(Error::options(format!(
+        return Err(Error::input(format!(
             "`{word}`: {} has {} component(s), counted from 0",
             field.name, field.components
         )));
     }
     let Some(values) = field.values.to_f64() else {
-        return Err(Error::options(format!("the array `{}` holds texts, not numbers", field.name)));
+        return Err(Error::input(format!("the array `{}` holds texts, not numbers", field.name)));
     };
     Ok(Found { on, part, field, values })
 }
@@ -128,7 +128,7 @@ fn component(word: &str) -> Option<(&str, Part)> {
 }
 
 fn unknown(mesh: &Mesh, word: &str) -> Error {
-    Error::options(format!("the mesh has no array `{word}`")).remedy(format!(
+    Error::input(format!("the mesh has no array `{word}`")).remedy(format!(
         "point arrays: {}; cell arrays: {}",
         names(&mesh.point_data),
         names(&mesh.cell_data)

@@ -1,10 +1,10 @@
 //! Criteria that ask what the arrays of a mesh say: sizes, gradients, estimates, what turns.
 
 use super::array::{On, column, point_columns, point_vectors};
-use super::{Aim, Amount, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
+use super::{Aim, Amount, Criterion, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
 use crate::base::{Error, Result, Threads};
 use crate::geometry::vector::{dot, norm, sub};
-use crate::mesh::{Mesh, TetPart, bounds};
+use crate::mesh::{Field, Mesh, TetPart, bounds};
 use crate::refine::estimate::{self, corners, longest_edge};
 use crate::refine::hessian::curvatures;
 use crate::refine::wish::Wish;
@@ -151,6 +151,22 @@ impl HessianSizes {
         Ok(sizes::wishes(&part.mesh, &self.sizes(mesh, part, threads)?, threads))
     }
 
+    /// Puts the sizes into the mesh as a point array, and gives the criterion that divides until edges are so short.
+    ///
+    /// Arrays are linear in each tet of the mesh that they were computed on. Carried to its parts they no longer bend within, and all the more
+    /// between; so sizes are found once for each solution, and carried themselves. They are at most the extent of the mesh.
+    ///
+    /// # Errors
+    /// As for [`sizes`](Self::sizes).
+    pub fn put(&self, mesh: &mut Mesh, part: &TetPart, name: &str, threads: &Threads) -> Result<Criterion> {
+        let mut sizes = self.sizes(mesh, part, threads)?;
+        let [low, high] = bounds(&mesh.points).unwrap_or_default();
+        let extent = norm(sub(high, low));
+        sizes.iter_mut().for_each(|size| *size = size.min(extent));
+        mesh.set_point_field(Field::scalars(name, sizes));
+        Ok(Criterion::Size(Size::Array(name.to_owned())))
+    }
+
     /// The size at each vertex.
     ///
     /// # Errors
@@ -166,13 +182,14 @@ impl HessianSizes {
             let range = range(&columns, part);
             let least_bend = ROUNDING * range / extent_squared;
             bends.iter_mut().filter(|bend| **bend < least_bend).for_each(|bend| *bend = 0.0);
-            let error = match self.aim {
-                Aim::Error(error) => error,
-                Aim::RangePart(share) => share * range,
-                // Any part will do: all sizes are scaled.
-                Aim::Tets(_) => range,
+            let of_array = match self.aim {
+                Aim::Error(error) => sizes::for_error(&bends, error),
+                Aim::RangePart(share) => sizes::for_error(&bends, share * range),
+                Aim::Tets(_) => {
+                    bends.iter_mut().for_each(|bend| *bend /= range);
+                    sizes::for_mean_square(&bends)
+                }
             };
-            let of_array = sizes::for_error(&bends, error);
             // A constant array asks for nothing.
             let pairs = least.iter_mut().zip(of_array).filter(|_| range > 0.0);
             pairs.for_each(|(least, size)| *least = least.min(size));

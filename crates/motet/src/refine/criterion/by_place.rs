@@ -107,5 +107,5 @@ fn find(labels: Option<Labels>, word: &str, what: &str) -> Result<i32> {
         Some(known) if !known.is_empty() => format!("it has {}", known.join(", ")),
         _ => format!("it has no {plural}"),
     };
-    Err(Error::options(format!("the mesh has no {what} `{word}`")).remedy(remedy))
+    Err(Error::input(format!("the mesh has no {what} `{word}`")).remedy(remedy))
 }

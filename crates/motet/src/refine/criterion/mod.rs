@@ -144,7 +144,8 @@ pub enum Aim {
     Error(f64),
     /// So that it is at most this part of the range of the array: of its largest value less its smallest, of vectors by the component where that is most.
     RangePart(f64),
-    /// So that there are about so many tets, with errors that are equal parts of the ranges.
+    /// So that there are about so many tets, and the mean square of the errors, as parts of the ranges, is least. Where a mesh is too coarse to see how
+    /// much a field bends, ask for a few times as many from one solution to the next.
     Tets(usize),
 }
 
