@@ -76,5 +76,8 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
 fn hint(error: Error) -> Error {
     let is_memory =
         error.what().contains("refinement does not fit") || error.what().contains("remembers how");
-    if is_memory { error.remedy("--forget: then the mesh as it is counts as the first") } else { error }
+    if !is_memory {
+        return error;
+    }
+    Error::new(error.kind(), error.what()).remedy("--forget: then the mesh as it is counts as the first")
 }
