@@ -11,6 +11,9 @@ use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
 
+/// No more is asked of a piece than this part of the median EAS of the roots.
+const OF_MEDIAN: f64 = 0.55;
+
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Need {
@@ -31,7 +34,7 @@ impl Need {
         shapes.sort_unstable_by(f64::total_cmp);
         let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
         let floor = options.keep * worst;
-        Self { floor, of_pieces: floor.min(options.share * median), share: options.share, rule: options.rule }
+        Self { floor, of_pieces: floor.min(OF_MEDIAN * median), share: options.share, rule: options.rule }
     }
 
     /// What pieces of a tet have to be that could be divided into eight of this EAS or better.

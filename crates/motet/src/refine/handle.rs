@@ -15,7 +15,7 @@ use crate::spatial::NearestTriangle;
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below `share` of its median where that is less, if there is another way.
+    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below 0.55 of its median where that is less, if there is another way.
     /// Default: 0.95.
     pub keep: f64,
     /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
