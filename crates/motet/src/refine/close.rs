@@ -270,7 +270,8 @@ pub(super) struct Way {
 
 impl Way {
     pub(super) fn new(places: &[Point; 10], place: usize) -> Self {
-        Self { place, inner: inner_tets(place).map(|pair| eas(corners_at(places, &pair[0]))) }
+        let [first, second] = inner_tets(place);
+        Self { place, inner: [eas(corners_at(places, &first[0])), eas(corners_at(places, &second[0]))] }
     }
 
     fn worst(&self, whole: f64) -> f64 {
@@ -330,21 +331,33 @@ impl Forest {
     /// Whether an edge is split that only appears when the tet is divided: half of a split edge, or one between the middles of
     /// two edges of a facet.
     fn is_split_within(&self, leaf: u32, mask: u8) -> bool {
-        let edges = self.edges_of[leaf as usize];
+        let edges = &self.edges_of[leaf as usize];
         let is_split = |edge: u32| edge != NONE && self.is_split[edge as usize];
-        let split = (0..6).filter(|e| mask >> e & 1 == 1);
-        if split.clone().any(|e| self.edges[edges[e] as usize].halves.into_iter().any(is_split)) {
-            return true;
-        }
-        FACET_EDGES.iter().any(|facet| {
-            let [x, y, z] = facet.map(|e| mask >> e & 1 == 1);
-            // One split edge has no edge to another middle.
-            if u8::from(x) + u8::from(y) + u8::from(z) < 2 {
-                return false;
+        for (e, edge) in edges.iter().enumerate() {
+            if mask >> e & 1 == 1 {
+                let [first, second] = self.edges[*edge as usize].halves;
+                if is_split(first) || is_split(second) {
+                    return true;
+                }
             }
-            let middles = facet.map(|e| self.edges[edges[e] as usize].middle);
-            !middles.contains(&NONE)
-                && self.inner_edges(middles).is_some_and(|inner| inner.into_iter().any(is_split))
-        })
+        }
+        // Only a tet that is divided has edges within a facet, and that splits all three around, unless these are edges of roots.
+        let least = if self.pinned.is_empty() { 3 } else { 2 };
+        for &[a, b, c] in &FACET_EDGES {
+            if (mask >> a & 1) + (mask >> b & 1) + (mask >> c & 1) < least {
+                continue;
+            }
+            let middle = |e: usize| self.edges[edges[e] as usize].middle;
+            let middles = [middle(a), middle(b), middle(c)];
+            if middles.contains(&NONE) {
+                continue;
+            }
+            if let Some([x, y, z]) = self.inner_edges(middles)
+                && (is_split(x) || is_split(y) || is_split(z))
+            {
+                return true;
+            }
+        }
+        false
     }
 }

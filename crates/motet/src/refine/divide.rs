@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use super::close::Way;
 use super::forest::{Forest, NONE, Node, State};
-use super::patterns::{FACET_EDGES, FULL, inner_tets, patterns};
+use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
 use crate::geometry::tet::EDGES;
 
 const DIAGONAL: usize = 24;
@@ -76,7 +76,7 @@ impl Forest {
         let mut parts = self.parts(&edges, &local);
         let way = way(self);
         let eighths = eighths(way.place);
-        parts[DIAGONAL] = self.make_edge(super::patterns::ends(way.place).map(|v| local[v]));
+        parts[DIAGONAL] = self.make_edge(ends(way.place).map(|v| local[v]));
         let first = self.nodes.len() as u32;
         self.nodes[node as usize].first_child = first;
         let shapes = [eas, way.inner[0], way.inner[1]];

@@ -215,7 +215,9 @@ impl Forest {
 
     /// The places of a tet's corners.
     pub(super) fn corners(&self, node: u32) -> [Point; 4] {
-        self.nodes[node as usize].vertices.map(|v| self.reference[v as usize])
+        let [a, b, c, d] = self.nodes[node as usize].vertices;
+        let place = |v: u32| self.reference[v as usize];
+        [place(a), place(b), place(c), place(d)]
     }
 
     /// The corners of a tet, then the middles of its edges, there or not.

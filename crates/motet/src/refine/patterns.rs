@@ -21,10 +21,10 @@ pub(super) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
 /// All ways to fill a tet with these edges split, where facet `i` is cut from the middle of the second of its two split edges if bit `i` of
 /// `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. Mostly one or two; none for 14 of them, in which the cuts go round.
 pub(super) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
-    static TABLE: OnceLock<Vec<Vec<Pattern>>> = OnceLock::new();
-    let table =
-        TABLE.get_or_init(|| (0..64 * 16).map(|key| all_ways((key / 16) as u8, (key % 16) as u8)).collect());
-    &table[usize::from(mask & FULL) * 16 + usize::from(cuts & 15)]
+    // Each is searched for when it is asked for first: all of them take as long as refining a small mesh.
+    static TABLE: [OnceLock<Vec<Pattern>>; 64 * 16] = [const { OnceLock::new() }; 64 * 16];
+    let (mask, cuts) = (mask & FULL, cuts & 15);
+    TABLE[usize::from(mask) * 16 + usize::from(cuts)].get_or_init(|| all_ways(mask, cuts))
 }
 
 /// The local vertices at the ends of the diagonal of each of the three ways to divide a tet into eight.
