@@ -10,7 +10,7 @@ pub(crate) fn number(word: &str) -> Result<f64, String> {
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if x > 0.0 => Ok(x),
-        _ => Err("a number above 0 is expected".into()),
+        _ => Err("a positive number is expected".into()),
     }
 }
 
@@ -41,7 +41,7 @@ mod tests {
     fn what_is_off_is_told() {
         assert!(numbers("1,x").is_err_and(|told| told.contains("`x` is no finite number")));
         for text in ["0", "-1", "nan", "inf", "x", ""] {
-            assert_eq!(positive(text), Err("a number above 0 is expected".into()));
+            assert_eq!(positive(text), Err("a positive number is expected".into()));
         }
         for text in ["=3", "wall", ""] {
             assert_eq!(named(text, "PATCH=D"), Err("PATCH=D is expected".into()));

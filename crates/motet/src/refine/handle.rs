@@ -71,7 +71,7 @@ pub struct Left {
 /// A mesh with its memory: which tets it started with, and which of them and of their parts are to be divided.
 ///
 /// ```
-/// use motet::base::{TetId, Threads};
+/// use motet::base::{TetId, Threads, VertexId};
 /// use motet::mesh::TetMesh;
 /// use motet::refine::{Options, Refinement};
 /// # fn main() -> motet::Result<()> {
