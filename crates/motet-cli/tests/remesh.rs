@@ -291,7 +291,7 @@ fn words_that_mean_nothing_are_refused() {
     assert!(call(&["--min-eas", "1.5"]).contains("between 0"));
     assert!(call(&["--min-dihedral", "80"]).contains("70"));
     assert!(call(&["--surface", "bend"]).contains("keep"));
-    assert!(call(&["--surface", "adapt", "--distance", "0"]).contains("above 0"));
+    assert!(call(&["--surface", "adapt", "--distance", "0"]).contains("positive"));
     assert!(call(&["--carry", "linear"]).contains("ARRAY=drop"));
     assert!(call(&["--history", "out.vtu"]).contains("overwrite"));
     let docx = folder.motet(["remesh", "shaken.vtu", "-o", "out.docx"]).assert().code(2);
