@@ -1,27 +1,26 @@
 //! Bey's rule: which diagonal, by the order of a tet's vertices alone.
 //!
-//! The eight are given orders of their own, so that however deep, no more than three shapes come of one (Bey 1995, *Tetrahedral grid refinement*). An order follows from the way down from
-//! the root, so it is worked out again where it is needed.
+//! The parts inside are given orders of their own, so that however deep, no more than three shapes come of one (Bey 1995, *Tetrahedral grid refinement*). An order follows from the way down from
+//! the root, so it is worked out again where a class needs it.
 
-use super::forest::{Forest, NONE};
-use super::patterns::{FULL, ends, patterns};
+use super::classes::inner_part;
+use super::eight::ends;
+use super::forest::Forest;
 use crate::geometry::tet::EDGES;
 
-/// The vertices of the eight: `[i, i]` is vertex `i` of the whole, `[i, j]` the middle between two.
-const CHILDREN: [[[usize; 2]; 4]; 8] = [
-    [[0, 0], [0, 1], [0, 2], [0, 3]],
-    [[0, 1], [1, 1], [1, 2], [1, 3]],
-    [[0, 2], [1, 2], [2, 2], [2, 3]],
-    [[0, 3], [1, 3], [2, 3], [3, 3]],
+/// The vertices of the four inside: `[i, j]` is the middle between vertices `i` and `j` of the whole.
+const CHILDREN: [[[usize; 2]; 4]; 4] = [
     [[0, 1], [0, 2], [0, 3], [1, 3]],
     [[0, 1], [0, 2], [1, 2], [1, 3]],
     [[0, 2], [0, 3], [1, 3], [2, 3]],
     [[0, 2], [1, 2], [1, 3], [2, 3]],
 ];
 
-/// Which of the three ways to divide a tet.
-pub(super) fn way(forest: &Forest, node: u32) -> usize {
-    along(order(forest, node))
+/// Which of the three ways to divide tets of a class. Parts at corners have the order of the whole; and that of an image is the one that it is an image of, from the last vertex to the
+/// first, which is all the same to the ways.
+pub(super) fn way(forest: &Forest, class: u32) -> usize {
+    let steps = forest.steps_to_class(class);
+    along(steps.into_iter().fold([0, 1, 2, 3], |order, (way, inner)| below(order, inner_part(way, inner))))
 }
 
 /// The way along the diagonal between the middles of the edges 0-2 and 1-3.
@@ -30,18 +29,12 @@ fn along(order: [usize; 4]) -> usize {
     (0..3).find(|&way| ends(way) == diagonal || ends(way) == [diagonal[1], diagonal[0]]).unwrap_or(0)
 }
 
-/// Of a tet's vertices, which is Bey's first, second, third and fourth.
-fn order(forest: &Forest, node: u32) -> [usize; 4] {
-    let parent = forest.nodes[node as usize].parent;
-    if parent == NONE {
-        return [0, 1, 2, 3];
-    }
-    let above = order(forest, parent);
-    let place = (node - forest.nodes[parent as usize].first_child) as usize;
-    let tet = patterns(FULL, 0)[along(above)][place].map(usize::from);
-    let names = |child: &[[usize; 2]; 4]| child.map(|name| local(above, name));
-    let child = CHILDREN.iter().map(names).find(|child| child.iter().all(|v| tet.contains(v)));
-    child.unwrap_or(tet).map(|v| tet.iter().position(|other| *other == v).unwrap_or(0))
+/// Of the vertices of a part inside, which is Bey's first, second, third and fourth, if that is known of the whole.
+fn below(order: [usize; 4], part: &[u8; 4]) -> [usize; 4] {
+    let part = part.map(usize::from);
+    let names = |child: &[[usize; 2]; 4]| child.map(|name| local(order, name));
+    let child = CHILDREN.iter().map(names).find(|child| child.iter().all(|v| part.contains(v)));
+    child.unwrap_or(part).map(|v| part.iter().position(|other| *other == v).unwrap_or(0))
 }
 
 /// The local vertex of a name.

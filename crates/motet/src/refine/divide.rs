@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
-use super::close::Way;
+use super::eight::{IMAGES, INNER, eight, ends};
 use super::forest::{Forest, NONE, Node, State};
-use super::patterns::{FACET_EDGES, FULL, ends, inner_tets, patterns};
+use super::patterns::FACET_EDGES;
 use crate::geometry::tet::EDGES;
 
 const DIAGONAL: usize = 24;
@@ -19,8 +19,6 @@ struct Eighth {
     vertices: [u8; 4],
     /// Parts.
     edges: [u8; 6],
-    /// Which shape it has: that of the whole, or of one of the pairs inside.
-    shape: u8,
 }
 
 /// The eight of each way.
@@ -29,14 +27,12 @@ fn eighths(way: usize) -> &'static [Eighth; 8] {
     &TABLE.get_or_init(|| {
         let part_of = parts_between();
         [0, 1, 2].map(|way| {
-            let mut eight = [Eighth::default(); 8];
-            for (eighth, tet) in eight.iter_mut().zip(&patterns(FULL, 0)[way]) {
+            let mut eighths = [Eighth::default(); 8];
+            for (eighth, tet) in eighths.iter_mut().zip(eight(way)) {
                 let edge = |[i, j]: [usize; 2]| part_of[usize::from(tet[i])][usize::from(tet[j])];
-                let inner = inner_tets(way).iter().position(|pair| pair.contains(tet));
-                let shape = inner.map_or(0, |k| 1 + k as u8);
-                *eighth = Eighth { vertices: *tet, edges: EDGES.map(edge), shape };
+                *eighth = Eighth { vertices: *tet, edges: EDGES.map(edge) };
             }
-            eight
+            eighths
         })
     })[way]
 }
@@ -60,10 +56,10 @@ fn parts_between() -> [[u8; 10]; 10] {
 }
 
 impl Forest {
-    /// Divides a tet into eight, along a diagonal of its octahedron, and gives the first; which it may have been before.
-    pub(super) fn divide(&mut self, node: u32, way: impl FnOnce(&Self) -> Way) -> u32 {
+    /// Divides a tet into eight in one of the three ways, and gives the first; which it may have been before.
+    pub(super) fn divide(&mut self, node: u32, way: usize) -> u32 {
         self.states[node as usize].is_divided = true;
-        let Node { vertices, first_child, eas, .. } = self.nodes[node as usize];
+        let Node { vertices, first_child, shape, .. } = self.nodes[node as usize];
         if first_child != NONE {
             return first_child;
         }
@@ -74,22 +70,23 @@ impl Forest {
             local[4 + e] = self.middle(edges[e]);
         }
         let mut parts = self.parts(&edges, &local);
-        let way = way(self);
-        let eighths = eighths(way.place);
-        parts[DIAGONAL] = self.make_edge(ends(way.place).map(|v| local[v]));
+        parts[DIAGONAL] = self.make_edge(ends(way).map(|v| local[v]));
         let first = self.nodes.len() as u32;
         self.nodes[node as usize].first_child = first;
-        let shapes = [eas, way.inner[0], way.inner[1]];
-        let mut tets = [Node { vertices: [NONE; 4], parent: node, first_child: NONE, eas }; 8];
+        let mut tets = [Node { vertices: [NONE; 4], parent: node, first_child: NONE, shape }; 8];
         let mut edges_of = [[NONE; 6]; 8];
-        for (k, eighth) in eighths.iter().enumerate() {
-            tets[k].eas = shapes[usize::from(eighth.shape)];
+        for (k, eighth) in eighths(way).iter().enumerate() {
             for i in 0..4 {
                 tets[k].vertices[i] = local[usize::from(eighth.vertices[i])];
             }
             for e in 0..6 {
                 edges_of[k][e] = parts[usize::from(eighth.edges[e])];
             }
+        }
+        let classes = self.make_classes(shape.class(), way);
+        for ((class, inner), image) in (classes..).zip(INNER).zip(IMAGES) {
+            tets[inner].shape = shape.of_class(class);
+            tets[image].shape = tets[inner].shape.mirrored();
         }
         let generation = self.states[node as usize].generation + 1;
         self.nodes.extend_from_slice(&tets);

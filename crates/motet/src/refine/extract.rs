@@ -38,12 +38,11 @@ pub(super) fn extract(
     out.nodes.reserve_exact(n);
     let mut open = Vec::new();
     for root in 0..forest.n_roots as u32 {
-        // Of a root that was numbered the other way round, all parts are, too.
-        let is_turned = first.tets[root as usize][0].0 != forest.nodes[root as usize].vertices[0];
         open.push(root);
         while let Some(node) = open.pop() {
             let state = forest.states[node as usize];
             let tet = &forest.nodes[node as usize];
+            let is_turned = tet.shape.is_mirrored();
             if state.is_divided {
                 open.extend((tet.first_child..tet.first_child + 8).rev());
             } else if state.is_cut {

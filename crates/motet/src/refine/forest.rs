@@ -5,10 +5,10 @@
 
 use hashbrown::HashMap;
 
-use super::close::Goal;
+use super::classes::{Class, Shape};
 use super::facets::{Facets, Middles};
+use super::fills::Fills;
 use crate::base::Point;
-use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
 
@@ -38,8 +38,7 @@ pub(super) struct Node {
     pub(super) parent: u32,
     /// The first of the eight, which follow each other, where there ever were some.
     pub(super) first_child: u32,
-    /// The EAS in the reference.
-    pub(super) eas: f64,
+    pub(super) shape: Shape,
 }
 
 /// What changes of a tet; apart from the rest, since all of it is looked at each time.
@@ -78,13 +77,14 @@ pub(super) struct Forest {
     of_roots: HashMap<[u32; 2], u32>,
     /// The three edges between the middles of a facet's edges, see [`Self::inner_edges`].
     of_facets: Facets,
-    /// Of tets with some edges split, what they need: what was found once holds for good.
-    pub(super) goals: HashMap<(u32, u8), Goal>,
+    /// What shapes there are: first those of the roots.
+    pub(super) classes: Vec<Class>,
+    pub(super) fills: Fills,
 }
 
 impl Forest {
-    /// Every tet is a root; all are positive.
-    pub(super) fn new(points: &[Point], tets: impl ExactSizeIterator<Item = [u32; 4]>) -> Self {
+    /// Every tet is a root, numbered in either way; with each comes whether the mesh has it the other way round.
+    pub(super) fn new(points: &[Point], tets: impl ExactSizeIterator<Item = ([u32; 4], bool)>) -> Self {
         let n_roots = tets.len();
         let mut forest = Self {
             reference: points.to_vec(),
@@ -94,12 +94,14 @@ impl Forest {
             nodes: Vec::with_capacity(n_roots),
             states: Vec::with_capacity(n_roots),
             edges_of: Vec::with_capacity(n_roots),
+            classes: Vec::with_capacity(n_roots),
             ..Self::default()
         };
-        for vertices in tets {
+        for ((vertices, is_turned), root) in tets.zip(0..) {
             let edges = EDGES.map(|[i, j]| forest.make_root_edge([vertices[i], vertices[j]]));
-            let eas = eas(vertices.map(|v| points[v as usize]));
-            forest.nodes.push(Node { vertices, parent: NONE, first_child: NONE, eas });
+            let shape = Shape::new(root, is_turned);
+            forest.nodes.push(Node { vertices, parent: NONE, first_child: NONE, shape });
+            forest.classes.push(Class::of_root(vertices.map(|v| points[v as usize])));
             forest.states.push(State::default());
             forest.edges_of.push(edges);
         }
@@ -220,11 +222,6 @@ impl Forest {
         [place(a), place(b), place(c), place(d)]
     }
 
-    /// The corners of a tet, then the middles of its edges, there or not.
-    pub(super) fn places(&self, node: u32) -> [Point; 10] {
-        with_middles(self.corners(node))
-    }
-
     /// Which edges of a tet are split.
     #[inline]
     pub(super) fn mask(&self, node: u32) -> u8 {
@@ -271,8 +268,7 @@ impl Forest {
     /// Bytes.
     pub(super) fn memory(&self) -> usize {
         // An entry and a byte beside it.
-        let named = self.of_roots.capacity() * (size_of::<(u64, u32)>() + 1)
-            + self.goals.capacity() * (size_of::<((u32, u8), Goal)>() + 1);
+        let named = self.of_roots.capacity() * (size_of::<(u64, u32)>() + 1) + self.fills.memory();
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])
             + size_of_val(&self.edges[..])
@@ -280,6 +276,7 @@ impl Forest {
             + size_of_val(&self.nodes[..])
             + size_of_val(&self.states[..])
             + size_of_val(&self.edges_of[..])
+            + size_of_val(&self.classes[..])
             + self.of_facets.memory()
             + named
     }

@@ -107,8 +107,9 @@ impl Refinement {
     /// When the mesh is not [valid](TetMesh::validate), or a tet has no volume.
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
-        let roots = positive(mesh, threads)?;
-        let forest = Forest::new(&mesh.points, roots.into_iter());
+        check_volumes(mesh, threads)?;
+        let roots = mesh.tets.iter().map(|tet| (tet.map(|v| v.0), false));
+        let forest = Forest::new(&mesh.points, roots);
         let need = Need::new(options, &forest);
         let mut refinement = Self {
             first: mesh.clone(),
@@ -167,9 +168,13 @@ impl Refinement {
     pub fn left(&self, threads: &Threads) -> Vec<Left> {
         let shape =
             threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
-                0 => self.forest.nodes[self.now.nodes[i] as usize].eas,
+                0 => {
+                    let shape = self.forest.nodes[self.now.nodes[i] as usize].shape;
+                    self.forest.classes[shape.class() as usize].eas
+                }
                 _ => eas(self.now.mesh.tets[i]
-                    .map(|v| self.forest.reference[self.now.vertices[v.index()] as usize])),
+                    .map(|v| self.forest.reference[self.now.vertices[v.index()] as usize]))
+                .abs(),
             });
         let bad = (0..).zip(shape).filter(|(_, eas)| *eas < self.need.floor);
         bad.map(|(i, eas): (u32, f64)| Left {
@@ -379,20 +384,16 @@ impl Refinement {
     }
 }
 
-/// The tets of a mesh, two vertices exchanged where they are negative.
-pub(super) fn positive(mesh: &TetMesh, threads: &Threads) -> Result<Vec<[u32; 4]>> {
-    let side = threads.map(mesh.tets.len(), |i| {
+/// Refuses tets without volume.
+pub(super) fn check_volumes(mesh: &TetMesh, threads: &Threads) -> Result<()> {
+    let is_flat = threads.map(mesh.tets.len(), |i| {
         let [a, b, c, d] = mesh.tets[i].map(|v| mesh.points[v.index()]);
-        orient3d(a, b, c, d)
+        orient3d(a, b, c, d) == 0
     });
-    if let Some(i) = side.iter().position(|side| *side == 0) {
-        return Err(Error::input("has no volume")
+    match is_flat.into_iter().position(|is_flat| is_flat) {
+        None => Ok(()),
+        Some(i) => Err(Error::input("has no volume")
             .at(format!("tet {i}"))
-            .remedy("`motet remesh` repairs such tets"));
+            .remedy("`motet remesh` repairs such tets")),
     }
-    let turned = mesh.tets.iter().zip(side).map(|(&[a, b, c, d], side)| match side > 0 {
-        true => [a.0, b.0, c.0, d.0],
-        false => [b.0, a.0, c.0, d.0],
-    });
-    Ok(turned.collect())
 }

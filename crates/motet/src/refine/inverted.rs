@@ -2,7 +2,7 @@
 
 use super::extract::Extracted;
 use super::forest::Forest;
-use crate::base::{Threads, VertexId};
+use crate::base::{Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::TetMesh;
 
@@ -13,13 +13,15 @@ pub(super) fn vertices_of_inverted(
     out: &Extracted,
     threads: &Threads,
 ) -> Vec<u32> {
-    let side = threads.map(out.mesh.tets.len(), |t| {
-        let root = forest.root(out.nodes[t]) as usize;
-        let is_turned = first.tets[root][0].0 != forest.nodes[root].vertices[0];
-        let [a, b, c, d] = out.mesh.tets[t].map(|v| out.mesh.points[v.index()]);
-        if is_turned { -orient3d(a, b, c, d) } else { orient3d(a, b, c, d) }
+    let side_of = |tet: [VertexId; 4], points: &[Point]| {
+        let [a, b, c, d] = tet.map(|v| points[v.index()]);
+        orient3d(a, b, c, d)
+    };
+    let of_roots = threads.map(first.tets.len(), |root| side_of(first.tets[root], &forest.reference));
+    let is_inverted = threads.map(out.mesh.tets.len(), |t| {
+        side_of(out.mesh.tets[t], &out.mesh.points) != of_roots[forest.root(out.nodes[t]) as usize]
     });
-    let inverted = out.mesh.tets.iter().zip(side).filter(|(_, side)| *side <= 0);
+    let inverted = out.mesh.tets.iter().zip(is_inverted).filter(|(_, is_inverted)| *is_inverted);
     let vertices = inverted.flat_map(|(tet, _)| *tet).map(|v: VertexId| out.vertices[v.index()]);
     let mut vertices: Vec<u32> = vertices.collect();
     vertices.sort_unstable();

@@ -8,9 +8,11 @@
 //! | choose | [`Criterion`], [`wish`] | the same for whole meshes, by words for their arrays, regions and patches; and what may be taken back |
 //! | limit | `limits` | how far that goes: generations, sizes, the number of tets |
 //! | Bey's rule | `bey` | another diagonal, for no more than three shapes |
-//! | divide | `divide` | a tet into eight along its shortest diagonal |
+//! | divide | `divide`, `eight` | the eight, and which edges each of them has |
 //! | know | `forest`, `facets` | parents, children, edges and facets are remembered |
+//! | shapes | `classes` | tets of one shape, which few are; what follows from the shape is found once |
 //! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
+//! | choose a way | `fills` | of these the one whose worst part is best; along which diagonal a tet is divided |
 //! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
 //! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
 //! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are |
@@ -25,12 +27,15 @@
 //! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
 
 mod bey;
+mod classes;
 mod close;
 mod criterion;
 mod divide;
+mod eight;
 pub mod estimate;
 mod extract;
 mod facets;
+mod fills;
 mod forest;
 mod handle;
 mod held;

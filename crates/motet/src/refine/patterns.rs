@@ -20,39 +20,12 @@ pub(super) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
 
 /// All ways to fill a tet with these edges split, where facet `i` is cut from the middle of the second of its two split edges if bit `i` of
 /// `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. Mostly one or two; none for 14 of them, in which the cuts go round.
+/// Where all edges are split, [`eight`](super::eight) names them in another order.
 pub(super) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
     // Each is searched for when it is asked for first: all of them take as long as refining a small mesh.
     static TABLE: [OnceLock<Vec<Pattern>>; 64 * 16] = [const { OnceLock::new() }; 64 * 16];
     let (mask, cuts) = (mask & FULL, cuts & 15);
     TABLE[usize::from(mask) * 16 + usize::from(cuts)].get_or_init(|| all_ways(mask, cuts))
-}
-
-/// The local vertices at the ends of the diagonal of each of the three ways to divide a tet into eight.
-pub(super) fn ends(way: usize) -> [usize; 2] {
-    static ENDS: OnceLock<[[usize; 2]; 3]> = OnceLock::new();
-    ENDS.get_or_init(|| {
-        [0, 1, 2].map(|way| {
-            let is_in = |tet: &[u8; 4], e: u8| tet.contains(&(4 + e)) && tet.contains(&(9 - e));
-            let diagonal = (0..3).find(|&e| patterns(FULL, 0)[way].iter().any(|tet| is_in(tet, e)));
-            diagonal.map_or([4, 9], |e| [4 + usize::from(e), 9 - usize::from(e)])
-        })
-    })[way]
-}
-
-/// The four of each way that lie around its diagonal: two, each with its image in the centre of the octahedron, which has the same shape.
-pub(super) fn inner_tets(way: usize) -> [[[u8; 4]; 2]; 2] {
-    static INNER: OnceLock<[[[[u8; 4]; 2]; 2]; 3]> = OnceLock::new();
-    INNER.get_or_init(|| {
-        [0, 1, 2].map(|way| {
-            let inner: Vec<_> =
-                patterns(FULL, 0)[way].iter().filter(|tet| tet.iter().all(|v| *v >= 4)).collect();
-            let is_image = |x: &[u8; 4], y: &[u8; 4]| x.iter().all(|v| y.contains(&(13 - v)));
-            let image = |x: &[u8; 4]| inner.iter().find(|y| is_image(x, y)).map_or(*x, |y| **y);
-            let first = *inner[0];
-            let second = inner.iter().find(|x| ***x != first && ***x != image(&first)).map_or(first, |x| **x);
-            [first, second].map(|x| [x, image(&x)])
-        })
-    })[way]
 }
 
 /// The split edges of a facet, in the order of [`FACET_EDGES`], and how many they are.
@@ -140,14 +113,15 @@ fn all_ways(mask: u8, cuts: u8) -> Vec<Pattern> {
     if (0..4).any(|facet| cuts >> facet & 1 == 1 && split_edges(facet, mask).1 != 2) {
         return Vec::new();
     }
-    let vertices: Vec<u8> = (0..4).chain((0..6).filter(|e| mask >> e & 1 == 1).map(|e| 4 + e)).collect();
-    let mut search = Search { vertices, tets: Vec::new(), found: Vec::new() };
+    let is_there = std::array::from_fn(|v| v < 4 || mask >> (v - 4) & 1 == 1);
+    let mut search = Search { is_there, tets: Vec::new(), found: Vec::new() };
     search.fill(surface(mask, cuts), 64);
     search.found
 }
 
 struct Search {
-    vertices: Vec<u8>,
+    /// Which local vertices there are.
+    is_there: [bool; 10],
     tets: Pattern,
     found: Vec<Pattern>,
 }
@@ -161,11 +135,11 @@ impl Search {
             }
             return;
         };
-        for v in self.vertices.clone() {
+        for v in 0..10 {
             // Seen from outside the triangle runs counter-clockwise, so a positive tet has it the other way round.
             let tet = [a, c, b, v];
             let volume = volume(tet);
-            if volume <= 0 || volume > left {
+            if !self.is_there[usize::from(v)] || volume <= 0 || volume > left {
                 continue;
             }
             let mut rest = open.clone();
@@ -179,7 +153,9 @@ impl Search {
                     None => {
                         let [x, y, z] = seen;
                         let from_beyond = [x, z, y];
-                        let is_new = !rest.iter().any(|other| is_turn(*other, from_beyond));
+                        // What lies on the surface is a part of it, or leads nowhere: without looking at that, the search takes thirteen times as long.
+                        let is_new =
+                            !on_surface(seen) && !rest.iter().any(|other| is_turn(*other, from_beyond));
                         rest.push(from_beyond);
                         is_new
                     }
@@ -199,6 +175,16 @@ fn is_turn([a, b, c]: [u8; 3], other: [u8; 3]) -> bool {
     other == [a, b, c] || other == [b, c, a] || other == [c, a, b]
 }
 
+/// Whether three local vertices lie on one facet.
+fn on_surface(triangle: [u8; 3]) -> bool {
+    // The corners whose facets a vertex is off: a corner is off the facet opposite to it, a middle off those opposite to the ends of its edge.
+    let off = |v: u8| match v {
+        0..4 => 1 << v,
+        _ => EDGES[usize::from(v) - 4].iter().fold(0, |off, corner| off | 1 << corner),
+    };
+    triangle.iter().fold(0, |all, v| all | off(*v)) != 15u8
+}
+
 /// Twice the corners of a tet of volume 8/6, and of its middles, which are whole numbers.
 fn place(v: u8) -> [i32; 3] {
     const CORNERS: [[i32; 3]; 4] = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
@@ -212,7 +198,7 @@ fn place(v: u8) -> [i32; 3] {
 }
 
 /// Six times the volume: that of the whole tet is 64.
-fn volume(tet: [u8; 4]) -> i32 {
+pub(super) fn volume(tet: [u8; 4]) -> i32 {
     let [a, b, c, d] = tet.map(place);
     let sub = |p: [i32; 3]| [0, 1, 2].map(|k| p[k] - a[k]);
     let ([x, y, z], v, w) = (sub(b), sub(c), sub(d));

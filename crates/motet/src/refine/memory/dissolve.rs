@@ -20,9 +20,9 @@ pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point]
     for knot in 0..trees.knots.len() as u32 {
         let vertices: [VertexId; 4] = std::array::from_fn(|i| trees.knots[knot as usize].vertices[i]);
         let [was, is] = [reference, points].map(|points| vertices.map(|v| points[v.index()]));
-        let [a, b, c, d] = is;
-        let is_worse = || eas(is) < worst && eas(is) < SPOILT * eas(was);
-        if orient3d(a, b, c, d) <= 0 || is_worse() {
+        let side = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d);
+        let is_worse = || eas(is).abs() < worst && eas(is).abs() < SPOILT * eas(was).abs();
+        if side(is) == 0 || side(is) != side(was) || is_worse() {
             trees.dissolve(knot);
         }
     }

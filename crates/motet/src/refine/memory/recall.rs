@@ -1,9 +1,9 @@
 //! Builds the forest again from what was remembered.
 
-use super::super::close::{Need, Way, close};
+use super::super::close::{Need, close};
 use super::super::extract::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
-use super::super::handle::{Options, Refinement, Summary, positive};
+use super::super::handle::{Options, Refinement, Summary, check_volumes};
 use super::trees::Trees;
 use super::triangles::Gathered;
 use super::{Memory, dissolve, triangles, unfit};
@@ -110,15 +110,13 @@ impl Roots {
         firsts.iter().zip(0..).for_each(|(&v, number)| to_forest[v] = number);
         self.rename(&to_forest);
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
-        let roots = positive(&self.first, threads)?;
-        let is_turned = |(&knot, root): (&u32, &[u32; 4])| {
-            knot != NONE
-                && (0..4).any(|i| to_forest[trees.knots[knot as usize].vertices[i].index()] != root[i])
-        };
-        if self.knots.iter().zip(&roots).any(is_turned) {
-            return Err(unfit("a tet that was divided has its vertices in another order"));
-        }
-        let forest = Forest::new(&self.first.points, roots.into_iter());
+        check_volumes(&self.first, threads)?;
+        let turned = |knot: u32| knot != NONE && trees.knots[knot as usize].is_turned;
+        let roots = self.first.tets.iter().zip(&self.knots).map(|(tet, &knot)| match tet.map(|v| v.0) {
+            [a, b, c, d] if turned(knot) => ([b, a, c, d], true),
+            tet => (tet, false),
+        });
+        let forest = Forest::new(&self.first.points, roots);
         let need = Need::new(options, &forest);
         self.first.points = firsts.iter().map(|&v| mesh.points[v]).collect();
 
@@ -199,7 +197,7 @@ impl Building<'_> {
                 self.set_middle(self.forest.edges_of[node as usize][e], middle.index())?;
             }
             let Some((way, children)) = of.divided else { continue };
-            let first = self.forest.divide(node, |forest| Way::new(&forest.places(node), way));
+            let first = self.forest.divide(node, way);
             self.forest.states[node as usize].is_asked = u32::from(of.asked) > of.generation;
             open.extend((first..first + 8).zip(children));
         }

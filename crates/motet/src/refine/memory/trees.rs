@@ -1,7 +1,8 @@
 //! Brings tets of one origin together again: into the tet that they are pieces of, eight of these into the one they were, and so on.
 
+use super::super::eight::{IMAGES, eight};
 use super::super::forest::NONE;
-use super::super::patterns::{FULL, patterns};
+use super::super::patterns::patterns;
 use super::{Memory, UNKNOWN, generation, locals, step};
 use crate::base::{Id, VertexId};
 use crate::mesh::TetMesh;
@@ -147,7 +148,7 @@ impl Gathering<'_> {
         let is_alike = |k: usize| {
             let knot = of(k);
             let is_asked = u32::from(knot.asked.min(asked)) > generation;
-            (knot.region, knot.is_turned) == (region, is_turned)
+            (knot.region, knot.is_turned ^ IMAGES.contains(&k)) == (region, is_turned)
                 && is_asked == (u32::from(asked) > generation)
         };
         if !(0..8).all(is_alike) {
@@ -155,7 +156,7 @@ impl Gathering<'_> {
         }
         let fitted = (0..3).find_map(|way| {
             let mut vertices = [VertexId::NONE; 10];
-            for (k, corners) in patterns(FULL, 0)[way].iter().enumerate() {
+            for (k, corners) in eight(way).iter().enumerate() {
                 for (i, &place) in corners.iter().enumerate() {
                     put(&mut vertices, usize::from(place), of(k).vertices[i])?;
                 }

@@ -1,7 +1,8 @@
 //! Brings the triangles of a mesh together again, as its tets come together.
 
+use super::super::eight::eight;
 use super::super::forest::NONE;
-use super::super::patterns::{FACET_EDGES, FULL, patterns};
+use super::super::patterns::FACET_EDGES;
 use super::trees::{Knot, Trees};
 use super::{Memory, unfit};
 use crate::base::{Result, TetId, VertexId};
@@ -69,7 +70,7 @@ fn whole(triangle: [VertexId; 3], corner: u8, trees: &Trees, tet: TetId) -> Resu
     while knot.parent != NONE && !std::ptr::eq(knot, &trees.knots[top as usize]) {
         let parent = &trees.knots[knot.parent as usize];
         let Some((way, _)) = parent.divided else { break };
-        let child = patterns(FULL, 0)[way][knot.place];
+        let child = eight(way)[knot.place];
         facet = facet_of(facet.map(|k| usize::from(child[k]))).ok_or_else(inside)?;
         knot = parent;
     }

@@ -1,0 +1,188 @@
+//! How tets are filled best whose edges are split, some or all of them. It follows from the reference and the rule alone, so what was found holds for good; and it
+//! follows from shape, so it is found once for a class: of the instructions for a mesh divided five times towards a point that spared a
+//! fifth.
+
+use hashbrown::HashMap;
+
+use super::bey;
+use super::classes::{corners_at, inner_part};
+use super::close::Need;
+use super::eight::ends;
+use super::forest::{Forest, with_middles};
+use super::handle::Rule;
+use super::patterns::patterns;
+use crate::base::Point;
+use crate::geometry::quality::eas;
+use crate::geometry::vector::{dot, sub};
+
+/// How tets of a class are cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Fill {
+    /// Which of the ways.
+    pub(super) way: u8,
+    /// The EAS of the worst part; minus infinity where there is no way.
+    pub(super) worst: f64,
+}
+
+/// What is known.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Fills {
+    /// By class, edges that are split, and cuts of facets.
+    cuts: HashMap<u64, Fill>,
+    /// Of classes none of which was divided yet.
+    divisions: HashMap<u32, Way>,
+}
+
+impl Fills {
+    pub(super) fn extend(&mut self, found: Self) {
+        self.cuts.extend(found.cuts);
+        self.divisions.extend(found.divisions);
+    }
+
+    /// Bytes: an entry and a byte beside it.
+    pub(super) fn memory(&self) -> usize {
+        self.cuts.capacity() * (size_of::<(u64, Fill)>() + 1)
+            + self.divisions.capacity() * (size_of::<(u32, Way)>() + 1)
+    }
+}
+
+/// Finds what is not known yet.
+pub(super) struct Finder<'a> {
+    pub(super) forest: &'a Forest,
+    pub(super) need: Need,
+    found: Fills,
+}
+
+impl<'a> Finder<'a> {
+    pub(super) fn new(forest: &'a Forest, need: Need) -> Self {
+        Self { forest, need, found: Fills::default() }
+    }
+
+    /// What was found.
+    pub(super) fn into_found(self) -> Fills {
+        self.found
+    }
+
+    /// How the facets of a tet are cut, and how it is filled then.
+    pub(super) fn cut(&mut self, node: u32, mask: u8) -> (u8, Fill) {
+        let forest = self.forest;
+        let cuts = forest.cuts(node, mask);
+        let class = forest.nodes[node as usize].shape.class();
+        let key = u64::from(class) << 10 | u64::from(mask) << 4 | u64::from(cuts);
+        let find = || best_cut(&with_middles(forest.corners_of_class(class)), mask, cuts);
+        let known = forest.fills.cuts.get(&key);
+        (cuts, known.copied().unwrap_or_else(|| *self.found.cuts.entry(key).or_insert_with(find)))
+    }
+
+    /// The worst EAS that dividing tets of a class leaves.
+    pub(super) fn divided(&mut self, class: u32) -> f64 {
+        let forest = self.forest;
+        let whole = forest.classes[class as usize].eas;
+        if let Some([first, second]) = forest.best_classes(class) {
+            return whole.min(first.eas).min(second.eas);
+        }
+        let known = forest.fills.divisions.get(&class);
+        let find = || best_division(forest, class, self.need);
+        known.unwrap_or_else(|| self.found.divisions.entry(class).or_insert_with(find)).worst(whole)
+    }
+}
+
+impl Forest {
+    /// Which way to divide tets of a class.
+    pub(super) fn decide(&mut self, class: u32, need: Need) -> usize {
+        if let Some(way) = self.classes[class as usize].best {
+            return usize::from(way);
+        }
+        let way = self.fills.divisions.remove(&class).unwrap_or_else(|| best_division(self, class, need));
+        self.classes[class as usize].best = Some(way.place as u8);
+        self.add_classes(class, way.place, way.inner);
+        way.place
+    }
+}
+
+fn best_division(forest: &Forest, class: u32, need: Need) -> Way {
+    let places = with_middles(forest.corners_of_class(class));
+    match need.rule {
+        Rule::Shortest => best_way(&places, forest.classes[class as usize].eas, need.floor),
+        Rule::Bey => Way::new(&places, bey::way(forest, class)),
+    }
+}
+
+/// Of all ways to fill a tet with these edges split the one whose worst tet is best.
+fn best_cut(places: &[Point; 10], mask: u8, cuts: u8) -> Fill {
+    let mut best = Fill { way: 0, worst: f64::NEG_INFINITY };
+    for (tets, way) in patterns(mask, cuts).iter().zip(0..) {
+        let mut worst = f64::INFINITY;
+        for tet in tets {
+            worst = eas(corners_at(places, tet)).abs().min(worst);
+            if worst <= best.worst {
+                break;
+            }
+        }
+        if worst > best.worst {
+            best = Fill { way, worst };
+        }
+    }
+    best
+}
+
+/// Which of the three ways to divide a tet of this EAS into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive
+/// subdivisions of tetrahedra and multigrid methods on tetrahedral meshes*), unless one of the eight, or of theirs, is then below
+/// the floor: then along the one that leaves the best.
+fn best_way(places: &[Point; 10], whole: f64, floor: f64) -> Way {
+    let length = |place: usize| {
+        let [p, q] = ends(place);
+        let along = sub(places[q], places[p]);
+        dot(along, along)
+    };
+    let shortest = (0..3).reduce(|x, y| if length(y) < length(x) { y } else { x }).unwrap_or(0);
+    let way = Way::new(places, shortest);
+    // Two generations hardly more than halve the quality.
+    let worst = way.worst(whole);
+    if worst >= 2.0 * floor || worst >= floor && worst_below(places, &way, whole, 1) >= floor {
+        return way;
+    }
+    let below = |place: usize| {
+        let way = Way::new(places, place);
+        (worst_below(places, &way, whole, 2), way)
+    };
+    let [mut best, second, third] = [0, 1, 2].map(below);
+    for other in [second, third] {
+        best = if other.0 > best.0 { other } else { best };
+    }
+    best.1
+}
+
+/// The worst of the eight and of so many generations below, each along its best diagonal.
+fn worst_below(places: &[Point; 10], way: &Way, whole: f64, generations: usize) -> f64 {
+    let mut worst = way.worst(whole);
+    if generations == 0 {
+        return worst;
+    }
+    // Those at the corners have the shape of the whole.
+    for (inner, shape) in way.inner.into_iter().enumerate() {
+        let places = with_middles(corners_at(places, inner_part(way.place, inner)));
+        let below = |place| worst_below(&places, &Way::new(&places, place), shape, generations - 1);
+        worst = (0..3).map(below).fold(f64::NEG_INFINITY, f64::max).min(worst);
+    }
+    worst
+}
+
+/// One of the three ways to divide a tet into eight.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    place: usize,
+    /// The EAS of the parts inside: the others have the shape of the whole.
+    inner: [f64; 2],
+}
+
+impl Way {
+    fn new(places: &[Point; 10], place: usize) -> Self {
+        let inner = [0, 1].map(|k| eas(corners_at(places, inner_part(place, k))).abs());
+        Self { place, inner }
+    }
+
+    fn worst(&self, whole: f64) -> f64 {
+        self.inner.into_iter().fold(whole, f64::min)
+    }
+}
