@@ -2,7 +2,8 @@
 
 mod common;
 
-use common::refined::{ball_in_box, corners, fits, median_eas, nearest, worst};
+use common::kept::{corners, fits};
+use common::refined::{ball_in_box, median_eas, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{eas, mean_ratio};

@@ -4,7 +4,8 @@ mod common;
 
 use std::collections::HashSet;
 
-use common::refined::{ball_in_box, corners, facets, fits, nearest, worst};
+use common::kept::{corners, fits};
+use common::refined::{ball_in_box, facets, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::refined::fits;
+use common::kept::fits;
 use motet::Mesh;
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::tet::{centroid, volume};

@@ -68,7 +68,16 @@ impl Solid {
             None => 0.0,
         }
     }
+
+    /// The same; `None` where it is no more than rounding, as of tets that touch.
+    pub fn real_overlap(&self, other: &Self) -> Option<f64> {
+        let overlap = self.overlap(other);
+        (overlap > TOUCH * self.volume().min(other.volume())).then_some(overlap)
+    }
 }
+
+/// An overlap below this part of the smaller tet is rounding: they touch.
+const TOUCH: f64 = 1e-14;
 
 /// The volume that two tets have in common; see [`Solid::overlap`].
 pub fn overlap(a: [Point; 4], b: [Point; 4]) -> f64 {

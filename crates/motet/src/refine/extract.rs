@@ -19,6 +19,15 @@ pub(super) struct Extracted {
     pub(super) triangles: Vec<u32>,
 }
 
+impl Extracted {
+    /// Of each vertex of a forest of so many, its place in the mesh; [`NONE`] for those that are not in it.
+    pub(super) fn numbers(&self, n: usize) -> Vec<u32> {
+        let mut numbers = vec![NONE; n];
+        self.vertices.iter().zip(0..).for_each(|(&v, number)| numbers[v as usize] = number);
+        numbers
+    }
+}
+
 /// `points` are those of the vertices of the forest that were in the mesh before, which `before` lists.
 ///
 /// # Errors

@@ -140,11 +140,7 @@ impl Refinement {
     /// was good. New shapes are judged as if they were where they were before.
     pub fn put_on_surface(&mut self, surface: &NearestTriangle) -> OnSurface {
         let (points, done) = put_on(&self.now, &self.forest, surface);
-        self.is_moved = true;
-        self.now.mesh.points.copy_from_slice(&points);
-        for (&vertex, point) in self.now.vertices.iter().zip(points) {
-            self.points[vertex as usize] = point;
-        }
+        self.place(&points);
         done
     }
 
@@ -205,12 +201,16 @@ impl Refinement {
             return Err(Error::input(format!("{} points, expected {expected}", points.len()))
                 .remedy("give all points in the order of the mesh"));
         }
+        self.place(points);
+        Ok(())
+    }
+
+    fn place(&mut self, points: &[Point]) {
         self.is_moved = true;
         self.now.mesh.points.copy_from_slice(points);
         for (&vertex, &point) in self.now.vertices.iter().zip(points) {
             self.points[vertex as usize] = point;
         }
-        Ok(())
     }
 
     /// Divides these tets into eight, once; a piece of a tet that was cut stands for the whole. Where that would split [fixed](TetMesh::fixed_edges) edges,
@@ -227,28 +227,28 @@ impl Refinement {
                 "tet {tet} was divided {DEEPEST} times over, which is the most"
             )));
         }
-        let before = self.asked();
+        self.or_back(threads, |this, before| this.divide_all(marked, before, threads))
+    }
+
+    fn divide_all(&mut self, marked: &[TetId], before: &[bool], threads: &Threads) -> Result<()> {
         let mut left = marked.to_vec();
         let mut near = Near::default();
         loop {
             self.ask(&left);
-            let closed = match close(&mut self.forest, self.need, threads) {
-                Ok(closed) => closed,
-                Err(error) => return Err(self.restore(&before, threads).err().unwrap_or(error)),
-            };
+            let closed = close(&mut self.forest, self.need, threads)?;
             let split = split_though_fixed(&self.forest, &self.first);
             if split.is_empty() {
-                self.give_out_or_else(closed, &before, threads)?;
+                self.give_out(closed)?;
                 self.summary.n_held = marked.len() - left.len();
-                return Ok(self.summary);
+                return Ok(());
             }
             if left.is_empty() {
-                return Err(self.restore(&before, threads).err().unwrap_or_else(|| {
-                    Error::input("an edge that is fixed is split as it is, before anything is divided")
-                }));
+                return Err(Error::input(
+                    "an edge that is fixed is split as it is, before anything is divided",
+                ));
             }
-            self.unask(&before);
-            near.keep_off(&self.now, &split, &mut left);
+            self.unask(before);
+            near.keep_off(&self.forest, &self.now, &split, &mut left);
         }
     }
 
@@ -270,7 +270,14 @@ impl Refinement {
     /// When there is no such tet; then nothing has changed.
     pub fn coarsen(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
-        let before = self.asked();
+        self.or_back(threads, |this, before| {
+            this.unask_within(marked, before);
+            this.keep_from_inverting(before, threads)
+        })
+    }
+
+    /// Asks no longer for divisions of which all that lies within is marked, unless a part was asked to be divided again.
+    fn unask_within(&mut self, marked: &[TetId], before: &[bool]) {
         let mut is_marked = vec![false; self.now.nodes.len()];
         marked.iter().for_each(|tet| is_marked[tet.index()] = true);
         let Forest { nodes, states, .. } = &mut self.forest;
@@ -286,10 +293,6 @@ impl Refinement {
         for node in (0..nodes.len()).filter(|&node| is_whole[node] && before[node]) {
             let first = nodes[node].first_child as usize;
             states[node].is_asked = before[first..first + 8].iter().any(|&child| child);
-        }
-        match self.keep_from_inverting(&before, threads) {
-            Ok(()) => Ok(self.summary),
-            Err(error) => Err(self.restore(&before, threads).err().unwrap_or(error)),
         }
     }
 
@@ -337,29 +340,24 @@ impl Refinement {
         }
     }
 
-    fn asked(&self) -> Vec<bool> {
-        self.forest.states.iter().map(|state| state.is_asked).collect()
-    }
-
     /// Asks for what was asked for before, and for nothing else.
     fn unask(&mut self, before: &[bool]) {
         let before = before.iter().chain(std::iter::repeat(&false));
         self.forest.states.iter_mut().zip(before).for_each(|(state, &asked)| state.is_asked = asked);
     }
 
-    /// Goes back to what was asked for before.
-    fn restore(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
-        self.unask(before);
+    /// Takes a step from what was asked for before; where that fails, goes back there.
+    fn or_back(
+        &mut self,
+        threads: &Threads,
+        step: impl FnOnce(&mut Self, &[bool]) -> Result<()>,
+    ) -> Result<Summary> {
+        let before: Vec<bool> = self.forest.states.iter().map(|state| state.is_asked).collect();
+        let Err(error) = step(self, &before) else { return Ok(self.summary) };
+        self.unask(&before);
         let closed = close(&mut self.forest, self.need, threads)?;
-        self.give_out(closed)
-    }
-
-    fn give_out_or_else(&mut self, closed: Closed, before: &[bool], threads: &Threads) -> Result<()> {
-        if let Err(error) = self.give_out(closed) {
-            self.restore(before, threads)?;
-            return Err(error);
-        }
-        Ok(())
+        self.give_out(closed)?;
+        Err(error)
     }
 
     fn give_out(&mut self, closed: Closed) -> Result<()> {

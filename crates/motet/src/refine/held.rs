@@ -21,15 +21,19 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Takes marks near these vertices out, at least one.
-    pub(super) fn keep_off(&mut self, now: &Extracted, vertices: &[u32], marked: &mut Vec<TetId>) {
+    /// Takes marks near these vertices of the forest out, at least one.
+    pub(super) fn keep_off(
+        &mut self,
+        forest: &Forest,
+        now: &Extracted,
+        vertices: &[u32],
+        marked: &mut Vec<TetId>,
+    ) {
         let mesh = &now.mesh;
         self.is_near.resize(mesh.points.len(), false);
-        let largest = now.vertices.iter().max().map_or(0, |v| *v as usize + 1);
-        let mut number = vec![NONE; largest];
-        now.vertices.iter().zip(0..).for_each(|(&v, i)| number[v as usize] = i);
-        let known = vertices.iter().filter_map(|&v| number.get(v as usize)).filter(|v| **v != NONE);
-        known.for_each(|&v| self.is_near[v as usize] = true);
+        let numbers = now.numbers(forest.reference.len());
+        let known = vertices.iter().map(|&v| numbers[v as usize]).filter(|v| *v != NONE);
+        known.for_each(|v| self.is_near[v as usize] = true);
         (0..self.n_rings).for_each(|_| self.grow(mesh));
         self.n_rings += 1;
         let n = marked.len();

@@ -45,7 +45,7 @@ impl Joined {
         let tets = matched([was, is].map(|out| names(out, &out.mesh.tets)), [&tet_roots[0], &tet_roots[1]]);
         let triangles =
             matched([was, is].map(|out| names(out, &out.mesh.triangles)), [&was.triangles, &is.triangles]);
-        let vertices = Vertices::of(was, is);
+        let vertices = Vertices::of(was, is, after.forest.reference.len());
         let joined = Self {
             cells: Cells::new(),
             cell_to_old: Vec::new(),
@@ -132,11 +132,10 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn of(was: &Extracted, is: &Extracted) -> Self {
-        let largest = was.vertices.iter().chain(&is.vertices).max().map_or(0, |v| *v as usize + 1);
-        let mut place = vec![NONE; largest];
-        was.vertices.iter().zip(0..).for_each(|(&v, i)| place[v as usize] = i);
-        let new_to_old: Vec<u32> = is.vertices.iter().map(|&v| place[v as usize]).collect();
+    /// `n_vertices`: of the forest.
+    fn of(was: &Extracted, is: &Extracted, n_vertices: usize) -> Self {
+        let numbers = was.numbers(n_vertices);
+        let new_to_old: Vec<u32> = is.vertices.iter().map(|&v| numbers[v as usize]).collect();
         let mut old_to_new = vec![NONE; was.vertices.len()];
         let known = new_to_old.iter().zip(0..).filter(|(old, _)| **old != NONE);
         known.for_each(|(&old, new)| old_to_new[old as usize] = new);

@@ -57,11 +57,16 @@ pub fn near_surface(
         // No farther than this from the centre has anything to do with the tet.
         let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
         let reach = if growth > 0.0 { (longest - size) / growth + radius } else { f64::INFINITY };
-        surface.closest_within(centre, reach).is_some_and(|found| {
-            let nearest = tet::at(corners, tet::closest(corners, found.point));
-            longest > size + growth * distance(nearest, found.point)
-        })
+        surface
+            .closest_within(centre, reach)
+            .is_some_and(|found| is_above(corners, [size, growth], found.point))
     })
+}
+
+/// The same for one tet, whose centre is nearest to `place` of the surface.
+pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], place: Point) -> bool {
+    let nearest = tet::at(corners, tet::closest(corners, place));
+    longest_edge(corners) > size + growth * distance(nearest, place)
 }
 
 /// Tets with an estimate above 0, the largest first; of equal ones the first.

@@ -5,19 +5,17 @@
 
 use std::collections::BTreeMap;
 
+use super::estimate;
 use super::extract::Extracted;
 use super::forest::{Forest, NONE};
 use super::handle::Refinement;
 use super::joined::Joined;
-use crate::base::{CellId, Result, Threads, VertexId};
+use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::overlap::Solid;
 use crate::geometry::tet::{self, centroid};
 use crate::geometry::vector::distance;
 use crate::mesh::history::{Ledger, RegionLedger, Rows};
 use crate::spatial::trace::{Labelled, LocalChange, trace};
-
-/// An overlap below this part of the smaller tet is rounding: they touch.
-const TOUCH: f64 = 1e-14;
 
 /// A new cell, the old cells it comes from with their shares, and the main one.
 type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
@@ -105,8 +103,7 @@ impl<'a> Kin<'a> {
         let solid = Solid::new(corners(self.is, t));
         let overlaps = candidates.iter().filter_map(|&old| {
             let other = Solid::new(corners(self.was, old as usize));
-            let volume = solid.overlap(&other);
-            (volume > TOUCH * solid.volume().min(other.volume())).then_some((old, volume))
+            solid.real_overlap(&other).map(|volume| (old, volume))
         });
         let overlaps: Vec<_> = overlaps.collect();
         if !overlaps.is_empty() {
@@ -126,8 +123,8 @@ fn above(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
     std::iter::successors(Some(node), parent)
 }
 
-fn corners(out: &Extracted, t: usize) -> [crate::base::Point; 4] {
-    out.mesh.tets[t].map(|v| out.mesh.points[v.index()])
+fn corners(out: &Extracted, t: usize) -> [Point; 4] {
+    estimate::corners(&out.mesh, out.mesh.tets[t])
 }
 
 fn ledger(kin: &Kin, joined: &Joined, parts: &[Vec<(u32, f64)>]) -> Ledger {
@@ -185,14 +182,12 @@ fn triangles(
 struct Means<'a> {
     forest: &'a Forest,
     /// Of each vertex of the forest, which it was in the mesh before.
-    number: Vec<u32>,
+    numbers: Vec<u32>,
 }
 
 impl<'a> Means<'a> {
     fn new(forest: &'a Forest, was: &Extracted) -> Self {
-        let mut number = vec![NONE; forest.reference.len()];
-        was.vertices.iter().zip(0..).for_each(|(&v, i)| number[v as usize] = i);
-        Self { forest, number }
+        Self { forest, numbers: was.numbers(forest.reference.len()) }
     }
 
     /// The vertices of the mesh before, rising, with their shares.
@@ -200,7 +195,7 @@ impl<'a> Means<'a> {
         let mut parts: BTreeMap<VertexId, f64> = BTreeMap::new();
         let mut open = vec![(vertex, 1.0)];
         while let Some((v, share)) = open.pop() {
-            match self.number[v as usize] {
+            match self.numbers[v as usize] {
                 NONE => {
                     let origin = self.forest.origin[v as usize - self.forest.n_first_vertices];
                     open.extend(self.forest.edges[origin as usize].ends.map(|end| (end, 0.5 * share)));

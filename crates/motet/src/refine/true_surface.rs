@@ -77,12 +77,12 @@ fn ways(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Opti
             FACETS[facet].iter().for_each(|&k| is_boundary[mesh.tets[tet.index()][k].index()] = true);
         }
     });
-    let mut number = vec![None; forest.reference.len()];
-    now.vertices.iter().enumerate().for_each(|(i, &v)| number[v as usize] = Some(i));
+    let numbers = now.numbers(forest.reference.len());
     let way = |v: usize| {
         let origin = (now.vertices[v] as usize).checked_sub(forest.n_first_vertices)?;
-        let [p, q] = forest.edges[forest.origin[origin] as usize].ends.map(|end| number[end as usize]);
-        let ([p, q], point) = ([mesh.points[p?], mesh.points[q?]], mesh.points[v]);
+        let [p, q] =
+            forest.edges[forest.origin[origin] as usize].ends.map(|end| numbers[end as usize] as usize);
+        let ([p, q], point) = ([*mesh.points.get(p)?, *mesh.points.get(q)?], mesh.points[v]);
         let length = distance(p, q);
         let near = |p: Point, part: f64| surface.closest_within(p, part * length).map(|found| found.point);
         let found = near(point, REACH)?;

@@ -155,13 +155,26 @@ impl First {
     }
 
     fn broken(&self, mesh: &TetMesh) -> Vec<String> {
-        let (old, new) = (&self.sizes, Sizes::of(mesh));
+        let mut broken = self.sizes.broken(mesh);
+        if !mesh.points.starts_with(&self.mesh.points) {
+            broken.push("vertices of the first mesh moved".into());
+        }
+        broken
+    }
+}
+
+/// Holds a mesh of other vertices, it may be, against one before.
+pub(crate) fn fits(before: &TetMesh, mesh: &TetMesh) {
+    let broken = Sizes::of(before).broken(mesh);
+    assert!(broken.is_empty(), "{broken:?}");
+}
+
+impl Sizes {
+    fn broken(&self, mesh: &TetMesh) -> Vec<String> {
+        let (old, new) = (self, Self::of(mesh));
         let mut broken = Vec::new();
         if let Err(error) = mesh.validate() {
             broken.push(error.to_string());
-        }
-        if !mesh.points.starts_with(&self.mesh.points) {
-            broken.push("vertices of the first mesh moved".into());
         }
         if new.n_crowded != old.n_crowded || (old.n_loose == 0 && new.n_loose > 0) {
             broken.push(format!(

@@ -6,6 +6,7 @@ use clap::{ArgGroup, Args, ValueEnum};
 
 use super::words::{self, LayerWord, PatchFile, Rotate, Translate};
 use crate::verbs::convert::WritingArgs;
+use crate::words::positive;
 
 /// Move the boundary of a mesh, and let the volume follow
 ///
@@ -71,7 +72,7 @@ pub(crate) struct MoveArgs {
     pub(crate) steps: Option<u32>,
     /// Seconds from one step to the next: adds the point array `velocity`, and times to the series.
     /// For a series of surfaces its own times count
-    #[arg(long, value_name = "SECONDS", value_parser = crate::words::positive, help_heading = "Motion")]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, help_heading = "Motion")]
     pub(crate) dt: Option<f64>,
 
     /// Add the cell array `eas` (equi-angle quality of tets: 1 regular, 0 flat, bad below 0.2)

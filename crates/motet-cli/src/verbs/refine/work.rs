@@ -71,8 +71,7 @@ impl Work<'_> {
         let begin = Instant::now();
         let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
         self.put_on_surface();
-        self.report.add_volumes(&history.ledger);
-        self.history = self.history.as_ref().map(|before| before.then(&history));
+        self.went(&history);
         self.tell(&(generation + 1).to_string(), summary, marks.len(), begin);
         Ok(summary.n_held)
     }
@@ -95,14 +94,11 @@ impl Work<'_> {
             let free = self.free(criteria, &part)?;
             let before = self.refinement.mesh().cells.len();
             let begin = Instant::now();
-            let mut next = self.refinement.clone();
-            let (summary, history) = next.coarsen(&free, self.rules, self.threads)?;
-            if next.mesh().cells.len() == before {
+            let (summary, history) = self.refinement.coarsen(&free, self.rules, self.threads)?;
+            self.went(&history);
+            if self.refinement.mesh().cells.len() == before {
                 return Ok(());
             }
-            self.refinement = next;
-            self.report.add_volumes(&history.ledger);
-            self.history = self.history.as_ref().map(|before| before.then(&history));
             self.tell("back", summary, 0, begin);
             if criteria.is_empty() && self.args.coarsen_where.is_empty() {
                 return Ok(());
@@ -113,10 +109,7 @@ impl Work<'_> {
     /// The tets whose division may be taken back.
     fn free(&self, criteria: &[Criterion], part: &TetPart) -> Result<Vec<TetId>> {
         let mesh = self.refinement.mesh();
-        let wishes = match criteria {
-            [] => vec![Wish::Coarser; part.mesh.tets.len()],
-            _ => wishes_of_all(criteria, mesh, part, self.threads)?,
-        };
+        let wishes = wishes_of_all(criteria, mesh, part, self.threads)?;
         let free = coarser(&wishes);
         if self.args.coarsen_where.is_empty() {
             return Ok(free);
@@ -127,6 +120,11 @@ impl Work<'_> {
             marks.iter().for_each(|tet| is_so[tet.index()] = true);
         }
         Ok(free.into_iter().filter(|tet| is_so[tet.index()]).collect())
+    }
+
+    fn went(&mut self, history: &History) {
+        self.report.add_volumes(&history.ledger);
+        self.history = self.history.as_ref().map(|before| before.then(history));
     }
 
     fn put_on_surface(&mut self) {

@@ -59,20 +59,19 @@ fn near(mesh: &TetMesh, target: &Target, within: f64, threads: &Threads) -> Vec<
 /// Which tets are too large is known exactly; how often they are to be divided from the sizes at their centres, and whether a tet twice as large would be
 /// too large from its distance less its own size.
 fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads: &Threads) -> Vec<Wish> {
-    let mut wishes = of_marks(mesh, &mark::near_surface(mesh, target.tree(), size, growth, threads));
     let places: Vec<[Point; 4]> = threads.map(mesh.tets.len(), |t| corners(mesh, mesh.tets[t]));
     let centres: Vec<Point> = threads.map(places.len(), |t| tet::centroid(places[t]));
     let found = target.tree().closest_all(&centres, None, threads);
-    for ((wish, place), found) in wishes.iter_mut().zip(places).zip(found) {
-        let longest = longest_edge(place);
-        let away = found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt());
-        *wish = match wish {
-            Wish::Divided(_) => Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1)),
-            // The whole that it is a part of reaches no farther.
-            _ => Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept),
-        };
-    }
-    wishes
+    threads.map(places.len(), |t| {
+        let longest = longest_edge(places[t]);
+        let Some(found) = found[t] else { return Wish::Coarser };
+        let away = found.distance_squared.sqrt();
+        if mark::is_above(places[t], [size, growth], found.point) {
+            return Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1));
+        }
+        // The whole that it is a part of reaches no farther.
+        Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept)
+    })
 }
 
 fn at_patch(

@@ -29,6 +29,23 @@ pub(super) struct Knot {
     pub(super) is_whole: bool,
 }
 
+impl Default for Knot {
+    fn default() -> Self {
+        Self {
+            vertices: [VertexId::NONE; 10],
+            parent: NONE,
+            place: 0,
+            divided: None,
+            tet: NONE,
+            generation: 0,
+            asked: 0,
+            is_turned: false,
+            region: 0,
+            is_whole: true,
+        }
+    }
+}
+
 /// All of them; those of one tree have their parents behind them.
 #[derive(Debug, Default)]
 pub(super) struct Trees {
@@ -124,18 +141,8 @@ impl Gathering<'_> {
         let id = self.trees.knots.len() as u32;
         tets.iter().for_each(|&t| self.trees.knot_of[t as usize] = id);
         let tet = tets.iter().copied().min()?;
-        self.trees.knots.push(Knot {
-            vertices,
-            parent: NONE,
-            place: 0,
-            divided: None,
-            tet,
-            generation,
-            asked,
-            is_turned,
-            region,
-            is_whole: true,
-        });
+        let knot = Knot { vertices, tet, generation, asked, is_turned, region, ..Knot::default() };
+        self.trees.knots.push(knot);
         Some(id)
     }
 
@@ -169,18 +176,8 @@ impl Gathering<'_> {
         for (place, child) in children.into_iter().enumerate() {
             (knots[child as usize].parent, knots[child as usize].place) = (id, place);
         }
-        knots.push(Knot {
-            vertices,
-            parent: NONE,
-            place: 0,
-            divided: Some((way, children)),
-            tet,
-            generation,
-            asked,
-            is_turned,
-            region,
-            is_whole: true,
-        });
+        let divided = Some((way, children));
+        knots.push(Knot { vertices, divided, tet, generation, asked, is_turned, region, ..Knot::default() });
         Some(id)
     }
 }

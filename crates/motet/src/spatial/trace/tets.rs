@@ -11,8 +11,6 @@ use crate::mesh::history::RegionLedger;
 use crate::spatial::BoxTree;
 use crate::spatial::boxes::around;
 
-/// An overlap below this part of the smaller tet is rounding: they touch.
-const TOUCH: f64 = 1e-14;
 /// A tet of which no more than this part is covered lies outside.
 const OUTSIDE: f64 = 1e-12;
 
@@ -79,11 +77,7 @@ fn parts(change: &LocalChange<'_>, removed: &Removed<'_>, tet: &Labelled<4>) -> 
     removed.tree.touching(around(solid.corners()), &mut candidates);
     let mut overlaps: Vec<(usize, f64)> = Vec::new();
     for i in candidates.into_iter().map(|i| i as usize).filter(|&i| removed.tets[i].label == tet.label) {
-        let other = &removed.solids[i];
-        let volume = solid.overlap(other);
-        if volume > TOUCH * solid.volume().min(other.volume()) {
-            overlaps.push((i, volume));
-        }
+        overlaps.extend(solid.real_overlap(&removed.solids[i]).map(|volume| (i, volume)));
     }
     let covered: f64 = overlaps.iter().map(|o| o.1).sum();
     let volume = solid.volume();
