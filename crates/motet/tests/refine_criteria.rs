@@ -2,111 +2,19 @@
 
 mod common;
 
-use std::sync::Arc;
-
 use common::Numbers;
+use common::criteria::{
+    case, corners, from_triangles, longest, pressure, speed, target, target_triangles, those,
+};
 use motet::ErrorKind;
 use motet::base::{Point, TetId, Threads, VertexId};
-use motet::geometry::distance::triangle_triangle;
-use motet::geometry::tet::{self, EDGES, FACETS, centroid, holds};
+use motet::geometry::tet::{self, EDGES};
 use motet::geometry::vector::{distance, dot, norm};
-use motet::mesh::shapes::{ball, box_grid, sphere_in_box};
-use motet::mesh::{CellKind, Cells, Field, Mesh, Surface, TetMesh, TetPart};
-use motet::refine::wish::{Wish, check_expected, coarser, expected_tets, marked};
+use motet::mesh::shapes::ball;
+use motet::mesh::{Field, Mesh, Surface, TetMesh};
 use motet::refine::{
-    Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Limits, Options, Refinement, Size, Target,
-    estimate, mark, marks_of_all, sizes, wishes_of_all,
+    Aim, Amount, Condition, Criterion, Estimator, HessianSizes, Size, Target, estimate, mark, sizes,
 };
-
-fn corners(mesh: &TetMesh, t: usize) -> [Point; 4] {
-    mesh.tets[t].map(|v| mesh.points[v.index()])
-}
-
-fn longest(corners: [Point; 4]) -> f64 {
-    EDGES.map(|[i, j]| distance(corners[i], corners[j])).into_iter().fold(0.0, f64::max)
-}
-
-/// The tets for which the definition holds.
-fn those(part: &TetPart, holds: impl Fn(usize) -> bool) -> Vec<TetId> {
-    (0..part.mesh.tets.len()).filter(|&t| holds(t)).map(TetId::new).collect()
-}
-
-/// Tets and triangles as cells of a mesh, in mixed order: triangles first, so that tets have other numbers.
-fn whole(tets: &TetMesh) -> Mesh {
-    let mut cells = Cells::new();
-    tets.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
-    tets.tets.iter().for_each(|t| cells.push(CellKind::TETRA, *t));
-    let mut mesh = Mesh::new(tets.points.clone(), cells);
-    let zeros = |n: usize| vec![0; n].into_iter();
-    let [n, m] = [tets.tets.len(), tets.triangles.len()];
-    let regions: Vec<i32> = zeros(m).chain(tets.regions.iter().copied()).collect();
-    let patches: Vec<i32> = tets.patches.iter().copied().chain(zeros(n)).collect();
-    mesh.set_cell_field(Field::scalars("region", regions));
-    mesh.set_cell_field(Field::scalars("patch", patches));
-    mesh
-}
-
-fn speed(p: &Point) -> Point {
-    [p[1] * p[2], (2.0 * p[0]).sin(), p[0] - p[1] * p[1]]
-}
-
-fn pressure(p: &Point) -> f64 {
-    (1.5 * p[0]).tanh() + 0.3 * p[1] * p[2]
-}
-
-/// Fields by formula, on points and on cells.
-fn with_fields(mut mesh: Mesh) -> Mesh {
-    let v: Vec<Point> = mesh.points.iter().map(speed).collect();
-    mesh.set_point_field(Field::vectors("v", &v));
-    mesh.set_point_field(Field::scalars("p", mesh.points.iter().map(pressure).collect::<Vec<_>>()));
-    let size: Vec<f64> = mesh.points.iter().map(|p| 0.6 + 0.35 * norm(*p)).collect();
-    mesh.set_point_field(Field::scalars("h", size));
-    let middle = |vertices: &[VertexId]| {
-        vertices.iter().map(|v| mesh.points[v.index()][0]).sum::<f64>() / vertices.len() as f64
-    };
-    let on_cells: Vec<f64> = mesh.cells.iter().map(|(_, _, vertices)| middle(vertices)).collect();
-    mesh.set_cell_field(Field::scalars("x", on_cells));
-    mesh
-}
-
-/// A ball in a box, in two regions, with fields; and its tets.
-fn case() -> (Mesh, TetPart) {
-    let mut tets = TetPart::of(&sphere_in_box(3, 4)).unwrap().mesh;
-    let labels: Vec<i32> =
-        (0..tets.tets.len()).map(|t| if centroid(corners(&tets, t))[0] < 0.5 { 3 } else { 7 }).collect();
-    tets.regions = labels;
-    let mut mesh = with_fields(whole(&tets));
-    mesh.label_names.regions.insert(7, "right".into());
-    mesh.label_names.patches.insert(1, "sphere".into());
-    let part = TetPart::of(&mesh).unwrap();
-    (mesh, part)
-}
-
-/// Two plates, and a closed surface that a tet holds whole.
-fn target(threads: &Threads) -> Arc<Target> {
-    let mut points = vec![[1.2, -1.0, -1.0], [3.0, 0.5, 1.0], [1.5, 2.0, 0.3], [-2.0, 0.0, 2.0]];
-    let mut triangles = vec![[0, 1, 2].map(VertexId), [1, 2, 3].map(VertexId)];
-    let first = points.len() as u32;
-    let small = [[0.0; 3], [1e-3, 0.0, 0.0], [0.0, 1e-3, 0.0], [0.0, 0.0, 1e-3]];
-    points.extend(small.map(|p: Point| [p[0] - 4.1, p[1] - 3.9, p[2] + 4.2]));
-    triangles.extend(FACETS.map(|facet| facet.map(|i| VertexId(first + i as u32))));
-    Arc::new(Target::new(points, triangles, threads).unwrap())
-}
-
-fn target_triangles(target: &Target) -> Vec<[Point; 3]> {
-    target.triangles().iter().map(|t| t.map(|v| target.points()[v.index()])).collect()
-}
-
-/// The distance of a tet from triangles, by looking at all.
-fn from_triangles(corners: [Point; 4], triangles: &[[Point; 3]]) -> f64 {
-    let from = |triangle: &[Point; 3]| {
-        let facets = FACETS.map(|facet| {
-            triangle_triangle::closest(facet.map(|i| corners[i]), *triangle).distance_squared.sqrt()
-        });
-        if holds(corners, triangle[0]) { 0.0 } else { facets.into_iter().fold(f64::INFINITY, f64::min) }
-    };
-    triangles.iter().map(from).fold(f64::INFINITY, f64::min)
-}
 
 #[test]
 fn near_means_that_some_place_of_the_tet_is() {
@@ -254,135 +162,6 @@ fn criteria_of_fields_mark_by_their_estimates() {
         let of_component = Criterion::Estimate { array: "v:z".into(), by, amount: Amount::Share(0.5) };
         assert_eq!(marks(of_component), mark::largest_share(&of_axes[2], 0.5));
     }
-}
-
-#[test]
-fn several_criteria_mark_what_any_of_them_does_on_any_number_of_threads() {
-    let (one, three) = (Threads::single(), Threads::new(3).unwrap());
-    let (mesh, part) = case();
-    let criteria = all_criteria(&one);
-    let mut expected: Vec<TetId> = Vec::new();
-    for criterion in &criteria[..4] {
-        expected.extend(criterion.marks(&mesh, &part, &one).unwrap());
-    }
-    expected.sort_unstable();
-    expected.dedup();
-    assert_eq!(marks_of_all(&criteria[..4], &mesh, &part, &one).unwrap(), expected);
-    let wishes = wishes_of_all(&criteria, &mesh, &part, &one).unwrap();
-    assert_eq!(wishes, wishes_of_all(&criteria, &mesh, &part, &three).unwrap());
-    let none = wishes_of_all(&[], &mesh, &part, &one).unwrap();
-    assert_eq!((marked(&none), coarser(&none).len()), (vec![], part.mesh.tets.len()));
-}
-
-/// One of each kind.
-fn all_criteria(threads: &Threads) -> Vec<Criterion> {
-    let hessian = |aim| {
-        let arrays = vec!["p".into(), "v".into()];
-        Criterion::Hessian(HessianSizes { arrays, aim, limits: sizes::SizeLimits::default() })
-    };
-    let amount = Amount::Share(0.3);
-    vec![
-        Criterion::Ball { centre: [1.0, 0.0, 0.0], radius: 0.5 },
-        Criterion::Near { target: target(threads), within: 0.3 },
-        Criterion::NearSize { target: target(threads), size: 0.4, growth: 0.8 },
-        Criterion::Where("v:x>4".parse().unwrap()),
-        Criterion::Region("right".into()),
-        Criterion::Patch { patch: "sphere".into(), within: None },
-        Criterion::Patch { patch: "sphere".into(), within: Some(0.6) },
-        Criterion::Size(Size::Uniform(1.2)),
-        Criterion::Size(Size::Array("h".into())),
-        Criterion::Box([[-1.0; 3], [2.0; 3]]),
-        Criterion::Gradient { array: "p".into(), above: 1.0 },
-        Criterion::Estimate { array: "v".into(), by: Estimator::Jump, amount },
-        Criterion::Estimate { array: "p".into(), by: Estimator::Recovery, amount },
-        hessian(Aim::Error(0.1)),
-        hessian(Aim::RangePart(0.02)),
-        hessian(Aim::Tets(20_000)),
-        Criterion::Vorticity { array: "v".into(), above: 3.0 },
-        Criterion::Q { array: "v".into(), above: 0.5 },
-        Criterion::All,
-    ]
-}
-
-#[test]
-fn what_may_be_taken_back_would_not_be_divided_again() {
-    let threads = Threads::single();
-    let (first, part) = case();
-    let mut refinement = Refinement::new(&part.mesh, Options::default(), &threads).unwrap();
-    let all: Vec<TetId> = (0..part.mesh.tets.len()).map(TetId::new).collect();
-    refinement.refine(&all, &threads).unwrap();
-    let mut fine = with_fields(whole(refinement.mesh()));
-    fine.label_names = first.label_names.clone();
-    let fine_part = TetPart::of(&fine).unwrap();
-    let roots: Vec<TetId> = refinement.roots().collect();
-    for criterion in &all_criteria(&threads)[..9] {
-        let mut is_marked = vec![false; part.mesh.tets.len()];
-        criterion.marks(&first, &part, &threads).unwrap().iter().for_each(|t| is_marked[t.index()] = true);
-        let wishes = criterion.wishes(&fine, &fine_part, &threads).unwrap();
-        let mut is_whole = vec![true; part.mesh.tets.len()];
-        for (root, wish) in roots.iter().zip(&wishes) {
-            is_whole[root.index()] &= *wish == Wish::Coarser;
-        }
-        let n = is_whole.iter().filter(|is_whole| **is_whole).count();
-        let n_again = is_whole.iter().zip(&is_marked).filter(|(whole, marked)| **whole && **marked).count();
-        let n_marked = is_marked.iter().filter(|is_marked| **is_marked).count();
-        println!("{n} of {} may be taken back, {n_marked} were marked", is_whole.len());
-        assert_eq!(n_again, 0, "{criterion:?}");
-        assert!(n > 0, "{criterion:?}");
-    }
-}
-
-#[test]
-fn as_many_tets_come_as_were_expected() {
-    let threads = Threads::single();
-    let first = TetPart::of(&box_grid([3, 3, 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
-    for size in [0.3, 0.15] {
-        let criterion = Criterion::Size(Size::Uniform(size));
-        let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
-        let mut expected = None;
-        loop {
-            let part = TetPart::of(&whole(refinement.mesh())).unwrap();
-            let wishes = criterion.wishes(&whole(&part.mesh), &part, &threads).unwrap();
-            let n = *expected.get_or_insert(expected_tets(&wishes));
-            if marked(&wishes).is_empty() {
-                assert_eq!(n, refinement.mesh().tets.len() as f64);
-                break;
-            }
-            refinement.refine(&marked(&wishes), &threads).unwrap();
-        }
-    }
-    let mesh = whole(&first);
-    let part = TetPart::of(&mesh).unwrap();
-    let wishes = |h: f64| Criterion::Size(Size::Uniform(h)).wishes(&mesh, &part, &threads).unwrap();
-    assert!(check_expected(&wishes(1e-2)).is_ok());
-    let told = check_expected(&wishes(1e-6)).unwrap_err().to_string();
-    assert!(told.contains("e20 tets") && told.contains("times as large"), "{told}");
-}
-
-#[test]
-fn limits_hold() {
-    let threads = Threads::single();
-    let (mesh, part) = case();
-    let wishes = Criterion::Size(Size::Uniform(0.1)).wishes(&mesh, &part, &threads).unwrap();
-    let limited = |limits: Limits, generations: &[u8]| {
-        let mut limited = wishes.clone();
-        limits.apply(&part.mesh, generations, &mut limited);
-        limited
-    };
-    assert_eq!(limited(Limits::default(), &[]), wishes);
-    let generations: Vec<u8> = (0..part.mesh.tets.len()).map(|t| (t % 4) as u8).collect();
-    let by_generation = limited(Limits { generation: Some(2), ..Limits::default() }, &generations);
-    assert_eq!(marked(&by_generation), those(&part, |t| t % 4 < 2 && wishes[t].is_divided()));
-    assert!(by_generation.iter().all(|wish| *wish <= Wish::Divided(2)));
-    let by_size = limited(Limits { smallest: Some(0.6), ..Limits::default() }, &[]);
-    assert_eq!(marked(&by_size), those(&part, |t| longest(corners(&part.mesh, t)) >= 1.2));
-    let n = part.mesh.tets.len();
-    let by_count = limited(Limits { n_tets: Some(n + 77), ..Limits::default() }, &[]);
-    assert_eq!(marked(&by_count).len(), 11);
-    let least = marked(&by_count).iter().map(|t| longest(corners(&part.mesh, t.index()))).fold(9.0, f64::min);
-    let longer = those(&part, |t| longest(corners(&part.mesh, t)) > least);
-    assert!(longer.iter().all(|t| marked(&by_count).contains(t)));
-    assert!(marked(&limited(Limits { n_tets: Some(3), ..Limits::default() }, &[])).is_empty());
 }
 
 #[test]

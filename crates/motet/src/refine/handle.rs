@@ -1,8 +1,6 @@
 //! The handle: a mesh that is refined and coarsened again and again.
 
-use super::close::{Closed, Need, close};
-use super::extract::{Extracted, extract};
-use super::forest::{DEEPEST, Forest, NONE};
+use super::forest::{Closed, DEEPEST, Extracted, Forest, NONE, Need, close, extract};
 use super::held::{Near, split_though_fixed};
 use super::inverted::vertices_of_inverted;
 use super::true_surface::{OnSurface, put_on};

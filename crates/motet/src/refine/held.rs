@@ -1,7 +1,6 @@
 //! Edges that cells of other kinds hold are not split: tets near them are left as they are, as far as that needs.
 
-use super::extract::Extracted;
-use super::forest::{Forest, NONE};
+use super::forest::{Extracted, Forest, NONE};
 use crate::base::{TetId, VertexId};
 use crate::mesh::TetMesh;
 

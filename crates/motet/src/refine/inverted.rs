@@ -1,7 +1,6 @@
 //! Where points moved, eight good tets may make a bad one: such divisions are not taken back.
 
-use super::extract::Extracted;
-use super::forest::Forest;
+use super::forest::{Extracted, Forest};
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::TetMesh;

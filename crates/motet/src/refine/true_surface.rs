@@ -1,7 +1,6 @@
 //! New points of the boundary put on the true surface, as far as nothing inverts.
 
-use super::extract::Extracted;
-use super::forest::Forest;
+use super::forest::{Extracted, Forest};
 use crate::base::{Point, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::FACETS;

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
+use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
-use super::super::patterns::FACET_EDGES;
 use super::trees::{Knot, Trees};
 use crate::base::{Id, Point, VertexId};
 use crate::geometry::predicates::orient3d;

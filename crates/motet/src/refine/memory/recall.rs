@@ -1,8 +1,8 @@
 //! Builds the forest again from what was remembered.
 
-use super::super::close::{Need, close};
-use super::super::extract::{Extracted, extract};
+use super::super::forest::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
+use super::super::forest::{Need, close};
 use super::super::handle::{Options, Refinement, Summary, check_volumes};
 use super::trees::Trees;
 use super::triangles::Gathered;

@@ -1,6 +1,6 @@
 //! Tells what has to be remembered.
 
-use super::super::extract::Extracted;
+use super::super::forest::Extracted;
 use super::super::forest::{Forest, NONE};
 use super::super::handle::Refinement;
 use super::Memory;

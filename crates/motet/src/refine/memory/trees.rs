@@ -1,8 +1,8 @@
 //! Brings tets of one origin together again: into the tet that they are pieces of, eight of these into the one they were, and so on.
 
-use super::super::eight::{IMAGES, eight};
 use super::super::forest::NONE;
-use super::super::patterns::patterns;
+use super::super::forest::patterns;
+use super::super::forest::{IMAGES, eight};
 use super::{Memory, UNKNOWN, generation, locals, step};
 use crate::base::{Id, VertexId};
 use crate::mesh::TetMesh;

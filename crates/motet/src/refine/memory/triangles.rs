@@ -1,8 +1,8 @@
 //! Brings the triangles of a mesh together again, as its tets come together.
 
-use super::super::eight::eight;
+use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
-use super::super::patterns::FACET_EDGES;
+use super::super::forest::eight;
 use super::trees::{Knot, Trees};
 use super::{Memory, unfit};
 use crate::base::{Result, TetId, VertexId};

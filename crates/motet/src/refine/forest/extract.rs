@@ -1,27 +1,27 @@
 //! The mesh of a closed forest: tets, triangles, edges that stay, and vertices in an order that follows from what is divided alone.
 
 use super::close::Cut;
-use super::forest::{Forest, NONE};
 use super::patterns::{self, patterns};
+use super::{Forest, NONE};
 use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::TetMesh;
 
 /// The mesh, and what its things are in the forest.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Extracted {
-    pub(super) mesh: TetMesh,
+pub(in crate::refine) struct Extracted {
+    pub(in crate::refine) mesh: TetMesh,
     /// Of each vertex, the one of the forest.
-    pub(super) vertices: Vec<u32>,
+    pub(in crate::refine) vertices: Vec<u32>,
     /// Of each tet, the one of the forest that it is, or a piece of.
-    pub(super) nodes: Vec<u32>,
+    pub(in crate::refine) nodes: Vec<u32>,
     /// Of each triangle, the one of the first mesh that it is a part of.
-    pub(super) triangles: Vec<u32>,
+    pub(in crate::refine) triangles: Vec<u32>,
 }
 
 impl Extracted {
     /// Of each vertex of a forest of so many, its place in the mesh; [`NONE`] for those that are not in it.
-    pub(super) fn numbers(&self, n: usize) -> Vec<u32> {
+    pub(in crate::refine) fn numbers(&self, n: usize) -> Vec<u32> {
         let mut numbers = vec![NONE; n];
         self.vertices.iter().zip(0..).for_each(|(&v, number)| numbers[v as usize] = number);
         numbers
@@ -32,7 +32,7 @@ impl Extracted {
 ///
 /// # Errors
 /// When the mesh would have more tets or vertices than ids.
-pub(super) fn extract(
+pub(in crate::refine) fn extract(
     forest: &Forest,
     first: &TetMesh,
     cuts: &[Cut],
@@ -209,7 +209,7 @@ impl<'a> Numbers<'a> {
 
 impl Forest {
     /// The corners of a tet, then the middles of its edges.
-    pub(super) fn local(&self, node: u32) -> [u32; 10] {
+    pub(in crate::refine) fn local(&self, node: u32) -> [u32; 10] {
         let mut local = [NONE; 10];
         local[..4].copy_from_slice(&self.nodes[node as usize].vertices);
         for (e, edge) in self.edges_of[node as usize].iter().enumerate() {
@@ -230,7 +230,7 @@ impl Forest {
     }
 
     /// The tet of the first mesh that a tet lies in.
-    pub(super) fn root(&self, mut node: u32) -> u32 {
+    pub(in crate::refine) fn root(&self, mut node: u32) -> u32 {
         while self.nodes[node as usize].parent != NONE {
             node = self.nodes[node as usize].parent;
         }

@@ -1,9 +1,9 @@
 //! The cells of a whole mesh after a step: each root's parts in its place, cells of other kinds between them as they were.
 
-use super::extract::Extracted;
-use super::forest::NONE;
-use super::handle::Refinement;
-use super::whole::Slot;
+use super::super::forest::Extracted;
+use super::super::forest::NONE;
+use super::super::handle::Refinement;
+use super::Slot;
 use crate::base::{CellId, Csr, Id, VertexId};
 use crate::mesh::{CellKind, Cells, Mesh};
 

@@ -5,30 +5,30 @@
 
 use super::eight::INNER;
 use super::fills::Finder;
-use super::forest::{Forest, NONE};
-use super::handle::{Options, Rule};
 use super::patterns::{FACET_EDGES, FULL};
+use super::{Forest, NONE};
 use crate::base::{Error, Result, Threads};
+use crate::refine::{Options, Rule};
 
 /// No more is asked of a piece than this part of the median EAS of the roots.
 const OF_MEDIAN: f64 = 0.55;
 
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Need {
+pub(in crate::refine) struct Need {
     /// No tet below this EAS.
-    pub(super) floor: f64,
+    pub(in crate::refine) floor: f64,
     /// No piece of a tet that is cut below this.
     of_pieces: f64,
     /// Nor below this part of what dividing the tet leaves.
     share: f64,
-    pub(super) rule: Rule,
+    pub(in crate::refine) rule: Rule,
 }
 
 impl Need {
     /// The floor is a part of the worst EAS of the roots. Of pieces no more is asked than of those of the median root: in a lattice all tets are as bad as the
     /// worst, no piece is as good as the whole, and everything would be divided.
-    pub(super) fn new(options: Options, forest: &Forest) -> Self {
+    pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
         let mut shapes: Vec<f64> = forest.classes[..forest.n_roots].iter().map(|root| root.eas).collect();
         shapes.sort_unstable_by(f64::total_cmp);
         let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
@@ -44,19 +44,19 @@ impl Need {
 
 /// A tet cut to fit its neighbours.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cut {
-    pub(super) node: u32,
-    pub(super) goal: Goal,
+pub(in crate::refine) struct Cut {
+    pub(in crate::refine) node: u32,
+    pub(in crate::refine) goal: Goal,
 }
 
 /// What a tet with some edges split needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Goal {
+pub(in crate::refine) struct Goal {
     /// Which edges split: the same where it fits, more where it has to grow, all where it has to be divided.
-    pub(super) mask: u8,
+    pub(in crate::refine) mask: u8,
     /// The cuts of its facets, and which of the ways to fill it, where it fits.
-    pub(super) cuts: u8,
-    pub(super) way: u8,
+    pub(in crate::refine) cuts: u8,
+    pub(in crate::refine) way: u8,
 }
 
 impl Goal {
@@ -78,19 +78,19 @@ const RUN: usize = 1024;
 
 /// What closing came to.
 #[derive(Debug, Default)]
-pub(super) struct Closed {
+pub(in crate::refine) struct Closed {
     /// Tets that are cut, rising.
-    pub(super) cuts: Vec<Cut>,
+    pub(in crate::refine) cuts: Vec<Cut>,
     /// How many were divided that nobody asked for.
-    pub(super) n_promoted: usize,
-    pub(super) n_sweeps: usize,
+    pub(in crate::refine) n_promoted: usize,
+    pub(in crate::refine) n_sweeps: usize,
 }
 
 /// Divides what is asked, and what that asks for.
 ///
 /// # Errors
 /// When the forest would have more tets than it may.
-pub(super) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Result<Closed> {
+pub(in crate::refine) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Result<Closed> {
     forest.begin_anew();
     for node in 0..forest.nodes.len() as u32 {
         if forest.states[node as usize].is_asked {

@@ -12,7 +12,7 @@ use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
 /// The derivatives of a velocity: row `i` is the gradient of its component `i`.
 pub type Tensor = [Point; 3];
 
-pub(super) fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Point; 4] {
+pub(in crate::refine) fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Point; 4] {
     vertices.map(|v| mesh.points[v.index()])
 }
 

@@ -13,15 +13,15 @@ use crate::geometry::tet::{EDGES, FACETS};
 pub(super) const FULL: u8 = 0b11_1111;
 
 /// The tets of one way, by their local vertices; positive where the tet is.
-pub(super) type Pattern = Vec<[u8; 4]>;
+pub(in crate::refine) type Pattern = Vec<[u8; 4]>;
 
 /// The edges of facet `i`: its corners are `FACETS[i]`, and edge `k` is opposite corner `k` of them.
-pub(super) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
+pub(in crate::refine) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
 
 /// All ways to fill a tet with these edges split, where facet `i` is cut from the middle of the second of its two split edges if bit `i` of
 /// `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. Mostly one or two; none for 14 of them, in which the cuts go round.
 /// Where all edges are split, [`eight`](super::eight) names them in another order.
-pub(super) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
+pub(in crate::refine) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
     // Each is searched for when it is asked for first: all of them take as long as refining a small mesh.
     static TABLE: [OnceLock<Vec<Pattern>>; 64 * 16] = [const { OnceLock::new() }; 64 * 16];
     let (mask, cuts) = (mask & FULL, cuts & 15);

@@ -1,13 +1,39 @@
-//! Tets, the tets they are divided into, and the edges that these share.
+//! Tets, the tets they are divided into, and the edges that these share; and how all of it is brought to fit.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | know | this, `facets` | parents, children, edges and facets are remembered |
+//! | divide | `divide`, `eight` | the eight, and which edges each of them has |
+//! | shapes | `classes` | few tets have shapes of their own; what follows from the shape is found once |
+//! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
+//! | choose a way | `fills` | of these the one whose worst part is best; a tet is divided along its shortest diagonal, mostly |
+//! | Bey's rule | `bey` | another diagonal, for no more than three shapes |
+//! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
+//! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
 //!
 //! Shapes are those of the *reference*: the mesh as it was when its tets became roots. All that is decided about a division is decided there, so
 //! motion changes nothing of it, and the same division asked for again comes out the same.
 
+mod bey;
+mod classes;
+mod close;
+mod divide;
+mod eight;
+mod extract;
+mod facets;
+mod fills;
+mod patterns;
+
+pub(super) use close::{Closed, Need, close};
+pub(super) use eight::{IMAGES, eight};
+pub(super) use extract::{Extracted, extract};
+pub(super) use patterns::{FACET_EDGES, patterns};
+
+use classes::{Class, Shape};
+use facets::{Facets, Middles};
+use fills::Fills;
 use hashbrown::HashMap;
 
-use super::classes::{Class, Shape};
-use super::facets::{Facets, Middles};
-use super::fills::Fills;
 use crate::base::Point;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
@@ -79,7 +105,7 @@ pub(super) struct Forest {
     of_facets: Facets,
     /// What shapes there are: first those of the roots.
     pub(super) classes: Vec<Class>,
-    pub(super) fills: Fills,
+    fills: Fills,
 }
 
 impl Forest {
@@ -236,7 +262,7 @@ impl Forest {
     /// facet see it.
     pub(super) fn cuts(&self, node: u32, mask: u8) -> u8 {
         (0..4).fold(0, |cuts, facet| {
-            let (split, n) = super::patterns::split_edges(facet, mask);
+            let (split, n) = patterns::split_edges(facet, mask);
             let [first, second, _] = split.map(|e| self.edges_of[node as usize][e]);
             cuts | u8::from(n == 2 && self.is_longer(second, first)) << facet
         })

@@ -4,41 +4,41 @@
 //! A class is named by the way down to the first tet of it from a root: steps to parts at corners change nothing, and are left out.
 
 use super::eight::{INNER, eight};
-use super::forest::{Forest, NONE, with_middles};
+use super::{Forest, NONE, with_middles};
 use crate::base::Point;
 use crate::geometry::quality::eas;
 
 /// The class of a tet, and whether that is as in a mirror.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Shape(u32);
+pub(in crate::refine) struct Shape(u32);
 
 impl Shape {
-    pub(super) fn new(class: u32, is_mirrored: bool) -> Self {
+    pub(in crate::refine) fn new(class: u32, is_mirrored: bool) -> Self {
         Self(class << 1 | u32::from(is_mirrored))
     }
 
     #[inline]
-    pub(super) fn class(self) -> u32 {
+    pub(in crate::refine) fn class(self) -> u32 {
         self.0 >> 1
     }
 
     #[inline]
-    pub(super) fn is_mirrored(self) -> bool {
+    pub(in crate::refine) fn is_mirrored(self) -> bool {
         self.0 & 1 == 1
     }
 
-    pub(super) fn of_class(self, class: u32) -> Self {
+    pub(in crate::refine) fn of_class(self, class: u32) -> Self {
         Self::new(class, self.is_mirrored())
     }
 
-    pub(super) fn mirrored(self) -> Self {
+    pub(in crate::refine) fn mirrored(self) -> Self {
         Self(self.0 ^ 1)
     }
 }
 
 /// Tets of one shape.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Class {
+pub(in crate::refine) struct Class {
     /// The class of those whose parts these are; [`NONE`] for that of a root, which has the root's id.
     above: u32,
     /// As parts of which way.
@@ -46,15 +46,15 @@ pub(super) struct Class {
     /// And which of [`INNER`].
     inner: u8,
     /// The way that is best for these.
-    pub(super) best: Option<u8>,
+    pub(in crate::refine) best: Option<u8>,
     /// The EAS in the reference, however tets are numbered.
-    pub(super) eas: f64,
+    pub(in crate::refine) eas: f64,
     /// Of each way to divide, the first of the two classes inside, which follow each other, where there ever were some.
     below: [u32; 3],
 }
 
 impl Class {
-    pub(super) fn of_root(corners: [Point; 4]) -> Self {
+    pub(in crate::refine) fn of_root(corners: [Point; 4]) -> Self {
         Self::new(NONE, 0, 0, eas(corners).abs())
     }
 
@@ -65,7 +65,7 @@ impl Class {
 
 impl Forest {
     /// The corners of the first tet of a class.
-    pub(super) fn corners_of_class(&self, class: u32) -> [Point; 4] {
+    pub(in crate::refine) fn corners_of_class(&self, class: u32) -> [Point; 4] {
         let Class { above, way, inner, .. } = self.classes[class as usize];
         if above == NONE {
             return self.corners(class);
@@ -75,7 +75,7 @@ impl Forest {
     }
 
     /// The two classes inside, if tets of a class are divided in a way; the first is given.
-    pub(super) fn make_classes(&mut self, class: u32, way: usize) -> u32 {
+    pub(in crate::refine) fn make_classes(&mut self, class: u32, way: usize) -> u32 {
         let known = self.classes[class as usize].below[way];
         if known != NONE {
             return known;
@@ -85,7 +85,7 @@ impl Forest {
     }
 
     /// The same, where their EAS is known.
-    pub(super) fn add_classes(&mut self, class: u32, way: usize, eas: [f64; 2]) -> u32 {
+    pub(in crate::refine) fn add_classes(&mut self, class: u32, way: usize, eas: [f64; 2]) -> u32 {
         let known = self.classes[class as usize].below[way];
         if known != NONE {
             return known;
@@ -97,14 +97,14 @@ impl Forest {
     }
 
     /// The two classes inside, if tets of a class are divided in the way that is best, where that is known.
-    pub(super) fn best_classes(&self, class: u32) -> Option<[&Class; 2]> {
+    pub(in crate::refine) fn best_classes(&self, class: u32) -> Option<[&Class; 2]> {
         let Class { best, below, .. } = self.classes[class as usize];
         let first = below[usize::from(best?)] as usize;
         Some([&self.classes[first], &self.classes[first + 1]])
     }
 
     /// Of a class, the steps down to it: ways, and which of [`INNER`].
-    pub(super) fn steps_to_class(&self, mut class: u32) -> Vec<(usize, usize)> {
+    pub(in crate::refine) fn steps_to_class(&self, mut class: u32) -> Vec<(usize, usize)> {
         let mut steps = Vec::new();
         while let Class { above, way, inner, .. } = self.classes[class as usize]
             && above != NONE
@@ -118,11 +118,11 @@ impl Forest {
 }
 
 /// One of the two parts inside that have shapes of their own.
-pub(super) fn inner_part(way: usize, inner: usize) -> &'static [u8; 4] {
+pub(in crate::refine) fn inner_part(way: usize, inner: usize) -> &'static [u8; 4] {
     &eight(way)[INNER[inner]]
 }
 
-pub(super) fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
+pub(in crate::refine) fn corners_at(places: &[Point; 10], tet: &[u8; 4]) -> [Point; 4] {
     let mut corners = [[0.0; 3]; 4];
     for (corner, v) in corners.iter_mut().zip(tet) {
         *corner = places[usize::from(*v)];

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use super::estimate;
-use super::extract::Extracted;
-use super::forest::{Forest, NONE};
-use super::handle::Refinement;
+use super::super::choose::estimate;
+use super::super::forest::Extracted;
+use super::super::forest::{Forest, NONE};
+use super::super::handle::Refinement;
 use super::joined::Joined;
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::overlap::Solid;

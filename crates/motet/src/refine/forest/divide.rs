@@ -6,8 +6,8 @@
 use std::sync::OnceLock;
 
 use super::eight::{IMAGES, INNER, eight, ends};
-use super::forest::{Forest, NONE, Node, State};
 use super::patterns::FACET_EDGES;
+use super::{Forest, NONE, Node, State};
 use crate::geometry::tet::EDGES;
 
 const DIAGONAL: usize = 24;
@@ -57,7 +57,7 @@ fn parts_between() -> [[u8; 10]; 10] {
 
 impl Forest {
     /// Divides a tet into eight in one of the three ways, and gives the first; which it may have been before.
-    pub(super) fn divide(&mut self, node: u32, way: usize) -> u32 {
+    pub(in crate::refine) fn divide(&mut self, node: u32, way: usize) -> u32 {
         self.states[node as usize].is_divided = true;
         let Node { vertices, first_child, shape, .. } = self.nodes[node as usize];
         if first_child != NONE {

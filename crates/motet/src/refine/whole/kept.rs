@@ -1,6 +1,6 @@
 //! The memory of a refined mesh as arrays of its file.
 
-use super::memory::{Memory, UNKNOWN};
+use super::super::memory::{Memory, UNKNOWN};
 use crate::base::{CellId, Error, Point, Result};
 use crate::mesh::history::REFINE_ROOT;
 use crate::mesh::{Field, Mesh, TetPart, Values};

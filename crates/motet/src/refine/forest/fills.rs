@@ -8,12 +8,12 @@ use super::bey;
 use super::classes::{corners_at, inner_part};
 use super::close::Need;
 use super::eight::ends;
-use super::forest::{Forest, with_middles};
-use super::handle::Rule;
 use super::patterns::patterns;
+use super::{Forest, with_middles};
 use crate::base::Point;
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{dot, sub};
+use crate::refine::Rule;
 
 /// How tets of a class are cut.
 #[derive(Clone, Copy, Debug, PartialEq)]

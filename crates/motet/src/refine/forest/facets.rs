@@ -3,7 +3,7 @@
 //! Lists by the first of the three middles, not a hash: tets beside each other are divided one after the other, so what is looked for lies near what was looked for
 //! before, and a list takes half the memory. It has one or two entries, mostly: the facets at an edge share these between their three edges.
 
-use super::forest::NONE;
+use super::NONE;
 
 /// Which facets there ever were.
 #[derive(Clone, Debug, Default)]

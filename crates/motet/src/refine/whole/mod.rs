@@ -1,14 +1,17 @@
 //! Refinement of everything that a file holds: cells of other kinds stay, arrays are carried, and the memory goes along as arrays.
 
+mod joined;
+mod kept;
+mod origins;
+
 use super::handle::{Options, Refinement, Summary};
-use super::joined::Joined;
-use super::kept;
-use super::origins::origins;
 use super::true_surface::OnSurface;
 use crate::base::{CellId, Result, TetId, Threads, VertexId};
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Mesh, TetPart};
 use crate::spatial::NearestTriangle;
+use joined::Joined;
+use origins::origins;
 
 /// A mesh of any cells, whose tets are divided and taken back again and again. Each cell that is divided is followed in its place by its parts; points that
 /// come are behind all others.
@@ -77,7 +80,7 @@ impl MeshRefinement {
     }
 
     /// The mesh with its memory as arrays, unless nothing is divided: `refine_root`, `refine_path`, `refine_piece` and `refine_asked` on cells and
-    /// `refine_reference` on points (see [`Memory`](super::Memory)).
+    /// `refine_reference` on points (see [`Memory`](crate::refine::Memory)).
     pub fn with_memory(&self, threads: &Threads) -> Mesh {
         let mut mesh = self.mesh.clone();
         if self.refinement.is_divided() {

@@ -3,9 +3,9 @@
 //! The parts inside are given orders of their own, so that however deep, no more than three shapes come of one (Bey 1995, *Tetrahedral grid refinement*). An order follows from the way down from
 //! the root, so it is worked out again where a class needs it.
 
+use super::Forest;
 use super::classes::inner_part;
 use super::eight::ends;
-use super::forest::Forest;
 use crate::geometry::tet::EDGES;
 
 /// The vertices of the four inside: `[i, j]` is the middle between vertices `i` and `j` of the whole.

@@ -10,18 +10,18 @@ use super::patterns::volume;
 use crate::geometry::tet::EDGES;
 
 /// Which of the eight are images of the ones before them.
-pub(super) const IMAGES: [usize; 2] = [5, 7];
+pub(in crate::refine) const IMAGES: [usize; 2] = [5, 7];
 
 /// Which of the eight have shapes of their own.
-pub(super) const INNER: [usize; 2] = [4, 6];
+pub(in crate::refine) const INNER: [usize; 2] = [4, 6];
 
 /// The local vertices at the ends of a way's diagonal.
-pub(super) fn ends(way: usize) -> [usize; 2] {
+pub(in crate::refine) fn ends(way: usize) -> [usize; 2] {
     [4 + way, 9 - way]
 }
 
 /// The eight of a way by their local vertices. All but the images are positive where the whole is.
-pub(super) fn eight(way: usize) -> &'static [[u8; 4]; 8] {
+pub(in crate::refine) fn eight(way: usize) -> &'static [[u8; 4]; 8] {
     static TABLE: OnceLock<[[[u8; 4]; 8]; 3]> = OnceLock::new();
     &TABLE.get_or_init(|| [0, 1, 2].map(eight_of))[way]
 }
