@@ -1,6 +1,6 @@
 //! The handle: a mesh that is refined and coarsened again and again.
 
-use super::forest::{Closed, DEEPEST, Extracted, Forest, NONE, Need, close, extract};
+use super::forest::{Closed, DEEPEST, Extracted, Forest, MOST_NODES, NONE, Need, close, extract};
 use super::held::{Near, split_though_fixed};
 use super::inverted::vertices_of_inverted;
 use super::true_surface::{OnSurface, put_on};
@@ -105,7 +105,7 @@ impl Refinement {
     /// When the mesh is not [valid](TetMesh::validate), or a tet has no volume.
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
-        check_volumes(mesh, threads)?;
+        check_roots(mesh, threads)?;
         let roots = mesh.tets.iter().map(|tet| (tet.map(|v| v.0), false));
         let forest = Forest::new(&mesh.points, roots);
         let need = Need::new(options, &forest);
@@ -380,8 +380,14 @@ impl Refinement {
     }
 }
 
-/// Refuses tets without volume.
-pub(super) fn check_volumes(mesh: &TetMesh, threads: &Threads) -> Result<()> {
+/// Refuses tets without volume, and more tets than a forest may have.
+pub(super) fn check_roots(mesh: &TetMesh, threads: &Threads) -> Result<()> {
+    if mesh.tets.len() > MOST_NODES {
+        return Err(Error::input(format!(
+            "{} tets are more than refinement can count, which is {MOST_NODES}",
+            mesh.tets.len()
+        )));
+    }
     let is_flat = threads.map(mesh.tets.len(), |i| {
         let [a, b, c, d] = mesh.tets[i].map(|v| mesh.points[v.index()]);
         orient3d(a, b, c, d) == 0

@@ -44,8 +44,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The most divisions one in another: what a way down of 64 bits can tell, and far beyond what coordinates can.
 pub(super) const DEEPEST: u8 = 20;
 
-/// Edges, which are a fifth more, are to have ids.
-const MOST_NODES: usize = 3_000_000_000;
+/// No more tets than this, so that edges, which are a fifth more, have ids, and classes with a bit to spare.
+pub(super) const MOST_NODES: usize = 2_000_000_000;
 
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]

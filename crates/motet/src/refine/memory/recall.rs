@@ -3,7 +3,7 @@
 use super::super::forest::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
 use super::super::forest::{Need, close};
-use super::super::handle::{Options, Refinement, Summary, check_volumes};
+use super::super::handle::{Options, Refinement, Summary, check_roots};
 use super::trees::Trees;
 use super::triangles::Gathered;
 use super::{Memory, dissolve, triangles, unfit};
@@ -110,7 +110,7 @@ impl Roots {
         firsts.iter().zip(0..).for_each(|(&v, number)| to_forest[v] = number);
         self.rename(&to_forest);
         self.first.points = firsts.iter().map(|&v| reference[v]).collect();
-        check_volumes(&self.first, threads)?;
+        check_roots(&self.first, threads)?;
         let turned = |knot: u32| knot != NONE && trees.knots[knot as usize].is_turned;
         let roots = self.first.tets.iter().zip(&self.knots).map(|(tet, &knot)| match tet.map(|v| v.0) {
             [a, b, c, d] if turned(knot) => ([b, a, c, d], true),
