@@ -2,9 +2,9 @@
 
 use super::array::{On, column, point_columns, point_vectors};
 use super::{Aim, Amount, Criterion, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
-use crate::base::{Error, Result, Threads};
+use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::vector::{dot, norm, sub};
-use crate::mesh::{Field, Mesh, TetPart, bounds};
+use crate::mesh::{Field, Mesh, TetMesh, TetPart, bounds};
 use crate::refine::estimate::{self, corners, longest_edge};
 use crate::refine::hessian::curvatures;
 use crate::refine::wish::Wish;
@@ -102,26 +102,16 @@ pub(super) fn estimate(
     Ok(wishes)
 }
 
-pub(super) fn vorticity(
+/// Marks tets where what an estimate says of a velocity is above a number.
+pub(super) fn flow(
     array: &str,
     above: f64,
     mesh: &Mesh,
     part: &TetPart,
-    threads: &Threads,
+    of: impl Fn(&TetMesh, &[Point]) -> Vec<f64>,
 ) -> Result<Vec<Wish>> {
-    let vorticity = estimate::vorticity(&part.mesh, &point_vectors(mesh, array)?, threads);
-    Ok(vorticity.into_iter().map(|w| Wish::of_mark(norm(w) > above)).collect())
-}
-
-pub(super) fn q(
-    array: &str,
-    above: f64,
-    mesh: &Mesh,
-    part: &TetPart,
-    threads: &Threads,
-) -> Result<Vec<Wish>> {
-    let q = estimate::q_criterion(&part.mesh, &point_vectors(mesh, array)?, threads);
-    Ok(q.into_iter().map(|q| Wish::of_mark(q > above)).collect())
+    let found = of(&part.mesh, &point_vectors(mesh, array)?);
+    Ok(found.into_iter().map(|x| Wish::of_mark(x > above)).collect())
 }
 
 impl HessianSizes {

@@ -12,9 +12,11 @@ mod target;
 
 use std::sync::Arc;
 
+use super::estimate;
 use super::sizes::SizeLimits;
 use super::wish::{Wish, marked};
 use crate::base::{Error, Point, Result, TetId, Threads};
+use crate::geometry::vector::norm;
 use crate::mesh::{Mesh, TetPart};
 
 pub use condition::{Condition, Relation};
@@ -204,8 +206,14 @@ impl Criterion {
                 by_field::estimate(array, *by, *amount, mesh, part, threads)
             }
             Self::Hessian(sizes) => sizes.wishes(mesh, part, threads),
-            Self::Vorticity { array, above } => by_field::vorticity(array, *above, mesh, part, threads),
-            Self::Q { array, above } => by_field::q(array, *above, mesh, part, threads),
+            Self::Vorticity { array, above } => {
+                by_field::flow(array, *above, mesh, part, |tets, velocity| {
+                    estimate::vorticity(tets, velocity, threads).into_iter().map(norm).collect()
+                })
+            }
+            Self::Q { array, above } => by_field::flow(array, *above, mesh, part, |tets, velocity| {
+                estimate::q_criterion(tets, velocity, threads)
+            }),
             _ => by_place::wishes(self, mesh, part, threads),
         }
     }
