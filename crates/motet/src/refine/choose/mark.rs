@@ -5,7 +5,7 @@ use crate::base::{Point, TetId, Threads};
 use crate::geometry::tet;
 use crate::geometry::vector::distance;
 use crate::mesh::TetMesh;
-use crate::spatial::NearestTriangle;
+use crate::spatial::{Closest, NearestTriangle};
 
 /// The tets for which `is_marked` says so, rising.
 fn those(
@@ -55,18 +55,30 @@ pub fn near_surface(
             return false;
         }
         // No farther than this from the centre has anything to do with the tet.
-        let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
-        let reach = if growth > 0.0 { (longest - size) / growth + radius } else { f64::INFINITY };
-        surface
-            .closest_within(centre, reach)
-            .is_some_and(|found| is_above(corners, [size, growth], found.point))
+        let reach =
+            if growth > 0.0 { (longest - size) / growth + radius(corners, centre) } else { f64::INFINITY };
+        surface.closest_within(centre, reach).is_some_and(|found| is_above(corners, [size, growth], &found))
     })
 }
 
-/// The same for one tet, whose centre is nearest to `place` of the surface.
-pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], place: Point) -> bool {
-    let nearest = tet::at(corners, tet::closest(corners, place));
-    longest_edge(corners) > size + growth * distance(nearest, place)
+/// How far the corners are from the centre.
+fn radius(corners: [Point; 4], centre: Point) -> f64 {
+    corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max)
+}
+
+/// The same for one tet, with what of the surface is nearest to its centre.
+pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], found: &Closest) -> bool {
+    let longest = longest_edge(corners);
+    let away = found.distance_squared.sqrt();
+    // The tet is no farther than its centre, and no nearer than its corners allow: that decides most.
+    if longest > size + growth * away {
+        return true;
+    }
+    if longest <= size + growth * (away - radius(corners, tet::centroid(corners))) {
+        return false;
+    }
+    let nearest = tet::at(corners, tet::closest(corners, found.point));
+    longest > size + growth * distance(nearest, found.point)
 }
 
 /// Tets with an estimate above 0, the largest first; of equal ones the first.

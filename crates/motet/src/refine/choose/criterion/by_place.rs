@@ -59,19 +59,25 @@ fn near(mesh: &TetMesh, target: &Target, within: f64, threads: &Threads) -> Vec<
 /// Which tets are too large is known exactly; how often they are to be divided from the sizes at their centres, and whether a tet twice as large would be
 /// too large from its distance less its own size.
 fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads: &Threads) -> Vec<Wish> {
-    let places: Vec<[Point; 4]> = threads.map(mesh.tets.len(), |t| corners(mesh, mesh.tets[t]));
-    let centres: Vec<Point> = threads.map(places.len(), |t| tet::centroid(places[t]));
+    let longest = threads.map(mesh.tets.len(), |t| longest_edge(corners(mesh, mesh.tets[t])));
+    // Of shorter ones no distance makes anything else.
+    let asked: Vec<usize> =
+        (0..longest.len()).filter(|&t| Wish::of_ratio(longest[t] / size) != Wish::Coarser).collect();
+    let places: Vec<[Point; 4]> = threads.map(asked.len(), |i| corners(mesh, mesh.tets[asked[i]]));
+    let centres: Vec<Point> = threads.map(places.len(), |i| tet::centroid(places[i]));
     let found = target.tree().closest_all(&centres, None, threads);
-    threads.map(places.len(), |t| {
-        let longest = longest_edge(places[t]);
-        let Some(found) = found[t] else { return Wish::Coarser };
-        let away = found.distance_squared.sqrt();
-        if mark::is_above(places[t], [size, growth], found.point) {
+    let of_asked = threads.map(asked.len(), |i| {
+        let Some(found) = &found[i] else { return Wish::Coarser };
+        let (longest, away) = (longest[asked[i]], found.distance_squared.sqrt());
+        if mark::is_above(places[i], [size, growth], found) {
             return Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1));
         }
         // The whole that it is a part of reaches no farther.
         Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept)
-    })
+    });
+    let mut wishes = vec![Wish::Coarser; longest.len()];
+    asked.into_iter().zip(of_asked).for_each(|(t, wish)| wishes[t] = wish);
+    wishes
 }
 
 fn at_patch(
