@@ -30,6 +30,7 @@
 
 mod cavity;
 mod conflict;
+pub mod constrain;
 mod edges;
 mod fill;
 mod finish;
@@ -42,4 +43,5 @@ mod store;
 mod triangulation;
 mod walk;
 
+pub use constrain::{Constrained, PointOnEdge, constrain};
 pub use triangulation::{HullFacet, Triangulation};

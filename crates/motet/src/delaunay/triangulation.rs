@@ -39,6 +39,11 @@ impl Triangulation {
     /// When a coordinate is not finite, when the points do not span a volume (fewer than four
     /// distinct ones, all on a line, all in a plane), when there are more than 2^30.
     pub fn new(points: &[Point], threads: &Threads) -> Result<Self> {
+        Self::ordered(points, threads).map(|(triangulation, _)| triangulation)
+    }
+
+    /// The triangulation, and its points in the order by which ties are broken, from 1 on; place 0 is none.
+    pub(super) fn ordered(points: &[Point], threads: &Threads) -> Result<(Self, Vec<u32>)> {
         input::check(points)?;
         let scaled = input::scaled(points.to_vec());
         let mut order = order(&scaled.points, threads);
@@ -49,7 +54,7 @@ impl Triangulation {
         let store = triangulate(&sorted, scaled.filtered)?;
         let Finished { tets, neighbors, hull } = finish(store, &vertex_to_id, threads);
         let duplicates = order.duplicates.iter().map(|&(d, kept)| (VertexId(d), VertexId(kept))).collect();
-        Ok(Self { points: points.to_vec(), tets, neighbors, hull, duplicates })
+        Ok((Self { points: points.to_vec(), tets, neighbors, hull, duplicates }, vertex_to_id))
     }
 
     /// The points as they were given.

@@ -126,11 +126,7 @@ fn insphere_small([b, c, d, x]: [Row; 4]) -> i8 {
 }
 
 fn big_difference(p: Point, a: Point, unit: i32) -> BigRow {
-    let whole = |x: f64| {
-        let (mantissa, exponent) = decode(x);
-        Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
-    };
-    std::array::from_fn(|i| whole(p[i]).minus(&whole(a[i])))
+    std::array::from_fn(|i| in_big_units(p[i], unit).minus(&in_big_units(a[i], unit)))
 }
 
 fn big_rows<const N: usize>(a: Point, others: [Point; N]) -> [BigRow; N] {
@@ -150,4 +146,69 @@ fn insphere_big([b, c, d, x]: &[BigRow; 4]) -> i8 {
     let plus = lifted(b, det3(c, d, x)).plus(&lifted(d, det3(b, c, x)));
     let minus = lifted(c, det3(b, d, x)).plus(&lifted(x, det3(b, c, d)));
     plus.minus(&minus).sign()
+}
+
+/// Coordinates of any length: whole multiples of a power of two.
+pub(crate) struct Exact {
+    units: BigRow,
+    exponent: i32,
+}
+
+impl Exact {
+    /// A point as it is.
+    pub(crate) fn given(p: Point) -> Self {
+        let exponent = common_exponent(&[p]);
+        Self { units: p.map(|x| in_big_units(x, exponent)), exponent }
+    }
+
+    /// `from + share (to - from)`
+    pub(crate) fn between(from: Point, to: Point, share: f64) -> Self {
+        let unit = common_exponent(&[from, to]);
+        let (mantissa, exponent) = decode(share);
+        // A share below 1 has an exponent below 0, so a unit of the segment is a whole number of the result's.
+        let (down, mantissa) = (exponent.min(0), Big::shifted(mantissa, exponent.max(0) as u32));
+        let coordinate = |i: usize| {
+            let along = in_big_units(to[i], unit).minus(&in_big_units(from[i], unit)).times(&mantissa);
+            in_big_units(from[i], unit.saturating_add(down)).plus(&along)
+        };
+        Self { units: [coordinate(0), coordinate(1), coordinate(2)], exponent: unit.saturating_add(down) }
+    }
+
+    /// The coordinates as multiples of a smaller power of two.
+    fn in_units(&self, exponent: i32) -> BigRow {
+        let factor = Big::shifted(1, self.exponent.abs_diff(exponent));
+        std::array::from_fn(|i| self.units[i].times(&factor))
+    }
+}
+
+/// `x` as a multiple of `2^unit`, which divides it.
+fn in_big_units(x: f64, unit: i32) -> Big {
+    let (mantissa, exponent) = decode(x);
+    Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
+}
+
+/// Differences to the first point, in one unit.
+fn rows_of<const N: usize, const M: usize>(points: &[Exact; N]) -> [BigRow; M] {
+    let zero = |p: &Exact| p.units.iter().all(|x| x.sign() == 0);
+    let exponents = points.iter().filter(|p| !zero(p)).map(|p| p.exponent);
+    let unit = exponents.min().unwrap_or(0);
+    let units = |p: &Exact| if zero(p) { Default::default() } else { p.in_units(unit) };
+    let origin = units(&points[0]);
+    std::array::from_fn(|k| {
+        let p = units(&points[k + 1]);
+        std::array::from_fn(|i| p[i].minus(&origin[i]))
+    })
+}
+
+/// [`orient3d`] of points of any length.
+#[cold]
+pub(crate) fn orient3d_of(points: [Exact; 4]) -> i8 {
+    let [b, c, d] = rows_of(&points);
+    det3(&b, &c, &d).sign()
+}
+
+/// [`insphere`] of points of any length.
+#[cold]
+pub(crate) fn insphere_of(points: [Exact; 5]) -> i8 {
+    insphere_big(&rows_of(&points))
 }

@@ -18,10 +18,11 @@ mod integer;
 pub(crate) mod orient;
 pub(crate) mod pair;
 mod perturbed;
+pub(crate) mod spot;
 #[cfg(test)]
 mod tests;
 
 pub use insphere::insphere;
 pub use orient::{collinear, orient3d};
-pub(crate) use perturbed::break_tie;
+pub(crate) use perturbed::{break_tie, break_tie_of};
 pub use perturbed::insphere_perturbed;

@@ -22,9 +22,14 @@ pub fn insphere_perturbed(points: [Point; 5], ranks: [u32; 5]) -> i8 {
     }
 }
 
-/// The answer for five points known to be cospherical: raising the query puts it outside;
-/// raising vertex v puts the query inside when it lies on the same side of v's facet as v.
+/// The answer for five points known to be cospherical.
 pub(crate) fn break_tie(points: [Point; 5], ranks: [u32; 5]) -> i8 {
+    break_tie_of(points, ranks, |[a, b, c, d]| orient3d(a, b, c, d))
+}
+
+/// [`break_tie`] of points of any kind: raising the query puts it outside; raising vertex v puts the query inside when it lies on
+/// the same side of v's facet as v.
+pub(crate) fn break_tie_of<P: Copy>(points: [P; 5], ranks: [u32; 5], orient3d: impl Fn([P; 4]) -> i8) -> i8 {
     let mut by_rank = [0, 1, 2, 3, 4];
     by_rank.sort_unstable_by_key(|&i| std::cmp::Reverse(ranks[i]));
     for i in by_rank {
@@ -33,7 +38,7 @@ pub(crate) fn break_tie(points: [Point; 5], ranks: [u32; 5]) -> i8 {
         }
         let mut tet = [points[0], points[1], points[2], points[3]];
         tet[i] = points[4];
-        let sign = orient3d(tet[0], tet[1], tet[2], tet[3]);
+        let sign = orient3d(tet);
         if sign != 0 {
             return sign;
         }

@@ -183,3 +183,89 @@ fn the_whole_range_of_floats_has_exact_signs() {
         }
     }
 }
+
+mod spots {
+    //! Points on segments: signs against rational arithmetic.
+
+    use super::{Rational, det3, points, rational, sign};
+    use crate::base::Point;
+    use crate::geometry::predicates::spot::{Between, Spot, insphere_of, orient3d_of};
+    use proptest::prelude::*;
+
+    type Place = [Rational; 3];
+
+    fn place(spot: &Spot) -> Place {
+        match spot {
+            Spot::Given(p) => p.map(rational),
+            Spot::On(between) => {
+                let ([a, b], share) = between.parts();
+                std::array::from_fn(|i| rational(a[i]) + rational(share) * (rational(b[i]) - rational(a[i])))
+            }
+        }
+    }
+
+    fn rows<const N: usize>(spots: &[Spot]) -> [Place; N] {
+        let origin = place(&spots[0]);
+        std::array::from_fn(|k| {
+            let p = place(&spots[k + 1]);
+            std::array::from_fn(|i| &p[i] - &origin[i])
+        })
+    }
+
+    fn orient_exact(spots: &[Spot]) -> i8 {
+        let [b, c, d] = &rows::<3>(spots);
+        sign(&det3([b, c, d]))
+    }
+
+    fn insphere_exact(spots: &[Spot]) -> i8 {
+        let [b, c, d, x] = &rows::<4>(spots);
+        let squared = |v: &Place| v.iter().map(|x| x * x).sum::<Rational>();
+        sign(&(squared(b) * det3([c, d, x]) - squared(c) * det3([b, d, x]) + squared(d) * det3([b, c, x])
+            - squared(x) * det3([b, c, d])))
+    }
+
+    /// Which of five are on segments, between which of the points, and where.
+    fn kinds() -> impl Strategy<Value = Vec<(bool, usize, usize, f64)>> {
+        let share = prop_oneof![Just(0.5), Just(0.25), 0.01..0.99f64, Just(1e-9), Just(1.0 - 1e-12)];
+        prop::collection::vec((any::<bool>(), 0..7usize, 0..7usize, share), 5)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+        #[test]
+        fn signs_of_points_on_segments_are_exact(p in points(7), kinds in kinds()) {
+            let on: Vec<Between> = kinds.iter().map(|&(_, i, j, share)| Between::new(p[i], p[j], share)).collect();
+            let spot = |k: usize| if kinds[k].0 { Spot::On(&on[k]) } else { Spot::Given(p[k]) };
+            let spots = [spot(0), spot(1), spot(2), spot(3), spot(4)];
+            // Differences of numbers near the largest f64 overflow; such points are scaled before they get here.
+            prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300));
+            prop_assert_eq!(orient3d_of([spots[0], spots[1], spots[2], spots[3]]), orient_exact(&spots[..4]));
+            prop_assert_eq!(insphere_of(spots), insphere_exact(&spots));
+        }
+
+        #[test]
+        fn a_point_on_a_segment_stays_in_every_plane_through_it(p in points(4), share in 0.001..0.999f64) {
+            let between = Between::new(p[0], p[1], share);
+            let on = Spot::On(&between);
+            let [a, b, c, d] = [p[0], p[1], p[2], p[3]].map(Spot::Given);
+            prop_assert_eq!(orient3d_of([a, b, c, on]), 0);
+            // And lies on the same side of any other plane as the ends, where those agree.
+            let sides = [orient3d_of([c, d, on, a]), orient3d_of([c, d, on, b])];
+            prop_assert!(sides[0] * sides[1] <= 0);
+        }
+
+        #[test]
+        fn rounding_is_by_at_most_a_place(p in points(2), share in 0.001..0.999f64) {
+            prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300 && (x.abs() > 1e-290 || *x == 0.0)));
+            let between = Between::new(p[0], p[1], share);
+            let truth = place(&Spot::On(&between));
+            let near: Point = between.rounded();
+            for i in 0..3 {
+                let size = p[0][i].abs().max(p[1][i].abs());
+                let error = (rational(near[i]) - &truth[i]).clone();
+                let limit = rational(size * f64::EPSILON);
+                prop_assert!(error.clone() <= limit && -error <= limit);
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! What the surfaces enclose: tets that are joined without crossing one of them are one body.
+
+use super::tets::Tets;
+use crate::base::{Csr, Error, Result, VertexId};
+use crate::kernel::HalfFacet;
+use crate::spatial::OUTSIDE;
+
+/// Where facets of the surface are, and the bodies between them.
+pub(super) struct Bodies {
+    /// The body of each slot; 0 lies outside of all, [`Self::NONE`] has no tet.
+    pub(super) of_slot: Vec<u32>,
+    /// How many there are, the outside included.
+    pub(super) count: u32,
+    /// For each facet of the surface, in the order of the parts, the tet in front of it.
+    pub(super) halves: Vec<HalfFacet>,
+}
+
+impl Bodies {
+    pub(super) const NONE: u32 = u32::MAX;
+
+    /// Finds the facets of all parts, and what they part; `corner` is a vertex outside.
+    ///
+    /// # Errors
+    /// When a part is no facet.
+    pub(super) fn find(tets: &mut Tets, parts: &Csr<[VertexId; 3]>, corner: VertexId) -> Result<Self> {
+        let mut walls = vec![0u8; tets.n_slots()];
+        let (mut halves, mut star) = (Vec::with_capacity(parts.items().len()), Vec::new());
+        for (i, list) in parts.iter().enumerate() {
+            for &part in list {
+                let half = tets.find_facet(part, &mut star).ok_or_else(|| lost(i))?;
+                let other = tets.across(half);
+                let (front, behind) = if faces(tets, half, part) { (half, other) } else { (other, half) };
+                for side in [front, behind] {
+                    if !side.is_none() {
+                        walls[side.tet().index()] |= 1 << side.facet();
+                    }
+                }
+                halves.push(front);
+            }
+        }
+        let mut bodies = Self { of_slot: vec![Self::NONE; tets.n_slots()], count: 0, halves };
+        let first = tets.at(corner);
+        let others: Vec<_> = tets.iter().map(|(tet, _)| tet).collect();
+        for tet in [first].into_iter().filter(|&t| t != OUTSIDE).chain(others) {
+            if bodies.of_slot[tet.index()] == Self::NONE {
+                bodies.flood(tets, &walls, tet);
+            }
+        }
+        Ok(bodies)
+    }
+
+    fn flood(&mut self, tets: &Tets, walls: &[u8], first: crate::base::TetId) {
+        self.of_slot[first.index()] = self.count;
+        let mut todo = vec![first];
+        while let Some(tet) = todo.pop() {
+            for half in Tets::facets(tet) {
+                let other = tets.across(half);
+                let is_wall = walls[tet.index()] & 1 << half.facet() != 0;
+                if !is_wall && !other.is_none() && self.of_slot[other.tet().index()] == Self::NONE {
+                    self.of_slot[other.tet().index()] = self.count;
+                    todo.push(other.tet());
+                }
+            }
+        }
+        self.count += 1;
+    }
+}
+
+/// Whether the tet of a facet lies in front of it, turned as `part`.
+fn faces(tets: &Tets, half: HalfFacet, [a, b, c]: [VertexId; 3]) -> bool {
+    let inward = tets.inward(half);
+    [[a, b, c], [b, c, a], [c, a, b]].contains(&inward)
+}
+
+fn lost(triangle: usize) -> Error {
+    Error::input("a part of the surface is no facet of tets")
+        .at(format!("triangle {triangle}"))
+        .remedy("look for triangles that cross or touch it")
+}

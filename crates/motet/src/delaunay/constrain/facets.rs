@@ -1,0 +1,132 @@
+//! Every triangle of the surface becomes facets of tets.
+//!
+//! All edges are there, so of a triangle that is missing whole parts are, between edges that are there. The tets that a part cuts go; the
+//! hollows on its two sides are filled again, each with the tets that see nothing beyond the part.
+
+use super::cut::{Cut, Face, Stuck};
+use super::plane::Plane;
+use super::segments::Segments;
+use super::sites::Sites;
+use super::tets::Tets;
+use super::wrap::Wrap;
+use crate::base::{Csr, Error, Result, TetId, VertexId};
+use crate::kernel::HalfFacet;
+
+/// Makes every triangle a set of facets. Answers those of each triangle, turned as it is.
+pub(super) fn recover(
+    tets: &mut Tets,
+    sites: &Sites,
+    segments: &Segments,
+    triangles: &[[VertexId; 3]],
+) -> Result<Csr<[VertexId; 3]>> {
+    let on_segments = segments.points(sites);
+    let mut work = Work::default();
+    let mut parts = Csr::default();
+    for (i, &triangle) in triangles.iter().enumerate() {
+        let own = work.parts(sites, segments, &on_segments, triangle);
+        let missing: Vec<_> = own.iter().copied().filter(|&part| work.is_missing(tets, part)).collect();
+        if work.recover(tets, sites, triangle, missing).is_err() {
+            return Err(stuck(sites, i, triangle));
+        }
+        parts.push(own);
+    }
+    Ok(parts)
+}
+
+fn stuck(sites: &Sites, i: usize, triangle: [VertexId; 3]) -> Error {
+    let corners = triangle.map(|v| sites.near(v));
+    Error::input(format!("the triangle of points {triangle:?} could not be made facets of tets"))
+        .at(format!("triangle {i}, at {:?}", corners[0]))
+        .remedy("look for triangles that cross or touch it")
+}
+
+/// Working space.
+#[derive(Default)]
+struct Work {
+    cut: Cut,
+    wrap: Wrap,
+    star: Vec<TetId>,
+}
+
+impl Work {
+    /// A triangle as the Delaunay triangles of its corners and the points on its edges.
+    fn parts(
+        &mut self,
+        sites: &Sites,
+        segments: &Segments,
+        on_segments: &Csr<VertexId>,
+        triangle: [VertexId; 3],
+    ) -> Vec<[VertexId; 3]> {
+        let mut polygon = Vec::with_capacity(3);
+        for i in 0..3 {
+            let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+            polygon.push(a);
+            let on = segments.find([a, b]).map_or(&[][..], |s| on_segments.list(s.0 as usize));
+            if a < b {
+                polygon.extend(on);
+            } else {
+                polygon.extend(on.iter().rev());
+            }
+        }
+        if polygon.len() == 3 {
+            return vec![triangle];
+        }
+        Plane::new(sites, triangle).triangulate(&polygon)
+    }
+
+    fn is_missing(&mut self, tets: &mut Tets, part: [VertexId; 3]) -> bool {
+        tets.find_facet(part, &mut self.star).is_none()
+    }
+
+    /// Makes the missing parts of a triangle facets, those together between which there is no edge.
+    fn recover(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        triangle: [VertexId; 3],
+        mut missing: Vec<[VertexId; 3]>,
+    ) -> Result<(), Stuck> {
+        while let Some(part) = missing.pop() {
+            let mut group = vec![part];
+            let mut rim = None;
+            let mut next = 0;
+            while let Some(&[a, b, c]) = group.get(next) {
+                next += 1;
+                for (edge, beyond) in [([a, b], c), ([b, c], a), ([c, a], b)] {
+                    if tets.find_edge(edge, &mut self.star).is_some() {
+                        rim.get_or_insert([edge, [beyond; 2]]);
+                    } else {
+                        let shares = |p: &[VertexId; 3]| edge.iter().all(|v| p.contains(v));
+                        let place = missing.iter().position(shares);
+                        group.extend(place.map(|k| missing.swap_remove(k)));
+                    }
+                }
+            }
+            self.insert(tets, sites, triangle, &group, rim.ok_or(Stuck)?)?;
+        }
+        Ok(())
+    }
+
+    /// Makes a group of parts facets.
+    fn insert(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        triangle: [VertexId; 3],
+        group: &[[VertexId; 3]],
+        rim: [[VertexId; 2]; 2],
+    ) -> Result<(), Stuck> {
+        self.cut.find(tets, sites, triangle, rim)?;
+        self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
+        let [mut front, mut behind] = std::mem::take(&mut self.cut.shells);
+        front.extend(group.iter().map(|&vertices| Face { vertices, outer: HalfFacet::NONE }));
+        self.wrap.fill(tets, sites, &front)?;
+        for &[a, b, c] in group {
+            let outer = self.wrap.inner([a, b, c]).ok_or(Stuck)?;
+            behind.push(Face { vertices: [a, c, b], outer });
+        }
+        self.wrap.fill(tets, sites, &behind)?;
+        self.cut.shells = [front, behind];
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+//! A point on a segment put into the triangulation: the tets whose sphere holds it go, and tets from it to the facets around come
+//! (Bowyer 1981; Watson 1981). Its rank is the highest, so on a sphere it is outside.
+
+use super::sites::Sites;
+use super::tets::Tets;
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::kernel::HalfFacet;
+
+/// Working space, kept from one insertion to the next.
+#[derive(Default)]
+pub(super) struct Insertion {
+    /// The tets that go.
+    cavity: Vec<TetId>,
+    /// The facets around them, from outside, and their vertices seen from inside.
+    shell: Vec<(HalfFacet, [VertexId; 3])>,
+    /// Edges of the shell with the facet of the new tet on one side of them.
+    sides: Vec<([VertexId; 2], HalfFacet)>,
+    /// Edges of tets that went, each once, in order.
+    touched: Vec<[VertexId; 2]>,
+}
+
+impl Insertion {
+    /// Puts `vertex` in; the walk to it starts at `start`. Answers the edges that are no longer there.
+    pub(super) fn insert(&mut self, tets: &mut Tets, sites: &Sites, vertex: VertexId, start: TetId) -> Vec<[VertexId; 2]> {
+        let first = locate(tets, sites, vertex, start);
+        self.dig(tets, sites, vertex, first);
+        self.list_edges(tets);
+        self.cavity.iter().for_each(|&tet| tets.remove(tet));
+        self.fill(tets, vertex);
+        self.lost()
+    }
+
+    fn dig(&mut self, tets: &mut Tets, sites: &Sites, vertex: VertexId, first: TetId) {
+        tets.begin();
+        tets.mark(first);
+        self.cavity.clear();
+        self.shell.clear();
+        self.cavity.push(first);
+        let mut next = 0;
+        while let Some(&tet) = self.cavity.get(next) {
+            next += 1;
+            for half in Tets::facets(tet) {
+                let other = tets.across(half);
+                if other.is_none() {
+                    self.shell.push((other, tets.inward(half)));
+                } else if tets.is_marked(other.tet()) {
+                } else if sites.is_inside(tets.vertices(other.tet()), vertex) {
+                    tets.mark(other.tet());
+                    self.cavity.push(other.tet());
+                } else {
+                    self.shell.push((other, tets.inward(half)));
+                }
+            }
+        }
+    }
+
+    fn list_edges(&mut self, tets: &Tets) {
+        self.touched.clear();
+        for &tet in &self.cavity {
+            let v = tets.vertices(tet);
+            self.touched.extend(EDGES.map(|[i, j]| sorted([v[i], v[j]])));
+        }
+        self.touched.sort_unstable();
+        self.touched.dedup();
+    }
+
+    fn fill(&mut self, tets: &mut Tets, vertex: VertexId) {
+        self.sides.clear();
+        for &(outer, [a, b, c]) in &self.shell {
+            let tet = tets.add([a, b, c, vertex]);
+            tets.join(HalfFacet::new(tet, 3), outer);
+            let sides = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
+            self.sides.extend(sides.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
+        }
+        self.sides.sort_unstable();
+        for pair in self.sides.as_chunks::<2>().0 {
+            tets.join(pair[0].1, pair[1].1);
+        }
+    }
+
+    /// The touched edges that the shell does not have.
+    fn lost(&self) -> Vec<[VertexId; 2]> {
+        let is_kept = |edge: &&[VertexId; 2]| self.sides.binary_search_by_key(*edge, |s| s.0).is_ok();
+        self.touched.iter().filter(|edge| !is_kept(edge)).copied().collect()
+    }
+}
+
+/// An edge with its smaller vertex first.
+pub(super) fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The tet that holds a vertex yet to be inserted. A visibility walk: it does not go round in circles in a Delaunay
+/// triangulation (Edelsbrunner 1989), and the box around all points keeps it inside.
+fn locate(tets: &Tets, sites: &Sites, vertex: VertexId, start: TetId) -> TetId {
+    let (mut tet, mut came) = (start, HalfFacet::NONE);
+    loop {
+        let leads = |half: &HalfFacet| {
+            let [a, b, c] = tets.inward(*half);
+            *half != came && !tets.across(*half).is_none() && sites.orient3d([a, b, c, vertex]) < 0
+        };
+        let Some(half) = Tets::facets(tet).into_iter().find(leads) else { return tet };
+        came = tets.across(half);
+        tet = came.tet();
+    }
+}

@@ -1,0 +1,162 @@
+//! Constrained Delaunay: tets that have every triangle of given surfaces among their facets.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | start | here | the Delaunay triangulation of all vertices, within a large box |
+//! | edges | `segments`, `insert` | a missing edge of the surface gets points on it until its pieces are edges of tets |
+//! | facets | `facets`, `plane`, `cut`, `wrap` | a missing part of a triangle removes the tets that it cuts; both hollows are filled again |
+//! | bodies | `bodies` | what the surfaces part |
+//!
+//! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
+//! higher-dimensional constrained Delaunay triangulations*), so no facet needs a point inside it.
+//!
+//! *Signs.* A point on an edge has, as a rule, no coordinates in `f64`. It is kept as what it is, a share of the way between two vertices, and signs
+//! are exact for such points (`geometry::predicates::spot`): nothing here has a tolerance, and surfaces may come as near to each other
+//! as coordinates can. Diazzi, Panozzo, Vaxman and Attene (2023, *Constrained Delaunay tetrahedrization: a robust and practical
+//! approach*) were the first to do it so.
+//!
+//! *Ties* are broken as in the triangulation of the points, by infinitesimal lifts, and everywhere by the same: so the result depends on the
+//! input only, and what theory says of points in general position holds for grids.
+
+mod bodies;
+mod cut;
+mod facets;
+mod insert;
+mod plane;
+mod segments;
+mod sites;
+mod tets;
+mod wrap;
+
+use super::{Triangulation, input};
+use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
+use bodies::Bodies;
+use segments::Segments;
+use sites::Sites;
+use tets::Tets;
+
+/// The box around all points is larger than theirs by this factor: so far away it hardly makes an edge less Delaunay.
+const BOX: f64 = 8.0;
+
+/// A point that was put on an edge of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointOnEdge {
+    /// The ends of the edge.
+    pub ends: [VertexId; 2],
+    /// How far from the first end to the second, in (0, 1). The exact point is `first + share (second - first)`.
+    pub share: f64,
+}
+
+/// Tets that have every triangle of the surfaces among their facets, and no point of the surface inside the sphere of one that
+/// can see it.
+#[derive(Clone, Debug)]
+pub struct Constrained {
+    /// The points as they were given, then the points put on edges, rounded.
+    pub points: Vec<Point>,
+    /// What the points after those given are.
+    pub on_edges: Vec<PointOnEdge>,
+    /// The tets within the surfaces, positively oriented before points were rounded.
+    pub tets: Vec<[VertexId; 4]>,
+    /// The body of each tet, from 0: tets that are joined without crossing the surface.
+    pub bodies: Vec<u32>,
+    /// The facets that each triangle became, turned as it is.
+    pub triangle_to_facets: Csr<[VertexId; 3]>,
+    /// The bodies in front of each triangle and behind it; `None` is the outside. Front is where its vertices run counter-clockwise.
+    pub triangle_to_bodies: Vec<[Option<u32>; 2]>,
+}
+
+/// Fills closed surfaces with tets. Points must be distinct where triangles use them, and triangles must not meet but in vertices
+/// and edges that they share. Surfaces may be nested, share triangles (given once) or have open edges inside others.
+///
+/// # Errors
+/// When a coordinate is not finite, when points that triangles use coincide or do not exist, when triangles meet in more than they share (where
+/// that comes to light: a check beforehand names all such places), when an edge would have to be divided beyond its digits.
+pub fn constrain(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Result<Constrained> {
+    input::check(points)?;
+    check_ids(points, triangles)?;
+    let (given, corner) = in_box(points)?;
+    let (triangulation, order) = Triangulation::ordered(&given, threads)?;
+    check_distinct(&triangulation, triangles)?;
+    let mut tets = Tets::new(&triangulation);
+    drop(triangulation);
+    let mut sites = Sites::new(given, &order);
+    let mut segments = Segments::new(triangles);
+    segments.recover(&mut tets, &mut sites)?;
+    let parts = facets::recover(&mut tets, &sites, &segments, triangles)?;
+    let bodies = Bodies::find(&mut tets, &parts, corner)?;
+    Ok(finish(points, &tets, &sites, &segments, parts, &bodies))
+}
+
+fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {
+    let is_off = |t: &[VertexId; 3]| {
+        t.iter().any(|v| v.index() >= points.len()) || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
+    };
+    let Some(i) = triangles.iter().position(is_off) else { return Ok(()) };
+    let what = format!("names the points {:?}, expected three different ones below {}", triangles[i].map(|v| v.0), points.len());
+    Err(Error::input(what).at(format!("triangle {i}")))
+}
+
+fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) -> Result<()> {
+    let duplicates = triangulation.duplicates();
+    let find = |v: &VertexId| duplicates.binary_search_by_key(v, |d| d.0).ok();
+    let mut used = triangles.iter().enumerate().flat_map(|(i, t)| t.iter().map(move |v| (i, v)));
+    let Some((i, d)) = used.find_map(|(i, v)| find(v).map(|d| (i, d))) else { return Ok(()) };
+    let (a, b) = duplicates[d];
+    Err(Error::input(format!("the points {a} and {b} coincide")).at(format!("triangle {i}")).remedy("merge points that coincide"))
+}
+
+/// The points, scaled by a power of two, and the corners of a box far around them; the first corner's vertex.
+fn in_box(points: &[Point]) -> Result<(Vec<Point>, VertexId)> {
+    let mut given = input::scaled(points.to_vec()).points;
+    let corner = VertexId::new(given.len());
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for p in &given {
+        for i in 0..3 {
+            (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i]));
+        }
+    }
+    let away = BOX * (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    for k in 0..8 {
+        given.push(std::array::from_fn(|i| if k >> i & 1 == 0 { low[i] - away } else { high[i] + away }));
+    }
+    if away > 0.0 && given.as_flattened().iter().all(|x| x.is_finite()) {
+        return Ok((given, corner));
+    }
+    Err(Error::input("the points have no extent, or one too large for numbers").remedy("give surfaces of another size"))
+}
+
+/// Leaves out what lies outside, and numbers the rest.
+fn finish(
+    points: &[Point],
+    tets: &Tets,
+    sites: &Sites,
+    segments: &Segments,
+    parts: Csr<[VertexId; 3]>,
+    bodies: &Bodies,
+) -> Constrained {
+    let n_given = points.len();
+    // The corners of the box come between the points given and those on edges.
+    let id = |v: VertexId| if v.index() < n_given { v } else { VertexId::new(v.index() - 8) };
+    let on_edges: Vec<_> = sites.places().iter().map(|p| PointOnEdge { ends: segments.ends(p.segment), share: p.share }).collect();
+    let between = |on: &PointOnEdge| {
+        let [a, b] = on.ends.map(|v| points[v.index()]);
+        crate::geometry::predicates::spot::Between::new(a, b, on.share).rounded()
+    };
+    let body = |tet: crate::base::TetId| bodies.of_slot[tet.index()].checked_sub(1);
+    let inside = || tets.iter().filter_map(|(tet, v)| body(tet).map(|b| (v, b)));
+    let body_of = |half: crate::kernel::HalfFacet| if half.is_none() { None } else { body(half.tet()) };
+    let firsts = parts.offsets()[..parts.len()].iter().map(|&first| bodies.halves[first as usize]);
+    Constrained {
+        points: points.iter().copied().chain(on_edges.iter().map(between)).collect(),
+        on_edges,
+        tets: inside().map(|(v, _)| v.map(id)).collect(),
+        bodies: inside().map(|(_, b)| b).collect(),
+        triangle_to_bodies: firsts.map(|front| [body_of(front), body_of(tets.across(front))]).collect(),
+        triangle_to_facets: renamed(parts, id),
+    }
+}
+
+fn renamed(parts: Csr<[VertexId; 3]>, id: impl Fn(VertexId) -> VertexId) -> Csr<[VertexId; 3]> {
+    let items = parts.items().iter().map(|part| part.map(&id)).collect();
+    Csr::new(parts.offsets().to_vec(), items).unwrap_or_default()
+}

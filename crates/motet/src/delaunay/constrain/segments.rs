@@ -1,0 +1,170 @@
+//! Every edge of the surface becomes an edge of tets, in pieces where it must be.
+//!
+//! A segment that is no edge of the triangulation gets a point on it, which goes into the triangulation, until all pieces are
+//! edges. As every point on the way lies exactly on its segment, nothing of the surface bends.
+//!
+//! *Where to divide.* If a b is missing, its diametral ball holds a vertex, and then one that is joined to a: shrink the ball towards
+//! a until the last vertex leaves it. Of the neighbours of both ends in the ball, p is the one that sees a b under the largest angle.
+//! A point at the distance of p from a leaves neither of the two pieces with p in its ball, and cuts segments that meet in a at sharp
+//! angles at equal distances, so that they do not divide each other for ever (Si and Gaertner 2005, *Meshing piecewise linear complexes by
+//! constrained Delaunay tetrahedralizations*; shells of Ruppert 1995 before them).
+
+use std::collections::VecDeque;
+
+use hashbrown::HashMap;
+
+use super::insert::{Insertion, sorted};
+use super::sites::{OnSegment, SegmentId, Sites};
+use super::tets::Tets;
+use crate::base::{Csr, Error, Result, TetId, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{distance, dot, sub};
+
+/// So many points on segments, beside those that a segment has on average, mean that it would not end.
+const SPARE_POINTS: usize = 100_000;
+const POINTS_A_SEGMENT: usize = 40;
+
+/// The edges of the surface and the pieces that they are in.
+pub(super) struct Segments {
+    /// The ends of each, smaller one first; rising.
+    ends: Vec<[VertexId; 2]>,
+    pieces: HashMap<[VertexId; 2], SegmentId>,
+}
+
+impl Segments {
+    /// The edges of triangles, each once.
+    pub(super) fn new(triangles: &[[VertexId; 3]]) -> Self {
+        let edges = |&[a, b, c]: &[VertexId; 3]| [sorted([a, b]), sorted([b, c]), sorted([c, a])];
+        let mut ends: Vec<_> = triangles.iter().flat_map(edges).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let pieces = ends.iter().enumerate().map(|(s, &e)| (e, SegmentId(s as u32))).collect();
+        Self { ends, pieces }
+    }
+
+    /// The ends of a segment.
+    pub(super) fn ends(&self, segment: SegmentId) -> [VertexId; 2] {
+        self.ends[segment.0 as usize]
+    }
+
+    /// The segment between two vertices of the surface.
+    pub(super) fn find(&self, edge: [VertexId; 2]) -> Option<SegmentId> {
+        self.ends.binary_search(&sorted(edge)).ok().map(|s| SegmentId(s as u32))
+    }
+
+    /// The points on each segment, from its first end to its second.
+    pub(super) fn points(&self, sites: &Sites) -> Csr<VertexId> {
+        let mut on: Vec<(SegmentId, f64, VertexId)> = Vec::with_capacity(sites.places().len());
+        for (i, place) in sites.places().iter().enumerate() {
+            on.push((place.segment, place.share, VertexId::new(sites.n_given() + i)));
+        }
+        on.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        Csr::from_pairs(self.ends.len(), || on.iter().map(|&(s, _, v)| (s.0 as usize, v)))
+    }
+
+    /// Divides segments until all pieces are edges of tets.
+    pub(super) fn recover(&mut self, tets: &mut Tets, sites: &mut Sites) -> Result<()> {
+        let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets).into();
+        let most = SPARE_POINTS + POINTS_A_SEGMENT * self.ends.len();
+        let (mut insertion, mut star) = (Insertion::default(), Vec::new());
+        while let Some(piece) = queue.pop_front() {
+            let Some(&segment) = self.pieces.get(&piece) else { continue };
+            if tets.find_edge(piece, &mut star).is_some() {
+                continue;
+            }
+            let share = self.share(tets, sites, segment, piece, &mut star);
+            let Some(share) = share.filter(|_| sites.places().len() < most) else {
+                return Err(self.too_fine(sites, segment));
+            };
+            let start = tets.at(piece[0]);
+            let vertex = sites.add(self.ends(segment), OnSegment { segment, share });
+            self.pieces.remove(&piece);
+            for end in piece {
+                self.pieces.insert(sorted([end, vertex]), segment);
+                queue.push_back(sorted([end, vertex]));
+            }
+            let lost = insertion.insert(tets, sites, vertex, start);
+            queue.extend(lost.into_iter().filter(|edge| self.pieces.contains_key(edge)));
+        }
+        Ok(())
+    }
+
+    fn too_fine(&self, sites: &Sites, segment: SegmentId) -> Error {
+        let [a, b] = self.ends(segment);
+        let what = format!("the edge of points {a} and {b} would have to be divided beyond the digits of its coordinates");
+        Error::input(what)
+            .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
+            .remedy("the surface comes too close to itself there: mend it")
+    }
+
+    /// The segments that are no edges of tets; rising.
+    fn missing(&self, tets: &Tets) -> Vec<[VertexId; 2]> {
+        let n_rows = self.ends.last().map_or(0, |e| e[0].index() + 1);
+        let mut starts = vec![0u32; n_rows + 1];
+        self.ends.iter().for_each(|e| starts[e[0].index() + 1] += 1);
+        (0..n_rows).for_each(|v| starts[v + 1] += starts[v]);
+        let mut found = vec![false; self.ends.len()];
+        for (_, v) in tets.iter() {
+            for [i, j] in EDGES {
+                let [a, b] = sorted([v[i], v[j]]);
+                if a.index() < n_rows {
+                    let row = starts[a.index()] as usize..starts[a.index() + 1] as usize;
+                    let place = row.clone().find(|&s| self.ends[s][1] == b);
+                    place.into_iter().for_each(|s| found[s] = true);
+                }
+            }
+        }
+        self.ends.iter().zip(found).filter(|(_, found)| !found).map(|(&e, _)| e).collect()
+    }
+
+    /// Where to divide a piece, as a share of its segment. `None` where no number lies between its ends.
+    fn share(&self, tets: &mut Tets, sites: &Sites, segment: SegmentId, piece: [VertexId; 2], star: &mut Vec<TetId>) -> Option<f64> {
+        let [from, _] = self.ends(segment);
+        let share_of = |v: VertexId| sites.on_segment(v).map_or(if v == from { 0.0 } else { 1.0 }, |on| on.share);
+        let mut ends = piece;
+        ends.sort_by(|&a, &b| share_of(a).total_cmp(&share_of(b)));
+        let [low, high] = ends.map(share_of);
+        let within = self.within(tets, sites, ends, star);
+        let middle = low + 0.5 * (high - low);
+        [low + within * (high - low), middle].into_iter().find(|&s| low < s && s < high)
+    }
+
+    /// Where to divide a piece from its first end to its second, in (0, 1).
+    fn within(&self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2], star: &mut Vec<TetId>) -> f64 {
+        let [a, b] = ends.map(|v| sites.near(v));
+        let length = distance(a, b);
+        let Some(p) = sharpest(tets, sites, ends, star) else { return 0.5 };
+        let p = sites.near(p);
+        let [to_a, to_b] = [distance(a, p) / length, distance(b, p) / length];
+        let is_corner = ends.map(|v| sites.on_segment(v).is_none());
+        let or_middle = |x: f64| if x > 0.0 && x < 0.8 { x } else { 0.5 };
+        match is_corner {
+            [true, true] if to_a <= to_b && to_a < 0.5 => to_a,
+            [true, true] if to_b < 0.5 => 1.0 - to_b,
+            [true, true] => 0.5,
+            [true, false] => or_middle(to_a),
+            [false, true] => 1.0 - or_middle(to_b),
+            [false, false] => {
+                let along = dot(sub(p, a), sub(b, a)) / (length * length);
+                if (0.2..0.8).contains(&along) { along } else { 0.5 }
+            }
+        }
+    }
+}
+
+/// Of the neighbours of both ends the one in the diametral ball that sees them under the largest angle.
+fn sharpest(tets: &mut Tets, sites: &Sites, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) -> Option<VertexId> {
+    let mut best: Option<(f64, VertexId)> = None;
+    for end in [a, b] {
+        tets.star(end, star);
+        for v in star.iter().flat_map(|&tet| tets.vertices(tet)).filter(|&v| v != a && v != b) {
+            let [to_a, to_b] = [a, b].map(|end| sub(sites.near(end), sites.near(v)));
+            let cosine = dot(to_a, to_b) / (dot(to_a, to_a) * dot(to_b, to_b)).sqrt();
+            let is_better = best.is_none_or(|(least, of)| cosine < least || cosine == least && v < of);
+            if cosine <= 0.0 && is_better {
+                best = Some((cosine, v));
+            }
+        }
+    }
+    best.map(|(_, v)| v)
+}

@@ -1,0 +1,184 @@
+//! Tets that come and go: flat arrays, a slot a tet, each facet linked to the one on its other side.
+
+use super::super::Triangulation;
+use crate::base::{TetId, VertexId};
+use crate::geometry::tet::FACETS;
+use crate::kernel::HalfFacet;
+use crate::spatial::OUTSIDE;
+
+/// The vertices of a slot without a tet.
+const FREE: [VertexId; 4] = [VertexId(u32::MAX); 4];
+
+/// The tets and how they hang together.
+pub(super) struct Tets {
+    vertices: Vec<[VertexId; 4]>,
+    links: Vec<[HalfFacet; 4]>,
+    /// A tet of each vertex.
+    at: Vec<TetId>,
+    free: Vec<TetId>,
+    marks: Vec<u32>,
+    round: u32,
+}
+
+impl Tets {
+    /// Those of a triangulation.
+    pub(super) fn new(triangulation: &Triangulation) -> Self {
+        let (vertices, neighbors) = (triangulation.tets(), triangulation.neighbors());
+        let back = |tet: usize, other: TetId| {
+            let i = neighbors[other.index()].iter().position(|&n| n.index() == tet);
+            HalfFacet::new(other, i.unwrap_or_default())
+        };
+        let link = |tet: usize, n: TetId| if n == OUTSIDE { HalfFacet::NONE } else { back(tet, n) };
+        let links = neighbors.iter().enumerate().map(|(tet, n)| n.map(|n| link(tet, n)));
+        let mut tets = Self {
+            vertices: vertices.to_vec(),
+            links: links.collect(),
+            at: vec![OUTSIDE; triangulation.points().len()],
+            free: Vec::new(),
+            marks: vec![0; vertices.len()],
+            round: 0,
+        };
+        for (tet, corners) in vertices.iter().enumerate() {
+            corners.iter().for_each(|v| tets.at[v.index()] = TetId::new(tet));
+        }
+        tets
+    }
+
+    /// How many slots there are, free ones included.
+    pub(super) fn n_slots(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// The tets that are there.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (TetId, [VertexId; 4])> + '_ {
+        let all = self.vertices.iter().enumerate().map(|(t, &v)| (TetId::new(t), v));
+        all.filter(|(_, v)| *v != FREE)
+    }
+
+    #[inline]
+    pub(super) fn vertices(&self, tet: TetId) -> [VertexId; 4] {
+        self.vertices[tet.index()]
+    }
+
+    /// What lies behind a facet.
+    #[inline]
+    pub(super) fn across(&self, half: HalfFacet) -> HalfFacet {
+        self.links[half.tet().index()][half.facet()]
+    }
+
+    /// The four facets of a tet.
+    pub(super) fn facets(tet: TetId) -> [HalfFacet; 4] {
+        [0, 1, 2, 3].map(|i| HalfFacet::new(tet, i))
+    }
+
+    /// The vertices of a facet, so that with the vertex opposite they make a positive tet.
+    #[inline]
+    pub(super) fn inward(&self, half: HalfFacet) -> [VertexId; 3] {
+        let ([a, b, c], v) = (FACETS[half.facet()], self.vertices[half.tet().index()]);
+        [v[a], v[c], v[b]]
+    }
+
+    /// A tet of a vertex; `OUTSIDE` where it has none.
+    pub(super) fn at(&self, vertex: VertexId) -> TetId {
+        self.at.get(vertex.index()).copied().unwrap_or(OUTSIDE)
+    }
+
+    /// Puts a positive tet into a free slot; nothing is linked yet.
+    pub(super) fn add(&mut self, vertices: [VertexId; 4]) -> TetId {
+        let tet = self.free.pop().unwrap_or_else(|| {
+            self.vertices.push(FREE);
+            self.links.push([HalfFacet::NONE; 4]);
+            self.marks.push(0);
+            TetId::new(self.vertices.len() - 1)
+        });
+        self.vertices[tet.index()] = vertices;
+        self.links[tet.index()] = [HalfFacet::NONE; 4];
+        self.marks[tet.index()] = 0;
+        for v in vertices {
+            if self.at.len() <= v.index() {
+                self.at.resize(v.index() + 1, OUTSIDE);
+            }
+            self.at[v.index()] = tet;
+        }
+        tet
+    }
+
+    /// Frees a slot. Whoever does so sees to its neighbours, and that its vertices get new tets.
+    pub(super) fn remove(&mut self, tet: TetId) {
+        self.vertices[tet.index()] = FREE;
+        self.free.push(tet);
+    }
+
+    /// Makes two facets each other's other side.
+    pub(super) fn join(&mut self, a: HalfFacet, b: HalfFacet) {
+        for (from, to) in [(a, b), (b, a)] {
+            if !from.is_none() {
+                self.links[from.tet().index()][from.facet()] = to;
+            }
+        }
+    }
+
+    /// Begins a round of marking: no tet is marked.
+    pub(super) fn begin(&mut self) {
+        if self.round == u32::MAX {
+            self.marks.fill(0);
+            self.round = 0;
+        }
+        self.round += 1;
+    }
+
+    pub(super) fn is_marked(&self, tet: TetId) -> bool {
+        self.marks[tet.index()] == self.round
+    }
+
+    /// Marks a tet; whether it was not before.
+    pub(super) fn mark(&mut self, tet: TetId) -> bool {
+        std::mem::replace(&mut self.marks[tet.index()], self.round) != self.round
+    }
+
+    /// All tets of a vertex, marked; a round begins.
+    pub(super) fn star(&mut self, vertex: VertexId, star: &mut Vec<TetId>) {
+        star.clear();
+        let first = self.at(vertex);
+        if first == OUTSIDE {
+            return;
+        }
+        self.begin();
+        self.mark(first);
+        star.push(first);
+        let mut next = 0;
+        while let Some(&tet) = star.get(next) {
+            next += 1;
+            for half in Self::facets(tet) {
+                let other = self.across(half);
+                if self.vertices(tet)[half.facet()] != vertex && !other.is_none() && self.mark(other.tet()) {
+                    star.push(other.tet());
+                }
+            }
+        }
+    }
+
+    /// A tet of an edge; `star` is working space.
+    pub(super) fn find_edge(&mut self, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) -> Option<TetId> {
+        self.star(a, star);
+        star.iter().copied().find(|&tet| self.vertices(tet).contains(&b))
+    }
+
+    /// One side of a facet; `star` is working space.
+    pub(super) fn find_facet(&mut self, [a, b, c]: [VertexId; 3], star: &mut Vec<TetId>) -> Option<HalfFacet> {
+        self.star(a, star);
+        let has = |tet: &TetId| {
+            let v = self.vertices(*tet);
+            v.contains(&b) && v.contains(&c)
+        };
+        let tet = star.iter().copied().find(has)?;
+        let i = self.vertices(tet).iter().position(|&v| v != a && v != b && v != c)?;
+        Some(HalfFacet::new(tet, i))
+    }
+
+    /// The tets around an edge that is there.
+    pub(super) fn around(&mut self, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) {
+        self.star(a, star);
+        star.retain(|&tet| self.vertices[tet.index()].contains(&b));
+    }
+}

@@ -1,0 +1,158 @@
+//! A hollow filled with constrained Delaunay tets, one facet after the other: gift wrapping.
+//!
+//! The tet on a facet has for its apex the vertex whose sphere with the facet holds no other vertex that can be seen from within the tet
+//! (Shewchuk 2008, *General-dimensional constrained Delaunay and constrained regular triangulations*: it exists, and is the only one where no
+//! ties are left, if all edges of the facets are edges of the triangulation). Seen means: the tet crosses no face
+//! of what is still hollow.
+
+use hashbrown::HashMap;
+
+use super::cut::{Face, Stuck};
+use super::sites::Sites;
+use super::tets::Tets;
+use crate::base::VertexId;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::kernel::HalfFacet;
+
+/// Working space.
+#[derive(Default)]
+pub(super) struct Wrap {
+    /// The faces around what is hollow, by their vertices in rising order.
+    open: HashMap<[VertexId; 3], Face>,
+    /// Faces in the order in which they came; those no longer open are passed over.
+    queue: Vec<[VertexId; 3]>,
+    vertices: Vec<VertexId>,
+    candidates: Vec<VertexId>,
+    /// The facets of new tets on faces with nothing behind them, by their vertices in rising order.
+    bare: HashMap<[VertexId; 3], HalfFacet>,
+}
+
+impl Wrap {
+    /// Fills the hollow within `faces`.
+    pub(super) fn fill(&mut self, tets: &mut Tets, sites: &Sites, faces: &[Face]) -> Result<(), Stuck> {
+        self.begin(faces);
+        let mut most = 64 + 16 * faces.len() + faces.len() * faces.len();
+        while let Some(key) = self.queue.pop() {
+            let Some(&face) = self.open.get(&key) else { continue };
+            most = most.checked_sub(1).ok_or(Stuck)?;
+            let apex = self.apex(sites, face.vertices).ok_or(Stuck)?;
+            self.place(tets, face, apex);
+        }
+        if self.open.is_empty() { Ok(()) } else { Err(Stuck) }
+    }
+
+    fn begin(&mut self, faces: &[Face]) {
+        self.open.clear();
+        self.queue.clear();
+        self.bare.clear();
+        for &face in faces {
+            self.open.insert(rising(face.vertices), face);
+            self.queue.push(rising(face.vertices));
+        }
+        self.vertices.clear();
+        self.vertices.extend(faces.iter().flat_map(|f| f.vertices));
+        self.vertices.sort_unstable();
+        self.vertices.dedup();
+    }
+
+    /// The tet on a face: its other three faces close what is open there, or are open from now on.
+    fn place(&mut self, tets: &mut Tets, face: Face, apex: VertexId) {
+        let [a, b, c] = face.vertices;
+        let tet = tets.add([a, b, c, apex]);
+        self.open.remove(&rising(face.vertices));
+        self.join(tets, HalfFacet::new(tet, 3), face);
+        for i in 0..3 {
+            let half = HalfFacet::new(tet, i);
+            // Seen from what is hollow behind it.
+            let vertices = FACETS[i].map(|k| [a, b, c, apex][k]);
+            match self.open.remove(&rising(vertices)) {
+                Some(other) => self.join(tets, half, other),
+                None => {
+                    self.open.insert(rising(vertices), Face { vertices, outer: half });
+                    self.queue.push(rising(vertices));
+                }
+            }
+        }
+    }
+
+    fn join(&mut self, tets: &mut Tets, half: HalfFacet, face: Face) {
+        tets.join(half, face.outer);
+        if face.outer.is_none() {
+            self.bare.insert(rising(face.vertices), half);
+        }
+    }
+
+    /// The facet of a new tet on a face with nothing behind it.
+    pub(super) fn inner(&self, face: [VertexId; 3]) -> Option<HalfFacet> {
+        self.bare.get(&rising(face)).copied()
+    }
+
+    /// The apex of the tet on a face.
+    fn apex(&mut self, sites: &Sites, face: [VertexId; 3]) -> Option<VertexId> {
+        let [a, b, c] = face;
+        let is_in_front = |&v: &VertexId| !face.contains(&v) && sites.orient3d([a, b, c, v]) > 0;
+        let mut candidates = std::mem::take(&mut self.candidates);
+        candidates.clear();
+        candidates.extend(self.vertices.iter().copied().filter(is_in_front));
+        let mut apex = None;
+        while !candidates.is_empty() {
+            let mut best = 0;
+            for i in 1..candidates.len() {
+                if sites.is_inside([a, b, c, candidates[best]], candidates[i]) {
+                    best = i;
+                }
+            }
+            let v = candidates.swap_remove(best);
+            if self.fits(sites, [a, b, c, v]) {
+                apex = Some(v);
+                break;
+            }
+        }
+        self.candidates = candidates;
+        apex
+    }
+
+    /// Whether no open face cuts into a tet.
+    fn fits(&self, sites: &Sites, tet: [VertexId; 4]) -> bool {
+        self.open.values().all(|face| !cuts(sites, face.vertices, tet))
+    }
+}
+
+/// The vertices of a face in rising order.
+pub(super) fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
+    face.sort_unstable();
+    face
+}
+
+/// Whether a triangle has points in common with the inside of a positive tet.
+///
+/// Two convex bodies have none exactly when a plane has them on different sides. If there is such a plane, there is one through three
+/// of their vertices: turn it until nothing gives any more. The tet is never in the plane, so planes that are none give themselves away.
+fn cuts(sites: &Sites, face: [VertexId; 3], tet: [VertexId; 4]) -> bool {
+    if face.iter().all(|v| tet.contains(v)) {
+        return false;
+    }
+    let parts = |plane: [VertexId; 3]| {
+        let [a, b, c] = plane;
+        let side = |v: &VertexId| if plane.contains(v) { 0 } else { sites.orient3d([a, b, c, *v]) };
+        let of_tet = tet.iter().map(side).fold([false; 2], |[m, p], s| [m || s < 0, p || s > 0]);
+        let of_face = |bad: i8| face.iter().all(|v| side(v) != bad);
+        match of_tet {
+            [true, false] => of_face(-1),
+            [false, true] => of_face(1),
+            _ => false,
+        }
+    };
+    let mut planes = FACETS.into_iter().map(|f| f.map(|i| tet[i])).chain([face]).chain(planes_between(face, tet));
+    !planes.any(parts)
+}
+
+/// The planes through two vertices of the one and one of the other.
+fn planes_between(face: [VertexId; 3], tet: [VertexId; 4]) -> impl Iterator<Item = [VertexId; 3]> {
+    let pairs_of_tet = EDGES.into_iter().map(move |[i, j]| [tet[i], tet[j]]);
+    let through_face = move |[p, q]: [VertexId; 2]| face.into_iter().map(move |v| [p, q, v]);
+    let pairs_of_face = (0..3).map(move |i| [face[i], face[(i + 1) % 3]]);
+    let through_tet = move |[p, q]: [VertexId; 2]| tet.into_iter().map(move |v| [p, q, v]);
+    let all = pairs_of_tet.flat_map(through_face).chain(pairs_of_face.flat_map(through_tet));
+    all.filter(|[a, b, c]| a != b && b != c && a != c)
+}
