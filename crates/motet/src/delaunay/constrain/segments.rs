@@ -4,10 +4,11 @@
 //! edges. As every point on the way lies exactly on its segment, nothing of the surface bends.
 //!
 //! *Where to divide.* If a b is missing, its diametral ball holds a vertex, and then one that is joined to a: shrink the ball towards
-//! a until the last vertex leaves it. Of the neighbours of both ends in the ball, p is the one that sees a b under the largest angle.
-//! A point at the distance of p from a leaves neither of the two pieces with p in its ball, and cuts segments that meet in a at sharp
-//! angles at equal distances, so that they do not divide each other for ever (Si and Gaertner 2005, *Meshing piecewise linear complexes by
-//! constrained Delaunay tetrahedralizations*; shells of Ruppert 1995 before them).
+//! a until the last vertex leaves it. Of the neighbours of both ends in the ball, p is the one that sees a b under the largest angle. The foot
+//! of p on a b leaves neither of the two pieces with p in its ball. On stretched triangles that takes half as many points as halving,
+//! or as cutting at the distance of p from an end. But segments that meet at a sharp angle can divide each other at their feet for ever. So
+//! small pieces are cut at the distance of p from the corner, which is the same on all of them (Si and Gaertner 2005, *Meshing piecewise linear
+//! complexes by constrained Delaunay tetrahedralizations*; shells of Ruppert 1995 before them).
 
 use std::collections::VecDeque;
 
@@ -23,6 +24,12 @@ use crate::geometry::vector::{distance, dot, sub};
 /// So many points on segments, beside those that a segment has on average, mean that it would not end.
 const SPARE_POINTS: usize = 100_000;
 const POINTS_A_SEGMENT: usize = 40;
+
+/// Pieces below this share of their segment are small.
+const SMALL: f64 = 1.0 / 256.0;
+
+/// A piece is not divided nearer to an end than this.
+const LEAST: f64 = 0.005;
 
 /// The edges of the surface and the pieces that they are in.
 pub(super) struct Segments {
@@ -124,31 +131,28 @@ impl Segments {
         let mut ends = piece;
         ends.sort_by(|&a, &b| share_of(a).total_cmp(&share_of(b)));
         let [low, high] = ends.map(share_of);
-        let within = self.within(tets, sites, ends, star);
+        let within = within(tets, sites, ends, high - low < SMALL, star);
         let middle = low + 0.5 * (high - low);
         [low + within * (high - low), middle].into_iter().find(|&s| low < s && s < high)
     }
+}
 
-    /// Where to divide a piece from its first end to its second, in (0, 1).
-    fn within(&self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2], star: &mut Vec<TetId>) -> f64 {
-        let [a, b] = ends.map(|v| sites.near(v));
-        let length = distance(a, b);
-        let Some(p) = sharpest(tets, sites, ends, star) else { return 0.5 };
-        let p = sites.near(p);
-        let [to_a, to_b] = [distance(a, p) / length, distance(b, p) / length];
-        let is_corner = ends.map(|v| sites.on_segment(v).is_none());
-        let or_middle = |x: f64| if x > 0.0 && x < 0.8 { x } else { 0.5 };
-        match is_corner {
-            [true, true] if to_a <= to_b && to_a < 0.5 => to_a,
-            [true, true] if to_b < 0.5 => 1.0 - to_b,
-            [true, true] => 0.5,
-            [true, false] => or_middle(to_a),
-            [false, true] => 1.0 - or_middle(to_b),
-            [false, false] => {
-                let along = dot(sub(p, a), sub(b, a)) / (length * length);
-                if (0.2..0.8).contains(&along) { along } else { 0.5 }
-            }
-        }
+/// Where to divide a piece from its first end to its second, in (0, 1).
+fn within(tets: &mut Tets, sites: &Sites, ends: [VertexId; 2], is_small: bool, star: &mut Vec<TetId>) -> f64 {
+    let [a, b] = ends.map(|v| sites.near(v));
+    let length = distance(a, b);
+    let Some(p) = sharpest(tets, sites, ends, star) else { return 0.5 };
+    let p = sites.near(p);
+    if !is_small {
+        let foot = dot(sub(p, a), sub(b, a)) / (length * length);
+        return if (LEAST..1.0 - LEAST).contains(&foot) { foot } else { 0.5 };
+    }
+    let [to_a, to_b] = [distance(a, p) / length, distance(b, p) / length];
+    let or_middle = |x: f64| if x > 0.0 && x < 0.8 { x } else { 0.5 };
+    match ends.map(|v| sites.on_segment(v).is_none()) {
+        [true, false] => or_middle(to_a),
+        [false, true] => 1.0 - or_middle(to_b),
+        _ => 0.5,
     }
 }
 
