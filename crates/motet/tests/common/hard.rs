@@ -29,15 +29,11 @@ pub(crate) struct Case {
 /// Case `i` of as many as there are numbers, of 10 to some thousand triangles.
 pub(crate) fn random_case(i: u64) -> Case {
     let mut numbers = Numbers(i.wrapping_mul(0x9e37_79b9).wrapping_add(77));
-    let (kind, mut body) = KINDS[(i % KINDS.len() as u64) as usize];
-    let mut made = body_of(&mut body, &mut numbers);
-    let changes = change(&mut made, &mut numbers);
-    let Body { points, triangles, volume, has_membranes } = made;
+    let (kind, make) = KINDS[(i % KINDS.len() as u64) as usize];
+    let mut body = make(&mut numbers);
+    let changes = change(&mut body, &mut numbers);
+    let Body { points, triangles, volume, has_membranes } = body;
     Case { name: format!("{i} {kind}{changes}"), points, triangles, volume, has_membranes }
-}
-
-fn body_of(make: &mut fn(&mut Numbers) -> Body, numbers: &mut Numbers) -> Body {
-    make(numbers)
 }
 
 type Kind = (&'static str, fn(&mut Numbers) -> Body);

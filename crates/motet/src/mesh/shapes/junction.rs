@@ -75,7 +75,7 @@ pub(super) fn junction<F: Fn(Point) -> f64>(
     around: usize,
 ) -> Result<Junction> {
     let mut points = middle(&arms, surface, around / 2);
-    let (mut wall, mut caps) = (Vec::new(), [const { Vec::new() }; 3]);
+    let (mut wall, mut ends) = (Vec::new(), [const { Vec::new() }; 3]);
     let mut rims: Vec<VertexId> = Vec::new();
     for (i, arm) in arms.iter().enumerate() {
         let end = rings(arm, &first_ring(i, around / 2), &mut points, &mut wall);
@@ -85,7 +85,7 @@ pub(super) fn junction<F: Fn(Point) -> f64>(
         } else {
             wall.extend(disc(&mut points, &end));
         }
-        caps[i] = end;
+        ends[i] = end;
     }
     let mut is_fixed = vec![false; points.len()];
     rims.iter().for_each(|v| is_fixed[v.index()] = true);
@@ -94,7 +94,7 @@ pub(super) fn junction<F: Fn(Point) -> f64>(
     }
     even_out(surface, &mut points, &mut wall, &is_fixed);
     let caps = [0, 1, 2].map(|i| match arms[i].has_cap {
-        true => disc(&mut points, &caps[i]),
+        true => disc(&mut points, &ends[i]),
         false => Vec::new(),
     });
     Ok(Junction { points, wall, caps })

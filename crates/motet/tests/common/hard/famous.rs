@@ -65,7 +65,7 @@ pub(crate) fn chazelle(n: usize, room: f64) -> Body {
         let [a, b, c, d] = [bottom(0, i), bottom(1, i), bottom(1, i + 1), bottom(0, i + 1)];
         triangles.extend([[a, b, c], [a, c, d]]);
         let [a, b, c, d] = [top(0, i), top(1, i), top(1, i + 1), top(0, i + 1)];
-        triangles.extend([[a, c, b], [a, d, c]]);
+        triangles.extend([[a, b, c], [a, c, d]]);
     }
     let mut side = |corners: Vec<usize>, axis: usize, is_turned: bool| {
         let flat: Vec<_> = corners.iter().map(|&v| [points[v][axis], points[v][2]]).collect();

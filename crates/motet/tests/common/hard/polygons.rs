@@ -49,10 +49,10 @@ pub(crate) fn cocircular(outer_share: f64, numbers: &mut Numbers) -> Body {
     }
     let angle = |[x, y]: [i32; 2]| f64::from(y).atan2(f64::from(x));
     corners.sort_by(|a, b| angle(*a).total_cmp(&angle(*b)));
+    // Enough stay for the origin to be inside.
+    corners.retain(|[x, y]| *x == 0 || *y == 0 || numbers.unit() < 0.8);
     let polygon: Vec<[f64; 2]> = corners
         .into_iter()
-        // Enough stay for the origin to be inside.
-        .filter(|[x, y]| *x == 0 || *y == 0 || numbers.unit() < 0.8)
         .map(|corner| {
             let share = if numbers.unit() < outer_share { 1.0 } else { 0.5 };
             corner.map(|x| share * f64::from(x))

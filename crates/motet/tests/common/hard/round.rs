@@ -107,7 +107,7 @@ pub(crate) fn hull_of_lattice(n: usize, side: usize, numbers: &mut Numbers) -> B
     hull(&points)
 }
 
-/// A closed tube along a knot that goes `q` times (odd or even, but not a multiple of 2) round while it goes round twice.
+/// A closed tube along a knot on a torus that goes `2 p - 1` times through its hole while it goes round twice.
 pub(crate) fn knot(p: usize, steps: usize, around: usize) -> Body {
     let q = 2 * p - 1;
     let line: Vec<Point> = (0..steps)

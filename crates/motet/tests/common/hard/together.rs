@@ -1,5 +1,7 @@
 //! Several surfaces: inside each other, nearly touching, or sharing corners, edges and facets.
 
+use std::collections::BTreeSet;
+
 use motet::base::VertexId;
 use motet::geometry::vector::scale;
 
@@ -34,7 +36,8 @@ pub(crate) fn tet_in_box(shared: usize, numbers: &mut Numbers) -> Body {
     let mut body = cuboid([0.0; 3], [1.0; 3]);
     let shell = body.triangles[numbers.below(12)].map(VertexId::index);
     let mut tet: Vec<usize> = shell[..shared].to_vec();
-    let inner = [[0.5, 0.5, 0.5], [0.625, 0.5, 0.5], [0.5, 0.6875, 0.5], [0.5, 0.5, 0.5625]];
+    // In no plane with each other and corners or edges of the box.
+    let inner = [[0.5, 0.5, 0.5], [0.625, 0.53125, 0.5625], [0.5, 0.6875, 0.53125]];
     for p in &inner[..4 - shared] {
         tet.push(body.points.len());
         body.points.push(*p);
@@ -45,8 +48,7 @@ pub(crate) fn tet_in_box(shared: usize, numbers: &mut Numbers) -> Body {
         tet.swap(2, 3);
     }
     // As a hole: its facets face inward.
-    let holes =
-        [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]].map(|t| t.map(|i| VertexId::new(tet[i])).map(|v| v));
+    let holes = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]].map(|t| t.map(|i: usize| VertexId::new(tet[i])));
     let is_new = |t: &[VertexId; 3]| !t.iter().all(|v| shell.contains(&v.index()));
     body.triangles.extend(holes.into_iter().filter(is_new));
     if shared == 3 {
@@ -79,23 +81,14 @@ pub(crate) fn boxes_in_touch(numbers: &mut Numbers) -> Body {
     }
 }
 
-/// Of two triangles with the same corners the first stays; where the quads of a side are cut differently, the second two go.
+/// Of triangles with the same corners the first stays.
 fn drop_twins(body: &mut Body) {
-    let on_side = |body: &Body, t: &[VertexId; 3]| {
-        let x = body.points[t[0].index()][0];
-        x > 0.0
-            && x < body.points.iter().fold(0.0, |m, p| p[0].max(m))
-            && t.iter().all(|v| body.points[v.index()][0] == x)
-    };
-    let all = body.triangles.clone();
-    let mut n_on_side = 0;
-    body.triangles = all
-        .into_iter()
-        .filter(|t| {
-            n_on_side += usize::from(on_side(body, t));
-            !on_side(body, t) || n_on_side <= 2
-        })
-        .collect();
+    let mut seen = BTreeSet::new();
+    body.triangles.retain(|t| {
+        let mut corners = *t;
+        corners.sort_unstable();
+        seen.insert(corners)
+    });
 }
 
 /// A spiky body in a larger copy of itself, turned inward; between them lies a thin shell.
