@@ -35,12 +35,20 @@ pub(super) fn labelled(
 
 /// A surface alone: triangles, all of one patch.
 pub(super) fn skin(points: Vec<Point>, triangles: &[[VertexId; 3]], patch: &str) -> Mesh {
-    let mut cells = Cells::new();
-    triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
-    let patches = vec![1; triangles.len()];
+    skins(points, &[(patch, triangles)])
+}
+
+/// A surface alone: the triangles of each patch, which are labelled 1, 2, ...
+pub(super) fn skins(points: Vec<Point>, parts: &[(&str, &[[VertexId; 3]])]) -> Mesh {
+    let (mut cells, mut patches, mut names) = (Cells::new(), Vec::new(), BTreeMap::new());
+    for (label, (name, triangles)) in (1..).zip(parts) {
+        triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+        patches.resize(cells.len(), label);
+        names.insert(label, (*name).to_owned());
+    }
     Mesh {
         cell_data: vec![Field::scalars("patch", patches)],
-        label_names: LabelNames { patches: [(1, patch.to_owned())].into(), ..LabelNames::default() },
+        label_names: LabelNames { patches: names, ..LabelNames::default() },
         ..Mesh::new(points, cells)
     }
 }

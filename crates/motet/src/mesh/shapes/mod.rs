@@ -11,34 +11,50 @@
 //! | [`Stent`] | triangles, the same at every radius | `stent` |
 //! | [`Coil`] | triangles, a wire wound round a line | `wire` |
 //! | [`wire`] | triangles, round tubes along line segments | `wire` |
+//! | [`Flap`] | triangles, a vessel and a sheet inside it | `wall` `inlet` `outlet` `flap` |
+//! | [`ThickTube`] | triangles, a vessel and its wall | `lumen_inlet` `lumen_outlet` `interface` `outer` `wall_inlet` `wall_outlet` |
+//! | [`Bifurcation`] | triangles, a vessel that parts in two | `wall` `inlet` `outlet_1` `outlet_2` |
+//! | [`Aneurysm`] | triangles, a bent vessel with a sac | `wall` `inlet` `outlet` |
 //!
 //! Each has a cell array `region` on its volume cells and `patch` on its surface
 //! cells, which cover the whole boundary, and names for both. Cells are positive
 //! and conforming, and the same arguments give the same bytes. Most are built of
-//! hexahedra that [`to_tets`] then splits. The two of triangles are closed and turned outward; [`CenterLine`] bends
-//! what lies along z.
+//! hexahedra that [`to_tets`] then splits. Those of triangles are closed and turned outward, apart from what lies inside them (a flap, the
+//! interface of lumen and wall); [`CenterLine`] bends what lies along z.
 
+mod aneurysm;
 mod ball;
+mod bifurcation;
 mod boxes;
 mod coil;
 mod cubed_sphere;
+mod disc;
+mod even_out;
+mod flap;
 mod frames;
+mod junction;
 mod labelled;
 mod mixed;
 mod quadratic;
+mod sleeve;
 mod split;
 mod stent;
+mod thick_tube;
 mod tube;
 mod wire;
 
+pub use aneurysm::Aneurysm;
 pub use ball::ball;
+pub use bifurcation::Bifurcation;
 pub use boxes::box_grid;
 pub use coil::Coil;
 pub use cubed_sphere::sphere_in_box;
+pub use flap::Flap;
 pub use frames::CenterLine;
 pub use mixed::mixed;
 pub use quadratic::quadratic;
 pub use split::to_tets;
 pub use stent::Stent;
+pub use thick_tube::ThickTube;
 pub use tube::{TubeOptions, WallCells, tube};
 pub use wire::{Chain, chains, wire};

@@ -1,0 +1,111 @@
+//! A bent vessel with a sac on the outer side of its bend.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::distance;
+use crate::mesh::Mesh;
+use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
+use crate::mesh::shapes::junction::{Arm, junction};
+use crate::mesh::shapes::labelled::skins;
+
+/// What a vessel with an aneurysm looks like: the middle of its bend is the origin, it lies in the plane of x and y, and the sac is where y
+/// is positive. Lengths in one unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Aneurysm {
+    /// Radius of the vessel; default 1.
+    pub radius: f64,
+    /// Length of the vessel's axis; default 10.
+    pub length: f64,
+    /// How far the axis turns, in degrees; 0 is straight. Default 90.
+    pub bend_deg: f64,
+    /// Radius of the sac; default 1.4.
+    pub sac_radius: f64,
+    /// From the axis of the vessel to the middle of the sac; default 2.2.
+    pub sac_height: f64,
+    /// Within which difference of distances vessel and sac are blended; larger is rounder. Default 0.5.
+    pub blend: f64,
+    /// Vertices around; put to the next even number. Default 24.
+    pub around: usize,
+}
+
+impl Default for Aneurysm {
+    fn default() -> Self {
+        Self {
+            radius: 1.0,
+            length: 10.0,
+            bend_deg: 90.0,
+            sac_radius: 1.4,
+            sac_height: 2.2,
+            blend: 0.5,
+            around: 24,
+        }
+    }
+}
+
+/// Where in the sac its arm ends, from its middle and in width, as parts of its radius: on its sphere.
+const TIP: [f64; 2] = [0.6, 0.8];
+
+impl Aneurysm {
+    /// Its surface, closed, turned outward; patches `wall` (the sac is a part of it), `inlet` (where x is negative), `outlet`.
+    ///
+    /// # Errors
+    /// When sizes are not larger than 0, there are fewer than 6 around, the vessel turns more sharply than it is wide, the sac does not
+    /// rise over the vessel or does not touch it, or is near the vessel's ends.
+    pub fn mesh(&self) -> Result<Mesh> {
+        self.check()?;
+        let curvature = self.bend_deg.to_radians() / self.length;
+        let half = |heading, curvature| Arm {
+            heading,
+            curvature,
+            length: 0.5 * self.length,
+            radius: self.radius,
+            has_cap: true,
+        };
+        let sac = Arm {
+            heading: std::f64::consts::FRAC_PI_2,
+            curvature: 0.0,
+            length: self.sac_height + TIP[0] * self.sac_radius,
+            radius: TIP[1] * self.sac_radius,
+            has_cap: false,
+        };
+        let arms = [half(0.0, -curvature), sac, half(std::f64::consts::PI, curvature)];
+        let function = |p: Point| {
+            let sac = distance(p, [0.0, self.sac_height, 0.0]) - self.sac_radius;
+            smooth_minimum(from_axis(p, curvature) - self.radius, sac, self.blend)
+        };
+        let size = self.radius.min(self.sac_radius);
+        let made = junction(arms, &Implicit { function, size }, self.around.next_multiple_of(2))?;
+        let [outlet, _, inlet] = &made.caps;
+        let parts: [(&str, &[[VertexId; 3]]); 3] =
+            [("wall", &made.wall), ("inlet", inlet), ("outlet", outlet)];
+        Ok(skins(made.points, &parts))
+    }
+
+    fn check(&self) -> Result<()> {
+        let refuse = |what: &str, remedy: &str| Err(Error::options(what.to_owned()).remedy(remedy));
+        let sizes = [self.radius, self.length, self.sac_radius, self.sac_height, self.blend];
+        if !sizes.iter().all(|&x| x > 0.0 && x.is_finite()) || self.around < 6 {
+            return refuse(
+                "an aneurysm of no size, or of too few triangles",
+                "give lengths larger than 0 and at least 6 vertices around",
+            );
+        }
+        let turn = self.bend_deg.to_radians();
+        if !(turn >= 0.0 && turn * self.radius < self.length && self.bend_deg < 300.0) {
+            return refuse("a vessel that meets itself", "bend it less, or make it longer");
+        }
+        let [low, high] = [-1.0, 1.0].map(|side| self.sac_height + side * self.sac_radius);
+        if !(low > -0.5 * self.radius && low < self.radius && high > 1.2 * self.radius) {
+            return refuse("a sac that is not on the vessel", "give a height that fits its radius");
+        }
+        Ok(())
+    }
+}
+
+/// How far a point is from the axis of the vessel: a circle through the origin, or the line along x.
+fn from_axis([x, y, z]: Point, curvature: f64) -> f64 {
+    if curvature == 0.0 {
+        return y.hypot(z);
+    }
+    let radius = 1.0 / curvature;
+    (x.hypot(y + radius) - radius).hypot(z)
+}

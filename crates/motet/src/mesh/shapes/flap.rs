@@ -1,0 +1,165 @@
+//! A vessel with a dissection flap: a sheet inside the lumen that shares vertices with the wall where it hangs on it.
+//!
+//! ```text
+//!    .-""-.       cross-section: the flap joins two lines of the wall, or only the first, and then its
+//!   /      \      other edge is free. Lengthwise it starts and ends inside, with free edges.
+//!  a-------_b
+//!   \      /      Waves move it across its chord, least near the wall.
+//!    `-..-'
+//! ```
+
+use std::f64::consts::{PI, TAU};
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{add, cross, distance, norm, scale, sub};
+use crate::mesh::Mesh;
+use crate::mesh::shapes::disc::disc;
+use crate::mesh::shapes::labelled::skins;
+use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
+
+/// What a vessel with a flap looks like. It starts at the origin, along z. Lengths in one unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flap {
+    /// Radius of the vessel; default 1.
+    pub radius: f64,
+    /// Length along the axis; default 6.
+    pub length: f64,
+    /// How far the axis turns, towards x, in degrees; default 0, a straight vessel.
+    pub bend_deg: f64,
+    /// Vertices around; default 24.
+    pub around: usize,
+    /// Steps along the axis; default 24.
+    pub slices: usize,
+    /// Where on the circumference the flap is held, in degrees; put to the nearest vertices. Default 200 and 340.
+    pub lines_deg: [f64; 2],
+    /// From where to where it reaches along the axis, as parts of the length; put to the nearest slices. Default 0.2 to 0.8.
+    pub extent: [f64; 2],
+    /// How far it reaches from its first line towards the second: 1 to hang on both, less for a free edge. Default 1.
+    pub reach: f64,
+    /// How far waves move it, as a part of the radius; default 0.
+    pub wave_height: f64,
+    /// Waves along its length; default 2.
+    pub waves: f64,
+}
+
+impl Default for Flap {
+    fn default() -> Self {
+        Self {
+            radius: 1.0,
+            length: 6.0,
+            bend_deg: 0.0,
+            around: 24,
+            slices: 24,
+            lines_deg: [200.0, 340.0],
+            extent: [0.2, 0.8],
+            reach: 1.0,
+            wave_height: 0.0,
+            waves: 2.0,
+        }
+    }
+}
+
+impl Flap {
+    /// Its surface; patches `wall`, `inlet`, `outlet`, `flap`. The first three are closed and face outward.
+    ///
+    /// # Errors
+    /// When sizes are not larger than 0 or counts too small, the vessel turns more sharply than it is wide, the flap has no width
+    /// or length or does not end inside, or its waves are higher than there is room for.
+    pub fn mesh(&self) -> Result<Mesh> {
+        self.check()?;
+        let wall = Sleeve { first: 0, around: self.around };
+        let mut points = cylinder(self.radius, self.length, self.around, self.slices);
+        let inlet = turned(disc(&mut points, &wall.ring(0)));
+        let outlet = disc(&mut points, &wall.ring(self.slices));
+        let flap = self.sheet(&mut points, wall);
+        bend(&mut points, self.length, self.bend_deg);
+        let parts: [(&str, &[[VertexId; 3]]); 4] = [
+            ("wall", &wall.triangles(0..self.slices)),
+            ("inlet", &inlet),
+            ("outlet", &outlet),
+            ("flap", &flap),
+        ];
+        Ok(skins(points, &parts))
+    }
+
+    /// The triangles of the flap; those of its points that are not on the wall are added.
+    fn sheet(&self, points: &mut Vec<Point>, wall: Sleeve) -> Vec<[VertexId; 3]> {
+        let ([from, to], [first, last]) = (self.lines(), self.ends());
+        let span = |slice: usize| [from, to].map(|i| wall.at(slice, i));
+        let [p, q] = span(0).map(|v| points[v.index()]);
+        let width = self.reach * distance(p, q);
+        let edge = TAU * self.radius / self.around as f64;
+        let columns = ((width / edge).round() as usize).max(2);
+        let mut rows = Vec::new();
+        for slice in first..=last {
+            let [a, b] = span(slice);
+            let along = (slice - first) as f64 / (last - first) as f64;
+            let row = (0..=columns).map(|column| {
+                if column == 0 {
+                    return a;
+                }
+                if column == columns && self.reach == 1.0 {
+                    return b;
+                }
+                let across = self.reach * column as f64 / columns as f64;
+                points.push(self.place([a, b].map(|v| points[v.index()]), across, along));
+                VertexId::new(points.len() - 1)
+            });
+            rows.push(row.collect::<Vec<_>>());
+        }
+        let quad = |r: usize, c: usize| [rows[r][c], rows[r + 1][c], rows[r + 1][c + 1], rows[r][c + 1]];
+        (0..last - first).flat_map(|r| (0..columns).flat_map(move |c| halves(quad(r, c), r + c))).collect()
+    }
+
+    /// A place on the flap: on the chord between two points of the wall, and off it by the wave.
+    fn place(&self, [a, b]: [Point; 2], across: f64, along: f64) -> Point {
+        let chord = sub(b, a);
+        let off = cross(chord, [0.0, 0.0, 1.0 / norm(chord)]);
+        let wave = (PI * across).sin().powi(2) * (TAU * self.waves * along).sin();
+        add(add(a, scale(chord, across)), scale(off, self.wave_height * self.radius * wave))
+    }
+
+    /// The vertices around where it hangs.
+    fn lines(&self) -> [usize; 2] {
+        let n = self.around as f64;
+        self.lines_deg.map(|deg| (deg.rem_euclid(360.0) / 360.0 * n).round() as usize % self.around)
+    }
+
+    /// Its first and last slice.
+    fn ends(&self) -> [usize; 2] {
+        self.extent.map(|share| (share * self.slices as f64).round() as usize)
+    }
+
+    fn check(&self) -> Result<()> {
+        let refuse = |what: &str, remedy: &str| Err(Error::options(what.to_owned()).remedy(remedy));
+        if ![self.radius, self.length].iter().all(|&x| x > 0.0 && x.is_finite()) {
+            return refuse("a vessel of no size", "give a radius and a length larger than 0");
+        }
+        if self.around < 4 || self.slices < 3 {
+            return refuse("a vessel of too few triangles", "give at least 4 vertices around and 3 slices");
+        }
+        if !(self.radius * self.bend_deg.to_radians().abs() < self.length && self.bend_deg.abs() < 330.0) {
+            return refuse("a vessel that meets itself", "bend it less, or make it longer");
+        }
+        let ([from, to], [first, last]) = (self.lines(), self.ends());
+        let apart = from.abs_diff(to).min(self.around - from.abs_diff(to));
+        if apart < 2 || !self.lines_deg.iter().all(|deg| deg.is_finite()) {
+            return refuse("a flap along the wall", "put its lines farther apart");
+        }
+        if !(0 < first && first < last && last < self.slices) {
+            return refuse(
+                "a flap that does not start and end inside",
+                "give an extent within 0 to 1, or more slices",
+            );
+        }
+        if !(self.reach > 0.0 && self.reach <= 1.0) {
+            return refuse("a flap without width, or beyond the wall", "give a reach above 0, at most 1");
+        }
+        // From the middle of the chord to the nearer side of the wall.
+        let room = 1.0 - (PI * apart as f64 / self.around as f64).cos().abs();
+        if !(self.wave_height.abs() < 0.8 * room && self.waves.is_finite()) {
+            return refuse("waves that reach the wall", "give a smaller wave height, or move the lines");
+        }
+        Ok(())
+    }
+}
