@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
@@ -11,7 +12,13 @@ use motet::geometry::vector::{cross, dot, norm, sub};
 use motet::mesh::shapes::{Aneurysm, Bifurcation, Flap, ThickTube};
 use motet::mesh::{Surface, cone_volume};
 
-fn vessels() -> Vec<(&'static str, Surface)> {
+/// All of them, made once.
+fn vessels() -> &'static [(&'static str, Surface)] {
+    static VESSELS: OnceLock<Vec<(&'static str, Surface)>> = OnceLock::new();
+    VESSELS.get_or_init(make_vessels)
+}
+
+fn make_vessels() -> Vec<(&'static str, Surface)> {
     let held_once = Flap { reach: 0.6, bend_deg: 60.0, ..Flap::default() };
     let wavy = Flap { wave_height: 0.4, bend_deg: 90.0, around: 32, slices: 40, ..Flap::default() };
     let uneven = Bifurcation {
@@ -75,11 +82,11 @@ fn nothing_crosses_and_triangles_are_fair() {
 #[test]
 fn what_is_closed_is_closed_and_turned_outward() {
     for (name, surface) in vessels() {
-        let closed = of_patches(&surface, |patch| patch != "flap" && patch != "interface");
-        let wall = of_patches(&surface, |patch| patch == "interface" || patch.starts_with("lumen"));
+        let closed = of_patches(surface, |patch| patch != "flap" && patch != "interface");
+        let wall = of_patches(surface, |patch| patch == "interface" || patch.starts_with("lumen"));
         for (part, triangles) in [("all", &closed), ("lumen", &wall)] {
             assert!(is_closed(triangles), "{name}, {part}");
-            assert!(volume(&surface, triangles) > 0.0 || triangles.is_empty(), "{name}, {part}");
+            assert!(volume(surface, triangles) > 0.0 || triangles.is_empty(), "{name}, {part}");
         }
     }
 }
