@@ -131,18 +131,33 @@ impl Segments {
         let mut ends = piece;
         ends.sort_by(|&a, &b| share_of(a).total_cmp(&share_of(b)));
         let [low, high] = ends.map(share_of);
-        let within = within(tets, sites, ends, high - low < SMALL, star);
-        let middle = low + 0.5 * (high - low);
-        [low + within * (high - low), middle].into_iter().find(|&s| low < s && s < high)
+        let sharpest = sharpest(tets, sites, ends, star);
+        let from_corner = sharpest.and_then(|p| self.as_far(sites, segment, p));
+        let is_well_within = |&s: &f64| (LEAST..1.0 - LEAST).contains(&((s - low) / (high - low)));
+        let share = from_corner.filter(is_well_within).unwrap_or_else(|| {
+            low + (high - low) * sharpest.map_or(0.5, |p| within(sites, ends, p, high - low < SMALL))
+        });
+        [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high)
+    }
+
+    /// The share of a segment that is as far from its corner as `p` is, where `p` lies on another segment of that corner.
+    fn as_far(&self, sites: &Sites, segment: SegmentId, p: VertexId) -> Option<f64> {
+        let others = self.ends(sites.on_segment(p)?.segment);
+        let [a, b] = self.ends(segment);
+        let length = distance(sites.near(a), sites.near(b));
+        let from = |corner: VertexId| distance(sites.near(corner), sites.near(p)) / length;
+        match [a, b].map(|corner| others.contains(&corner)) {
+            [true, false] => Some(from(a)),
+            [false, true] => Some(1.0 - from(b)),
+            _ => None,
+        }
     }
 }
 
 /// Where to divide a piece from its first end to its second, in (0, 1).
-fn within(tets: &mut Tets, sites: &Sites, ends: [VertexId; 2], is_small: bool, star: &mut Vec<TetId>) -> f64 {
-    let [a, b] = ends.map(|v| sites.near(v));
+fn within(sites: &Sites, ends: [VertexId; 2], p: VertexId, is_small: bool) -> f64 {
+    let ([a, b], p) = (ends.map(|v| sites.near(v)), sites.near(p));
     let length = distance(a, b);
-    let Some(p) = sharpest(tets, sites, ends, star) else { return 0.5 };
-    let p = sites.near(p);
     if !is_small {
         let foot = dot(sub(p, a), sub(b, a)) / (length * length);
         return if (LEAST..1.0 - LEAST).contains(&foot) { foot } else { 0.5 };
