@@ -21,6 +21,7 @@
 mod bodies;
 mod cut;
 mod facets;
+mod hollow;
 mod insert;
 mod plane;
 mod segments;
@@ -30,6 +31,7 @@ mod wrap;
 
 use super::{Triangulation, input};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::{distance, scale};
 use bodies::Bodies;
 use segments::Segments;
 use sites::Sites;
@@ -37,6 +39,12 @@ use tets::Tets;
 
 /// The box around all points is larger than theirs by this factor: so far away it hardly makes an edge less Delaunay.
 const BOX: f64 = 8.0;
+
+/// What is far around the box, where a hollow is filled, is larger by this factor than the box.
+const FAR: f64 = 4096.0;
+
+/// How many vertices are not those of the caller: the corners of the box, and those far around.
+const N_AROUND: usize = 8 + 4;
 
 /// A point that was put on an edge of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,16 +82,17 @@ pub struct Constrained {
 pub fn constrain(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Result<Constrained> {
     input::check(points)?;
     check_ids(points, triangles)?;
-    let (given, corner) = in_box(points)?;
+    let mut given = in_box(points)?;
     let (triangulation, order) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
     let mut tets = Tets::new(&triangulation);
     drop(triangulation);
+    given.extend(far_around(&given));
     let mut sites = Sites::new(given, &order);
     let mut segments = Segments::new(triangles);
     segments.recover(&mut tets, &mut sites)?;
     let parts = facets::recover(&mut tets, &sites, &segments, triangles)?;
-    let bodies = Bodies::find(&mut tets, &parts, corner)?;
+    let bodies = Bodies::find(&mut tets, &parts, VertexId::new(points.len()))?;
     Ok(finish(points, &tets, &sites, &segments, parts, &bodies))
 }
 
@@ -105,10 +114,9 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
     Err(Error::input(format!("the points {a} and {b} coincide")).at(format!("triangle {i}")).remedy("merge points that coincide"))
 }
 
-/// The points, scaled by a power of two, and the corners of a box far around them; the first corner's vertex.
-fn in_box(points: &[Point]) -> Result<(Vec<Point>, VertexId)> {
+/// The points, scaled by a power of two, and the corners of a box far around them.
+fn in_box(points: &[Point]) -> Result<Vec<Point>> {
     let mut given = input::scaled(points.to_vec()).points;
-    let corner = VertexId::new(given.len());
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in &given {
         for i in 0..3 {
@@ -119,10 +127,16 @@ fn in_box(points: &[Point]) -> Result<(Vec<Point>, VertexId)> {
     for k in 0..8 {
         given.push(std::array::from_fn(|i| if k >> i & 1 == 0 { low[i] - away } else { high[i] + away }));
     }
-    if away > 0.0 && given.as_flattened().iter().all(|x| x.is_finite()) {
-        return Ok((given, corner));
+    if away > 0.0 && (away * FAR).is_finite() && given.as_flattened().iter().all(|x| x.is_finite()) {
+        return Ok(given);
     }
     Err(Error::input("the points have no extent, or one too large for numbers").remedy("give surfaces of another size"))
+}
+
+/// The corners of a positive tet that holds the box of the last eight points, and is far larger.
+fn far_around(given: &[Point]) -> [Point; 4] {
+    let size = FAR * distance(given[given.len() - 8], given[given.len() - 1]);
+    [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(|p| scale(p, size))
 }
 
 /// Leaves out what lies outside, and numbers the rest.
@@ -135,8 +149,8 @@ fn finish(
     bodies: &Bodies,
 ) -> Constrained {
     let n_given = points.len();
-    // The corners of the box come between the points given and those on edges.
-    let id = |v: VertexId| if v.index() < n_given { v } else { VertexId::new(v.index() - 8) };
+    // What lies around comes between the points given and those on edges.
+    let id = |v: VertexId| if v.index() < n_given { v } else { VertexId::new(v.index() - N_AROUND) };
     let on_edges: Vec<_> = sites.places().iter().map(|p| PointOnEdge { ends: segments.ends(p.segment), share: p.share }).collect();
     let between = |on: &PointOnEdge| {
         let [a, b] = on.ends.map(|v| points[v.index()]);

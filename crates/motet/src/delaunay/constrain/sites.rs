@@ -45,6 +45,12 @@ impl Sites {
         self.given.len()
     }
 
+    /// Four vertices far around all others, a positive tet: the last ones given.
+    pub(super) fn around_all(&self) -> [VertexId; 4] {
+        let n = self.given.len();
+        [n - 4, n - 3, n - 2, n - 1].map(VertexId::new)
+    }
+
     /// Adds a point on a segment between two given vertices.
     pub(super) fn add(&mut self, [from, to]: [VertexId; 2], place: OnSegment) -> VertexId {
         let vertex = VertexId::new(self.len());

@@ -10,6 +10,7 @@ use crate::spatial::OUTSIDE;
 const FREE: [VertexId; 4] = [VertexId(u32::MAX); 4];
 
 /// The tets and how they hang together.
+#[derive(Default)]
 pub(super) struct Tets {
     vertices: Vec<[VertexId; 4]>,
     links: Vec<[HalfFacet; 4]>,
@@ -42,6 +43,15 @@ impl Tets {
             corners.iter().for_each(|v| tets.at[v.index()] = TetId::new(tet));
         }
         tets
+    }
+
+    /// Removes all tets; those of vertices are old ones until they get new ones.
+    pub(super) fn clear(&mut self) {
+        self.vertices.clear();
+        self.links.clear();
+        self.free.clear();
+        self.marks.clear();
+        self.round = 0;
     }
 
     /// How many slots there are, free ones included.
