@@ -2,6 +2,9 @@
 //!
 //! No edge of tets crosses an edge of the part, since those are edges of tets themselves. So where a tet is cut at all its whole slice lies
 //! in the part, and the tets behind its cut facets are cut as well: nothing needs to be known of the part but its plane and one edge.
+//!
+//! A facet between two tets that are cut may itself be whole, where it meets the plane in a vertex or an edge. It is forgotten, unless it is of the
+//! surface: then it stands in the hollow as a wall with two sides.
 
 use super::sites::Sites;
 use super::tets::Tets;
@@ -25,6 +28,8 @@ pub(super) struct Cut {
     pub(super) tets: Vec<TetId>,
     /// The faces around them in front of the plane, and behind it.
     pub(super) shells: [Vec<Face>; 2],
+    /// Walls within the hollows, each once.
+    pub(super) walls: Vec<[VertexId; 3]>,
     star: Vec<TetId>,
 }
 
@@ -38,45 +43,84 @@ impl Cut {
         tets: &mut Tets,
         sites: &Sites,
         corners: [VertexId; 3],
-        [edge, beyond]: [[VertexId; 2]; 2],
+        (edge, beyond): ([VertexId; 2], VertexId),
+        is_wall: impl Fn([VertexId; 3]) -> bool,
     ) -> Result<(), Stuck> {
         self.round += 1;
         self.sides.resize(self.sides.len().max(sites.len()), (0, 0));
-        let first = self.first(tets, sites, corners, edge, beyond[0]).ok_or(Stuck)?;
-        tets.begin();
-        tets.mark(first);
-        self.tets.clear();
+        let first = self.first(tets, sites, corners, edge, beyond).ok_or(Stuck)?;
+        self.spread(tets, sites, corners, first)?;
         self.shells.iter_mut().for_each(Vec::clear);
-        self.tets.push(first);
-        let mut next = 0;
-        while let Some(&tet) = self.tets.get(next) {
-            next += 1;
-            for half in Tets::facets(tet) {
-                self.pass(tets, sites, corners, half)?;
+        self.walls.clear();
+        for i in 0..self.tets.len() {
+            for half in Tets::facets(self.tets[i]) {
+                self.enclose(tets, sites, corners, half, &is_wall)?;
             }
         }
         Ok(())
     }
 
-    /// Goes on behind a facet that is cut, and notes one that is not.
-    fn pass(&mut self, tets: &mut Tets, sites: &Sites, corners: [VertexId; 3], half: HalfFacet) -> Result<(), Stuck> {
-        let vertices = tets.inward(half);
-        let sides = vertices.map(|v| self.side(sites, corners, v));
-        let outer = tets.across(half);
-        let (front, behind) = (sides.contains(&1), sides.contains(&-1));
-        if front && behind {
-            if outer.is_none() {
-                return Err(Stuck);
+    /// Collects the tets that are cut, from the first one on.
+    fn spread(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        corners: [VertexId; 3],
+        first: TetId,
+    ) -> Result<(), Stuck> {
+        tets.begin();
+        tets.mark(first);
+        self.tets.clear();
+        self.tets.push(first);
+        let mut next = 0;
+        while let Some(&tet) = self.tets.get(next) {
+            next += 1;
+            for half in Tets::facets(tet) {
+                if self.sides(tets, sites, corners, half) == [true, true] {
+                    let outer = tets.across(half);
+                    if outer.is_none() {
+                        return Err(Stuck);
+                    }
+                    if tets.mark(outer.tet()) {
+                        self.tets.push(outer.tet());
+                    }
+                }
             }
-            if tets.mark(outer.tet()) {
-                self.tets.push(outer.tet());
-            }
-        } else if front || behind {
-            self.shells[usize::from(behind)].push(Face { vertices, outer });
-        } else {
-            return Err(Stuck);
         }
         Ok(())
+    }
+
+    /// Notes a facet of a tet that is cut, where it bounds a hollow.
+    fn enclose(
+        &mut self,
+        tets: &Tets,
+        sites: &Sites,
+        corners: [VertexId; 3],
+        half: HalfFacet,
+        is_wall: impl Fn([VertexId; 3]) -> bool,
+    ) -> Result<(), Stuck> {
+        let (vertices, outer) = (tets.inward(half), tets.across(half));
+        let is_within = !outer.is_none() && tets.is_marked(outer.tet());
+        let shell = match self.sides(tets, sites, corners, half) {
+            [true, true] => return Ok(()),
+            [false, false] => return Err(Stuck),
+            [front, _] => usize::from(!front),
+        };
+        if !is_within {
+            self.shells[shell].push(Face { vertices, outer });
+        } else if is_wall(vertices) {
+            self.shells[shell].push(Face { vertices, outer: HalfFacet::NONE });
+            if half < outer {
+                self.walls.push(vertices);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a facet has vertices in front of the plane, and behind it.
+    fn sides(&mut self, tets: &Tets, sites: &Sites, corners: [VertexId; 3], half: HalfFacet) -> [bool; 2] {
+        let sides = tets.inward(half).map(|v| self.side(sites, corners, v));
+        [sides.contains(&1), sides.contains(&-1)]
     }
 
     /// Of the tets around `edge` the one that the plane cuts on the side of `beyond`.

@@ -3,6 +3,8 @@
 //! All edges are there, so of a triangle that is missing whole parts are, between edges that are there. The tets that a part cuts go; the
 //! hollows on its two sides are filled again, each with the tets that see nothing beyond the part.
 
+use hashbrown::HashSet;
+
 use super::cut::{Cut, Face, Stuck};
 use super::plane::Plane;
 use super::segments::Segments;
@@ -28,6 +30,7 @@ pub(super) fn recover(
         if work.recover(tets, sites, triangle, missing).is_err() {
             return Err(stuck(sites, i, triangle));
         }
+        work.walls.extend(own.iter().copied().map(rising));
         parts.push(own);
     }
     Ok(parts)
@@ -45,6 +48,8 @@ fn stuck(sites: &Sites, i: usize, triangle: [VertexId; 3]) -> Error {
 struct Work {
     cut: Cut,
     wrap: Wrap,
+    /// All parts so far, vertices rising.
+    walls: HashSet<[VertexId; 3]>,
     star: Vec<TetId>,
 }
 
@@ -94,7 +99,7 @@ impl Work {
                 next += 1;
                 for (edge, beyond) in [([a, b], c), ([b, c], a), ([c, a], b)] {
                     if tets.find_edge(edge, &mut self.star).is_some() {
-                        rim.get_or_insert([edge, [beyond; 2]]);
+                        rim.get_or_insert((edge, beyond));
                     } else {
                         let shares = |p: &[VertexId; 3]| edge.iter().all(|v| p.contains(v));
                         let place = missing.iter().position(shares);
@@ -114,19 +119,36 @@ impl Work {
         sites: &Sites,
         triangle: [VertexId; 3],
         group: &[[VertexId; 3]],
-        rim: [[VertexId; 2]; 2],
+        rim: ([VertexId; 2], VertexId),
     ) -> Result<(), Stuck> {
-        self.cut.find(tets, sites, triangle, rim)?;
+        self.cut.find(tets, sites, triangle, rim, |face| self.walls.contains(&rising(face)))?;
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
         let [mut front, mut behind] = std::mem::take(&mut self.cut.shells);
         front.extend(group.iter().map(|&vertices| Face { vertices, outer: HalfFacet::NONE }));
         self.wrap.fill(tets, sites, &front)?;
+        self.join_walls(tets);
         for &[a, b, c] in group {
             let outer = self.wrap.inner([a, b, c]).ok_or(Stuck)?;
             behind.push(Face { vertices: [a, c, b], outer });
         }
         self.wrap.fill(tets, sites, &behind)?;
+        self.join_walls(tets);
         self.cut.shells = [front, behind];
         Ok(())
     }
+
+    /// Links the tets on the two sides of walls within a hollow.
+    fn join_walls(&self, tets: &mut Tets) {
+        for &[a, b, c] in &self.cut.walls {
+            if let (Some(front), Some(behind)) = (self.wrap.inner([a, b, c]), self.wrap.inner([a, c, b])) {
+                tets.join(front, behind);
+            }
+        }
+    }
+}
+
+/// The vertices of a face in rising order.
+fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
+    face.sort_unstable();
+    face
 }

@@ -51,7 +51,7 @@ impl Guide {
 }
 
 /// The same turn, from the smallest vertex on.
-fn smallest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
+pub(super) fn smallest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

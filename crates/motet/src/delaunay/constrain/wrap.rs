@@ -11,7 +11,7 @@
 use hashbrown::{HashMap, HashSet};
 
 use super::cut::{Face, Stuck};
-use super::hollow::Guide;
+use super::hollow::{Guide, smallest_first};
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::VertexId;
@@ -24,7 +24,7 @@ const UNGUIDED: usize = 32;
 /// Working space.
 #[derive(Default)]
 pub(super) struct Wrap {
-    /// The faces around what is hollow, by their vertices in rising order.
+    /// The faces around what is hollow, by their vertices as seen from there: a wall in it has two sides.
     open: HashMap<[VertexId; 3], Face>,
     /// Faces in the order in which they came; those no longer open are passed over.
     queue: Vec<[VertexId; 3]>,
@@ -34,7 +34,7 @@ pub(super) struct Wrap {
     is_guided: bool,
     /// Open faces that the guide does not have.
     strange: HashSet<[VertexId; 3]>,
-    /// The facets of new tets on faces with nothing behind them, by their vertices in rising order.
+    /// The facets of new tets on faces with nothing behind them.
     bare: HashMap<[VertexId; 3], HalfFacet>,
 }
 
@@ -69,7 +69,7 @@ impl Wrap {
     }
 
     fn open(&mut self, face: Face) {
-        let key = rising(face.vertices);
+        let key = smallest_first(face.vertices);
         self.open.insert(key, face);
         self.queue.push(key);
         if self.is_guided && !self.guide.has(face.vertices) {
@@ -78,7 +78,8 @@ impl Wrap {
     }
 
     /// Takes an open face out.
-    fn close(&mut self, key: [VertexId; 3]) -> Option<Face> {
+    fn close(&mut self, vertices: [VertexId; 3]) -> Option<Face> {
+        let key = smallest_first(vertices);
         self.strange.remove(&key);
         self.open.remove(&key)
     }
@@ -87,15 +88,15 @@ impl Wrap {
     fn place(&mut self, tets: &mut Tets, face: Face, apex: VertexId) {
         let [a, b, c] = face.vertices;
         let tet = tets.add([a, b, c, apex]);
-        self.close(rising(face.vertices));
+        self.close(face.vertices);
         self.join(tets, HalfFacet::new(tet, 3), face);
         for i in 0..3 {
             let half = HalfFacet::new(tet, i);
             // Seen from what is hollow behind it.
-            let vertices = FACETS[i].map(|k| [a, b, c, apex][k]);
-            match self.close(rising(vertices)) {
+            let [p, q, r] = FACETS[i].map(|k| [a, b, c, apex][k]);
+            match self.close([p, r, q]) {
                 Some(other) => self.join(tets, half, other),
-                None => self.open(Face { vertices, outer: half }),
+                None => self.open(Face { vertices: [p, q, r], outer: half }),
             }
         }
     }
@@ -103,13 +104,13 @@ impl Wrap {
     fn join(&mut self, tets: &mut Tets, half: HalfFacet, face: Face) {
         tets.join(half, face.outer);
         if face.outer.is_none() {
-            self.bare.insert(rising(face.vertices), half);
+            self.bare.insert(smallest_first(face.vertices), half);
         }
     }
 
-    /// The facet of a new tet on a face with nothing behind it.
+    /// The facet of a new tet on the inner side of a face with nothing behind it.
     pub(super) fn inner(&self, face: [VertexId; 3]) -> Option<HalfFacet> {
-        self.bare.get(&rising(face)).copied()
+        self.bare.get(&smallest_first(face)).copied()
     }
 
     /// The apex of the tet on a face.
@@ -154,12 +155,6 @@ impl Wrap {
     fn fits(&self, sites: &Sites, tet: [VertexId; 4]) -> bool {
         self.open.values().all(|face| !cuts(sites, face.vertices, tet))
     }
-}
-
-/// The vertices of a face in rising order.
-pub(super) fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }
 
 /// Whether a triangle has points in common with the inside of a positive tet.
