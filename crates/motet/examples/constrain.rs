@@ -5,11 +5,12 @@
 use std::time::Instant;
 
 use motet::base::{Threads, VertexId};
-use motet::delaunay::constrain;
+use motet::delaunay::{EdgePoints, constrain};
 use motet::geometry::tet::volume;
 use motet::mesh::Surface;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let rule = if std::env::var("MOTET_STAY").is_ok() { EdgePoints::Stay } else { EdgePoints::MoveInside };
     for file in std::env::args().skip(1) {
         let mesh = motet::io::read(&file)?;
         let mut surface = Surface::of(&mesh);
@@ -18,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let (points, triangles) = welded(&surface);
         let start = Instant::now();
-        let result = constrain(&points, &triangles, &Threads::single());
+        let result = constrain(&points, &triangles, rule, &Threads::single());
         let seconds = start.elapsed().as_secs_f64();
         let filled = match result {
             Ok(filled) => filled,
@@ -33,8 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let total: f64 = volumes.iter().sum();
         let enclosed: f64 = triangles.iter().map(|t| t.map(|v| points[v.index()])).map(|[a, b, c]| volume([[0.0; 3], a, b, c])).sum();
         println!(
-            "{file}: {} triangles, {} points on edges, {} tets, {n_bodies} bodies, {} not positive, volume {total:.12e} enclosed {enclosed:.12e}, {seconds:.3} s",
-            triangles.len(), filled.on_edges.len(), filled.tets.len(), volumes.iter().filter(|v| **v <= 0.0).count(),
+            "{file}: {} triangles, {} points on edges, {} points, {} tets, {n_bodies} bodies, {} not positive, volume {total:.12e} enclosed {enclosed:.12e}, {seconds:.3} s",
+            triangles.len(), filled.on_edges.len(), filled.points.len() - points.len(), filled.tets.len(), volumes.iter().filter(|v| **v <= 0.0).count(),
         );
     }
     Ok(())

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 
 use common::hard::random_case;
 use motet::base::{Point, Threads, VertexId};
-use motet::delaunay::{Constrained, constrain};
+use motet::delaunay::{Constrained, EdgePoints, constrain};
 use motet::geometry::predicates::insphere;
 use motet::geometry::tet::{FACETS, volume};
 use motet::geometry::triangle::area;
@@ -109,6 +109,7 @@ fn spheres(
 fn hard_surfaces_are_filled() {
     let n = std::env::var("MOTET_CASES").map_or(250, |n| n.parse().unwrap());
     let first: u64 = std::env::var("MOTET_FIRST").map_or(0, |n| n.parse().unwrap());
+    let rule = if std::env::var("MOTET_STAY").is_ok() { EdgePoints::Stay } else { EdgePoints::MoveInside };
     let mut failed = Vec::new();
     for i in first..first + n {
         let case = random_case(i);
@@ -116,7 +117,7 @@ fn hard_surfaces_are_filled() {
             println!("{}: {} triangles", case.name, case.triangles.len());
         }
         let start = std::time::Instant::now();
-        let result = constrain(&case.points, &case.triangles, &Threads::single());
+        let result = constrain(&case.points, &case.triangles, rule, &Threads::single());
         let seconds = start.elapsed().as_secs_f64();
         if seconds > 2.0 {
             println!("{}: {} triangles, {seconds:.1} s", case.name, case.triangles.len());

@@ -16,6 +16,8 @@ pub(super) struct Scaled {
     /// Whether scaling kept every digit. Where it could not (coordinates of 1e200 beside 1e-200), the
     /// points stay as they came and only exact arithmetic may be trusted.
     pub(super) filtered: bool,
+    /// Two powers of two by which a coordinate is multiplied to be what it was.
+    pub(super) back: [f64; 2],
 }
 
 /// Refuses what is not a number and more points than can be counted.
@@ -35,7 +37,7 @@ pub(super) fn check(points: &[Point]) -> Result<()> {
 pub(super) fn scaled(points: Vec<Point>) -> Scaled {
     let extent = longest_side(&points);
     if !(extent > 0.0 && extent.is_finite()) {
-        return Scaled { points, filtered: false };
+        return Scaled { points, filtered: false, back: [1.0; 2] };
     }
     let shift = EXPONENT - exponent(extent);
     let (half, rest) = (power_of_two(shift / 2), power_of_two(shift - shift / 2));
@@ -43,9 +45,13 @@ pub(super) fn scaled(points: Vec<Point>) -> Scaled {
     let scale = |x: f64| x * half * rest;
     let keeps = |x: f64| scale(x).is_finite() && scale(x) * back * back_rest == x;
     if !points.iter().flatten().all(|&x| keeps(x)) {
-        return Scaled { points, filtered: false };
+        return Scaled { points, filtered: false, back: [1.0; 2] };
     }
-    Scaled { points: points.into_iter().map(|p| p.map(scale)).collect(), filtered: true }
+    Scaled {
+        points: points.into_iter().map(|p| p.map(scale)).collect(),
+        filtered: true,
+        back: [back, back_rest],
+    }
 }
 
 /// Longest side of the box around the points.

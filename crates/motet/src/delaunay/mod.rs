@@ -43,5 +43,5 @@ mod store;
 mod triangulation;
 mod walk;
 
-pub use constrain::{Constrained, PointOnEdge, constrain};
+pub use constrain::{Constrained, EdgePoints, PointOnEdge, constrain};
 pub use triangulation::{HullFacet, Triangulation};

@@ -11,8 +11,8 @@ pub(super) struct Bodies {
     pub(super) of_slot: Vec<u32>,
     /// How many there are, the outside included.
     pub(super) count: u32,
-    /// For each facet of the surface, in the order of the parts, the tet in front of it.
-    pub(super) halves: Vec<HalfFacet>,
+    /// The bodies in front of each flat facet and behind it.
+    pub(super) sides: Vec<[u32; 2]>,
 }
 
 impl Bodies {
@@ -38,7 +38,7 @@ impl Bodies {
                 halves.push(front);
             }
         }
-        let mut bodies = Self { of_slot: vec![Self::NONE; tets.n_slots()], count: 0, halves };
+        let mut bodies = Self { of_slot: vec![Self::NONE; tets.n_slots()], count: 0, sides: Vec::new() };
         let first = tets.at(corner);
         let others: Vec<_> = tets.iter().map(|(tet, _)| tet).collect();
         for tet in [first].into_iter().filter(|&t| t != OUTSIDE).chain(others) {
@@ -46,6 +46,9 @@ impl Bodies {
                 bodies.flood(tets, &walls, tet);
             }
         }
+        let body = |half: HalfFacet| if half.is_none() { 0 } else { bodies.of_slot[half.tet().index()] };
+        let firsts = parts.offsets()[..parts.len()].iter().map(|&first| halves[first as usize]);
+        bodies.sides = firsts.map(|front| [body(front), body(tets.across(front))]).collect();
         Ok(bodies)
     }
 

@@ -6,6 +6,7 @@
 use hashbrown::HashSet;
 
 use super::cut::{Cut, Face, Stuck};
+use super::flats::Flats;
 use super::plane::Plane;
 use super::segments::Segments;
 use super::sites::Sites;
@@ -14,21 +15,26 @@ use super::wrap::Wrap;
 use crate::base::{Csr, Error, Result, TetId, VertexId};
 use crate::kernel::HalfFacet;
 
-/// Makes every triangle a set of facets. Answers those of each triangle, turned as it is.
+/// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is.
 pub(super) fn recover(
     tets: &mut Tets,
     sites: &Sites,
     segments: &Segments,
     triangles: &[[VertexId; 3]],
+    flats: &Flats,
 ) -> Result<Csr<[VertexId; 3]>> {
     let on_segments = segments.points(sites);
     let mut work = Work::default();
     let mut parts = Csr::default();
-    for (i, &triangle) in triangles.iter().enumerate() {
-        let own = work.parts(sites, segments, &on_segments, triangle);
+    for flat in flats.triangles.iter() {
+        let first = triangles[flat[0] as usize];
+        let own = match flat {
+            [_] => parts_of(sites, segments, &on_segments, first),
+            _ => parts_of_many(sites, segments, &on_segments, flat.iter().map(|&i| triangles[i as usize])),
+        };
         let missing: Vec<_> = own.iter().copied().filter(|&part| work.is_missing(tets, part)).collect();
-        if work.recover(tets, sites, triangle, missing).is_err() {
-            return Err(stuck(sites, i, triangle));
+        if work.recover(tets, sites, first, missing).is_err() {
+            return Err(stuck(sites, flat[0], first));
         }
         work.walls.extend(own.iter().copied().map(rising));
         parts.push(own);
@@ -36,11 +42,50 @@ pub(super) fn recover(
     Ok(parts)
 }
 
-fn stuck(sites: &Sites, i: usize, triangle: [VertexId; 3]) -> Error {
+fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Error {
     let corners = triangle.map(|v| sites.near(v));
     Error::input(format!("the triangle of points {triangle:?} could not be made facets of tets"))
         .at(format!("triangle {i}, at {:?}", corners[0]))
         .remedy("look for triangles that cross or touch it")
+}
+
+/// The triangles of a flat facet, with the points on its outline, as constrained Delaunay triangles.
+fn parts_of_many(
+    sites: &Sites,
+    segments: &Segments,
+    on_segments: &Csr<VertexId>,
+    triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
+) -> Vec<[VertexId; 3]> {
+    let Some(first) = triangles.clone().next() else { return Vec::new() };
+    let plane = Plane::new(sites, first);
+    let turned = triangles.map(|t| plane.turned(t));
+    let mut parts: Vec<_> = turned.flat_map(|t| parts_of(sites, segments, on_segments, t)).collect();
+    plane.make_delaunay(&mut parts);
+    parts
+}
+
+/// A triangle as the Delaunay triangles of its corners and the points on its edges.
+fn parts_of(
+    sites: &Sites,
+    segments: &Segments,
+    on_segments: &Csr<VertexId>,
+    triangle: [VertexId; 3],
+) -> Vec<[VertexId; 3]> {
+    let mut polygon = Vec::with_capacity(3);
+    for i in 0..3 {
+        let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
+        polygon.push(a);
+        let on = segments.find([a, b]).map_or(&[][..], |s| on_segments.list(s.0 as usize));
+        if a < b {
+            polygon.extend(on);
+        } else {
+            polygon.extend(on.iter().rev());
+        }
+    }
+    if polygon.len() == 3 {
+        return vec![triangle];
+    }
+    Plane::new(sites, triangle).triangulate(&polygon)
 }
 
 /// Working space.
@@ -54,31 +99,6 @@ struct Work {
 }
 
 impl Work {
-    /// A triangle as the Delaunay triangles of its corners and the points on its edges.
-    fn parts(
-        &mut self,
-        sites: &Sites,
-        segments: &Segments,
-        on_segments: &Csr<VertexId>,
-        triangle: [VertexId; 3],
-    ) -> Vec<[VertexId; 3]> {
-        let mut polygon = Vec::with_capacity(3);
-        for i in 0..3 {
-            let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
-            polygon.push(a);
-            let on = segments.find([a, b]).map_or(&[][..], |s| on_segments.list(s.0 as usize));
-            if a < b {
-                polygon.extend(on);
-            } else {
-                polygon.extend(on.iter().rev());
-            }
-        }
-        if polygon.len() == 3 {
-            return vec![triangle];
-        }
-        Plane::new(sites, triangle).triangulate(&polygon)
-    }
-
     fn is_missing(&mut self, tets: &mut Tets, part: [VertexId; 3]) -> bool {
         tets.find_facet(part, &mut self.star).is_none()
     }

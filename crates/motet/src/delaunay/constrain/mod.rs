@@ -21,18 +21,25 @@
 mod bodies;
 mod cut;
 mod facets;
+mod finish;
+mod flats;
 mod hollow;
 mod insert;
+mod keep;
 mod plane;
+mod recone;
 mod segments;
 mod sites;
 mod tets;
 mod wrap;
 
-use super::{Triangulation, input};
+use super::Triangulation;
+use super::input::{self, Scaled};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{distance, scale};
 use bodies::Bodies;
+use flats::Flats;
+use keep::Keep;
 use segments::Segments;
 use sites::Sites;
 use tets::Tets;
@@ -42,9 +49,6 @@ const BOX: f64 = 8.0;
 
 /// What is far around the box, where a hollow is filled, is larger by this factor than the box.
 const FAR: f64 = 4096.0;
-
-/// How many vertices are not those of the caller: the corners of the box, and those far around.
-const N_AROUND: usize = 8 + 4;
 
 /// A point that was put on an edge of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,18 +63,28 @@ pub struct PointOnEdge {
 /// can see it.
 #[derive(Clone, Debug)]
 pub struct Constrained {
-    /// The points as they were given, then the points put on edges, rounded.
+    /// The points as they were given, then points on edges, rounded, then points inside.
     pub points: Vec<Point>,
-    /// What the points after those given are.
+    /// What the points on edges are.
     pub on_edges: Vec<PointOnEdge>,
     /// The tets within the surfaces, positively oriented before points were rounded.
     pub tets: Vec<[VertexId; 4]>,
     /// The body of each tet, from 0: tets that are joined without crossing the surface.
     pub bodies: Vec<u32>,
-    /// The facets that each triangle became, turned as it is.
+    /// The facets that each triangle became, turned as it is: itself alone, but where points stay on edges.
     pub triangle_to_facets: Csr<[VertexId; 3]>,
     /// The bodies in front of each triangle and behind it; `None` is the outside. Front is where its vertices run counter-clockwise.
     pub triangle_to_bodies: Vec<[Option<u32>; 2]>,
+}
+
+/// Where points may stay that had to be put on edges of the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EdgePoints {
+    /// They move inside, so that every triangle is a facet as it is. Where there is no room, one stays.
+    #[default]
+    MoveInside,
+    /// They stay: the tets are constrained Delaunay.
+    Stay,
 }
 
 /// Fills closed surfaces with tets. Points must be distinct where triangles use them, and triangles must not meet but in vertices
@@ -79,21 +93,31 @@ pub struct Constrained {
 /// # Errors
 /// When a coordinate is not finite, when points that triangles use coincide or do not exist, when triangles meet in more than they share (where
 /// that comes to light: a check beforehand names all such places), when an edge would have to be divided beyond its digits.
-pub fn constrain(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Result<Constrained> {
+pub fn constrain(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    edge_points: EdgePoints,
+    threads: &Threads,
+) -> Result<Constrained> {
     input::check(points)?;
     check_ids(points, triangles)?;
-    let mut given = in_box(points)?;
+    let (mut given, back) = in_box(points)?;
     let (triangulation, order) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
     let mut tets = Tets::new(&triangulation);
     drop(triangulation);
     given.extend(far_around(&given));
     let mut sites = Sites::new(given, &order);
-    let mut segments = Segments::new(triangles);
+    let flats = Flats::find(&sites, triangles, edge_points == EdgePoints::MoveInside);
+    let mut segments = Segments::new(flats.creases.clone());
     segments.recover(&mut tets, &mut sites)?;
-    let parts = facets::recover(&mut tets, &sites, &segments, triangles)?;
-    let bodies = Bodies::find(&mut tets, &parts, VertexId::new(points.len()))?;
-    Ok(finish(points, &tets, &sites, &segments, parts, &bodies))
+    let mut parts = facets::recover(&mut tets, &sites, &segments, triangles, &flats)?;
+    let mut bodies = Bodies::find(&mut tets, &parts, VertexId::new(points.len()))?;
+    if edge_points == EdgePoints::MoveInside {
+        parts = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts).run(&segments);
+    }
+    let filled = Filled { tets, sites, segments, flats, bodies, parts };
+    Ok(filled.finish(points, triangles, back))
 }
 
 fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {
@@ -114,9 +138,9 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
     Err(Error::input(format!("the points {a} and {b} coincide")).at(format!("triangle {i}")).remedy("merge points that coincide"))
 }
 
-/// The points, scaled by a power of two, and the corners of a box far around them.
-fn in_box(points: &[Point]) -> Result<Vec<Point>> {
-    let mut given = input::scaled(points.to_vec()).points;
+/// The points, scaled by a power of two, and the corners of a box far around them; and what scales back.
+fn in_box(points: &[Point]) -> Result<(Vec<Point>, [f64; 2])> {
+    let Scaled { points: mut given, back, .. } = input::scaled(points.to_vec());
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for p in &given {
         for i in 0..3 {
@@ -128,7 +152,7 @@ fn in_box(points: &[Point]) -> Result<Vec<Point>> {
         given.push(std::array::from_fn(|i| if k >> i & 1 == 0 { low[i] - away } else { high[i] + away }));
     }
     if away > 0.0 && (away * FAR).is_finite() && given.as_flattened().iter().all(|x| x.is_finite()) {
-        return Ok(given);
+        return Ok((given, back));
     }
     Err(Error::input("the points have no extent, or one too large for numbers").remedy("give surfaces of another size"))
 }
@@ -139,38 +163,13 @@ fn far_around(given: &[Point]) -> [Point; 4] {
     [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(|p| scale(p, size))
 }
 
-/// Leaves out what lies outside, and numbers the rest.
-fn finish(
-    points: &[Point],
-    tets: &Tets,
-    sites: &Sites,
-    segments: &Segments,
+/// All that has been made.
+struct Filled {
+    tets: Tets,
+    sites: Sites,
+    segments: Segments,
+    flats: Flats,
+    bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
-    bodies: &Bodies,
-) -> Constrained {
-    let n_given = points.len();
-    // What lies around comes between the points given and those on edges.
-    let id = |v: VertexId| if v.index() < n_given { v } else { VertexId::new(v.index() - N_AROUND) };
-    let on_edges: Vec<_> = sites.places().iter().map(|p| PointOnEdge { ends: segments.ends(p.segment), share: p.share }).collect();
-    let between = |on: &PointOnEdge| {
-        let [a, b] = on.ends.map(|v| points[v.index()]);
-        crate::geometry::predicates::spot::Between::new(a, b, on.share).rounded()
-    };
-    let body = |tet: crate::base::TetId| bodies.of_slot[tet.index()].checked_sub(1);
-    let inside = || tets.iter().filter_map(|(tet, v)| body(tet).map(|b| (v, b)));
-    let body_of = |half: crate::kernel::HalfFacet| if half.is_none() { None } else { body(half.tet()) };
-    let firsts = parts.offsets()[..parts.len()].iter().map(|&first| bodies.halves[first as usize]);
-    Constrained {
-        points: points.iter().copied().chain(on_edges.iter().map(between)).collect(),
-        on_edges,
-        tets: inside().map(|(v, _)| v.map(id)).collect(),
-        bodies: inside().map(|(_, b)| b).collect(),
-        triangle_to_bodies: firsts.map(|front| [body_of(front), body_of(tets.across(front))]).collect(),
-        triangle_to_facets: renamed(parts, id),
-    }
 }
 
-fn renamed(parts: Csr<[VertexId; 3]>, id: impl Fn(VertexId) -> VertexId) -> Csr<[VertexId; 3]> {
-    let items = parts.items().iter().map(|part| part.map(&id)).collect();
-    Csr::new(parts.offsets().to_vec(), items).unwrap_or_default()
-}

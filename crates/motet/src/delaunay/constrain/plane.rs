@@ -1,7 +1,12 @@
-//! The Delaunay triangulation of an input triangle whose edges carry points: a convex polygon with vertices in line.
+//! The constrained Delaunay triangulation of a flat facet whose outline carries points.
+//!
+//! Each triangle is a convex polygon, with vertices in line; then edges between them are flipped until no vertex lies in the circle of a neighbour (Lawson
+//! 1977).
 //!
 //! Circles in the plane are spheres through a point beside it, whichever: so signs and ties are those of space, and what comes out are
 //! the facets that the tets would have if they saw no others.
+
+use hashbrown::HashMap;
 
 use super::sites::Sites;
 use crate::base::{Point, VertexId};
@@ -64,5 +69,109 @@ impl<'a> Plane<'a> {
             }
         }
         triangles
+    }
+
+    /// Triangles of a polygon that may have dents, turned as it is, by cutting off ears. `None` where it has no ear.
+    pub(super) fn clip(&self, polygon: &[VertexId]) -> Option<Vec<[VertexId; 3]>> {
+        let (mut left, mut triangles) = (polygon.to_vec(), Vec::new());
+        while left.len() > 2 {
+            let n = left.len();
+            let ear = (0..n).find(|&i| {
+                let [a, b, c] = [left[(i + n - 1) % n], left[i], left[(i + 1) % n]];
+                let holds = |v: &VertexId| {
+                    ![a, b, c].contains(v)
+                        && [[a, b, *v], [b, c, *v], [c, a, *v]].into_iter().all(|t| self.turn(t) >= 0)
+                };
+                self.turn([a, b, c]) > 0 && !left.iter().any(holds)
+            })?;
+            triangles.push([left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]]);
+            left.remove(ear);
+        }
+        Some(triangles)
+    }
+
+    /// The same triangle, turned as the plane is.
+    pub(super) fn turned(&self, [a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
+        if self.turn([a, b, c]) > 0 { [a, b, c] } else { [a, c, b] }
+    }
+
+    /// Flips edges between triangles, all turned as the plane is, until all are Delaunay but those on the outline.
+    pub(super) fn make_delaunay(&self, triangles: &mut [[VertexId; 3]]) {
+        let mut net = Net::new(triangles);
+        let mut todo: Vec<[VertexId; 2]> = net.edges();
+        while let Some([a, b]) = todo.pop() {
+            let Some([(s, p), (t, q)]) = net.sides([a, b]) else { continue };
+            let is_convex = self.turn([p, a, q]) > 0 && self.turn([q, b, p]) > 0;
+            if is_convex && self.is_in_circle([a, b, p], q) {
+                net.flip(triangles, [a, b], [(s, p), (t, q)]);
+                todo.extend([[a, p], [p, b], [b, q], [q, a]]);
+            }
+        }
+    }
+
+    /// Whether the open segment a b crosses the open segment c d; all in the plane, no three in line but where they share an end.
+    pub(super) fn cross(&self, [a, b]: [VertexId; 2], [c, d]: [VertexId; 2]) -> bool {
+        let shares = [c, d].contains(&a) || [c, d].contains(&b);
+        !shares
+            && self.turn([a, b, c]) * self.turn([a, b, d]) < 0
+            && self.turn([c, d, a]) * self.turn([c, d, b]) < 0
+    }
+
+    /// Whether a b, with p on its left and q on its right, can be flipped.
+    pub(super) fn can_flip(&self, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> bool {
+        self.turn([p, a, q]) > 0 && self.turn([q, b, p]) > 0
+    }
+}
+
+/// Triangles by their directed edges.
+pub(super) struct Net {
+    /// The triangle on the left of an edge and its third vertex.
+    left: HashMap<[VertexId; 2], (u32, VertexId)>,
+}
+
+impl Net {
+    pub(super) fn new(triangles: &[[VertexId; 3]]) -> Self {
+        let mut net = Self { left: HashMap::with_capacity(3 * triangles.len()) };
+        triangles.iter().enumerate().for_each(|(i, &t)| net.put(i as u32, t));
+        net
+    }
+
+    fn put(&mut self, i: u32, [a, b, c]: [VertexId; 3]) {
+        self.left.insert([a, b], (i, c));
+        self.left.insert([b, c], (i, a));
+        self.left.insert([c, a], (i, b));
+    }
+
+    /// All edges between two triangles, each once; rising.
+    pub(super) fn edges(&self) -> Vec<[VertexId; 2]> {
+        let inner = self.left.keys().filter(|[a, b]| a < b && self.left.contains_key(&[*b, *a]));
+        let mut edges: Vec<_> = inner.copied().collect();
+        edges.sort_unstable();
+        edges
+    }
+
+    /// The triangles on the left and on the right of an edge, each with its third vertex.
+    pub(super) fn sides(&self, [a, b]: [VertexId; 2]) -> Option<[(u32, VertexId); 2]> {
+        Some([*self.left.get(&[a, b])?, *self.left.get(&[b, a])?])
+    }
+
+    /// Whether an edge is there.
+    pub(super) fn has(&self, [a, b]: [VertexId; 2]) -> bool {
+        self.left.contains_key(&[a, b]) || self.left.contains_key(&[b, a])
+    }
+
+    /// Replaces the edge a b by that of the vertices p on its left and q on its right.
+    pub(super) fn flip(
+        &mut self,
+        triangles: &mut [[VertexId; 3]],
+        [a, b]: [VertexId; 2],
+        [(s, p), (t, q)]: [(u32, VertexId); 2],
+    ) {
+        self.left.remove(&[a, b]);
+        self.left.remove(&[b, a]);
+        for (i, triangle) in [(s, [p, a, q]), (t, [q, b, p])] {
+            triangles[i as usize] = triangle;
+            self.put(i, triangle);
+        }
     }
 }

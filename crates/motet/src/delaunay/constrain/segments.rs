@@ -39,12 +39,8 @@ pub(super) struct Segments {
 }
 
 impl Segments {
-    /// The edges of triangles, each once.
-    pub(super) fn new(triangles: &[[VertexId; 3]]) -> Self {
-        let edges = |&[a, b, c]: &[VertexId; 3]| [sorted([a, b]), sorted([b, c]), sorted([c, a])];
-        let mut ends: Vec<_> = triangles.iter().flat_map(edges).collect();
-        ends.sort_unstable();
-        ends.dedup();
+    /// Edges, each once, smaller end first, rising.
+    pub(super) fn new(ends: Vec<[VertexId; 2]>) -> Self {
         let pieces = ends.iter().enumerate().map(|(s, &e)| (e, SegmentId(s as u32))).collect();
         Self { ends, pieces }
     }
@@ -61,10 +57,8 @@ impl Segments {
 
     /// The points on each segment, from its first end to its second.
     pub(super) fn points(&self, sites: &Sites) -> Csr<VertexId> {
-        let mut on: Vec<(SegmentId, f64, VertexId)> = Vec::with_capacity(sites.places().len());
-        for (i, place) in sites.places().iter().enumerate() {
-            on.push((place.segment, place.share, VertexId::new(sites.n_given() + i)));
-        }
+        let key = |(v, place): (VertexId, OnSegment)| (place.segment, place.share, v);
+        let mut on: Vec<(SegmentId, f64, VertexId)> = sites.all_on_segments().map(key).collect();
         on.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         Csr::from_pairs(self.ends.len(), || on.iter().map(|&(s, _, v)| (s.0 as usize, v)))
     }
@@ -80,7 +74,7 @@ impl Segments {
                 continue;
             }
             let share = self.share(tets, sites, segment, piece, &mut star);
-            let Some(share) = share.filter(|_| sites.places().len() < most) else {
+            let Some(share) = share.filter(|_| sites.all_on_segments().len() < most) else {
                 return Err(self.too_fine(sites, segment));
             };
             let start = tets.at(piece[0]);

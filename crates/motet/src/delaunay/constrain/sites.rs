@@ -21,9 +21,12 @@ pub(super) struct OnSegment {
 
 /// All vertices.
 pub(super) struct Sites {
-    given: Vec<Point>,
-    on: Vec<Between>,
-    places: Vec<OnSegment>,
+    /// Coordinates, rounded where they must be.
+    near: Vec<Point>,
+    n_given: usize,
+    /// For vertices after those given, their place in `on`, if they lie on a segment.
+    later: Vec<Option<u32>>,
+    on: Vec<(VertexId, OnSegment, Between)>,
     ranks: Vec<u32>,
 }
 
@@ -32,57 +35,63 @@ impl Sites {
     pub(super) fn new(given: Vec<Point>, order: &[u32]) -> Self {
         let mut ranks = vec![0; given.len()];
         order.iter().enumerate().skip(1).for_each(|(rank, &id)| ranks[id as usize] = rank as u32);
-        Self { given, on: Vec::new(), places: Vec::new(), ranks }
+        Self { n_given: given.len(), near: given, later: Vec::new(), on: Vec::new(), ranks }
     }
 
     /// How many there are, those on segments included.
     pub(super) fn len(&self) -> usize {
-        self.given.len() + self.on.len()
-    }
-
-    /// How many have been given.
-    pub(super) fn n_given(&self) -> usize {
-        self.given.len()
+        self.near.len()
     }
 
     /// Four vertices far around all others, a positive tet: the last ones given.
     pub(super) fn around_all(&self) -> [VertexId; 4] {
-        let n = self.given.len();
+        let n = self.n_given;
         [n - 4, n - 3, n - 2, n - 1].map(VertexId::new)
     }
 
     /// Adds a point on a segment between two given vertices.
     pub(super) fn add(&mut self, [from, to]: [VertexId; 2], place: OnSegment) -> VertexId {
-        let vertex = VertexId::new(self.len());
-        self.on.push(Between::new(self.given[from.index()], self.given[to.index()], place.share));
-        self.places.push(place);
+        let between = Between::new(self.near[from.index()], self.near[to.index()], place.share);
+        let vertex = self.push(between.rounded(), Some(self.on.len() as u32));
+        self.on.push((vertex, place, between));
+        vertex
+    }
+
+    /// Adds a point as it is.
+    pub(super) fn add_point(&mut self, point: Point) -> VertexId {
+        self.push(point, None)
+    }
+
+    fn push(&mut self, near: Point, on: Option<u32>) -> VertexId {
+        let vertex = VertexId::new(self.near.len());
+        self.near.push(near);
+        self.later.push(on);
         self.ranks.push(vertex.0 + 1);
         vertex
     }
 
+    fn on(&self, vertex: VertexId) -> Option<&(VertexId, OnSegment, Between)> {
+        let later = vertex.index().checked_sub(self.n_given)?;
+        self.later[later].map(|i| &self.on[i as usize])
+    }
+
     /// Where a vertex lies, if it lies on a segment.
     pub(super) fn on_segment(&self, vertex: VertexId) -> Option<OnSegment> {
-        vertex.index().checked_sub(self.given.len()).map(|i| self.places[i])
+        self.on(vertex).map(|on| on.1)
     }
 
     /// All points on segments, in the order of their numbers.
-    pub(super) fn places(&self) -> &[OnSegment] {
-        &self.places
+    pub(super) fn all_on_segments(&self) -> impl ExactSizeIterator<Item = (VertexId, OnSegment)> + '_ {
+        self.on.iter().map(|on| (on.0, on.1))
     }
 
     /// Coordinates, rounded where they must be.
     pub(super) fn near(&self, vertex: VertexId) -> Point {
-        match vertex.index().checked_sub(self.given.len()) {
-            None => self.given[vertex.index()],
-            Some(i) => self.on[i].rounded(),
-        }
+        self.near[vertex.index()]
     }
 
     pub(super) fn spot(&self, vertex: VertexId) -> Spot<'_> {
-        match vertex.index().checked_sub(self.given.len()) {
-            None => Spot::Given(self.given[vertex.index()]),
-            Some(i) => Spot::On(&self.on[i]),
-        }
+        self.on(vertex).map_or_else(|| Spot::Given(self.near(vertex)), |on| Spot::On(&on.2))
     }
 
     pub(super) fn rank(&self, vertex: VertexId) -> u32 {
@@ -92,9 +101,8 @@ impl Sites {
     /// Sign of the volume of the tet of four vertices.
     #[inline]
     pub(super) fn orient3d(&self, v: [VertexId; 4]) -> i8 {
-        let n = self.given.len();
-        if v.iter().all(|v| v.index() < n) {
-            let [a, b, c, d] = v.map(|v| self.given[v.index()]);
+        if v.iter().all(|v| v.index() < self.n_given) {
+            let [a, b, c, d] = v.map(|v| self.near[v.index()]);
             return orient3d(a, b, c, d);
         }
         orient3d_of(v.map(|v| self.spot(v)))
@@ -103,10 +111,10 @@ impl Sites {
     /// Whether `query` lies inside the sphere through a positive tet; ties are broken, so there is always an answer.
     #[inline]
     pub(super) fn is_inside(&self, [a, b, c, d]: [VertexId; 4], query: VertexId) -> bool {
-        let (v, n) = ([a, b, c, d, query], self.given.len());
+        let v = [a, b, c, d, query];
         let ranks = v.map(|v| self.rank(v));
-        if v.iter().all(|v| v.index() < n) {
-            return insphere_perturbed(v.map(|v| self.given[v.index()]), ranks) > 0;
+        if v.iter().all(|v| v.index() < self.n_given) {
+            return insphere_perturbed(v.map(|v| self.near[v.index()]), ranks) > 0;
         }
         insphere_perturbed_of(v.map(|v| self.spot(v)), ranks) > 0
     }

@@ -1,0 +1,131 @@
+//! From what has been made to what the caller gets: tets inside, under the numbers of the caller.
+
+use super::bodies::Bodies;
+use super::plane::Plane;
+use super::{Constrained, Filled, PointOnEdge};
+use crate::base::{Csr, Point, VertexId};
+use crate::geometry::predicates::spot::Between;
+use crate::geometry::vector::{cross, dot, sub};
+
+impl Filled {
+    /// Leaves out what lies outside, and numbers the rest.
+    pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: [f64; 2]) -> Constrained {
+        let numbers = Numbers::new(&self, points.len());
+        let between = |on: &PointOnEdge| {
+            let [a, b] = on.ends.map(|v| points[v.index()]);
+            Between::new(a, b, on.share).rounded()
+        };
+        let on_edge = |v: &VertexId| {
+            let place = self.sites.on_segment(*v)?;
+            Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share })
+        };
+        let on_edges: Vec<_> = numbers.later.iter().filter_map(on_edge).collect();
+        let inside = numbers.later[on_edges.len()..].iter().map(|&v| self.sites.near(v).map(|x| x * back[0] * back[1]));
+        let tets = || self.tets.iter().filter_map(|(tet, v)| self.body(tet.index()).map(|b| (v, b)));
+        Constrained {
+            points: points.iter().copied().chain(on_edges.iter().map(between)).chain(inside).collect(),
+            on_edges,
+            tets: tets().map(|(v, _)| v.map(|v| numbers.of(v))).collect(),
+            bodies: tets().map(|(_, b)| b).collect(),
+            triangle_to_facets: self.facets(triangles, &numbers),
+            triangle_to_bodies: self.sides(triangles),
+        }
+    }
+
+    /// The body of a slot, if it is not outside.
+    fn body(&self, slot: usize) -> Option<u32> {
+        self.bodies.of_slot[slot].checked_sub(1)
+    }
+
+    /// The flat facet of each triangle.
+    fn flat_of(&self, n: usize) -> Vec<u32> {
+        let mut flat_of = vec![0; n];
+        for (flat, list) in self.flats.triangles.iter().enumerate() {
+            list.iter().for_each(|&i| flat_of[i as usize] = flat as u32);
+        }
+        flat_of
+    }
+
+    fn plane(&self, flat: u32, triangles: &[[VertexId; 3]]) -> Plane<'_> {
+        Plane::new(&self.sites, triangles[self.flats.triangles.list(flat as usize)[0] as usize])
+    }
+
+    /// The bodies in front of each triangle and behind it.
+    fn sides(&self, triangles: &[[VertexId; 3]]) -> Vec<[Option<u32>; 2]> {
+        let flat_of = self.flat_of(triangles.len());
+        let side = |(&t, &flat): (&[VertexId; 3], &u32)| {
+            let [front, behind] = self.bodies.sides[flat as usize].map(|b| b.checked_sub(1));
+            let is_turned = self.flats.triangles.list(flat as usize).len() > 1
+                && self.plane(flat, triangles).turned(t) != t;
+            if is_turned { [behind, front] } else { [front, behind] }
+        };
+        triangles.iter().zip(&flat_of).map(side).collect()
+    }
+
+    /// The facets of each triangle, turned as it is.
+    fn facets(&self, triangles: &[[VertexId; 3]], numbers: &Numbers) -> Csr<[VertexId; 3]> {
+        let mut pairs: Vec<(usize, [VertexId; 3])> = Vec::with_capacity(triangles.len());
+        for (flat, list) in self.flats.triangles.iter().enumerate() {
+            let parts = self.parts.list(flat);
+            if let [one] = *list {
+                pairs.extend(parts.iter().map(|&part| (one as usize, part)));
+                continue;
+            }
+            let plane = self.plane(flat as u32, triangles);
+            for &part in parts {
+                let of = self.triangle_of(list, part, triangles);
+                let is_same = plane.turned(triangles[of]) == triangles[of];
+                pairs.push((of, if is_same { part } else { [part[0], part[2], part[1]] }));
+            }
+        }
+        let renamed = || pairs.iter().map(|&(i, part)| (i, part.map(|v| numbers.of(v))));
+        Csr::from_pairs(triangles.len(), renamed)
+    }
+
+    /// Of the triangles of a flat facet the one that a part belongs to: which has its vertices, or holds its middle best.
+    fn triangle_of(&self, list: &[u32], part: [VertexId; 3], triangles: &[[VertexId; 3]]) -> usize {
+        let same = list.iter().find(|&&i| triangles[i as usize].iter().all(|v| part.contains(v)));
+        let corners = |t: [VertexId; 3]| t.map(|v| self.sites.near(v));
+        let [a, b, c] = corners(part);
+        let middle = [0, 1, 2].map(|i| (a[i] + b[i] + c[i]) / 3.0);
+        let depth = |i: u32| {
+            let [a, b, c] = corners(triangles[i as usize]);
+            let normal = cross(sub(b, a), sub(c, a));
+            let side = |[p, q]: [Point; 2]| dot(cross(sub(q, p), sub(middle, p)), normal) / dot(normal, normal);
+            [[a, b], [b, c], [c, a]].map(side).into_iter().fold(f64::INFINITY, f64::min)
+        };
+        let best = || list.iter().max_by(|&&i, &&j| depth(i).total_cmp(&depth(j)));
+        same.or_else(best).map_or(0, |&i| i as usize)
+    }
+}
+
+/// New numbers of vertices: those given keep theirs, then come points on edges, then points inside.
+struct Numbers {
+    n_given: usize,
+    /// The others that are used, in their new order.
+    later: Vec<VertexId>,
+    old_to_new: Vec<u32>,
+}
+
+impl Numbers {
+    fn new(filled: &Filled, n_given: usize) -> Self {
+        let mut is_used = vec![false; filled.sites.len()];
+        for (tet, v) in filled.tets.iter() {
+            if filled.bodies.of_slot[tet.index()] != 0 && filled.bodies.of_slot[tet.index()] != Bodies::NONE {
+                v.iter().for_each(|v| is_used[v.index()] = true);
+            }
+        }
+        filled.parts.items().as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+        let used = (n_given..is_used.len()).filter(|&v| is_used[v]).map(VertexId::new);
+        let (mut later, inside): (Vec<_>, Vec<_>) = used.partition(|&v| filled.sites.on_segment(v).is_some());
+        later.extend(inside);
+        let mut old_to_new: Vec<u32> = (0..is_used.len() as u32).collect();
+        later.iter().enumerate().for_each(|(i, v)| old_to_new[v.index()] = (n_given + i) as u32);
+        Self { n_given, later, old_to_new }
+    }
+
+    fn of(&self, vertex: VertexId) -> VertexId {
+        debug_assert!(vertex.index() < self.n_given || self.later.contains(&vertex));
+        VertexId(self.old_to_new[vertex.index()])
+    }
+}

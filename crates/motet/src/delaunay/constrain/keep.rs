@@ -1,0 +1,335 @@
+//! The surface put right: points on its edges move inside, and flat facets get back the triangles that they were.
+//!
+//! What it takes is a point inside on each side that has tets (`recone`). A point stays on its edge where a side has no room for one, such as
+//! at the free edge of a membrane. Tets outside are made anew like the others, but nobody asks whether they are positive: they only keep together what
+//! lies around an edge or a vertex, and are left out in the end.
+
+use hashbrown::HashMap;
+
+use super::bodies::Bodies;
+use super::flats::Flats;
+use super::plane::{Net, Plane};
+use super::recone::Side;
+use super::segments::Segments;
+use super::sites::{SegmentId, Sites};
+use super::tets::Tets;
+use crate::base::{Csr, Point, TetId, VertexId};
+use crate::geometry::vector::{add, cross, dot, scale, sub};
+use crate::kernel::HalfFacet;
+
+/// How often points that had no room are tried.
+const ROUNDS: usize = 4;
+
+/// The tets and the surface while it is put right.
+pub(super) struct Keep<'a> {
+    pub(super) tets: &'a mut Tets,
+    pub(super) sites: &'a mut Sites,
+    pub(super) bodies: &'a mut Bodies,
+    /// The triangles given, and the flat facet of each.
+    triangles: &'a [[VertexId; 3]],
+    flats: &'a Flats,
+    /// The flat facet of each facet of the surface, vertices rising.
+    walls: HashMap<[VertexId; 3], u32>,
+}
+
+impl<'a> Keep<'a> {
+    pub(super) fn new(
+        tets: &'a mut Tets,
+        sites: &'a mut Sites,
+        bodies: &'a mut Bodies,
+        triangles: &'a [[VertexId; 3]],
+        flats: &'a Flats,
+        parts: &Csr<[VertexId; 3]>,
+    ) -> Self {
+        let of_flat = |(flat, list): (usize, &[[VertexId; 3]])| {
+            list.iter().map(|&part| (rising(part), flat as u32)).collect::<Vec<_>>()
+        };
+        let walls = parts.iter().enumerate().flat_map(of_flat).collect();
+        Self { tets, sites, bodies, triangles, flats, walls }
+    }
+
+    /// Puts all right that can be; answers the facets of each flat facet.
+    pub(super) fn run(mut self, segments: &Segments) -> Csr<[VertexId; 3]> {
+        let on_segments = segments.points(self.sites);
+        let mut chains: Vec<(u32, Vec<VertexId>)> = (0..on_segments.len() as u32)
+            .map(|s| (s, on_segments.list(s as usize).to_vec()))
+            .filter(|(_, points)| !points.is_empty())
+            .collect();
+        // What has no room at first may have some once its neighbours have moved.
+        for _ in 0..ROUNDS {
+            for (segment, points) in &mut chains {
+                self.free_all(segments.ends(SegmentId(*segment)), points);
+            }
+            chains.retain(|(_, points)| !points.is_empty());
+        }
+        let mut lists = self.lists();
+        for flat in 0..lists.len() {
+            if self.flats.triangles.list(flat).len() > 1 {
+                self.restore(flat, &mut lists[flat]);
+            }
+        }
+        let mut csr = Csr::default();
+        lists.into_iter().for_each(|list| csr.push(list));
+        csr
+    }
+
+    /// Moves the points of a segment inside, those that can be; the others are left in the list.
+    fn free_all(&mut self, [mut before, last]: [VertexId; 2], points: &mut Vec<VertexId>) {
+        let mut left = Vec::new();
+        for (i, &vertex) in points.iter().enumerate() {
+            let after = points.get(i + 1).copied().unwrap_or(last);
+            if self.free(vertex, [before, after]).is_none() {
+                left.push(vertex);
+                before = vertex;
+            }
+        }
+        *points = left;
+    }
+
+    /// The facets of the surface by flat facet, each list turned as its plane and in order.
+    fn lists(&self) -> Vec<Vec<[VertexId; 3]>> {
+        let mut lists = vec![Vec::new(); self.flats.triangles.len()];
+        self.walls.iter().for_each(|(&face, &flat)| lists[flat as usize].push(face));
+        for (list, flat) in lists.iter_mut().zip(self.flats.triangles.iter()) {
+            let first = self.triangles[flat[0] as usize];
+            list.sort_unstable();
+            if *list == [rising(first)] {
+                *list = vec![first];
+            } else {
+                let plane = Plane::new(self.sites, first);
+                list.iter_mut().for_each(|face| *face = plane.turned(*face));
+            }
+        }
+        lists
+    }
+
+    /// Moves a point on an edge inside; its neighbours on the edge are joined. `None` where that cannot be.
+    fn free(&mut self, vertex: VertexId, ends: [VertexId; 2]) -> Option<()> {
+        let mut star = Vec::new();
+        self.tets.star(vertex, &mut star);
+        let fans = self.fans(vertex, &star);
+        let mut base: Vec<(u32, [VertexId; 3])> = Vec::new();
+        let mut i = 0;
+        while i < fans.len() {
+            let n = fans[i..].iter().take_while(|f| f.0 == fans[i].0).count();
+            base.extend(self.joined(vertex, ends, &fans[i..i + n])?);
+            i += n;
+        }
+        let old: Vec<_> = fans.iter().map(|f| rising(f.1)).collect();
+        let is_around = |tets: &Tets, half: HalfFacet| tets.vertices(half.tet())[half.facet()] == vertex;
+        if star.is_empty() {
+            return None;
+        }
+        let sides = self.sides(&star, &old, &base, is_around)?;
+        self.commit(sides, self.sites.near(vertex), &old, &base)
+    }
+
+    /// The facets of the surface at a vertex, each with its flat facet and turned as its plane; in order.
+    fn fans(&self, vertex: VertexId, star: &[TetId]) -> Vec<(u32, [VertexId; 3])> {
+        let mut fans = Vec::new();
+        for &tet in star {
+            for half in Tets::facets(tet) {
+                let face = self.tets.inward(half);
+                if face.contains(&vertex)
+                    && let Some(&flat) = self.walls.get(&rising(face))
+                {
+                    fans.push((flat, rising(face)));
+                }
+            }
+        }
+        fans.sort_unstable();
+        fans.dedup();
+        for (flat, face) in &mut fans {
+            *face = self.plane(*flat).turned(*face);
+        }
+        fans
+    }
+
+    fn plane(&self, flat: u32) -> Plane<'_> {
+        Plane::new(self.sites, self.triangles[self.flats.triangles.list(flat as usize)[0] as usize])
+    }
+
+    /// The triangles that take the place of those around a vertex in one flat facet.
+    fn joined(
+        &self,
+        vertex: VertexId,
+        ends: [VertexId; 2],
+        fan: &[(u32, [VertexId; 3])],
+    ) -> Option<Vec<(u32, [VertexId; 3])>> {
+        let flat = fan[0].0;
+        let plane = self.plane(flat);
+        // From each facet (vertex, x, y) the step from x to y around the vertex.
+        let step = |&(_, [a, b, c]): &(u32, [VertexId; 3])| match vertex {
+            v if v == a => (b, c),
+            v if v == b => (c, a),
+            _ => (a, b),
+        };
+        let mut triangles = Vec::new();
+        let mut n_steps = 0;
+        for start in ends {
+            let mut polygon = vec![start];
+            while let Some((_, next)) = fan.iter().map(step).find(|s| Some(&s.0) == polygon.last()) {
+                polygon.push(next);
+                n_steps += 1;
+                if ends.contains(&next) || n_steps > fan.len() {
+                    break;
+                }
+            }
+            if polygon.len() > 2 {
+                triangles.extend(plane.clip(&polygon)?.into_iter().map(|t| (flat, t)));
+            }
+        }
+        (n_steps == fan.len()).then_some(triangles)
+    }
+
+    /// The sides of a part of the surface, of facets `old`, that is to have the triangles `base`: the tets in `star` that hang together without crossing
+    /// the surface. `is_around` tells which of their facets stay. `None` where one tet lies on both sides.
+    fn sides(
+        &mut self,
+        star: &[TetId],
+        old: &[[VertexId; 3]],
+        base: &[(u32, [VertexId; 3])],
+        is_around: impl Fn(&Tets, HalfFacet) -> bool,
+    ) -> Option<Vec<Side>> {
+        let mut sides: Vec<Side> = Vec::new();
+        let mut done: Vec<TetId> = Vec::new();
+        for &first in star {
+            if done.contains(&first) {
+                continue;
+            }
+            let mut side = Side::default();
+            let mut seen: Vec<(u32, bool)> = Vec::new();
+            side.tets.push(first);
+            let mut next = 0;
+            while let Some(&tet) = side.tets.get(next) {
+                next += 1;
+                for half in Tets::facets(tet) {
+                    let (face, other) = (self.tets.inward(half), self.tets.across(half));
+                    if is_around(self.tets, half) {
+                        side.shell.push((other, face));
+                    } else if let Some(&flat) = self.walls.get(&rising(face)) {
+                        if !old.contains(&rising(face)) {
+                            return None;
+                        }
+                        seen.push((flat, self.plane(flat).turned(face) == face));
+                    } else if !other.is_none() && !side.tets.contains(&other.tet()) {
+                        side.tets.push(other.tet());
+                    }
+                }
+            }
+            seen.sort_unstable();
+            seen.dedup();
+            for &(flat, is_front) in &seen {
+                if seen.contains(&(flat, !is_front)) {
+                    return None;
+                }
+                let own = base.iter().filter(|b| b.0 == flat).map(|b| b.1);
+                side.base.extend(own.map(|[a, b, c]| if is_front { [a, b, c] } else { [a, c, b] }));
+            }
+            done.extend(&side.tets);
+            sides.push(side);
+        }
+        Some(sides)
+    }
+
+    /// Makes all sides anew, if each has room for a point.
+    fn commit(
+        &mut self,
+        sides: Vec<Side>,
+        middle: Point,
+        old: &[[VertexId; 3]],
+        base: &[(u32, [VertexId; 3])],
+    ) -> Option<()> {
+        let body = |side: &Side| self.bodies.of_slot[side.tets[0].index()];
+        let place = |side: &Side| if body(side) == 0 { Some(middle) } else { side.place(self.sites, middle) };
+        let places: Option<Vec<Point>> = sides.iter().map(place).collect();
+        let mut on_base = Vec::new();
+        for (side, place) in sides.iter().zip(places?) {
+            let body = self.bodies.of_slot[side.tets[0].index()];
+            let vertex = self.sites.add_point(place);
+            let (made, bare) = side.make(self.tets, vertex);
+            self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
+            made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+            on_base.extend(bare.into_iter().map(|(face, half)| (rising(face), half)));
+        }
+        on_base.sort_unstable();
+        for pair in on_base.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, a), (_, b)] = *pair {
+                self.tets.join(a, b);
+            }
+        }
+        for face in old {
+            self.walls.remove(face);
+        }
+        self.walls.extend(base.iter().map(|&(flat, face)| (rising(face), flat)));
+        Some(())
+    }
+
+    /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained
+    /// Delaunay triangulations*).
+    fn restore(&mut self, flat: usize, list: &mut Vec<[VertexId; 3]>) {
+        let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
+        let wanted: Vec<_> =
+            self.flats.triangles.list(flat).iter().map(|&i| plane(self, self.triangles[i as usize])).collect();
+        if wanted.len() != list.len() {
+            return;
+        }
+        let mut net = Net::new(list);
+        for edge in Net::new(&wanted).edges() {
+            let mut crossing: std::collections::VecDeque<_> = if net.has(edge) {
+                continue;
+            } else {
+                net.edges().into_iter().filter(|&e| self.plane(flat as u32).cross(edge, e)).collect()
+            };
+            let mut left = 4 * crossing.len() * crossing.len() + 16;
+            while let Some([a, b]) = crossing.pop_front() {
+                let Some([(s, p), (t, q)]) = net.sides([a, b]) else { continue };
+                left -= 1;
+                if left == 0 {
+                    return;
+                }
+                if !self.plane(flat as u32).can_flip([a, b], [p, q]) {
+                    crossing.push_back([a, b]);
+                    continue;
+                }
+                if self.flip(flat as u32, [a, b], [p, q]).is_none() {
+                    return;
+                }
+                net.flip(list, [a, b], [(s, p), (t, q)]);
+                if self.plane(flat as u32).cross(edge, [p, q]) {
+                    crossing.push_back([p, q]);
+                }
+            }
+        }
+    }
+
+    /// Replaces the edge a b within a flat facet by p q.
+    fn flip(&mut self, flat: u32, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> Option<()> {
+        let mut star = Vec::new();
+        self.tets.around([a, b], &mut star);
+        let old = [rising([a, b, p]), rising([b, a, q])];
+        let base = [(flat, [p, a, q]), (flat, [q, b, p])];
+        let is_around = |tets: &Tets, half: HalfFacet| {
+            let apex = tets.vertices(half.tet())[half.facet()];
+            apex == a || apex == b
+        };
+        let sides = self.sides(&star, &old, &base, is_around)?;
+        let [from, to, p, q] = [a, b, p, q].map(|v| self.sites.near(v));
+        let middle = add(from, scale(sub(to, from), crossing_share([from, to], [p, q])));
+        self.commit(sides, middle, &old, &base)
+    }
+}
+
+/// Where on the way from `a` to `b` the line through p and q crosses, all in one plane.
+fn crossing_share([a, b]: [Point; 2], [p, q]: [Point; 2]) -> f64 {
+    let (along, across) = (sub(b, a), sub(q, p));
+    let normal = cross(along, across);
+    let share = dot(cross(sub(p, a), across), normal) / dot(normal, normal);
+    if share > 0.0 && share < 1.0 { share } else { 0.5 }
+}
+
+/// The vertices of a face in rising order.
+fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
+    face.sort_unstable();
+    face
+}

@@ -1,0 +1,131 @@
+//! A part of the tets on one side of the surface made anew, from a single point inside.
+//!
+//! Whatever the triangles of a flat part of the surface are to be: if the tets on it see a point just inside, tets from that point to the
+//! facets around them and to the new triangles fill the same room (a cone). So the surface can be cut otherwise at the price of a point
+//! inside, whatever tets there are.
+
+use super::insert::sorted;
+use super::sites::Sites;
+use super::tets::Tets;
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::predicates::spot::{Spot, orient3d_of};
+use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
+use crate::kernel::HalfFacet;
+
+/// What is to be made anew on one side of the surface.
+#[derive(Default)]
+pub(super) struct Side {
+    pub(super) tets: Vec<TetId>,
+    /// The facets around them but those on the surface, seen from inside, and what lies behind.
+    pub(super) shell: Vec<(HalfFacet, [VertexId; 3])>,
+    /// The new triangles of the surface, seen from inside.
+    pub(super) base: Vec<[VertexId; 3]>,
+}
+
+/// How far from the surface the point may be, as a share of the way to the middle of the facets around.
+const WAYS: [f64; 12] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04, 0.02, 0.005, 1e-3, 1e-4, 1e-6, 1e-8];
+
+/// How far from all facets a point is to be, as shares of the size of what is made anew, and in how many steps.
+const MARGINS: [f64; 6] = [0.05, 5e-3, 5e-4, 1e-5, 1e-7, 1e-9];
+const STEPS: usize = 200;
+
+impl Side {
+    fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+        self.shell.iter().map(|&(_, face)| face).chain(self.base.iter().copied())
+    }
+
+    /// A point near `middle` that sees all facets around; of those tried the one with the best worst tet.
+    pub(super) fn place(&self, sites: &Sites, middle: Point) -> Option<Point> {
+        let corners = || self.shell.iter().flat_map(|(_, face)| face).map(|&v| sites.near(v));
+        let n = 3.0 * self.shell.len() as f64;
+        let centre = scale(corners().fold([0.0; 3], add), 1.0 / n);
+        let reach = corners().map(|p| distance(p, middle)).sum::<f64>() / n;
+        let normals = self.base.iter().map(|face| {
+            let [a, b, c] = face.map(|v| sites.near(v));
+            let normal = cross(sub(b, a), sub(c, a));
+            scale(normal, 1.0 / norm(normal).max(f64::MIN_POSITIVE))
+        });
+        let inward = normals.fold([0.0; 3], add);
+        let inward = scale(inward, reach / norm(inward).max(f64::MIN_POSITIVE));
+        let mut best: Option<(f64, Point)> = None;
+        for way in WAYS {
+            for direction in [sub(centre, middle), inward] {
+                let p = add(middle, scale(direction, way));
+                let worst = self.worst(sites, p);
+                if worst > best.map_or(0.0, |(worst, _)| worst) && self.sees(sites, p) {
+                    best = Some((worst, p));
+                }
+            }
+            if best.is_some() && way < 0.1 {
+                break;
+            }
+        }
+        best.map(|(_, p)| p).or_else(|| self.approach(sites, middle, reach))
+    }
+
+    /// A point that sees all facets around, found by steps to the inner side of the one that sees it least (Agmon 1954; Motzkin and
+    /// Schoenberg 1954, *The relaxation method for linear inequalities*).
+    fn approach(&self, sites: &Sites, middle: Point, reach: f64) -> Option<Point> {
+        let plane = |face: [VertexId; 3]| {
+            let [a, b, c] = face.map(|v| sites.near(v));
+            let normal = cross(sub(b, a), sub(c, a));
+            (a, scale(normal, 1.0 / norm(normal)))
+        };
+        let planes: Vec<(Point, Point)> = self.faces().map(plane).filter(|p| p.1[0].is_finite()).collect();
+        for margin in MARGINS.map(|share| share * reach) {
+            let mut p = middle;
+            for _ in 0..STEPS {
+                let height = |&(a, normal): &(Point, Point)| dot(normal, sub(p, a));
+                let lowest = planes.iter().min_by(|s, t| height(s).total_cmp(&height(t)))?;
+                let height = height(lowest);
+                if height >= margin {
+                    break;
+                }
+                p = add(p, scale(lowest.1, 1.5 * (margin - height)));
+            }
+            if self.sees(sites, p) {
+                return Some(p);
+            }
+        }
+        None
+    }
+
+    /// The least volume of a tet to a facet around, over the cube of its longest edge; never 0 where it may be positive.
+    fn worst(&self, sites: &Sites, p: Point) -> f64 {
+        let of = |face: [VertexId; 3]| {
+            let [a, b, c] = face.map(|v| sub(sites.near(v), p));
+            let longest = [a, b, c, sub(a, b), sub(b, c), sub(c, a)].into_iter().map(norm).fold(0.0, f64::max);
+            dot(cross(a, b), c) / longest.powi(3)
+        };
+        // Seen from p the facets turn the other way.
+        self.faces().map(|face| -of(face)).fold(f64::INFINITY, f64::min).abs().max(f64::MIN_POSITIVE)
+    }
+
+    /// Whether all tets are positive.
+    fn sees(&self, sites: &Sites, p: Point) -> bool {
+        let is_seen = |[a, b, c]: [VertexId; 3]| {
+            orient3d_of([sites.spot(a), sites.spot(b), sites.spot(c), Spot::Given(p)]) > 0
+        };
+        self.faces().all(is_seen)
+    }
+
+    /// Makes the tets; answers them with the facets on the base.
+    pub(super) fn make(&self, tets: &mut Tets, vertex: VertexId) -> (Vec<TetId>, Vec<([VertexId; 3], HalfFacet)>) {
+        self.tets.iter().for_each(|&tet| tets.remove(tet));
+        let (mut made, mut on_base, mut sides) = (Vec::new(), Vec::new(), Vec::new());
+        let base = self.base.iter().map(|&face| (HalfFacet::NONE, face, true));
+        for (outer, [a, b, c], is_base) in self.shell.iter().map(|&(h, f)| (h, f, false)).chain(base) {
+            let tet = tets.add([a, b, c, vertex]);
+            made.push(tet);
+            tets.join(HalfFacet::new(tet, 3), outer);
+            if is_base {
+                on_base.push(([a, b, c], HalfFacet::new(tet, 3)));
+            }
+            let edges = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
+            sides.extend(edges.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
+        }
+        sides.sort_unstable();
+        sides.as_chunks::<2>().0.iter().for_each(|pair| tets.join(pair[0].1, pair[1].1));
+        (made, on_base)
+    }
+}
