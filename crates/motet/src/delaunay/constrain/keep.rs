@@ -17,6 +17,9 @@ use crate::base::{Csr, Point, TetId, VertexId};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
+/// Tets of this share are good enough for a point to go.
+const FAIR: f64 = 1e-3;
+
 /// How often points that had no room are tried.
 const ROUNDS: usize = 4;
 
@@ -243,13 +246,14 @@ impl<'a> Keep<'a> {
         let body = |side: &Side| self.bodies.of_slot[side.tets[0].index()];
         let place = |side: &Side| if body(side) == 0 { Some(middle) } else { side.place(self.sites, middle) };
         let places: Option<Vec<Point>> = sides.iter().map(place).collect();
-        let mut on_base = Vec::new();
+        let (mut on_base, mut came) = (Vec::new(), Vec::new());
         for (side, place) in sides.iter().zip(places?) {
             let body = self.bodies.of_slot[side.tets[0].index()];
             let vertex = self.sites.add_point(place);
             let (made, bare) = side.make(self.tets, vertex);
             self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
             made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+            came.extend((body != 0).then_some(vertex));
             on_base.extend(bare.into_iter().map(|(face, half)| (rising(face), half)));
         }
         on_base.sort_unstable();
@@ -262,7 +266,25 @@ impl<'a> Keep<'a> {
             self.walls.remove(face);
         }
         self.walls.extend(base.iter().map(|&(flat, face)| (rising(face), flat)));
+        came.into_iter().for_each(|vertex| self.settle(vertex));
         Some(())
+    }
+
+    /// Does without a point inside, if another vertex can take its place; or else finds it a better place. Otherwise the next points nearby would have
+    /// less and less room.
+    fn settle(&mut self, vertex: VertexId) {
+        let mut star = Vec::new();
+        self.tets.star(vertex, &mut star);
+        let side = Side::of_star(self.tets, vertex, &star);
+        let worst = side.worst_to(self.sites, vertex);
+        if let Some(apex) = side.best_apex(self.sites, worst.min(FAIR)) {
+            let body = self.bodies.of_slot[star[0].index()];
+            let made = side.make_from(self.tets, apex);
+            self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
+            made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+        } else if let Some(place) = side.better_place(self.sites, vertex, worst) {
+            self.sites.move_to(vertex, place);
+        }
     }
 
     /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained

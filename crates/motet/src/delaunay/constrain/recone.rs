@@ -30,7 +30,7 @@ const MARGINS: [f64; 6] = [0.05, 5e-3, 5e-4, 1e-5, 1e-7, 1e-9];
 const STEPS: usize = 200;
 
 impl Side {
-    fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+    fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + Clone + '_ {
         self.shell.iter().map(|&(_, face)| face).chain(self.base.iter().copied())
     }
 
@@ -90,15 +90,70 @@ impl Side {
         None
     }
 
-    /// The least volume of a tet to a facet around, over the cube of its longest edge; never 0 where it may be positive.
+    /// The least share of a tet to a facet around; a little where it may be positive and is too small to tell.
     fn worst(&self, sites: &Sites, p: Point) -> f64 {
-        let of = |face: [VertexId; 3]| {
-            let [a, b, c] = face.map(|v| sub(sites.near(v), p));
-            let longest = [a, b, c, sub(a, b), sub(b, c), sub(c, a)].into_iter().map(norm).fold(0.0, f64::max);
-            dot(cross(a, b), c) / longest.powi(3)
-        };
-        // Seen from p the facets turn the other way.
-        self.faces().map(|face| -of(face)).fold(f64::INFINITY, f64::min).abs().max(f64::MIN_POSITIVE)
+        let worst = self.faces().map(|face| share(sites, face, p)).fold(f64::INFINITY, f64::min);
+        if worst.abs() < 1e-12 { f64::MIN_POSITIVE } else { worst }
+    }
+
+    /// All tets of a vertex inside.
+    pub(super) fn of_star(tets: &Tets, vertex: VertexId, star: &[TetId]) -> Self {
+        let mut side = Self { tets: star.to_vec(), ..Self::default() };
+        for half in star.iter().flat_map(|&tet| Tets::facets(tet)) {
+            if tets.vertices(half.tet())[half.facet()] == vertex {
+                side.shell.push((tets.across(half), tets.inward(half)));
+            }
+        }
+        side
+    }
+
+    /// Of the vertices around the one from which the worst tet would be best, if it sees all facets that it is not on.
+    pub(super) fn best_apex(&self, sites: &Sites, least: f64) -> Option<VertexId> {
+        let mut around: Vec<VertexId> = self.faces().flatten().collect();
+        around.sort_unstable();
+        around.dedup();
+        let mut best = (least, None);
+        for apex in around {
+            let p = sites.near(apex);
+            let mut faces = self.faces().filter(|face| !face.contains(&apex));
+            let worst = faces.clone().map(|face| share(sites, face, p)).fold(f64::INFINITY, f64::min);
+            if worst > best.0 && faces.all(|[a, b, c]| sites.orient3d([a, b, c, apex]) > 0) {
+                best = (worst, Some(apex));
+            }
+        }
+        best.1
+    }
+
+    /// A place for a vertex inside that makes its worst tet better.
+    pub(super) fn better_place(&self, sites: &Sites, vertex: VertexId, worst: f64) -> Option<Point> {
+        let place = self.place(sites, sites.near(vertex))?;
+        (self.worst(sites, place) > 1.01 * worst).then_some(place)
+    }
+
+    /// The worst share of the tets to a vertex.
+    pub(super) fn worst_to(&self, sites: &Sites, vertex: VertexId) -> f64 {
+        self.worst(sites, sites.near(vertex))
+    }
+
+    /// Makes the tets from one of the vertices around.
+    pub(super) fn make_from(&self, tets: &mut Tets, apex: VertexId) -> Vec<TetId> {
+        self.tets.iter().for_each(|&tet| tets.remove(tet));
+        let (mut made, mut sides) = (Vec::new(), Vec::new());
+        for &(outer, [a, b, c]) in &self.shell {
+            if let Some(i) = [a, b, c].iter().position(|&v| v == apex) {
+                let edge = [[b, c], [c, a], [a, b]][i];
+                sides.push((sorted(edge), outer));
+                continue;
+            }
+            let tet = tets.add([a, b, c, apex]);
+            made.push(tet);
+            tets.join(HalfFacet::new(tet, 3), outer);
+            let edges = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
+            sides.extend(edges.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
+        }
+        sides.sort_unstable();
+        sides.as_chunks::<2>().0.iter().for_each(|pair| tets.join(pair[0].1, pair[1].1));
+        made
     }
 
     /// Whether all tets are positive.
@@ -128,4 +183,12 @@ impl Side {
         sides.as_chunks::<2>().0.iter().for_each(|pair| tets.join(pair[0].1, pair[1].1));
         (made, on_base)
     }
+}
+
+/// Six times the volume of the tet of a face, seen from p, over the cube of its longest edge.
+fn share(sites: &Sites, face: [VertexId; 3], p: Point) -> f64 {
+    let [a, b, c] = face.map(|v| sub(sites.near(v), p));
+    let longest = [a, b, c, sub(a, b), sub(b, c), sub(c, a)].into_iter().map(norm).fold(0.0, f64::max);
+    // Seen from p the face turns the other way.
+    -dot(cross(a, b), c) / longest.powi(3)
 }

@@ -62,6 +62,11 @@ impl Sites {
         self.push(point, None)
     }
 
+    /// Moves a vertex that was added as it is.
+    pub(super) fn move_to(&mut self, vertex: VertexId, point: Point) {
+        self.near[vertex.index()] = point;
+    }
+
     fn push(&mut self, near: Point, on: Option<u32>) -> VertexId {
         let vertex = VertexId::new(self.near.len());
         self.near.push(near);
