@@ -3,6 +3,7 @@
 //! No edge of tets crosses an edge of the part, since those are edges of tets themselves. So where a tet is cut at all its whole slice lies
 //! in the part, and the tets behind its cut facets are cut as well: nothing needs to be known of the part but its plane and one edge.
 //!
+//! A vertex may have cut tets only, and then stands alone in a hollow.
 //! A facet between two tets that are cut may itself be whole, where it meets the plane in a vertex or an edge. It is forgotten, unless it is of the
 //! surface: then it stands in the hollow as a wall with two sides.
 
@@ -28,6 +29,8 @@ pub(super) struct Cut {
     pub(super) tets: Vec<TetId>,
     /// The faces around them in front of the plane, and behind it.
     pub(super) shells: [Vec<Face>; 2],
+    /// All vertices in front of the plane, and behind it; some more than once.
+    pub(super) vertices: [Vec<VertexId>; 2],
     /// Walls within the hollows, each once.
     pub(super) walls: Vec<[VertexId; 3]>,
     star: Vec<TetId>,
@@ -52,7 +55,14 @@ impl Cut {
         self.spread(tets, sites, corners, first)?;
         self.shells.iter_mut().for_each(Vec::clear);
         self.walls.clear();
+        self.vertices.iter_mut().for_each(Vec::clear);
         for i in 0..self.tets.len() {
+            for v in tets.vertices(self.tets[i]) {
+                match self.side(sites, corners, v) {
+                    0 => {}
+                    side => self.vertices[usize::from(side < 0)].push(v),
+                }
+            }
             for half in Tets::facets(self.tets[i]) {
                 self.enclose(tets, sites, corners, half, &is_wall)?;
             }

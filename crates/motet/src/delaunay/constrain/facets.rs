@@ -145,13 +145,13 @@ impl Work {
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
         let [mut front, mut behind] = std::mem::take(&mut self.cut.shells);
         front.extend(group.iter().map(|&vertices| Face { vertices, outer: HalfFacet::NONE }));
-        self.wrap.fill(tets, sites, &front)?;
+        self.wrap.fill(tets, sites, &front, &self.cut.vertices[0])?;
         self.join_walls(tets);
         for &[a, b, c] in group {
             let outer = self.wrap.inner([a, b, c]).ok_or(Stuck)?;
             behind.push(Face { vertices: [a, c, b], outer });
         }
-        self.wrap.fill(tets, sites, &behind)?;
+        self.wrap.fill(tets, sites, &behind, &self.cut.vertices[1])?;
         self.join_walls(tets);
         self.cut.shells = [front, behind];
         Ok(())

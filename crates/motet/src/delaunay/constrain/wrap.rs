@@ -39,9 +39,15 @@ pub(super) struct Wrap {
 }
 
 impl Wrap {
-    /// Fills the hollow within `faces`.
-    pub(super) fn fill(&mut self, tets: &mut Tets, sites: &Sites, faces: &[Face]) -> Result<(), Stuck> {
-        self.begin(sites, faces);
+    /// Fills the hollow within `faces`; `vertices` are those of its old tets.
+    pub(super) fn fill(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        faces: &[Face],
+        vertices: &[VertexId],
+    ) -> Result<(), Stuck> {
+        self.begin(sites, faces, vertices);
         let mut most = 64 + 16 * faces.len() + faces.len() * faces.len();
         while let Some(key) = self.queue.pop() {
             let Some(&face) = self.open.get(&key) else { continue };
@@ -52,13 +58,13 @@ impl Wrap {
         if self.open.is_empty() { Ok(()) } else { Err(Stuck) }
     }
 
-    fn begin(&mut self, sites: &Sites, faces: &[Face]) {
+    fn begin(&mut self, sites: &Sites, faces: &[Face], vertices: &[VertexId]) {
         self.open.clear();
         self.queue.clear();
         self.bare.clear();
         self.strange.clear();
         self.vertices.clear();
-        self.vertices.extend(faces.iter().flat_map(|f| f.vertices));
+        self.vertices.extend(faces.iter().flat_map(|f| f.vertices).chain(vertices.iter().copied()));
         self.vertices.sort_unstable();
         self.vertices.dedup();
         self.is_guided = faces.len() > UNGUIDED;
