@@ -22,7 +22,7 @@ use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
 /// So many points on segments, beside those that a segment has on average, mean that it would not end.
-const SPARE_POINTS: usize = 30_000;
+const SPARE_POINTS: usize = 8_000;
 const POINTS_A_SEGMENT: usize = 40;
 
 /// Pieces below this share of their segment are small.
