@@ -115,8 +115,8 @@ pub(super) fn mean(vertices: &[VertexId], points: &[Point]) -> Option<Point> {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "surface {}", self.surface)?;
-        list(f, "triangle", &self.triangles)?;
-        list(f, "vertex", &self.vertices)?;
+        list(f, ["triangle", "triangles"], &self.triangles)?;
+        list(f, ["vertex", "vertices"], &self.vertices)?;
         match self.at {
             Some([x, y, z]) => write!(f, " at ({x:.6}, {y:.6}, {z:.6})"),
             None => Ok(()),
@@ -125,9 +125,12 @@ impl fmt::Display for Fault {
 }
 
 /// The first few ids.
-fn list(f: &mut fmt::Formatter<'_>, what: &str, ids: &[impl fmt::Display]) -> fmt::Result {
+fn list(f: &mut fmt::Formatter<'_>, [one, many]: [&str; 2], ids: &[impl fmt::Display]) -> fmt::Result {
     for (i, id) in ids.iter().take(4).enumerate() {
-        write!(f, "{}{id}", if i == 0 { format!(", {what} ") } else { " ".into() })?;
+        match i {
+            0 => write!(f, ", {} {id}", if ids.len() > 1 { many } else { one })?,
+            _ => write!(f, ", {id}")?,
+        }
     }
-    if ids.len() > 4 { f.write_str(" ...") } else { Ok(()) }
+    if ids.len() > 4 { f.write_str(", ...") } else { Ok(()) }
 }

@@ -12,7 +12,8 @@ use crate::base::{Point, Threads, VertexId};
 /// Everything that stops surfaces from being meshed, and what else is worth knowing of them.
 ///
 /// Points at one place have one id: [`weld`](super::weld) sees to that. `surface_of` tells which surface each triangle is of, `roles` what each
-/// surface is for. Edges are those of triangles with three different vertices, duplicates counted once. The answer is the same for any number of threads.
+/// surface is for. Edges are those of triangles with three different vertices; of duplicates that face the same side one counts, and two that face
+/// opposite sides do not, since they enclose nothing. The answer is the same for any number of threads.
 ///
 /// Panics when the lists do not fit together, or a triangle names a point or a surface that is not there.
 pub fn preflight(
@@ -25,19 +26,13 @@ pub fn preflight(
     let surfaces = Surfaces::new(points, triangles, surface_of, roles);
     let shapes = shapes(&surfaces, threads);
     let firsts = Firsts::new(&surfaces);
-    let sides = sorted_sides(&surfaces, |t| is_counted(&surfaces, &firsts, t));
+    let sides = sorted_sides(&surfaces, |t| firsts.stays[t as usize]);
     let mut faults = empty(&surfaces);
     faults.extend(single::faults(&surfaces, &shapes, &firsts));
     faults.extend(meeting::faults(&surfaces, &shapes, &firsts, threads));
     faults.extend(edges::faults(&surfaces, &sides));
     faults.extend(parts::faults(&surfaces, &Parts::new(triangles.len(), &sides)));
     Preflight::new(&surfaces, faults)
-}
-
-/// Whether a triangle has three vertices, and is the first of its surface that has them.
-pub(super) fn is_counted(surfaces: &Surfaces, firsts: &Firsts, t: u32) -> bool {
-    let [a, b, c] = surfaces.triangles[t as usize];
-    a != b && b != c && c != a && firsts.of_surface[t as usize] == t
 }
 
 /// The surfaces without a triangle.

@@ -33,11 +33,16 @@ pub(super) fn shapes(surfaces: &Surfaces, threads: &Threads) -> Vec<Shape> {
     })
 }
 
-/// For each triangle of three vertices the first one with the same vertices: of its surface, and of all. Others are their own.
+/// Triangles of three vertices that are there more than once.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Firsts {
+    /// For each triangle the first one of its surface with the same vertices; a triangle that names one twice is its own.
     pub(super) of_surface: Vec<u32>,
+    /// The same among all surfaces.
     pub(super) of_all: Vec<u32>,
+    /// Which triangles are left once two that face opposite sides, and so enclose nothing, have gone together, and of those that face
+    /// the same side one has stayed. Without those that name a vertex twice.
+    pub(super) stays: Vec<bool>,
 }
 
 impl Firsts {
@@ -48,16 +53,35 @@ impl Firsts {
             .filter(|([a, b, c], ..)| a != b && b != c)
             .collect();
         keyed.sort_unstable();
-        let mut firsts = Self { of_surface: surfaces.ids().collect(), of_all: surfaces.ids().collect() };
+        let mut firsts = Self {
+            of_surface: surfaces.ids().collect(),
+            of_all: surfaces.ids().collect(),
+            stays: vec![false; surfaces.triangles.len()],
+        };
         for same in keyed.chunk_by(|x, y| x.0 == y.0) {
             let first = same.iter().map(|&(.., t)| t).min().unwrap_or(0);
             same.iter().for_each(|&(.., t)| firsts.of_all[t as usize] = first);
             for of_one in same.chunk_by(|x, y| x.1 == y.1) {
                 of_one.iter().for_each(|&(.., t)| firsts.of_surface[t as usize] = of_one[0].2);
+                if let Some(t) = what_stays(surfaces, of_one.iter().map(|&(.., t)| t)) {
+                    firsts.stays[t as usize] = true;
+                }
             }
         }
         firsts
     }
+}
+
+/// Of triangles with the same vertices the first that faces where more of them face; `None` where as many face either side.
+fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> Option<u32> {
+    let is_rising = |t: u32| {
+        let [a, b, c] = surfaces.triangles[t as usize];
+        // A turn of the corners leaves the number of falling steps as it is: one, or two.
+        [a < b, b < c, c < a].iter().filter(|rises| **rises).count() == 2
+    };
+    let (n, n_rising) = (same.clone().count(), same.clone().filter(|&t| is_rising(t)).count());
+    let mut of_more = same.filter(|&t| is_rising(t) == (2 * n_rising > n));
+    if 2 * n_rising == n { None } else { of_more.next() }
 }
 
 fn sorted(mut triangle: [VertexId; 3]) -> [VertexId; 3] {

@@ -26,7 +26,8 @@ pub struct Repairs {
     /// Triangles without area go. Where the middle one of three corners on a line divides the longest edge, the other triangles of that edge are
     /// divided there, so that what was closed stays closed and nothing moves.
     pub drop_degenerate: bool,
-    /// Of triangles of one surface with the same vertices the first one stays.
+    /// Of triangles of one surface with the same vertices that face the same side one stays; two that face opposite sides go together, since
+    /// they enclose nothing.
     pub drop_duplicates: bool,
     /// Triangles are turned so that neighbours face the same side; as few as can be of an open part, and a closed part outward, also within another.
     pub orient: bool,

@@ -16,7 +16,7 @@ pub enum RepairKind {
     DroppedFlat,
     /// A triangle whose corners lie on a line stayed: two of them are at one place and want to be merged, or very many lie on one line.
     LeftFlat,
-    /// A triangle went that its surface had already.
+    /// A triangle went that its surface had twice; where the other faced the opposite side both went.
     DroppedDuplicate,
     /// A triangle faces the other side now.
     Turned,

@@ -3,7 +3,6 @@
 use super::report::{Repair, RepairKind, Repaired};
 use crate::base::{Point, VertexId};
 use crate::preflight::fault::mean;
-use crate::preflight::search::is_counted;
 use crate::preflight::sides::{Side, sorted_sides};
 use crate::preflight::single::Firsts;
 use crate::preflight::surfaces::{Role, Surfaces};
@@ -73,7 +72,7 @@ impl<'a> Work<'a> {
             roles: self.roles,
         };
         let firsts = Firsts::new(&surfaces);
-        sorted_sides(&surfaces, |t| is_counted(&surfaces, &firsts, t))
+        sorted_sides(&surfaces, |t| firsts.stays[t as usize])
     }
 
     /// Notes what was done, at the mean of the vertices.
@@ -93,18 +92,19 @@ impl<'a> Work<'a> {
         piece.is_turned = !piece.is_turned;
     }
 
-    /// Takes out the triangles that their surface has already.
+    /// Takes out triangles that their surface has more than once.
     pub(super) fn drop_duplicates(&mut self) {
         let lists = self.lists();
-        let firsts = Firsts::new(&lists.surfaces(self)).of_surface;
-        let goes = |t: &u32| firsts[*t as usize] != *t;
-        for t in (0..firsts.len() as u32).filter(goes) {
-            let (first, old) = (self.old(firsts[t as usize]), self.old(t));
-            let vertices = self.pieces[t as usize].vertices.to_vec();
-            self.tell(RepairKind::DroppedDuplicate, vec![old, first], vertices);
+        let stays = Firsts::new(&lists.surfaces(self)).stays;
+        let names_one_twice = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
+        let goes: Vec<bool> =
+            self.pieces.iter().zip(stays).map(|(p, stays)| !stays && !names_one_twice(p.vertices)).collect();
+        for t in (0..goes.len()).filter(|&t| goes[t]) {
+            let (old, vertices) = (self.old(t as u32), self.pieces[t].vertices.to_vec());
+            self.tell(RepairKind::DroppedDuplicate, vec![old], vertices);
         }
-        let mut ids = 0u32..;
-        self.pieces.retain(|_| ids.next().is_some_and(|t| !goes(&t)));
+        let mut goes = goes.into_iter();
+        self.pieces.retain(|_| goes.next() != Some(true));
     }
 
     pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>) -> Repaired {
