@@ -141,7 +141,7 @@ fn a_plane_hole_is_filled_within_its_plane() {
     );
     let mended = mend(&points, &left, &ALL);
     assert_eq!((mended.count(RepairKind::ClosedHole), mended.count(RepairKind::LeftOpen)), (0, 1));
-    assert_eq!(mended.triangles, left);
+    assert!(mended.triangles == left);
 }
 
 /// A tetrahedron of which one edge has vertices on one side only; flat triangles fill the gap of no width.
@@ -223,8 +223,10 @@ fn a_distance_that_is_none_is_refused() {
 #[test]
 fn real_surfaces_after_all_repairs() {
     let Some(folder) = common::data_folder() else { return };
+    let mut surprises = Vec::new();
     for (name, is_fit) in [
-        ("vessels/pescio_AbdominalAorticAneurysm.stl", true),
+        // A triangle that hangs on by one edge.
+        ("vessels/pescio_AbdominalAorticAneurysm.stl", false),
         ("vessels/endobeams_ica_model.stl", true),
         ("hostile_surfaces/pescio_AbdominalAorta.stl", false),
         ("hostile_surfaces/seqseg_shawn_260.vtp", true),
@@ -246,6 +248,7 @@ fn real_surfaces_after_all_repairs() {
         }
         let report = look(points, &mended.triangles);
         println!("{name}: {}\n    {done:?}\n    {report}", look(points, &triangles));
-        assert_eq!(report.is_fit(), is_fit, "{name}");
+        surprises.extend((report.is_fit() != is_fit).then_some(name));
     }
+    assert!(surprises.is_empty(), "{surprises:?}");
 }

@@ -11,14 +11,22 @@ use crate::spatial::{Bounds, BoxTree};
 pub(super) fn merge(work: &mut Work, within: f64) -> Vec<VertexId> {
     let mut is_used = vec![false; work.points.len()];
     work.pieces.iter().flat_map(|piece| piece.vertices).for_each(|v| is_used[v.index()] = true);
-    let mut kept = if within > 0.0 { near(work, &is_used, within) } else { weld(work.points) };
-    for v in (0..kept.len()).filter(|&v| !is_used[v]) {
-        kept[v] = VertexId::new(v);
-    }
+    let kept = if within > 0.0 { near(work, &is_used, within) } else { at_one_place(work, &is_used) };
     for v in (0..kept.len()).map(VertexId::new).filter(|v| kept[v.index()] != *v) {
         work.tell(RepairKind::MergedVertex, Vec::new(), vec![v, kept[v.index()]]);
     }
     work.pieces.iter_mut().for_each(|piece| piece.vertices = piece.vertices.map(|v| kept[v.index()]));
+    kept
+}
+
+/// The first vertex in use at the place of each one in use; others stay themselves.
+fn at_one_place(work: &Work, is_used: &[bool]) -> Vec<VertexId> {
+    let mut kept = weld(work.points);
+    let mut first_in_use = vec![None; kept.len()];
+    for v in (0..kept.len()).map(VertexId::new) {
+        let place = kept[v.index()];
+        kept[v.index()] = if is_used[v.index()] { *first_in_use[place.index()].get_or_insert(v) } else { v };
+    }
     kept
 }
 
