@@ -12,8 +12,8 @@ use crate::geometry::vector::scale;
 /// More than all underflow together can amount to, with coordinates below 2.
 const UNDERFLOW: f64 = 1e-290;
 
-/// The sign of the volume that closed triangles enclose: `Greater` where they face outward. `Equal` where it is nothing, or less than
-/// 1e-20 of the volumes of the cones from one of the vertices to the triangles, summed as they come: then neither
+/// The sign of the volume that closed triangles enclose: `Greater` where they face outward. `Equal` where it is nothing, or (with 100,000 triangles) less than
+/// 1e-21 of the volumes of the cones from one of the vertices to the triangles, summed as they come: then neither
 /// side is the inside. `None` where a corner is not finite.
 pub(super) fn volume_sign(points: &[Point], triangles: &[[VertexId; 3]]) -> Option<Ordering> {
     let at = |v: VertexId| points[v.index()];
@@ -45,7 +45,7 @@ fn permanent([a, b, c]: [Point; 3]) -> f64 {
 }
 
 /// What rounding can have done to the sum, by the rules in `pair`: a term is off by at most 53 u^2 of its permanent, and each of
-/// `n` sums adds 2 k + 1 to that and 1 to k, which starts below 20.
+/// `n` sums adds 2 k + 1 to that and 1 to k, which starts at 8; the factor 2 is for the permanents' own rounding.
 fn bound(n: usize, absolute: f64) -> f64 {
     let n = n as f64;
     (53.0 + n * (n + 41.0)) * 2.0 * U * U * absolute + n * UNDERFLOW
