@@ -8,6 +8,7 @@
 //! | [`io`] | 3 | one file per format, their registry, time series |
 //! | [`spatial`] | 3 | searching: which tet holds a point, which facet is nearest |
 //! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
+//! | [`preflight`] | 4 | what stops closed surfaces from being meshed: found exactly, all of it |
 //! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
 //! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
 //! | [`refine`] | 6 | tets divided, many generations deep, without loss of shape; and the way back |
@@ -26,6 +27,7 @@ pub mod kernel;
 pub mod mesh;
 pub mod motion;
 pub mod ops;
+pub mod preflight;
 pub mod refine;
 pub mod remesh;
 pub mod spatial;

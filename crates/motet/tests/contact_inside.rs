@@ -4,11 +4,12 @@ mod common;
 
 use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{crossings, inside, is_closed, own_crossings};
+use motet::contact::{inside, is_closed};
 use motet::geometry::distance::{segment_triangle, triangle_triangle};
 use motet::geometry::vector::{add, cross, dot, norm, scale, sub};
 use motet::mesh::Surface;
 use motet::mesh::shapes::{TubeOptions, ball, box_grid, tube};
+use motet::preflight::{crossings, own_crossings};
 use proptest::prelude::*;
 
 type Triangles = Vec<[VertexId; 3]>;

@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use common::hard::{Case, random_case};
 use motet::base::Threads;
-use motet::contact::{is_closed, own_crossings};
+use motet::contact::is_closed;
+use motet::preflight::own_crossings;
 use motet::geometry::predicates::collinear;
 use motet::mesh::cone_volume;
 

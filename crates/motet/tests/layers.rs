@@ -13,6 +13,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("io", 3),
     ("spatial", 3),
     ("kernel", 4),
+    ("preflight", 4),
     ("ops", 5),
     ("delaunay", 6),
     ("refine", 6),

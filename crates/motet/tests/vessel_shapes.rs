@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{is_closed, own_crossings};
+use motet::contact::is_closed;
+use motet::preflight::own_crossings;
 use motet::geometry::triangle;
 use motet::geometry::vector::{cross, dot, norm, sub};
 use motet::mesh::shapes::{Aneurysm, Bifurcation, Flap, ThickTube};

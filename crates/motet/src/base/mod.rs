@@ -4,12 +4,14 @@ mod csr;
 mod error;
 mod ids;
 mod lanewise;
+mod sets;
 mod threads;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
 pub use ids::{CellId, Id, TetId, VertexId};
 pub(crate) use lanewise::lanewise;
+pub(crate) use sets::Sets;
 pub use threads::Threads;
 
 /// Coordinates of a point, or any other vector in space.

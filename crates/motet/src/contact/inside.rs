@@ -7,11 +7,11 @@
 //!
 //! Not every vertex needs a ray: where a triangle does not meet the surface, all its corners are on the same side.
 
-use super::runs::{around, corners, in_runs};
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::distance::segment_triangle;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::is_finite;
+use crate::spatial::runs::{around, corners, in_runs};
 use crate::spatial::{Bounds, BoxTree};
 
 /// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
@@ -33,7 +33,7 @@ pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
 
 /// Which of `vertices` lie inside the closed surface `b`. Vertices on it do not.
 ///
-/// `a` is the surface of these vertices, and `crossings` what [`crossings`](super::crossings) says of `a` and `b`. Vertices that no triangle of `a` has are
+/// `a` is the surface of these vertices, and `crossings` what [`crossings`](crate::preflight::crossings) says of `a` and `b`. Vertices that no triangle of `a` has are
 /// welcome; they get a ray each, the others one for each connected part that the crossings leave. A surface `b` that is not
 /// [closed](is_closed) has no inside: the answer is then that of the rays.
 ///

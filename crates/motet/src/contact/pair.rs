@@ -5,16 +5,16 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use super::along::{Along, Ways};
 use super::answer::{BodyGaps, Nearest, PairGap};
 use super::body::Prepared;
-use super::crossing;
 use super::inside::inside;
 use super::nearest::{distance_squared, mark_nearer, nearest};
 use super::options::Options;
 use super::rule::Rule;
-use super::runs::in_runs;
 use super::side::Side;
 use crate::base::{Point, Threads};
 use crate::geometry::vector::{scale, sub};
+use crate::preflight::{crossings, own_crossings};
 use crate::spatial::Closest;
+use crate::spatial::runs::in_runs;
 
 /// What was nearest at the last step.
 #[derive(Clone, Debug, Default)]
@@ -160,9 +160,9 @@ impl Scene<'_> {
         let [a, b] = self.bodies.map(|body| &body.triangles);
         let is_apart = nearest.is_none_or(|nearest| nearest.distance > 0.0);
         match (self.is_own(), self.along.is_some()) {
-            (true, _) => crossing::own_crossings(self.points, a, threads),
+            (true, _) => own_crossings(self.points, a, threads),
             (_, false) if is_apart => Vec::new(),
-            _ => crossing::crossings(self.points, a, b, threads),
+            _ => crossings(self.points, a, b, threads),
         }
     }
 

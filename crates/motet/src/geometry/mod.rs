@@ -10,7 +10,7 @@ pub mod segment;
 pub mod symmetric;
 pub mod tet;
 pub mod triangle;
-mod unit;
+pub(crate) mod unit;
 pub mod vector;
 mod weights;
 

@@ -4,6 +4,7 @@ mod boxes;
 pub(crate) mod hilbert;
 mod locate;
 mod nearest;
+pub(crate) mod runs;
 pub mod trace;
 
 pub(crate) use boxes::around;

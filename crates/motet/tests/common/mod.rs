@@ -8,7 +8,7 @@ pub(crate) mod hard;
 pub(crate) mod kept;
 pub(crate) mod refined;
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
@@ -19,14 +19,20 @@ use motet::mesh::TetMesh;
 /// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
 pub(crate) fn data_meshes() -> Vec<(String, Mesh)> {
     let names = include_str!("../real_tet_meshes.txt").lines();
+    let Some(folder) = data_folder() else { return Vec::new() };
+    names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
+}
+
+/// The data folder, where there is one; says so where there is none.
+pub(crate) fn data_folder() -> Option<PathBuf> {
     let folder = std::env::var("MOTET_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
-    let folder = Path::new(&folder);
+    let folder = PathBuf::from(folder);
     if !folder.exists() {
         println!("skipped: no data in {}", folder.display());
-        return Vec::new();
+        return None;
     }
-    names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
+    Some(folder)
 }
 
 /// A stream of numbers without end (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number generators*).

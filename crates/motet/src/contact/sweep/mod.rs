@@ -10,9 +10,9 @@ mod tree;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::runs::in_runs;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
+use crate::spatial::runs::in_runs;
 use pair::Pair;
 use queue::{Item, Queue};
 use tree::{MovingBox, MovingTree};

@@ -1,10 +1,9 @@
 //! Edges and vertices where a surface is open, turned over, or no manifold.
 
-use crate::base::VertexId;
+use crate::base::{Sets, VertexId};
 use crate::mesh::Mesh;
 use crate::mesh::check::SurfaceFacets;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
-use crate::mesh::check::parts::Sets;
 
 /// One side of a facet: the edge, which way the facet runs along it, and where
 /// its first corner stands among all corners of all facets.

@@ -1,33 +1,8 @@
 //! Parts of a mesh that do not hang together.
 
+use crate::base::Sets;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
-
-/// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each
-/// known by its smallest.
-pub(super) struct Sets {
-    parents: Vec<u32>,
-}
-
-impl Sets {
-    pub(super) fn new(n: usize) -> Self {
-        Self { parents: (0..n as u32).collect() }
-    }
-
-    pub(super) fn root(&mut self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            let above = self.parents[self.parents[i as usize] as usize];
-            self.parents[i as usize] = above;
-            i = above;
-        }
-        i
-    }
-
-    pub(super) fn join(&mut self, i: u32, j: u32) {
-        let (i, j) = (self.root(i), self.root(j));
-        self.parents[i.max(j) as usize] = i.min(j);
-    }
-}
 
 /// One entry a part, when there is more than one: its first cell. Cells hang
 /// together that share a vertex; those of the highest dimension count.

@@ -4,6 +4,7 @@ use crate::base::VertexId;
 use crate::geometry::vector::is_finite;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
+use crate::mesh::coincident::firsts_at_place;
 
 /// For each vertex the first vertex at exactly the same place.
 pub(super) struct Canonical {
@@ -13,18 +14,10 @@ pub(super) struct Canonical {
 
 impl Canonical {
     pub(super) fn of(mesh: &Mesh) -> Self {
-        let points = &mesh.points;
-        let mut firsts: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
-        let mut doubled = vec![false; points.len()];
-        let mut order = firsts.clone();
-        // Zero has two signs and one place.
-        let key = |v: &VertexId| points[v.index()].map(|x| total_order(x + 0.0));
-        order.sort_unstable_by_key(|v| (key(v), *v));
-        for same in order.chunk_by(|a, b| points[a.index()] == points[b.index()]) {
-            for v in same {
-                firsts[v.index()] = same[0];
-                doubled[v.index()] = same.len() > 1;
-            }
+        let firsts = firsts_at_place(&mesh.points);
+        let mut doubled = vec![false; firsts.len()];
+        for (v, first) in firsts.iter().enumerate().filter(|(v, first)| first.index() != *v) {
+            (doubled[v], doubled[first.index()]) = (true, true);
         }
         Self { firsts, doubled }
     }
@@ -38,12 +31,6 @@ impl Canonical {
     pub(super) fn is_doubled(&self, v: VertexId) -> bool {
         self.doubled[v.index()]
     }
-}
-
-/// A number that sorts as `x` does.
-fn total_order(x: f64) -> i64 {
-    let bits = x.to_bits() as i64;
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
 pub(super) fn defects(mesh: &Mesh, canonical: &Canonical) -> Vec<Defect> {

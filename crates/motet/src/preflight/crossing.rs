@@ -12,12 +12,12 @@
 //!
 //! Vertices are shared when they have one id. Two vertices of different ids at one place are points that touch.
 
-use super::runs::{around, corners, in_runs};
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::distance::{segment_segment, segment_triangle};
 use crate::geometry::predicates::{collinear, orient3d};
 use crate::spatial::BoxTree;
+use crate::spatial::runs::{around, corners, in_runs};
 
 /// All pairs of a triangle of `a` and one of `b` that meet in more than vertices and edges that they share; rising.
 ///

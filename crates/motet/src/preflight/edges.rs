@@ -1,0 +1,53 @@
+//! Edges where a surface ends, branches or turns over, and vertices where it touches itself.
+
+use super::fault::{Fault, FaultKind};
+use super::sides::{Side, edges};
+use super::surfaces::{Role, Surfaces};
+use crate::base::{Sets, VertexId};
+
+pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for same in edges(sides) {
+        let is_boundary = surfaces.role(same[0].surface) == Role::Boundary;
+        let what = match same {
+            [_] => (FaultKind::OpenEdge, is_boundary),
+            [x, y] if x.is_forward != y.is_forward => continue,
+            [_, _] => (FaultKind::MisorientedEdge, false),
+            // An odd number leaves a side open, whichever of them belong together.
+            _ => (FaultKind::NonManifoldEdge, is_boundary && same.len() % 2 == 1),
+        };
+        let triangles = same.iter().map(|side| side.triangle).collect();
+        faults.push(Fault::new(what, same[0].surface, triangles, &same[0].edge, surfaces.points));
+    }
+    faults.extend(pinched(surfaces, sides));
+    faults
+}
+
+/// Vertices round which the triangles of a surface, joined where they share an edge, are more than one fan.
+fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
+    let mut fans = Sets::new(3 * surfaces.triangles.len());
+    for same in edges(sides) {
+        let first = same[0].corners();
+        for side in &same[1..] {
+            (0..2).for_each(|end| fans.join(first[end], side.corners()[end]));
+        }
+    }
+    // Each fan once, by its first corner. A side for each corner is there.
+    let mut firsts: Vec<(u32, VertexId, u32)> = Vec::new();
+    for side in sides {
+        let corner = 3 * side.triangle + u32::from(side.corner);
+        if fans.root(corner) == corner {
+            let vertex = side.edge[usize::from(!side.is_forward)];
+            firsts.push((side.surface, vertex, side.triangle));
+        }
+    }
+    firsts.sort_unstable();
+    let at_one_vertex = firsts.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).filter(|same| same.len() > 1);
+    let tell = |same: &[(u32, VertexId, u32)]| {
+        let triangles = same.iter().map(|first| first.2).collect();
+        let (surface, vertex, _) = same[0];
+        let what = (FaultKind::NonManifoldVertex, false);
+        Fault::new(what, surface, triangles, &[vertex], surfaces.points)
+    };
+    at_one_vertex.map(tell).collect()
+}

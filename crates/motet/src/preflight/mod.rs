@@ -1,0 +1,50 @@
+//! Floor 4: what stops closed surfaces from being meshed: found exactly, all of it.
+//!
+//! | looked at | faults |
+//! |---|---|
+//! | surfaces | without triangles |
+//! | triangles | with a corner that is not finite, without area, there twice |
+//! | pairs of triangles | that meet in more than they share |
+//! | edges | where a surface ends, branches, turns over |
+//! | vertices | where a surface touches itself |
+//! | closed parts | that face inward |
+//!
+//! [`preflight`] lists every one, with ids and a place. Some are *fatal*: a conforming mesh of tets with these triangles as facets cannot be
+//! made, or what is inside is not said. Others are notes. [`repair`] mends what it is asked to mend, and tells what it did; [`culprits`] shows what is wrong.
+//! All tests are exact, and have no tolerance.
+//!
+//! ```
+//! use motet::base::{Threads, VertexId};
+//! use motet::preflight::{FaultKind, Role, preflight};
+//!
+//! // A tetrahedron that lacks a side.
+//! let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2]].map(|t| t.map(VertexId));
+//! let report = preflight(&points, &triangles, &[0; 3], &[Role::Boundary], &Threads::single());
+//! assert!(!report.is_fit());
+//! assert_eq!(report.count(FaultKind::OpenEdge), 3);
+//! ```
+
+mod crossing;
+mod culprits;
+mod edges;
+mod enclosed;
+mod fault;
+mod meeting;
+mod parts;
+mod repair;
+mod report;
+mod search;
+mod sides;
+mod single;
+mod surfaces;
+mod weld;
+
+pub use crossing::{crossings, own_crossings};
+pub use culprits::culprits;
+pub use fault::{Fault, FaultKind};
+pub use repair::{Repair, RepairKind, Repaired, Repairs, repair};
+pub use report::{FaultCount, Preflight};
+pub use search::preflight;
+pub use surfaces::Role;
+pub use weld::{renamed, weld};

@@ -1,0 +1,72 @@
+//! The parts of surfaces that hang together where two triangles meet at an edge, and which way the closed ones face.
+
+use std::cmp::Ordering;
+
+use super::enclosed::volume_sign;
+use super::fault::{Fault, FaultKind};
+use super::sides::{Side, edges};
+use super::surfaces::Surfaces;
+use crate::base::{Sets, VertexId};
+
+/// The triangles that count, part by part.
+pub(super) struct Parts {
+    /// The part's first triangle and the triangle; sorted.
+    members: Vec<(u32, u32)>,
+    /// For each triangle that is the first of its part: whether each edge is used as often one way as the other, by the part alone.
+    is_closed: Vec<bool>,
+}
+
+impl Parts {
+    /// An edge of more triangles joins none of them: which belong together there is not said.
+    pub(super) fn new(n_triangles: usize, sides: &[Side]) -> Self {
+        let mut sets = Sets::new(n_triangles);
+        for same in edges(sides) {
+            if let [x, y] = same {
+                sets.join(x.triangle, y.triangle);
+            }
+        }
+        let mut is_closed = vec![true; n_triangles];
+        let mut ways = Vec::new();
+        for same in edges(sides) {
+            ways.clear();
+            ways.extend(same.iter().map(|side| (sets.root(side.triangle), side.is_forward)));
+            ways.sort_unstable();
+            for of_part in ways.chunk_by(|x, y| x.0 == y.0) {
+                let n_forward = of_part.iter().filter(|way| way.1).count();
+                is_closed[of_part[0].0 as usize] &= 2 * n_forward == of_part.len();
+            }
+        }
+        let mut members: Vec<_> =
+            sides.iter().map(|side| (sets.root(side.triangle), side.triangle)).collect();
+        members.sort_unstable();
+        members.dedup();
+        Self { members, is_closed }
+    }
+
+    /// The triangles of each part, rising, and whether it is closed and oriented alike.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (Vec<u32>, bool)> {
+        let parts = self.members.chunk_by(|x, y| x.0 == y.0);
+        parts.map(|part| (part.iter().map(|member| member.1).collect(), self.is_closed[part[0].0 as usize]))
+    }
+
+    /// The triangles of the closed parts that face inward.
+    pub(super) fn inward(&self, surfaces: &Surfaces) -> Vec<Vec<u32>> {
+        let faces_inward = |part: &[u32]| {
+            let triangles: Vec<[VertexId; 3]> =
+                part.iter().map(|&t| surfaces.triangles[t as usize]).collect();
+            volume_sign(surfaces.points, &triangles) == Some(Ordering::Less)
+        };
+        let closed = self.iter().filter(|(_, is_closed)| *is_closed).map(|(part, _)| part);
+        closed.filter(|part| faces_inward(part)).collect()
+    }
+}
+
+/// The closed parts that face inward, each by its first triangle.
+pub(super) fn faults(surfaces: &Surfaces, parts: &Parts) -> Vec<Fault> {
+    let tell = |part: Vec<u32>| {
+        let (first, what) = (part[0], (FaultKind::InwardPart, false));
+        let vertices = &surfaces.triangles[first as usize];
+        Fault::new(what, surfaces.surface(first), vec![first], vertices, surfaces.points)
+    };
+    parts.inward(surfaces).into_iter().map(tell).collect()
+}

@@ -1,0 +1,109 @@
+//! Triangles without area go, and what was closed stays closed.
+//!
+//! One that names a vertex twice is but an edge: the triangles on its other two sides meet there without it. One with its corners on a line has
+//! two short edges along its long one; the triangles on the other side of the long one are divided at the middle corner, and
+//! then meet those of the short ones. What was divided may have no area either, so this is done in rounds.
+
+use super::report::RepairKind;
+use super::work::{Piece, Work};
+use crate::base::{Threads, VertexId};
+use crate::preflight::single::{Shape, shapes};
+
+/// More rounds than chains of triangles on one line need; what is left then is for the next search to tell of.
+const ROUNDS: usize = 64;
+
+pub(super) fn drop_all(work: &mut Work, threads: &Threads) {
+    for _ in 0..ROUNDS {
+        let lists = work.lists();
+        let shapes = shapes(&lists.surfaces(work), threads);
+        if !round(work, &shapes) {
+            break;
+        }
+    }
+    tell_left(work, threads);
+}
+
+/// Takes out what can go without touching one triangle twice. Whether anything went.
+fn round(work: &mut Work, shapes: &[Shape]) -> bool {
+    let edges = Edges::new(&work.pieces);
+    let mut is_gone = vec![false; work.pieces.len()];
+    let mut is_touched = is_gone.clone();
+    let mut parts: Vec<Piece> = Vec::new();
+    for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Repeated) {
+        (is_gone[t], is_touched[t]) = (true, true);
+        let (old, vertices) = (work.old(t as u32), work.pieces[t].vertices.to_vec());
+        work.tell(RepairKind::DroppedRepeated, vec![old], vertices);
+    }
+    for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Flat) {
+        let Some([from, middle, to]) = along_line(work, t) else { continue };
+        let around = || edges.around(from, to).map(|edge| edge.1 as usize);
+        if around().any(|other| is_touched[other]) {
+            continue;
+        }
+        let mut concerned = vec![work.old(t as u32)];
+        for other in around() {
+            (is_gone[other], is_touched[other]) = (true, true);
+            if other != t {
+                parts.extend(divided(&work.pieces[other], [from, to], middle));
+                concerned.push(work.old(other as u32));
+            }
+        }
+        work.tell(RepairKind::DroppedFlat, concerned, vec![from, middle, to]);
+    }
+    let mut ids = 0..;
+    work.pieces.retain(|_| ids.next().is_some_and(|t: usize| !is_gone[t]));
+    work.pieces.extend(parts);
+    is_gone.contains(&true)
+}
+
+/// The corners in the order in which they lie on their line; `None` where two are at one place.
+fn along_line(work: &Work, t: usize) -> Option<[VertexId; 3]> {
+    let mut vertices = work.pieces[t].vertices;
+    let at = |v: &VertexId| work.points[v.index()];
+    // Points of a line follow each other as their coordinates do.
+    vertices.sort_by(|u, v| at(u).partial_cmp(&at(v)).unwrap_or(std::cmp::Ordering::Equal));
+    let [a, b, c] = vertices;
+    (at(&a) != at(&b) && at(&b) != at(&c)).then_some([a, b, c])
+}
+
+/// A triangle cut in two at a vertex on one of its edges.
+fn divided(piece: &Piece, [from, to]: [VertexId; 2], middle: VertexId) -> [Piece; 2] {
+    let with = |old: VertexId| {
+        let vertices = piece.vertices.map(|v| if v == old { middle } else { v });
+        Piece { vertices, ..*piece }
+    };
+    [with(to), with(from)]
+}
+
+/// The edges of all triangles, of whichever surface, sorted.
+struct Edges(Vec<([VertexId; 2], u32)>);
+
+impl Edges {
+    fn new(pieces: &[Piece]) -> Self {
+        let of = |(t, piece): (u32, &Piece)| {
+            let [a, b, c] = piece.vertices;
+            [[a, b], [b, c], [c, a]].map(|[u, v]| ([u.min(v), u.max(v)], t))
+        };
+        let mut edges: Vec<_> = (0..).zip(pieces).flat_map(of).collect();
+        edges.sort_unstable();
+        // A triangle that names a vertex twice has an edge twice.
+        edges.dedup();
+        Self(edges)
+    }
+
+    fn around(&self, u: VertexId, v: VertexId) -> impl Iterator<Item = &([VertexId; 2], u32)> {
+        let edge = [u.min(v), u.max(v)];
+        let start = self.0.partition_point(|x| x.0 < edge);
+        self.0[start..].iter().take_while(move |x| x.0 == edge)
+    }
+}
+
+/// Tells of those that stayed.
+fn tell_left(work: &mut Work, threads: &Threads) {
+    let lists = work.lists();
+    let shapes = shapes(&lists.surfaces(work), threads);
+    for t in (0..shapes.len()).filter(|&t| shapes[t] == Shape::Flat) {
+        let (old, vertices) = (work.old(t as u32), work.pieces[t].vertices.to_vec());
+        work.tell(RepairKind::LeftFlat, vec![old], vertices);
+    }
+}

@@ -1,0 +1,85 @@
+//! Small holes filled, if what fills them touches nothing else.
+
+use super::fill::fill;
+use super::report::RepairKind;
+use super::rims::{RimEdge, rims};
+use super::work::{Piece, Work};
+use crate::base::{Threads, VertexId};
+use crate::geometry::vector::is_finite;
+use crate::preflight::crossing::crossings;
+use crate::preflight::sides::Side;
+use crate::preflight::single::{Shape, shapes};
+use crate::preflight::surfaces::Role;
+
+/// The longest rim that is ever filled: its fill takes a second or so and 16 MB.
+const LONGEST: usize = 1000;
+
+pub(super) fn close(work: &mut Work, longest: usize, threads: &Threads) {
+    let lists = work.lists();
+    let sides = work.sides(&lists);
+    let rims = rims(work.points.len(), &sides, |surface| work.roles[surface as usize] == Role::Boundary);
+    rims.torn.iter().for_each(|rim| tell(work, RepairKind::LeftTorn, rim));
+    let mut fills: Vec<(&[RimEdge], Vec<Piece>)> = Vec::new();
+    for rim in &rims.closed {
+        if rim.len() > longest.min(LONGEST) {
+            tell(work, RepairKind::LeftLong, rim);
+            continue;
+        }
+        match filled(work, &sides, rim) {
+            Some(pieces) => fills.push((rim, pieces)),
+            None => tell(work, RepairKind::LeftOpen, rim),
+        }
+    }
+    let touches = touching(work, &fills, threads);
+    for ((rim, pieces), touches) in fills.into_iter().zip(touches) {
+        tell(work, if touches { RepairKind::LeftOpen } else { RepairKind::ClosedHole }, rim);
+        if !touches {
+            work.pieces.extend(pieces);
+        }
+    }
+}
+
+fn tell(work: &mut Work, kind: RepairKind, rim: &[RimEdge]) {
+    let triangles = rim.iter().map(|edge| work.old(edge.triangle)).collect();
+    work.tell(kind, triangles, rim.iter().map(|edge| edge.from).collect());
+}
+
+/// The triangles that fill a rim; each takes after the one beyond the rim where its first corner is.
+fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
+    let ring: Vec<VertexId> = rim.iter().map(|edge| edge.from).collect();
+    if !ring.iter().all(|v| is_finite(work.points[v.index()])) {
+        return None;
+    }
+    let surface = rim[0].surface;
+    let is_taken = |u: VertexId, v: VertexId| {
+        let edge = (surface, [u.min(v), u.max(v)]);
+        sides.binary_search_by_key(&edge, |side| (side.surface, side.edge)).is_ok()
+    };
+    let piece = |places: [usize; 3]| Piece {
+        vertices: places.map(|i| ring[i]),
+        surface,
+        takes_after: work.old(rim[places[0]].triangle),
+        is_new: true,
+        is_turned: false,
+    };
+    Some(fill(work.points, &ring, is_taken)?.into_iter().map(piece).collect())
+}
+
+/// Whether the triangles of each fill meet others, of the surfaces or of any fill, in more than they share.
+fn touching(work: &Work, fills: &[(&[RimEdge], Vec<Piece>)], threads: &Threads) -> Vec<bool> {
+    let lists = work.lists();
+    let shapes = shapes(&lists.surfaces(work), threads);
+    let sound = work.pieces.iter().zip(&shapes).filter(|(_, shape)| **shape == Shape::Sound);
+    let mut all: Vec<[VertexId; 3]> = sound.map(|(piece, _)| piece.vertices).collect();
+    let n_sound = all.len();
+    let new: Vec<[VertexId; 3]> = fills.iter().flat_map(|fill| &fill.1).map(|piece| piece.vertices).collect();
+    all.extend(&new);
+    let fill_of: Vec<usize> = fills.iter().enumerate().flat_map(|(i, fill)| vec![i; fill.1.len()]).collect();
+    let mut touches = vec![false; fills.len()];
+    for [i, j] in crossings(work.points, &new, &all, threads) {
+        if j as usize != n_sound + i as usize {
+            touches[fill_of[i as usize]] = true;
+        }
+    }
+    touches
+}

@@ -1,0 +1,93 @@
+//! The rims of holes: open edges, one after the other, as a triangle in the hole would run along them.
+
+use crate::base::VertexId;
+use crate::preflight::sides::{Side, edges};
+
+/// An open edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct RimEdge {
+    pub(super) surface: u32,
+    pub(super) from: VertexId,
+    pub(super) to: VertexId,
+    /// The triangle beyond.
+    pub(super) triangle: u32,
+}
+
+/// Rims that lead back to their start, without touching themselves, and the edges that lead nowhere.
+#[derive(Debug, Default)]
+pub(super) struct Rims {
+    pub(super) closed: Vec<Vec<RimEdge>>,
+    pub(super) torn: Vec<Vec<RimEdge>>,
+}
+
+/// The rims of the surfaces that are asked about.
+pub(super) fn rims(n_points: usize, sides: &[Side], is_asked: impl Fn(u32) -> bool) -> Rims {
+    let mut open: Vec<RimEdge> = edges(sides)
+        .filter(|same| same.len() == 1 && is_asked(same[0].surface))
+        .map(|same| {
+            let Side { surface, edge: [low, high], triangle, is_forward, .. } = same[0];
+            let (from, to) = if is_forward { (high, low) } else { (low, high) };
+            RimEdge { surface, from, to, triangle }
+        })
+        .collect();
+    open.sort_unstable();
+    let n = open.len();
+    let mut walk = Walk { open, is_used: vec![false; n], n_passed: vec![0; n], place: vec![None; n_points] };
+    let mut rims = Rims::default();
+    for start in 0..walk.open.len() {
+        walk.go(start, &mut rims);
+    }
+    rims
+}
+
+struct Walk {
+    open: Vec<RimEdge>,
+    is_used: Vec<bool>,
+    /// For the first edge of a vertex: how many of the vertex's edges are known to be used, so that none is asked twice.
+    n_passed: Vec<usize>,
+    /// Where on the path its edge from a vertex stands.
+    place: Vec<Option<usize>>,
+}
+
+impl Walk {
+    /// Walks until nothing leads on; whenever the path comes back to itself, a rim is cut off.
+    fn go(&mut self, start: usize, rims: &mut Rims) {
+        if self.is_used[start] {
+            return;
+        }
+        let mut path = Vec::new();
+        let mut next = Some(start);
+        while let Some(i) = next {
+            self.is_used[i] = true;
+            let edge = self.open[i];
+            self.place[edge.from.index()] = Some(path.len());
+            path.push(edge);
+            if let Some(first) = self.place[edge.to.index()] {
+                let rim = path.split_off(first);
+                rim.iter().for_each(|edge| self.place[edge.from.index()] = None);
+                rims.closed.push(rim);
+            }
+            next = if path.is_empty() { None } else { self.leading_on(edge) };
+        }
+        path.iter().for_each(|edge| self.place[edge.from.index()] = None);
+        if !path.is_empty() {
+            rims.torn.push(path);
+        }
+    }
+
+    /// The first edge that starts where this one ends and is not used yet.
+    fn leading_on(&mut self, edge: RimEdge) -> Option<usize> {
+        let key = (edge.surface, edge.to);
+        let start = self.open.partition_point(|x| (x.surface, x.from) < key);
+        let starts_there = |i: usize| self.open.get(i).is_some_and(|x| (x.surface, x.from) == key);
+        let mut i = start + self.n_passed.get(start).copied().unwrap_or(0);
+        while starts_there(i) && self.is_used[i] {
+            i += 1;
+        }
+        let leads_on = starts_there(i);
+        if let Some(n_passed) = self.n_passed.get_mut(start) {
+            *n_passed = i - start;
+        }
+        leads_on.then_some(i)
+    }
+}

@@ -1,0 +1,124 @@
+//! Triangles under repair: where each comes from, and what was done so far.
+
+use super::report::{Repair, RepairKind, Repaired};
+use crate::base::{Point, VertexId};
+use crate::preflight::fault::mean;
+use crate::preflight::sides::{Side, sorted_sides};
+use crate::preflight::single::Firsts;
+use crate::preflight::surfaces::{Role, Surfaces};
+
+/// A triangle, and what goes with it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) vertices: [VertexId; 3],
+    pub(super) surface: u32,
+    /// The triangle that it was, or whose labels it takes.
+    pub(super) takes_after: u32,
+    /// Whether it fills a hole.
+    pub(super) is_new: bool,
+    pub(super) is_turned: bool,
+}
+
+pub(super) struct Work<'a> {
+    pub(super) points: &'a [Point],
+    pub(super) roles: &'a [Role],
+    pub(super) pieces: Vec<Piece>,
+    done: Vec<Repair>,
+}
+
+/// Triangles and their surfaces, as the search wants them.
+pub(super) struct Lists {
+    triangles: Vec<[VertexId; 3]>,
+    surface_of: Vec<u32>,
+}
+
+impl Lists {
+    pub(super) fn surfaces<'a>(&'a self, work: &Work<'a>) -> Surfaces<'a> {
+        Surfaces {
+            points: work.points,
+            triangles: &self.triangles,
+            surface_of: &self.surface_of,
+            roles: work.roles,
+        }
+    }
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(surfaces: &Surfaces<'a>) -> Self {
+        let piece = |t: u32| Piece {
+            vertices: surfaces.triangles[t as usize],
+            surface: surfaces.surface(t),
+            takes_after: t,
+            is_new: false,
+            is_turned: false,
+        };
+        let pieces = surfaces.ids().map(piece).collect();
+        Self { points: surfaces.points, roles: surfaces.roles, pieces, done: Vec::new() }
+    }
+
+    pub(super) fn lists(&self) -> Lists {
+        Lists {
+            triangles: self.pieces.iter().map(|piece| piece.vertices).collect(),
+            surface_of: self.pieces.iter().map(|piece| piece.surface).collect(),
+        }
+    }
+
+    /// The sides of the triangles that count, as the search has them.
+    pub(super) fn sides(&self, lists: &Lists) -> Vec<Side> {
+        let surfaces = Surfaces {
+            points: self.points,
+            triangles: &lists.triangles,
+            surface_of: &lists.surface_of,
+            roles: self.roles,
+        };
+        let firsts = Firsts::new(&surfaces);
+        sorted_sides(&surfaces, |t| firsts.stays[t as usize])
+    }
+
+    /// Notes what was done, at the mean of the vertices.
+    pub(super) fn tell(&mut self, kind: RepairKind, triangles: Vec<u32>, vertices: Vec<VertexId>) {
+        let at = mean(&vertices, self.points);
+        self.done.push(Repair { kind, triangles, vertices, at });
+    }
+
+    /// The triangle before the repair.
+    pub(super) fn old(&self, piece: u32) -> u32 {
+        self.pieces[piece as usize].takes_after
+    }
+
+    pub(super) fn turn(&mut self, piece: u32) {
+        let piece = &mut self.pieces[piece as usize];
+        piece.vertices.swap(1, 2);
+        piece.is_turned = !piece.is_turned;
+    }
+
+    /// Takes out triangles that their surface has more than once.
+    pub(super) fn drop_duplicates(&mut self) {
+        let lists = self.lists();
+        let stays = Firsts::new(&lists.surfaces(self)).stays;
+        let names_one_twice = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
+        let goes: Vec<bool> =
+            self.pieces.iter().zip(stays).map(|(p, stays)| !stays && !names_one_twice(p.vertices)).collect();
+        for t in (0..goes.len()).filter(|&t| goes[t]) {
+            let (old, vertices) = (self.old(t as u32), self.pieces[t].vertices.to_vec());
+            self.tell(RepairKind::DroppedDuplicate, vec![old], vertices);
+        }
+        let mut goes = goes.into_iter();
+        self.pieces.retain(|_| goes.next() != Some(true));
+    }
+
+    pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>) -> Repaired {
+        for piece in self.pieces.clone().iter().filter(|piece| piece.is_turned && !piece.is_new) {
+            self.tell(RepairKind::Turned, vec![piece.takes_after], piece.vertices.to_vec());
+        }
+        let lists = self.lists();
+        Repaired {
+            new_to_old: self.pieces.iter().map(|p| (!p.is_new).then_some(p.takes_after)).collect(),
+            takes_after: self.pieces.iter().map(|piece| piece.takes_after).collect(),
+            triangles: lists.triangles,
+            surface_of: lists.surface_of,
+            vertex_to_kept,
+            done: self.done,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What a search before meshing found: the certificate.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::fault::{Fault, FaultKind};
+use super::surfaces::Surfaces;
+use crate::base::Error;
+
+/// How many faults of a kind there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct FaultCount {
+    /// The kind.
+    #[serde(rename = "name")]
+    pub kind: FaultKind,
+    /// How many of them stop the meshing.
+    pub fatal: usize,
+    /// How many do not.
+    pub notes: usize,
+}
+
+/// What is wrong with surfaces that are to be meshed: every fault, by kind, then by triangles and vertices.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Preflight {
+    /// How many surfaces there are.
+    pub n_surfaces: usize,
+    /// How many triangles they have together.
+    pub n_triangles: usize,
+    /// How many points no triangle uses.
+    pub n_orphans: usize,
+    /// The kinds that occur, with their counts.
+    pub counts: Vec<FaultCount>,
+    /// Every fault.
+    pub faults: Vec<Fault>,
+}
+
+impl Preflight {
+    pub(super) fn new(surfaces: &Surfaces, mut faults: Vec<Fault>) -> Self {
+        faults.sort_by(|x, y| key(x).cmp(&key(y)));
+        let mut is_used = vec![false; surfaces.points.len()];
+        surfaces.triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+        Self {
+            n_surfaces: surfaces.roles.len(),
+            n_triangles: surfaces.triangles.len(),
+            n_orphans: is_used.iter().filter(|is_used| !**is_used).count(),
+            counts: faults.chunk_by(|x, y| x.kind == y.kind).map(count).collect(),
+            faults,
+        }
+    }
+
+    /// Whether nothing stops the meshing.
+    pub fn is_fit(&self) -> bool {
+        self.counts.iter().all(|count| count.fatal == 0)
+    }
+
+    /// How many faults of this kind there are, notes included.
+    pub fn count(&self, kind: FaultKind) -> usize {
+        self.counts.iter().filter(|count| count.kind == kind).map(|count| count.fatal + count.notes).sum()
+    }
+
+    /// The first fault that stops the meshing, as an error; `None` where nothing does.
+    pub fn first_error(&self) -> Option<Error> {
+        let fault = self.faults.iter().find(|fault| fault.is_fatal)?;
+        let kind = fault.kind;
+        let n = self.counts.iter().find(|count| count.kind == kind).map_or(1, |count| count.fatal);
+        let what = format!("surfaces that can be meshed were expected, and here {}", kind.meaning());
+        let others = self.counts.iter().filter(|count| count.kind != kind && count.fatal > 0);
+        let others: String = others.map(|count| format!(", {} {}", count.fatal, count.kind.name())).collect();
+        Some(
+            Error::input(format!("{what} (in all {n} {}{others})", kind.name()))
+                .at(fault.to_string())
+                .remedy(kind.remedy()),
+        )
+    }
+}
+
+/// What faults are sorted by.
+fn key(fault: &Fault) -> (FaultKind, &[u32], &[crate::base::VertexId], u32) {
+    (fault.kind, &fault.triangles, &fault.vertices, fault.surface)
+}
+
+fn count(same: &[Fault]) -> FaultCount {
+    let fatal = same.iter().filter(|fault| fault.is_fatal).count();
+    FaultCount { kind: same[0].kind, fatal, notes: same.len() - fatal }
+}
+
+impl fmt::Display for Preflight {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.is_fit() { "fit" } else { "not fit" };
+        write!(f, "{} triangles, {} surfaces: {verdict}", self.n_triangles, self.n_surfaces)?;
+        for FaultCount { kind, fatal, notes } in &self.counts {
+            write!(f, "; {}", kind.name())?;
+            if *fatal > 0 {
+                write!(f, " {fatal}")?;
+            }
+            if *notes > 0 {
+                write!(f, " ({notes} not fatal)")?;
+            }
+        }
+        if self.n_orphans > 0 { write!(f, "; {} points unused", self.n_orphans) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,44 @@
+//! The search for everything that stops surfaces from being meshed.
+
+use super::fault::{Fault, FaultKind};
+use super::parts::Parts;
+use super::report::Preflight;
+use super::sides::sorted_sides;
+use super::single::{Firsts, shapes};
+use super::surfaces::{Role, Surfaces};
+use super::{edges, meeting, parts, single};
+use crate::base::{Point, Threads, VertexId};
+
+/// Everything that stops surfaces from being meshed, and what else is worth knowing of them.
+///
+/// Points at one place have one id: [`weld`](super::weld) sees to that. `surface_of` tells which surface each triangle is of, `roles` what each
+/// surface is for. Edges are those of triangles with three different vertices; of duplicates that face the same side one counts, and two that face
+/// opposite sides do not, since they enclose nothing. The answer is the same for any number of threads.
+///
+/// Panics when the lists do not fit together, or a triangle names a point or a surface that is not there.
+pub fn preflight(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    surface_of: &[u32],
+    roles: &[Role],
+    threads: &Threads,
+) -> Preflight {
+    let surfaces = Surfaces::new(points, triangles, surface_of, roles);
+    let shapes = shapes(&surfaces, threads);
+    let firsts = Firsts::new(&surfaces);
+    let sides = sorted_sides(&surfaces, |t| firsts.stays[t as usize]);
+    let mut faults = empty(&surfaces);
+    faults.extend(single::faults(&surfaces, &shapes, &firsts));
+    faults.extend(meeting::faults(&surfaces, &shapes, &firsts, threads));
+    faults.extend(edges::faults(&surfaces, &sides));
+    faults.extend(parts::faults(&surfaces, &Parts::new(triangles.len(), &sides)));
+    Preflight::new(&surfaces, faults)
+}
+
+/// The surfaces without a triangle.
+fn empty(surfaces: &Surfaces) -> Vec<Fault> {
+    let mut is_empty = vec![true; surfaces.roles.len()];
+    surfaces.surface_of.iter().for_each(|&s| is_empty[s as usize] = false);
+    let tell = |s| Fault::new((FaultKind::EmptySurface, true), s, Vec::new(), &[], surfaces.points);
+    (0u32..).zip(&is_empty).filter(|(_, is_empty)| **is_empty).map(|(s, _)| tell(s)).collect()
+}

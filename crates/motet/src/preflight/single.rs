@@ -1,0 +1,134 @@
+//! Triangles that are none by themselves, and those that are there more than once.
+
+use super::fault::{Fault, FaultKind};
+use super::surfaces::Surfaces;
+use crate::base::{Csr, Threads, VertexId};
+use crate::geometry::predicates::collinear;
+use crate::geometry::vector::is_finite;
+
+/// What a triangle is worth by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// It has three corners, and area.
+    Sound,
+    /// A corner is not finite.
+    NotFinite,
+    /// It names a vertex twice.
+    Repeated,
+    /// Its corners lie on a line.
+    Flat,
+}
+
+/// The shape of each triangle.
+pub(super) fn shapes(surfaces: &Surfaces, threads: &Threads) -> Vec<Shape> {
+    threads.map(surfaces.triangles.len(), |t| {
+        let [a, b, c] = surfaces.triangles[t];
+        let corners = surfaces.corners(t as u32);
+        match () {
+            () if a == b || b == c || c == a => Shape::Repeated,
+            () if !corners.iter().all(|&p| is_finite(p)) => Shape::NotFinite,
+            () if collinear(corners[0], corners[1], corners[2]) => Shape::Flat,
+            () => Shape::Sound,
+        }
+    })
+}
+
+/// Triangles of three vertices that are there more than once.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Firsts {
+    /// For each triangle the first one of its surface with the same vertices; a triangle that names one twice is its own.
+    pub(super) of_surface: Vec<u32>,
+    /// The same among all surfaces.
+    pub(super) of_all: Vec<u32>,
+    /// Which triangles are left once two that face opposite sides, and so enclose nothing, have gone together, and of those that face
+    /// the same side one has stayed. Without those that name a vertex twice.
+    pub(super) stays: Vec<bool>,
+}
+
+impl Firsts {
+    pub(super) fn new(surfaces: &Surfaces) -> Self {
+        let mut keyed: Vec<([VertexId; 3], u32, u32)> = surfaces
+            .ids()
+            .map(|t| (sorted(surfaces.triangles[t as usize]), surfaces.surface(t), t))
+            .filter(|([a, b, c], ..)| a != b && b != c)
+            .collect();
+        keyed.sort_unstable();
+        let mut firsts = Self {
+            of_surface: surfaces.ids().collect(),
+            of_all: surfaces.ids().collect(),
+            stays: vec![false; surfaces.triangles.len()],
+        };
+        for same in keyed.chunk_by(|x, y| x.0 == y.0) {
+            let first = same.iter().map(|&(.., t)| t).min().unwrap_or(0);
+            same.iter().for_each(|&(.., t)| firsts.of_all[t as usize] = first);
+            for of_one in same.chunk_by(|x, y| x.1 == y.1) {
+                of_one.iter().for_each(|&(.., t)| firsts.of_surface[t as usize] = of_one[0].2);
+                if let Some(t) = what_stays(surfaces, of_one.iter().map(|&(.., t)| t)) {
+                    firsts.stays[t as usize] = true;
+                }
+            }
+        }
+        firsts
+    }
+}
+
+/// Of triangles with the same vertices the first that faces where more of them face; `None` where as many face either side.
+fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> Option<u32> {
+    let is_rising = |t: u32| {
+        let [a, b, c] = surfaces.triangles[t as usize];
+        // A turn of the corners leaves the number of falling steps as it is: one, or two.
+        [a < b, b < c, c < a].iter().filter(|rises| **rises).count() == 2
+    };
+    let (n, n_rising) = (same.clone().count(), same.clone().filter(|&t| is_rising(t)).count());
+    let mut of_more = same.filter(|&t| is_rising(t) == (2 * n_rising > n));
+    if 2 * n_rising == n { None } else { of_more.next() }
+}
+
+fn sorted(mut triangle: [VertexId; 3]) -> [VertexId; 3] {
+    triangle.sort_unstable();
+    triangle
+}
+
+/// Points of triangles that are not finite, triangles without area, duplicates, and facets that surfaces share.
+pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], firsts: &Firsts) -> Vec<Fault> {
+    let mut faults = not_finite(surfaces);
+    for (t, &shape) in surfaces.ids().zip(shapes) {
+        let mut tell = |kind, is_fatal, triangles| {
+            let vertices = &surfaces.triangles[t as usize];
+            let surface = surfaces.surface(t);
+            faults.push(Fault::new((kind, is_fatal), surface, triangles, vertices, surfaces.points));
+        };
+        match shape {
+            Shape::Repeated => tell(FaultKind::RepeatedVertex, true, vec![t]),
+            Shape::Flat => tell(FaultKind::ZeroArea, true, vec![t]),
+            Shape::Sound | Shape::NotFinite => {}
+        }
+        let (own, first) = (firsts.of_surface[t as usize], firsts.of_all[t as usize]);
+        if own != t {
+            tell(FaultKind::Duplicate, true, vec![own, t]);
+        } else if first != t {
+            tell(FaultKind::SharedFacet, false, vec![first, t]);
+        }
+    }
+    faults
+}
+
+/// One fault for each vertex, with its triangles.
+fn not_finite(surfaces: &Surfaces) -> Vec<Fault> {
+    let is_bad = |v: &VertexId| !is_finite(surfaces.points[v.index()]);
+    let vertices: Vec<VertexId> = (0..surfaces.points.len()).map(VertexId::new).filter(is_bad).collect();
+    let place = |v: &VertexId| vertices.binary_search(v).ok();
+    let triangles = Csr::from_pairs(vertices.len(), || {
+        surfaces.ids().flat_map(|t| {
+            surfaces.triangles[t as usize].iter().filter_map(place).map(move |place| (place, t))
+        })
+    });
+    let mut faults = Vec::new();
+    for (v, around) in vertices.iter().zip(triangles.iter()).filter(|(_, around)| !around.is_empty()) {
+        let mut around = around.to_vec();
+        around.dedup();
+        let surface = surfaces.surface(around[0]);
+        faults.push(Fault::new((FaultKind::NonFinitePoint, true), surface, around, &[*v], surfaces.points));
+    }
+    faults
+}
