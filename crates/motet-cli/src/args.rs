@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{contact, convert, demo, info, moving, refine, remesh};
+use crate::verbs::{contact, convert, demo, info, meshing, moving, refine, remesh};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -25,6 +25,7 @@ pub(crate) struct Call {
 pub(crate) enum Verb {
     Info(info::InfoArgs),
     Convert(convert::ConvertArgs),
+    Mesh(meshing::MeshArgs),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
     Refine(Box<refine::RefineArgs>),

@@ -29,6 +29,7 @@ fn main() -> ExitCode {
     let outcome = match call.verb {
         Verb::Info(args) => verbs::info::run(&args, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &console),
+        Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
         Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),

@@ -10,10 +10,11 @@
 //! | [`kernel`] | 4 | tets that can be changed: cavity, check, commit, undo |
 //! | [`preflight`] | 4 | what stops closed surfaces from being meshed: found exactly, all of it |
 //! | [`ops`] | 5 | operations that propose a change: split, collapse, swap, smooth, insert |
-//! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set |
+//! | [`delaunay`] | 6 | the exact Delaunay triangulation of any point set, and the constrained one of surfaces |
 //! | [`refine`] | 6 | tets divided, many generations deep, without loss of shape; and the way back |
 //! | [`remesh`] | 6 | bad tets found, classified, repaired, and only those |
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
+//! | [`meshing`] | 7 | closed surfaces in, volume mesh out |
 //! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
@@ -25,6 +26,7 @@ pub mod geometry;
 pub mod io;
 pub mod kernel;
 pub mod mesh;
+pub mod meshing;
 pub mod motion;
 pub mod ops;
 pub mod preflight;

@@ -19,6 +19,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("refine", 6),
     ("remesh", 6),
     ("motion", 7),
+    ("meshing", 7),
     ("contact", 7),
 ];
 

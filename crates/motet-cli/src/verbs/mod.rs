@@ -4,6 +4,7 @@ pub(crate) mod contact;
 pub(crate) mod convert;
 pub(crate) mod demo;
 pub(crate) mod info;
+pub(crate) mod meshing;
 pub(crate) mod moving;
 pub(crate) mod refine;
 pub(crate) mod remesh;

@@ -1,0 +1,91 @@
+//! `motet mesh`: closed surfaces in, volume mesh out.
+
+mod args;
+mod report;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use motet::meshing::{Surfaces, fill};
+use motet::preflight::{Preflight, Role, culprits};
+use motet::{Mesh, io};
+
+pub(crate) use args::MeshArgs;
+
+use self::report::Report;
+use crate::args::Common;
+use crate::console::Console;
+use crate::exit::Outcome;
+use crate::outputs;
+use crate::table::seconds;
+
+pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+    let begin = Instant::now();
+    let inputs = || args.surfaces.iter().chain(&args.membrane).map(PathBuf::as_path);
+    outputs::check(&args.output, inputs(), "a surface")?;
+    if let Some(file) = &args.culprits {
+        outputs::check(file, inputs(), "a surface")?;
+    }
+    let threads = common.threads()?;
+    let bar = console.bar(4, "meshing");
+    let mut surfaces = read(args, console)?;
+    let read = begin.elapsed().as_secs_f64();
+    bar.inc(1);
+    let done = args.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
+    let checking = Instant::now();
+    let preflight = surfaces.preflight(&threads);
+    let check = checking.elapsed().as_secs_f64();
+    bar.inc(1);
+    if let Some(file) = &args.culprits {
+        io::write(file, &culprits(&surfaces.points, &surfaces.triangles, &preflight), &args.writing.options())?;
+    }
+    let mut report = Report::new(args, &preflight, done.as_ref().map_or(&[], |done| &done.done));
+    if !preflight.is_fit() {
+        bar.finish_and_clear();
+        return Err(refused(args, &report, &preflight, console));
+    }
+    let filling = Instant::now();
+    let filled = fill(&surfaces, &preflight, args.edge_points(), &threads)?;
+    let fill = filling.elapsed().as_secs_f64();
+    bar.inc(1);
+    let writing = Instant::now();
+    let lost = io::write(&args.output, &filled.mesh, &args.writing.options())?;
+    let write = writing.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
+    lost.iter().for_each(|what| console.warn(what));
+    let is_reached = args.delaunay || filled.report.points_on_edges == 0;
+    let is_complete = is_reached && filled.report.not_positive == 0;
+    report.end(filled.report, [read, check, fill, write, begin.elapsed().as_secs_f64()], is_complete);
+    report.tell(console);
+    Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
+}
+
+fn read(args: &MeshArgs, console: &Console) -> motet::Result<Surfaces> {
+    let mut meshes: Vec<(Mesh, Role, String)> = Vec::new();
+    let roles = [(&args.surfaces, Role::Boundary), (&args.membrane, Role::Membrane)];
+    for (file, role) in roles.into_iter().flat_map(|(files, role)| files.iter().map(move |file| (file, role))) {
+        let (mesh, notes) = io::read_noted(file)?;
+        notes.iter().for_each(|what| console.warn(what));
+        meshes.push((mesh, role, name(file)));
+    }
+    let meshes: Vec<_> = meshes.iter().map(|(mesh, role, name)| (mesh, *role, name.as_str())).collect();
+    Surfaces::new(&meshes)
+}
+
+/// The file's name without its ending.
+fn name(file: &Path) -> String {
+    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Says all that is wrong; the error is the first of it.
+fn refused(args: &MeshArgs, report: &Report, preflight: &Preflight, console: &Console) -> motet::Error {
+    report.tell(console);
+    let error = preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces are not fit"));
+    let fault = preflight.faults.iter().find(|fault| fault.is_fatal);
+    let file = fault.and_then(|fault| args.surfaces.iter().chain(&args.membrane).nth(fault.surface as usize));
+    match file {
+        Some(file) => error.in_file(file),
+        None => error,
+    }
+}

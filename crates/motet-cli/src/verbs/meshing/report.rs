@@ -1,0 +1,106 @@
+//! What meshing reports: to people a few lines, to programs an object.
+
+use std::path::PathBuf;
+
+use motet::meshing;
+use motet::preflight::{Preflight, Repair};
+use serde::Serialize;
+
+use super::args::MeshArgs;
+use crate::console::Console;
+use crate::table::{count, seconds, short};
+
+/// All that meshing came to.
+#[derive(Debug, Serialize)]
+pub(crate) struct Report<'a> {
+    surfaces: Vec<PathBuf>,
+    output: PathBuf,
+    /// Whether the mesh is what was asked for.
+    complete: bool,
+    repairs: &'a [Repair],
+    preflight: &'a Preflight,
+    /// `null` where the surfaces were refused.
+    filled: Option<meshing::Report>,
+    seconds: Seconds,
+}
+
+#[derive(Debug, Default, Serialize)]
+struct Seconds {
+    read: f64,
+    check: f64,
+    fill: f64,
+    write: f64,
+    total: f64,
+}
+
+/// Faults told one by one.
+const TOLD: usize = 20;
+
+impl<'a> Report<'a> {
+    pub(super) fn new(args: &MeshArgs, preflight: &'a Preflight, repairs: &'a [Repair]) -> Self {
+        Self {
+            surfaces: args.surfaces.iter().chain(&args.membrane).cloned().collect(),
+            output: args.output.clone(),
+            complete: false,
+            repairs,
+            preflight,
+            filled: None,
+            seconds: Seconds::default(),
+        }
+    }
+
+    pub(super) fn end(
+        &mut self,
+        filled: meshing::Report,
+        [read, check, fill, write, total]: [f64; 5],
+        complete: bool,
+    ) {
+        self.filled = Some(filled);
+        self.complete = complete;
+        self.seconds = Seconds { read, check, fill, write, total };
+    }
+
+    pub(super) fn tell(&self, console: &Console) {
+        console.report(self);
+        if !self.repairs.is_empty() {
+            console.say(format_args!("{} repairs (--json lists them)", count(self.repairs.len())));
+        }
+        console.say(self.preflight);
+        let fatal = self.preflight.faults.iter().filter(|fault| fault.is_fatal);
+        for fault in fatal.clone().take(TOLD) {
+            console.say(format_args!("  {}: {fault}", fault.kind.name()));
+        }
+        let more = fatal.count().saturating_sub(TOLD);
+        if more > 0 {
+            console.say(format_args!("  and {} more (--json lists them, --culprits shows them)", count(more)));
+        }
+        if let Some(filled) = &self.filled {
+            self.tell_filled(filled, console);
+        }
+    }
+
+    fn tell_filled(&self, filled: &meshing::Report, console: &Console) {
+        let volumes: Vec<String> = filled.volumes.iter().map(|v| short(*v)).collect();
+        console.say(format_args!(
+            "{} tets in {} regions of volume {}; worst EAS {}",
+            count(filled.tets),
+            filled.volumes.len(),
+            volumes.join(", "),
+            short(filled.worst_eas)
+        ));
+        console.say(format_args!(
+            "{} of {} triangles are facets as they came; {} points came inside, {} on edges",
+            count(filled.triangles_kept),
+            count(filled.triangles),
+            count(filled.points_inside),
+            count(filled.points_on_edges)
+        ));
+        if filled.triangles_outside > 0 {
+            console.warn(format_args!("{} triangles enclose nothing, and are left out", count(filled.triangles_outside)));
+        }
+        if filled.not_positive > 0 {
+            console.warn(format_args!("{} tets have no volume in the digits of their coordinates", count(filled.not_positive)));
+        }
+        console.say(format_args!("filled {}, all {}", seconds(self.seconds.fill), seconds(self.seconds.total)));
+    }
+}

@@ -1,0 +1,125 @@
+//! Tets within surfaces, with regions and patches.
+
+use serde::Serialize;
+
+use super::surfaces::Surfaces;
+use crate::base::{Error, Result, Threads, VertexId};
+use crate::delaunay::{Constrained, EdgePoints, constrain};
+use crate::geometry::quality::eas;
+use crate::geometry::tet::volume;
+use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
+use crate::preflight::Preflight;
+
+/// What came of filling surfaces.
+#[derive(Clone, Debug)]
+pub struct Filled {
+    /// The tets, by their regions 1, 2, ..., and behind them the triangles of the surfaces, by their patches.
+    pub mesh: Mesh,
+    /// How it went.
+    pub report: Report,
+}
+
+/// How filling went.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// Triangles that the surfaces came with, those that two surfaces share counted once.
+    pub triangles: usize,
+    /// Tets made.
+    pub tets: usize,
+    /// Points that stayed on edges of the surface, where there was no room inside: the triangles there are in pieces.
+    pub points_on_edges: usize,
+    /// Points that came inside.
+    pub points_inside: usize,
+    /// Triangles that are facets as they came.
+    pub triangles_kept: usize,
+    /// Triangles with nothing enclosed on either side, which are left out.
+    pub triangles_outside: usize,
+    /// Tets of no positive volume, once points on edges were rounded.
+    pub not_positive: usize,
+    /// The volume of each region, from region 1 on.
+    pub volumes: Vec<f64>,
+    /// The worst EAS.
+    pub worst_eas: f64,
+}
+
+/// Fills surfaces, of which `preflight` tells whether they are fit, with tets of their vertices.
+///
+/// # Errors
+/// When the surfaces are not fit: the first fault, and how many there are. When they enclose nothing. When an edge comes so close to
+/// others that its coordinates have no digits left to divide it.
+pub fn fill(
+    surfaces: &Surfaces,
+    preflight: &Preflight,
+    edge_points: EdgePoints,
+    threads: &Threads,
+) -> Result<Filled> {
+    if let Some(error) = preflight.first_error() {
+        return Err(error);
+    }
+    let surfaces = surfaces.without_shared();
+    let tets = constrain(&surfaces.points, &surfaces.triangles, edge_points, threads)?;
+    if tets.tets.is_empty() {
+        return Err(Error::input("the surfaces enclose nothing").remedy("close them, or see what `motet info` says of them"));
+    }
+    let report = report(&surfaces, &tets);
+    Ok(Filled { mesh: mesh(&surfaces, tets), report })
+}
+
+fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
+    let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
+    let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
+    let mut volumes = vec![0.0; n_bodies];
+    let mut not_positive = 0;
+    for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
+        let volume = volume(corners(tet));
+        volumes[body as usize] += volume;
+        not_positive += usize::from(volume <= 0.0);
+    }
+    let is_kept = |list: &[[VertexId; 3]]| list.len() == 1;
+    Report {
+        triangles: surfaces.triangles.len(),
+        tets: filled.tets.len(),
+        points_on_edges: filled.on_edges.len(),
+        points_inside: filled.points.len() - surfaces.points.len() - filled.on_edges.len(),
+        triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
+        triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
+        not_positive,
+        volumes,
+        worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
+    }
+}
+
+/// Tets and triangles as cells; points that no cell uses are left out.
+fn mesh(surfaces: &Surfaces, filled: Constrained) -> Mesh {
+    let mut triangles = Vec::new();
+    for (i, list) in filled.triangle_to_facets.iter().enumerate() {
+        if filled.triangle_to_bodies[i] != [None; 2] {
+            triangles.extend(list.iter().map(|&t| (t, surfaces.patches[i])));
+        }
+    }
+    let mut is_used = vec![false; filled.points.len()];
+    filled.tets.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+    triangles.iter().for_each(|(t, _)| t.iter().for_each(|v| is_used[v.index()] = true));
+    let mut old_to_new = vec![VertexId(0); is_used.len()];
+    let mut points = Vec::new();
+    for (v, &point) in filled.points.iter().enumerate().filter(|(v, _)| is_used[*v]) {
+        old_to_new[v] = VertexId::new(points.len());
+        points.push(point);
+    }
+    let (mut cells, mut regions, mut patches) = (Cells::new(), Vec::new(), Vec::new());
+    for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
+        cells.push(CellKind::TETRA, tet.map(|v| old_to_new[v.index()]));
+        regions.push(body as i32 + 1);
+        patches.push(0);
+    }
+    for (triangle, patch) in triangles {
+        cells.push(CellKind::TRIANGLE, triangle.map(|v| old_to_new[v.index()]));
+        regions.push(0);
+        patches.push(patch);
+    }
+    Mesh {
+        cell_data: vec![Field::scalars("region", regions), Field::scalars("patch", patches)],
+        label_names: LabelNames { patches: surfaces.patch_names.clone(), ..LabelNames::default() },
+        ..Mesh::new(points, cells)
+    }
+}
