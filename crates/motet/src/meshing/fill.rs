@@ -2,13 +2,27 @@
 
 use serde::Serialize;
 
+use super::interior::lattice;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::volume;
+use crate::mesh::history::Rules;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::preflight::Preflight;
+use crate::remesh::{self, remesh_mesh};
+
+/// How surfaces are filled.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// What becomes of points that have to be put on edges of the surface. Default: they move inside.
+    pub edge_points: EdgePoints,
+    /// How long edges inside are to be, in units of the surface; `None`: no points inside. Default: `None`.
+    pub size: Option<f64>,
+    /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
+    pub improve: Option<remesh::Options>,
+}
 
 /// What came of filling surfaces.
 #[derive(Clone, Debug)]
@@ -17,6 +31,8 @@ pub struct Filled {
     pub mesh: Mesh,
     /// How it went.
     pub report: Report,
+    /// How improving went, where it was asked for.
+    pub improved: Option<remesh::Report>,
 }
 
 /// How filling went.
@@ -28,7 +44,7 @@ pub struct Report {
     pub tets: usize,
     /// Points that stayed on edges of the surface, where there was no room inside: the triangles there are in pieces.
     pub points_on_edges: usize,
-    /// Points that came inside.
+    /// Points inside.
     pub points_inside: usize,
     /// Triangles that are facets as they came.
     pub triangles_kept: usize,
@@ -42,27 +58,35 @@ pub struct Report {
     pub worst_eas: f64,
 }
 
-/// Fills surfaces, of which `preflight` tells whether they are fit, with tets of their vertices.
+/// Fills surfaces, of which `preflight` tells whether they are fit, with tets.
 ///
 /// # Errors
 /// When the surfaces are not fit: the first fault, and how many there are. When they enclose nothing. When an edge comes so close to
-/// others that its coordinates have no digits left to divide it.
-pub fn fill(
-    surfaces: &Surfaces,
-    preflight: &Preflight,
-    edge_points: EdgePoints,
-    threads: &Threads,
-) -> Result<Filled> {
+/// others that its coordinates have no digits left to divide it. When a size is no length, or asks for too many points.
+pub fn fill(surfaces: &Surfaces, preflight: &Preflight, options: &Options, threads: &Threads) -> Result<Filled> {
     if let Some(error) = preflight.first_error() {
         return Err(error);
     }
-    let surfaces = surfaces.without_shared();
-    let tets = constrain(&surfaces.points, &surfaces.triangles, edge_points, threads)?;
+    if let Some(size) = options.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+        return Err(Error::options(format!("a size of {size}, expected a length above 0")));
+    }
+    let surfaces = surfaces.without_shared().compact();
+    let mut points = surfaces.points.clone();
+    if let Some(size) = options.size {
+        points.extend(lattice(&points, &surfaces.triangles, size, threads)?);
+    }
+    let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
+    drop(points);
     if tets.tets.is_empty() {
         return Err(Error::input("the surfaces enclose nothing").remedy("close them, or see what `motet info` says of them"));
     }
-    let report = report(&surfaces, &tets);
-    Ok(Filled { mesh: mesh(&surfaces, tets), report })
+    let mut mesh = mesh(&surfaces, &tets);
+    let mut improved = None;
+    if let Some(improve) = &options.improve {
+        let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
+        (mesh, improved) = (outcome.mesh, Some(outcome.report));
+    }
+    Ok(Filled { report: report(&surfaces, &tets), mesh, improved })
 }
 
 fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
@@ -80,7 +104,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
         triangles: surfaces.triangles.len(),
         tets: filled.tets.len(),
         points_on_edges: filled.on_edges.len(),
-        points_inside: filled.points.len() - surfaces.points.len() - filled.on_edges.len(),
+        points_inside: n_inside(surfaces, filled),
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         not_positive,
@@ -89,8 +113,16 @@ fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
     }
 }
 
+/// How many vertices of tets are neither of the surfaces nor on their edges.
+fn n_inside(surfaces: &Surfaces, filled: &Constrained) -> usize {
+    let mut is_inside = vec![false; filled.points.len()];
+    filled.tets.as_flattened().iter().for_each(|v| is_inside[v.index()] = true);
+    let n = is_inside[surfaces.points.len()..].iter().filter(|inside| **inside).count();
+    n - filled.on_edges.len()
+}
+
 /// Tets and triangles as cells; points that no cell uses are left out.
-fn mesh(surfaces: &Surfaces, filled: Constrained) -> Mesh {
+fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
     let mut triangles = Vec::new();
     for (i, list) in filled.triangle_to_facets.iter().enumerate() {
         if filled.triangle_to_bodies[i] != [None; 2] {

@@ -107,6 +107,21 @@ impl Surfaces {
         Ok(done)
     }
 
+    /// Without points that no triangle uses: they need not even be apart from the triangles.
+    pub(super) fn compact(mut self) -> Self {
+        let mut is_used = vec![false; self.points.len()];
+        self.triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
+        let mut old_to_new = vec![VertexId(0); is_used.len()];
+        let mut points = Vec::new();
+        for (v, &point) in self.points.iter().enumerate().filter(|(v, _)| is_used[*v]) {
+            old_to_new[v] = VertexId::new(points.len());
+            points.push(point);
+        }
+        self.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = old_to_new[v.index()]);
+        self.points = points;
+        self
+    }
+
     /// Without triangles that an earlier surface has as well.
     pub(super) fn without_shared(&self) -> Self {
         let mut order: Vec<(u32, [VertexId; 3])> = self.triangles.iter().map(|&t| rising(t)).zip(0..).map(|(t, i)| (i, t)).collect();

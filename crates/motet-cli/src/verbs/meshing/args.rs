@@ -4,9 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use motet::delaunay::EdgePoints;
+use motet::meshing::Options;
 use motet::preflight::Repairs;
+use motet::remesh;
 
 use crate::verbs::convert::WritingArgs;
+use crate::words::positive;
 
 /// Fill closed surfaces with tets: every triangle is a facet of the mesh
 ///
@@ -15,11 +18,11 @@ use crate::verbs::convert::WritingArgs;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Triangles keep their patches. Points at one place, within a file or between files, are one.
-The tets have the vertices of the surfaces, and few others: `motet remesh --size H` then makes them smaller and better.
+Without --size the tets have the vertices of the surfaces, and few others.
 
 Examples:
-  A lumen:
-    motet mesh lumen.stl -o lumen.vtu
+  A lumen, edges inside about 0.4 long:
+    motet mesh lumen.stl -o lumen.vtu --size 0.4
   A lumen with a dissection flap, a sheet that ends inside it:
     motet mesh lumen.vtp --membrane flap.vtp -o lumen.vtu
   A surface with small holes and flat triangles, mended first:
@@ -28,7 +31,7 @@ Examples:
     motet mesh scan.stl -o scan.vtu --culprits wrong.vtp
 
 Exit status 3: a surface cannot be filled; nothing is written but the culprits. 4: a triangle is there in pieces only,
-or a tet has no volume in the digits of its coordinates; the mesh is written.")]
+a tet has no volume in the digits of its coordinates, or bad tets are left; the mesh is written.")]
 pub(crate) struct MeshArgs {
     /// Surface files: closed each
     #[arg(value_name = "SURFACE", required = true)]
@@ -36,6 +39,12 @@ pub(crate) struct MeshArgs {
     /// Where the result goes, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Put points inside so that edges are about so long, in units of the surface; and repair bad tets
+    #[arg(long, value_name = "H", value_parser = positive)]
+    pub(crate) size: Option<f64>,
+    /// Repair tets below this EAS, the surface kept [default: 0.2 with --size]
+    #[arg(long, value_name = "EAS")]
+    pub(crate) min_eas: Option<f64>,
     /// A surface that may end inside the others, such as a flap. Repeatable
     #[arg(long, value_name = "SURFACE")]
     pub(crate) membrane: Vec<PathBuf>,
@@ -59,8 +68,13 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    pub(super) fn edge_points(&self) -> EdgePoints {
-        if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside }
+    pub(super) fn options(&self) -> Options {
+        let improve = self.min_eas.or(self.size.map(|_| remesh::Options::default().min_eas));
+        Options {
+            edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
+            size: self.size,
+            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
+        }
     }
 
     pub(super) fn repairs(&self) -> Option<Repairs> {

@@ -45,7 +45,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let filled = fill(&surfaces, &preflight, args.edge_points(), &threads)?;
+    let filled = fill(&surfaces, &preflight, &args.options(), &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     bar.inc(1);
     let writing = Instant::now();
@@ -55,8 +55,9 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let is_reached = args.delaunay || filled.report.points_on_edges == 0;
-    let is_complete = is_reached && filled.report.not_positive == 0;
-    report.end(filled.report, [read, check, fill, write, begin.elapsed().as_secs_f64()], is_complete);
+    let is_good = filled.improved.as_ref().is_none_or(motet::remesh::Report::is_complete);
+    let is_complete = is_reached && is_good && filled.report.not_positive == 0;
+    report.end(filled.report, filled.improved, [read, check, fill, write, begin.elapsed().as_secs_f64()], is_complete);
     report.tell(console);
     Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use motet::meshing;
 use motet::preflight::{Preflight, Repair};
+use motet::remesh;
 use serde::Serialize;
 
 use super::args::MeshArgs;
@@ -21,6 +22,8 @@ pub(crate) struct Report<'a> {
     preflight: &'a Preflight,
     /// `null` where the surfaces were refused.
     filled: Option<meshing::Report>,
+    /// `null` where nothing was asked to be improved.
+    improved: Option<remesh::Report>,
     seconds: Seconds,
 }
 
@@ -45,6 +48,7 @@ impl<'a> Report<'a> {
             repairs,
             preflight,
             filled: None,
+            improved: None,
             seconds: Seconds::default(),
         }
     }
@@ -52,10 +56,12 @@ impl<'a> Report<'a> {
     pub(super) fn end(
         &mut self,
         filled: meshing::Report,
+        improved: Option<remesh::Report>,
         [read, check, fill, write, total]: [f64; 5],
         complete: bool,
     ) {
         self.filled = Some(filled);
+        self.improved = improved;
         self.complete = complete;
         self.seconds = Seconds { read, check, fill, write, total };
     }
@@ -100,6 +106,15 @@ impl<'a> Report<'a> {
         }
         if filled.not_positive > 0 {
             console.warn(format_args!("{} tets have no volume in the digits of their coordinates", count(filled.not_positive)));
+        }
+        if let Some(improved) = &self.improved {
+            console.say(format_args!(
+                "improved: {} tets, worst EAS {}; {} bad tets were repaired, {} are left",
+                count(improved.after.tets),
+                improved.after.worst.map_or("-".into(), |worst| short(worst.eas)),
+                count(improved.before.bad.saturating_sub(improved.after.bad)),
+                count(improved.after.bad)
+            ));
         }
         console.say(format_args!("filled {}, all {}", seconds(self.seconds.fill), seconds(self.seconds.total)));
     }

@@ -1,0 +1,111 @@
+//! Points inside: a body-centred cubic lattice, a little away from the surface.
+//!
+//! Its Delaunay tets are all alike and good (dihedral angles of 60 and 90 degrees), and no five of its points lie on one empty sphere. What is
+//! outside costs time, but does no harm: it is left out with the tets there. So whether a point is inside is not asked; only
+//! that the surface is met on both sides of it, along the shortest side of the box.
+
+use crate::base::{Point, Result, Threads, VertexId};
+use crate::spatial::NearestTriangle;
+
+/// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
+const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
+
+/// How near to the surface points may be, over the length of edges. An even tet on a facet has its apex at 0.82.
+const AWAY: f64 = 0.6;
+
+/// More points than this are refused.
+const MOST: f64 = 2e8;
+
+/// Lattice points with edges of about `size` between the surfaces, in the order of the lattice.
+///
+/// # Errors
+/// When there would be too many.
+pub(super) fn lattice(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    size: f64,
+    threads: &Threads,
+) -> Result<Vec<Point>> {
+    let side = size / EDGE_OVER_SIDE;
+    let [low, high] = crate::mesh::bounds(points).unwrap_or_default();
+    let sides = [0, 1, 2].map(|i| high[i] - low[i]);
+    let expected = sides.iter().map(|s| s / side + 1.0).product::<f64>() * 2.0;
+    if expected > MOST {
+        let what = format!("a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}");
+        return Err(crate::base::Error::options(what).remedy("give a larger size"));
+    }
+    let along = (0..3).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
+    let tree = NearestTriangle::new(points, triangles, threads);
+    let mut found = Vec::new();
+    // Both cubic lattices that make up a body-centred one.
+    for shift in [0.0, 0.5] {
+        let columns = Columns { low, side, shift, across: [(along + 1) % 3, (along + 2) % 3], along };
+        found.extend(columns.points(sides, &columns.spans(points, triangles, sides)));
+    }
+    let is_away = threads.map(found.len(), |i| tree.closest_within(found[i], AWAY * size).is_none());
+    Ok(found.into_iter().zip(is_away).filter(|(_, away)| *away).map(|(p, _)| p).collect())
+}
+
+/// The columns of a cubic lattice along one axis.
+struct Columns {
+    low: Point,
+    side: f64,
+    shift: f64,
+    across: [usize; 2],
+    along: usize,
+}
+
+impl Columns {
+    fn counts(&self, sides: Point) -> [usize; 2] {
+        self.across.map(|axis| (sides[axis] / self.side) as usize + 2)
+    }
+
+    fn place(&self, axis: usize, k: usize) -> f64 {
+        self.low[axis] + (k as f64 + self.shift) * self.side
+    }
+
+    /// The span of each column between the first and the last triangle that it may meet.
+    fn spans(&self, points: &[Point], triangles: &[[VertexId; 3]], sides: Point) -> Vec<[f64; 2]> {
+        let counts = self.counts(sides);
+        let mut spans = vec![[f64::INFINITY, f64::NEG_INFINITY]; counts[0] * counts[1]];
+        for triangle in triangles {
+            let corners = triangle.map(|v| points[v.index()]);
+            let range = |axis: usize| {
+                let x = corners.map(|p| p[axis]);
+                [x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2])]
+            };
+            let [from, to] = range(self.along);
+            let columns = [0, 1].map(|i| {
+                let [low, high] = range(self.across[i]).map(|x| (x - self.low[self.across[i]]) / self.side - self.shift);
+                low.ceil().max(0.0) as usize..((high.floor() + 1.0).max(0.0) as usize).min(counts[i])
+            });
+            for i in columns[0].clone() {
+                for j in columns[1].clone() {
+                    let span = &mut spans[i * counts[1] + j];
+                    *span = [span[0].min(from), span[1].max(to)];
+                }
+            }
+        }
+        spans
+    }
+
+    fn points(&self, sides: Point, spans: &[[f64; 2]]) -> Vec<Point> {
+        let counts = self.counts(sides);
+        let mut points = Vec::new();
+        for (column, &[from, to]) in spans.iter().enumerate() {
+            let mut p = [0.0; 3];
+            p[self.across[0]] = self.place(self.across[0], column / counts[1]);
+            p[self.across[1]] = self.place(self.across[1], column % counts[1]);
+            let first = ((from - self.low[self.along]) / self.side - self.shift).ceil().max(0.0);
+            for k in first as usize.. {
+                p[self.along] = self.place(self.along, k);
+                // Also where the column meets nothing: then `to` is below everything.
+                if p[self.along] > to || from > to {
+                    break;
+                }
+                points.push(p);
+            }
+        }
+        points
+    }
+}
