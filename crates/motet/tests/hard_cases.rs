@@ -7,9 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use common::hard::{Case, random_case};
 use motet::base::Threads;
 use motet::contact::is_closed;
-use motet::preflight::own_crossings;
 use motet::geometry::predicates::collinear;
 use motet::mesh::cone_volume;
+use motet::preflight::own_crossings;
 
 fn cases() -> impl Iterator<Item = Case> {
     (0..200).map(random_case)

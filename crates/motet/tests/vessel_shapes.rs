@@ -7,11 +7,11 @@ use std::sync::OnceLock;
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::is_closed;
-use motet::preflight::own_crossings;
 use motet::geometry::triangle;
 use motet::geometry::vector::{cross, dot, norm, sub};
 use motet::mesh::shapes::{Aneurysm, Bifurcation, Flap, ThickTube};
 use motet::mesh::{Surface, cone_volume};
+use motet::preflight::own_crossings;
 
 /// All of them, made once.
 fn vessels() -> &'static [(&'static str, Surface)] {

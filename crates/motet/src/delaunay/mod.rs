@@ -25,6 +25,8 @@
 //! all of them are settled by pairs of `f64`. True ties, 7 a point on a grid, are settled by whole numbers of fixed
 //! width. See [`crate::geometry::predicates`].
 //!
+//! *Surfaces* become facets of tets in [`mod@constrain`].
+//!
 //! *Bounds.* Time and memory are those of the triangulations on the way: n log n for ordinary points, and quadratic where the result is
 //! (points on two skew lines, on the moment curve). Coinciding points are set aside before anything is built.
 

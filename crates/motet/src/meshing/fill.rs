@@ -63,7 +63,12 @@ pub struct Report {
 /// # Errors
 /// When the surfaces are not fit: the first fault, and how many there are. When they enclose nothing. When an edge comes so close to
 /// others that its coordinates have no digits left to divide it. When a size is no length, or asks for too many points.
-pub fn fill(surfaces: &Surfaces, preflight: &Preflight, options: &Options, threads: &Threads) -> Result<Filled> {
+pub fn fill(
+    surfaces: &Surfaces,
+    preflight: &Preflight,
+    options: &Options,
+    threads: &Threads,
+) -> Result<Filled> {
     if let Some(error) = preflight.first_error() {
         return Err(error);
     }
@@ -78,7 +83,8 @@ pub fn fill(surfaces: &Surfaces, preflight: &Preflight, options: &Options, threa
     let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
     drop(points);
     if tets.tets.is_empty() {
-        return Err(Error::input("the surfaces enclose nothing").remedy("close them, or see what `motet info` says of them"));
+        return Err(Error::input("the surfaces enclose nothing")
+            .remedy("close them, or see what `motet info` says of them"));
     }
     let mut mesh = mesh(&surfaces, &tets);
     let mut improved = None;

@@ -31,7 +31,9 @@ pub(super) fn lattice(
     let sides = [0, 1, 2].map(|i| high[i] - low[i]);
     let expected = sides.iter().map(|s| s / side + 1.0).product::<f64>() * 2.0;
     if expected > MOST {
-        let what = format!("a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}");
+        let what = format!(
+            "a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}"
+        );
         return Err(crate::base::Error::options(what).remedy("give a larger size"));
     }
     let along = (0..3).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
@@ -76,7 +78,8 @@ impl Columns {
             };
             let [from, to] = range(self.along);
             let columns = [0, 1].map(|i| {
-                let [low, high] = range(self.across[i]).map(|x| (x - self.low[self.across[i]]) / self.side - self.shift);
+                let [low, high] =
+                    range(self.across[i]).map(|x| (x - self.low[self.across[i]]) / self.side - self.shift);
                 low.ceil().max(0.0) as usize..((high.floor() + 1.0).max(0.0) as usize).min(counts[i])
             });
             for i in columns[0].clone() {
@@ -92,15 +95,14 @@ impl Columns {
     fn points(&self, sides: Point, spans: &[[f64; 2]]) -> Vec<Point> {
         let counts = self.counts(sides);
         let mut points = Vec::new();
-        for (column, &[from, to]) in spans.iter().enumerate() {
+        for (column, &[from, to]) in spans.iter().enumerate().filter(|(_, [from, to])| from <= to) {
             let mut p = [0.0; 3];
             p[self.across[0]] = self.place(self.across[0], column / counts[1]);
             p[self.across[1]] = self.place(self.across[1], column % counts[1]);
             let first = ((from - self.low[self.along]) / self.side - self.shift).ceil().max(0.0);
             for k in first as usize.. {
                 p[self.along] = self.place(self.along, k);
-                // Also where the column meets nothing: then `to` is below everything.
-                if p[self.along] > to || from > to {
+                if p[self.along] > to {
                     break;
                 }
                 points.push(p);

@@ -5,7 +5,7 @@
 //! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
 //! | points | `interior` | a lattice inside, a little away from the surface |
-//! | tets | [`crate::delaunay::constrain`] | every triangle is a facet of tets |
+//! | tets | [`mod@crate::delaunay::constrain`] | every triangle is a facet of tets |
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
 //! | labels | `fill` | what surfaces enclose is a region, triangles keep their patches |
 

@@ -53,7 +53,9 @@ impl Surfaces {
         }
         let first = self.points.len();
         if first + surface.points.len() > VertexId::MAX_COUNT {
-            return Err(Error::input("more points than can be counted").remedy("mesh the surfaces one by one"));
+            return Err(
+                Error::input("more points than can be counted").remedy("mesh the surfaces one by one")
+            );
         }
         let moved = |t: &[VertexId; 3]| t.map(|v| VertexId::new(first + v.index()));
         self.triangles.extend(surface.triangles.iter().map(moved));
@@ -124,7 +126,8 @@ impl Surfaces {
 
     /// Without triangles that an earlier surface has as well.
     pub(super) fn without_shared(&self) -> Self {
-        let mut order: Vec<(u32, [VertexId; 3])> = self.triangles.iter().map(|&t| rising(t)).zip(0..).map(|(t, i)| (i, t)).collect();
+        let mut order: Vec<(u32, [VertexId; 3])> =
+            self.triangles.iter().map(|&t| rising(t)).zip(0..).map(|(t, i)| (i, t)).collect();
         order.sort_unstable_by_key(|&(i, t)| (t, i));
         let mut is_kept = vec![true; self.triangles.len()];
         for pair in order.windows(2) {

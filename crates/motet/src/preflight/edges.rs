@@ -13,8 +13,8 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
             [_] => (FaultKind::OpenEdge, is_boundary),
             [x, y] if x.is_forward != y.is_forward => continue,
             [_, _] => (FaultKind::MisorientedEdge, false),
-            // An odd number leaves a side open, whichever of them belong together.
-            _ => (FaultKind::NonManifoldEdge, is_boundary && same.len() % 2 == 1),
+            // Walls meet there, or surfaces touch: tets fit all the same.
+            _ => (FaultKind::NonManifoldEdge, false),
         };
         let triangles = same.iter().map(|side| side.triangle).collect();
         faults.push(Fault::new(what, same[0].surface, triangles, &same[0].edge, surfaces.points));

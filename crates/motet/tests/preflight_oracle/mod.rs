@@ -226,7 +226,7 @@ impl Scene<'_> {
                 1 => (FaultKind::OpenEdge, is_boundary),
                 2 if same[0].1 == same[1].1 => (FaultKind::MisorientedEdge, false),
                 2 => continue,
-                n => (FaultKind::NonManifoldEdge, is_boundary && n % 2 == 1),
+                _ => (FaultKind::NonManifoldEdge, false),
             };
             told.push((kind, is_fatal, surface, same.iter().map(|x| x.0).collect(), edge.to_vec()));
         }

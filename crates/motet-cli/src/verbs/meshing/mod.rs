@@ -37,7 +37,11 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let check = checking.elapsed().as_secs_f64();
     bar.inc(1);
     if let Some(file) = &args.culprits {
-        io::write(file, &culprits(&surfaces.points, &surfaces.triangles, &preflight), &args.writing.options())?;
+        io::write(
+            file,
+            &culprits(&surfaces.points, &surfaces.triangles, &preflight),
+            &args.writing.options(),
+        )?;
     }
     let mut report = Report::new(args, &preflight, done.as_ref().map_or(&[], |done| &done.done));
     if !preflight.is_fit() {
@@ -57,7 +61,12 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let is_reached = args.delaunay || filled.report.points_on_edges == 0;
     let is_good = filled.improved.as_ref().is_none_or(motet::remesh::Report::is_complete);
     let is_complete = is_reached && is_good && filled.report.not_positive == 0;
-    report.end(filled.report, filled.improved, [read, check, fill, write, begin.elapsed().as_secs_f64()], is_complete);
+    report.end(
+        filled.report,
+        filled.improved,
+        [read, check, fill, write, begin.elapsed().as_secs_f64()],
+        is_complete,
+    );
     report.tell(console);
     Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
 }
@@ -65,7 +74,8 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
 fn read(args: &MeshArgs, console: &Console) -> motet::Result<Surfaces> {
     let mut meshes: Vec<(Mesh, Role, String)> = Vec::new();
     let roles = [(&args.surfaces, Role::Boundary), (&args.membrane, Role::Membrane)];
-    for (file, role) in roles.into_iter().flat_map(|(files, role)| files.iter().map(move |file| (file, role))) {
+    for (file, role) in roles.into_iter().flat_map(|(files, role)| files.iter().map(move |file| (file, role)))
+    {
         let (mesh, notes) = io::read_noted(file)?;
         notes.iter().for_each(|what| console.warn(what));
         meshes.push((mesh, role, name(file)));

@@ -78,7 +78,8 @@ impl<'a> Report<'a> {
         }
         let more = fatal.count().saturating_sub(TOLD);
         if more > 0 {
-            console.say(format_args!("  and {} more (--json lists them, --culprits shows them)", count(more)));
+            console
+                .say(format_args!("  and {} more (--json lists them, --culprits shows them)", count(more)));
         }
         if let Some(filled) = &self.filled {
             self.tell_filled(filled, console);
@@ -102,10 +103,16 @@ impl<'a> Report<'a> {
             count(filled.points_on_edges)
         ));
         if filled.triangles_outside > 0 {
-            console.warn(format_args!("{} triangles enclose nothing, and are left out", count(filled.triangles_outside)));
+            console.warn(format_args!(
+                "{} triangles enclose nothing, and are left out",
+                count(filled.triangles_outside)
+            ));
         }
         if filled.not_positive > 0 {
-            console.warn(format_args!("{} tets have no volume in the digits of their coordinates", count(filled.not_positive)));
+            console.warn(format_args!(
+                "{} tets have no volume in the digits of their coordinates",
+                count(filled.not_positive)
+            ));
         }
         if let Some(improved) = &self.improved {
             console.say(format_args!(
@@ -116,6 +123,10 @@ impl<'a> Report<'a> {
                 count(improved.after.bad)
             ));
         }
-        console.say(format_args!("filled {}, all {}", seconds(self.seconds.fill), seconds(self.seconds.total)));
+        console.say(format_args!(
+            "filled {}, all {}",
+            seconds(self.seconds.fill),
+            seconds(self.seconds.total)
+        ));
     }
 }

@@ -20,7 +20,9 @@ impl Filled {
             Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share })
         };
         let on_edges: Vec<_> = numbers.later.iter().filter_map(on_edge).collect();
-        let inside = numbers.later[on_edges.len()..].iter().map(|&v| self.sites.near(v).map(|x| x * back[0] * back[1]));
+        let inside = numbers.later[on_edges.len()..]
+            .iter()
+            .map(|&v| self.sites.near(v).map(|x| x * back[0] * back[1]));
         let tets = || self.tets.iter().filter_map(|(tet, v)| self.body(tet.index()).map(|b| (v, b)));
         Constrained {
             points: points.iter().copied().chain(on_edges.iter().map(between)).chain(inside).collect(),
@@ -91,7 +93,8 @@ impl Filled {
         let depth = |i: u32| {
             let [a, b, c] = corners(triangles[i as usize]);
             let normal = cross(sub(b, a), sub(c, a));
-            let side = |[p, q]: [Point; 2]| dot(cross(sub(q, p), sub(middle, p)), normal) / dot(normal, normal);
+            let side =
+                |[p, q]: [Point; 2]| dot(cross(sub(q, p), sub(middle, p)), normal) / dot(normal, normal);
             [[a, b], [b, c], [c, a]].map(side).into_iter().fold(f64::INFINITY, f64::min)
         };
         let best = || list.iter().max_by(|&&i, &&j| depth(i).total_cmp(&depth(j)));

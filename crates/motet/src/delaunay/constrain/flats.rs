@@ -28,7 +28,9 @@ impl Flats {
         let mut creases = Vec::new();
         for run in edges.chunk_by(|a, b| a.0 == b.0) {
             match *run {
-                [(edge, i), (_, j)] if merged && is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) => {
+                [(edge, i), (_, j)]
+                    if merged && is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) =>
+                {
                     join(&mut first, i, j);
                 }
                 _ => creases.push(run[0].0),

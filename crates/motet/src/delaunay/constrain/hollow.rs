@@ -60,4 +60,3 @@ pub(super) fn smallest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
         [c, a, b]
     }
 }
-

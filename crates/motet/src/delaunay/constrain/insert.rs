@@ -22,7 +22,13 @@ pub(super) struct Insertion {
 
 impl Insertion {
     /// Puts `vertex` in; the walk to it starts at `start`. Answers the edges that are no longer there.
-    pub(super) fn insert(&mut self, tets: &mut Tets, sites: &Sites, vertex: VertexId, start: TetId) -> Vec<[VertexId; 2]> {
+    pub(super) fn insert(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        vertex: VertexId,
+        start: TetId,
+    ) -> Vec<[VertexId; 2]> {
         let first = locate(tets, sites, vertex, start);
         self.dig(tets, sites, vertex, first);
         self.list_edges(tets);

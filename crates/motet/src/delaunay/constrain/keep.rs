@@ -66,9 +66,9 @@ impl<'a> Keep<'a> {
             chains.retain(|(_, points)| !points.is_empty());
         }
         let mut lists = self.lists();
-        for flat in 0..lists.len() {
+        for (flat, list) in lists.iter_mut().enumerate() {
             if self.flats.triangles.list(flat).len() > 1 {
-                self.restore(flat, &mut lists[flat]);
+                self.restore(flat, list);
             }
         }
         let mut csr = Csr::default();
@@ -289,10 +289,15 @@ impl<'a> Keep<'a> {
 
     /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained
     /// Delaunay triangulations*).
-    fn restore(&mut self, flat: usize, list: &mut Vec<[VertexId; 3]>) {
+    fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) {
         let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
-        let wanted: Vec<_> =
-            self.flats.triangles.list(flat).iter().map(|&i| plane(self, self.triangles[i as usize])).collect();
+        let wanted: Vec<_> = self
+            .flats
+            .triangles
+            .list(flat)
+            .iter()
+            .map(|&i| plane(self, self.triangles[i as usize]))
+            .collect();
         if wanted.len() != list.len() {
             return;
         }

@@ -125,7 +125,11 @@ fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {
         t.iter().any(|v| v.index() >= points.len()) || t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
     };
     let Some(i) = triangles.iter().position(is_off) else { return Ok(()) };
-    let what = format!("names the points {:?}, expected three different ones below {}", triangles[i].map(|v| v.0), points.len());
+    let what = format!(
+        "names the points {:?}, expected three different ones below {}",
+        triangles[i].map(|v| v.0),
+        points.len()
+    );
     Err(Error::input(what).at(format!("triangle {i}")))
 }
 
@@ -135,7 +139,9 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
     let mut used = triangles.iter().enumerate().flat_map(|(i, t)| t.iter().map(move |v| (i, v)));
     let Some((i, d)) = used.find_map(|(i, v)| find(v).map(|d| (i, d))) else { return Ok(()) };
     let (a, b) = duplicates[d];
-    Err(Error::input(format!("the points {a} and {b} coincide")).at(format!("triangle {i}")).remedy("merge points that coincide"))
+    Err(Error::input(format!("the points {a} and {b} coincide"))
+        .at(format!("triangle {i}"))
+        .remedy("merge points that coincide"))
 }
 
 /// The points, scaled by a power of two, and the corners of a box far around them; and what scales back.
@@ -154,7 +160,8 @@ fn in_box(points: &[Point]) -> Result<(Vec<Point>, [f64; 2])> {
     if away > 0.0 && (away * FAR).is_finite() && given.as_flattened().iter().all(|x| x.is_finite()) {
         return Ok((given, back));
     }
-    Err(Error::input("the points have no extent, or one too large for numbers").remedy("give surfaces of another size"))
+    Err(Error::input("the points have no extent, or one too large for numbers")
+        .remedy("give surfaces of another size"))
 }
 
 /// The corners of a positive tet that holds the box of the last eight points, and is far larger.
@@ -172,4 +179,3 @@ struct Filled {
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
 }
-

@@ -165,7 +165,11 @@ impl Side {
     }
 
     /// Makes the tets; answers them with the facets on the base.
-    pub(super) fn make(&self, tets: &mut Tets, vertex: VertexId) -> (Vec<TetId>, Vec<([VertexId; 3], HalfFacet)>) {
+    pub(super) fn make(
+        &self,
+        tets: &mut Tets,
+        vertex: VertexId,
+    ) -> (Vec<TetId>, Vec<([VertexId; 3], HalfFacet)>) {
         self.tets.iter().for_each(|&tet| tets.remove(tet));
         let (mut made, mut on_base, mut sides) = (Vec::new(), Vec::new(), Vec::new());
         let base = self.base.iter().map(|&face| (HalfFacet::NONE, face, true));

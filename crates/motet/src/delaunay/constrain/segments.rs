@@ -92,7 +92,9 @@ impl Segments {
 
     fn too_fine(&self, sites: &Sites, segment: SegmentId) -> Error {
         let [a, b] = self.ends(segment);
-        let what = format!("the edge of points {a} and {b} would have to be divided beyond the digits of its coordinates");
+        let what = format!(
+            "the edge of points {a} and {b} would have to be divided beyond the digits of its coordinates"
+        );
         Error::input(what)
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
             .remedy("the surface comes too close to itself there: mend it")
@@ -119,9 +121,17 @@ impl Segments {
     }
 
     /// Where to divide a piece, as a share of its segment. `None` where no number lies between its ends.
-    fn share(&self, tets: &mut Tets, sites: &Sites, segment: SegmentId, piece: [VertexId; 2], star: &mut Vec<TetId>) -> Option<f64> {
+    fn share(
+        &self,
+        tets: &mut Tets,
+        sites: &Sites,
+        segment: SegmentId,
+        piece: [VertexId; 2],
+        star: &mut Vec<TetId>,
+    ) -> Option<f64> {
         let [from, _] = self.ends(segment);
-        let share_of = |v: VertexId| sites.on_segment(v).map_or(if v == from { 0.0 } else { 1.0 }, |on| on.share);
+        let share_of =
+            |v: VertexId| sites.on_segment(v).map_or(if v == from { 0.0 } else { 1.0 }, |on| on.share);
         let mut ends = piece;
         ends.sort_by(|&a, &b| share_of(a).total_cmp(&share_of(b)));
         let [low, high] = ends.map(share_of);
@@ -166,7 +176,12 @@ fn within(sites: &Sites, ends: [VertexId; 2], p: VertexId, is_small: bool) -> f6
 }
 
 /// Of the neighbours of both ends the one in the diametral ball that sees them under the largest angle.
-fn sharpest(tets: &mut Tets, sites: &Sites, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) -> Option<VertexId> {
+fn sharpest(
+    tets: &mut Tets,
+    sites: &Sites,
+    [a, b]: [VertexId; 2],
+    star: &mut Vec<TetId>,
+) -> Option<VertexId> {
     let mut best: Option<(f64, VertexId)> = None;
     for end in [a, b] {
         tets.star(end, star);

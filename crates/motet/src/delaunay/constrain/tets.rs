@@ -175,7 +175,11 @@ impl Tets {
     }
 
     /// One side of a facet; `star` is working space.
-    pub(super) fn find_facet(&mut self, [a, b, c]: [VertexId; 3], star: &mut Vec<TetId>) -> Option<HalfFacet> {
+    pub(super) fn find_facet(
+        &mut self,
+        [a, b, c]: [VertexId; 3],
+        star: &mut Vec<TetId>,
+    ) -> Option<HalfFacet> {
         self.star(a, star);
         let has = |tet: &TetId| {
             let v = self.vertices(*tet);

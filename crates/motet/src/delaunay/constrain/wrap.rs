@@ -96,10 +96,10 @@ impl Wrap {
         let tet = tets.add([a, b, c, apex]);
         self.close(face.vertices);
         self.join(tets, HalfFacet::new(tet, 3), face);
-        for i in 0..3 {
+        for (i, facet) in FACETS.into_iter().enumerate().take(3) {
             let half = HalfFacet::new(tet, i);
             // Seen from what is hollow behind it.
-            let [p, q, r] = FACETS[i].map(|k| [a, b, c, apex][k]);
+            let [p, q, r] = facet.map(|k| [a, b, c, apex][k]);
             match self.close([p, r, q]) {
                 Some(other) => self.join(tets, half, other),
                 None => self.open(Face { vertices: [p, q, r], outer: half }),
@@ -182,7 +182,8 @@ fn cuts(sites: &Sites, face: [VertexId; 3], tet: [VertexId; 4]) -> bool {
             _ => false,
         }
     };
-    let mut planes = FACETS.into_iter().map(|f| f.map(|i| tet[i])).chain([face]).chain(planes_between(face, tet));
+    let mut planes =
+        FACETS.into_iter().map(|f| f.map(|i| tet[i])).chain([face]).chain(planes_between(face, tet));
     !planes.any(parts)
 }
 

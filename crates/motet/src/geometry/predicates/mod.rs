@@ -24,5 +24,5 @@ mod tests;
 
 pub use insphere::insphere;
 pub use orient::{collinear, orient3d};
-pub(crate) use perturbed::{break_tie, break_tie_of};
 pub use perturbed::insphere_perturbed;
+pub(crate) use perturbed::{break_tie, break_tie_of};

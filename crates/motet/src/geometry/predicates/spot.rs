@@ -144,7 +144,8 @@ pub(crate) fn orient3d_of(spots: [Spot; 4]) -> i8 {
         let [b, c, d] = [1, 2, 3].map(|i| vector::sub(points[i], points[0]));
         let determinant = vector::dot(vector::cross(b, c), d);
         // 9 u times a permanent of at most 3 sqrt(3) L^3.
-        let bound = |e: f64, own: f64| 11.0 * e * (reach.length + 4.0 * e).powi(2) + own * reach.length.powi(3);
+        let bound =
+            |e: f64, own: f64| 11.0 * e * (reach.length + 4.0 * e).powi(2) + own * reach.length.powi(3);
         if determinant.abs() > bound(reach.rounded(), 48.0 * U) {
             return if determinant > 0.0 { 1 } else { -1 };
         }
@@ -170,7 +171,8 @@ pub(crate) fn insphere_of(spots: [Spot; 5]) -> i8 {
         let (normal, volume) = minors::<Scalar>([b, c, d], [b2, c2, d2]);
         let determinant = vector::dot(normal, x) - volume * x2;
         // 20 u P (S m + r^2) with m at most sqrt(3) L.
-        let bound = |e: f64, own: f64| 70.0 * e * (reach.length + 4.0 * e).powi(4) + own * reach.length.powi(5);
+        let bound =
+            |e: f64, own: f64| 70.0 * e * (reach.length + 4.0 * e).powi(4) + own * reach.length.powi(5);
         if determinant.abs() > bound(reach.rounded(), 130.0 * U) {
             return if determinant > 0.0 { 1 } else { -1 };
         }

@@ -220,8 +220,10 @@ mod spots {
     fn insphere_exact(spots: &[Spot]) -> i8 {
         let [b, c, d, x] = &rows::<4>(spots);
         let squared = |v: &Place| v.iter().map(|x| x * x).sum::<Rational>();
-        sign(&(squared(b) * det3([c, d, x]) - squared(c) * det3([b, d, x]) + squared(d) * det3([b, c, x])
-            - squared(x) * det3([b, c, d])))
+        sign(
+            &(squared(b) * det3([c, d, x]) - squared(c) * det3([b, d, x]) + squared(d) * det3([b, c, x])
+                - squared(x) * det3([b, c, d])),
+        )
     }
 
     /// Which of five are on segments, between which of the points, and where.
