@@ -2,7 +2,7 @@
 
     python docs/refine_long.py DATA BALL_IN_BOX [--processes N] [--only WORD]
 
-DATA is the folder of real meshes, BALL_IN_BOX a mesh file. A row is the last generation, or the extremes of a front's steps. Takes five minutes on two cores.
+DATA is the folder of real meshes, BALL_IN_BOX a mesh file. A row is the last generation, or the extremes of a front's steps. Takes two minutes on two cores where nothing else runs.
 """
 import argparse
 import concurrent.futures

@@ -9,8 +9,8 @@ use std::time::Instant;
 use motet::base::{Threads, VertexId};
 use motet::delaunay::{EdgePoints, constrain};
 use motet::geometry::tet::volume;
-use motet::mesh::Surface;
-use motet::preflight::{renamed, weld};
+use motet::mesh::{Surface, firsts_at_place};
+use motet::preflight::renamed;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let is_stay = |word: &String| word == "--stay";
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             surface = Surface::boundary_of(&mesh);
         }
         let points = surface.points;
-        let triangles = renamed(&surface.triangles, &weld(&points));
+        let triangles = renamed(&surface.triangles, &firsts_at_place(&points));
         let start = Instant::now();
         let result = constrain(&points, &triangles, rule, &Threads::single());
         let seconds = start.elapsed().as_secs_f64();

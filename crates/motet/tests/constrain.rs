@@ -12,9 +12,9 @@ use motet::geometry::predicates::insphere;
 use motet::geometry::tet::{FACETS, volume};
 use motet::geometry::triangle::area;
 use motet::geometry::vector::distance;
-use motet::mesh::Surface;
 use motet::mesh::shapes::{Aneurysm, Bifurcation, Coil, Flap, ThickTube};
-use motet::preflight::{renamed, weld};
+use motet::mesh::{Surface, firsts_at_place};
+use motet::preflight::renamed;
 
 type Triangle = [VertexId; 3];
 
@@ -178,7 +178,7 @@ fn what_cannot_be_kept_is_told_and_nothing_hangs() {
 
 fn surface(mesh: &Mesh) -> (Vec<Point>, Vec<Triangle>) {
     let surface = Surface::of(mesh);
-    let kept = weld(&surface.points);
+    let kept = firsts_at_place(&surface.points);
     (surface.points.clone(), renamed(&surface.triangles, &kept))
 }
 

@@ -8,10 +8,9 @@ use std::collections::BTreeMap;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::distance;
 use motet::io::{self, WriteOptions};
+use motet::mesh::firsts_at_place;
 use motet::mesh::{CellKind, Surface};
-use motet::preflight::{
-    Fault, FaultKind, Preflight, Repairs, Role, culprits, preflight, renamed, repair, weld,
-};
+use motet::preflight::{Fault, FaultKind, Preflight, Repairs, Role, culprits, preflight, renamed, repair};
 use preflight_oracle::{Told, crosses, faults};
 use proptest::prelude::*;
 
@@ -92,7 +91,7 @@ proptest! {
         points in small_grid(9), triangles in soup(9, 14), of in prop::collection::vec(0u32..3, 1..6), roles in roles(),
     ) {
         holds_against_everything(&points, &triangles, &of, &roles);
-        let map = weld(&points);
+        let map = firsts_at_place(&points);
         holds_against_everything(&points, &renamed(&triangles, &map), &of, &roles);
     }
 
@@ -134,8 +133,8 @@ proptest! {
 fn welding_takes_the_smallest_id_and_leaves_what_is_no_number() {
     let points =
         [[1.0, 0.0, 0.0], [0.0; 3], [-0.0, 0.0, 0.0], [f64::NAN; 3], [f64::NAN; 3], [0.0, -0.0, 0.0]];
-    assert_eq!(weld(&points), [0, 1, 1, 3, 4, 1].map(VertexId));
-    assert_eq!(renamed(&[[0, 2, 5].map(VertexId)], &weld(&points)), [[0, 1, 1].map(VertexId)]);
+    assert_eq!(firsts_at_place(&points), [0, 1, 1, 3, 4, 1].map(VertexId));
+    assert_eq!(renamed(&[[0, 2, 5].map(VertexId)], &firsts_at_place(&points)), [[0, 1, 1].map(VertexId)]);
 }
 
 #[test]
@@ -303,7 +302,8 @@ fn real_surfaces_are_refused_or_fit() {
     }
     for known in SURFACES {
         let surface = Surface::of(&io::read(folder.join(known.name)).unwrap());
-        let (points, triangles) = (&surface.points, renamed(&surface.triangles, &weld(&surface.points)));
+        let (points, triangles) =
+            (&surface.points, renamed(&surface.triangles, &firsts_at_place(&surface.points)));
         let report = alone(points, &triangles, Role::Boundary);
         let two = Threads::new(2).unwrap();
         let again = preflight(points, &triangles, &vec![0; triangles.len()], &[Role::Boundary], &two);

@@ -5,10 +5,11 @@ mod common;
 use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::{add, scale};
+use motet::mesh::firsts_at_place;
 use motet::mesh::shapes::{ball, box_grid};
 use motet::mesh::{Surface, cone_volume};
 use motet::preflight::{
-    FaultKind, Preflight, RepairKind, Repaired, Repairs, Role, preflight, renamed, repair, weld,
+    FaultKind, Preflight, RepairKind, Repaired, Repairs, Role, preflight, renamed, repair,
 };
 
 type Triangles = Vec<[VertexId; 3]>;
@@ -237,7 +238,8 @@ fn real_surfaces_after_all_repairs() {
         ("hostile_surfaces/trimesh_soup.stl", false),
     ] {
         let surface = Surface::of(&motet::io::read(folder.join(name)).unwrap());
-        let (points, triangles) = (&surface.points, renamed(&surface.triangles, &weld(&surface.points)));
+        let (points, triangles) =
+            (&surface.points, renamed(&surface.triangles, &firsts_at_place(&surface.points)));
         let mended = mend(points, &triangles, &Repairs { close_holes: Some(64), ..ALL });
         let mut done: Vec<(RepairKind, usize)> = Vec::new();
         for repair in &mended.done {

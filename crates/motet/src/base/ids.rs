@@ -2,6 +2,13 @@
 
 use std::fmt;
 
+/// The same ids in rising order: the same key for an edge or a facet, from whichever side it is seen.
+#[inline]
+pub(crate) fn rising<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
+    ids.sort_unstable();
+    ids
+}
+
 /// What all ids have in common: for lists that serve any of them.
 pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
     /// What stands in an array for no id.

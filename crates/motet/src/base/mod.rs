@@ -9,6 +9,7 @@ mod threads;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
+pub(crate) use ids::rising;
 pub use ids::{CellId, Id, TetId, VertexId};
 pub(crate) use lanewise::lanewise;
 pub(crate) use sets::Sets;

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::compact::{compact, named};
 use super::interior::lattice;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result, Threads, VertexId};
@@ -98,6 +99,7 @@ pub fn fill(
 fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
     let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
     let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
+    let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
     let mut volumes = vec![0.0; n_bodies];
     let mut not_positive = 0;
     for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
@@ -110,21 +112,14 @@ fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
         triangles: surfaces.triangles.len(),
         tets: filled.tets.len(),
         points_on_edges: filled.on_edges.len(),
-        points_inside: n_inside(surfaces, filled),
+        points_inside: is_named[surfaces.points.len()..].iter().filter(|n| **n).count()
+            - filled.on_edges.len(),
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         not_positive,
         volumes,
         worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
     }
-}
-
-/// How many vertices of tets are neither of the surfaces nor on their edges.
-fn n_inside(surfaces: &Surfaces, filled: &Constrained) -> usize {
-    let mut is_inside = vec![false; filled.points.len()];
-    filled.tets.as_flattened().iter().for_each(|v| is_inside[v.index()] = true);
-    let n = is_inside[surfaces.points.len()..].iter().filter(|inside| **inside).count();
-    n - filled.on_edges.len()
 }
 
 /// Tets and triangles as cells; points that no cell uses are left out.
@@ -135,15 +130,9 @@ fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
             triangles.extend(list.iter().map(|&t| (t, surfaces.patches[i])));
         }
     }
-    let mut is_used = vec![false; filled.points.len()];
-    filled.tets.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
-    triangles.iter().for_each(|(t, _)| t.iter().for_each(|v| is_used[v.index()] = true));
-    let mut old_to_new = vec![VertexId(0); is_used.len()];
-    let mut points = Vec::new();
-    for (v, &point) in filled.points.iter().enumerate().filter(|(v, _)| is_used[*v]) {
-        old_to_new[v] = VertexId::new(points.len());
-        points.push(point);
-    }
+    let of_triangles = triangles.iter().flat_map(|(t, _)| t);
+    let is_used = named(filled.points.len(), filled.tets.as_flattened().iter().chain(of_triangles));
+    let (points, old_to_new) = compact(&filled.points, &is_used);
     let (mut cells, mut regions, mut patches) = (Cells::new(), Vec::new(), Vec::new());
     for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
         cells.push(CellKind::TETRA, tet.map(|v| old_to_new[v.index()]));

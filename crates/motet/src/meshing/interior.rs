@@ -4,7 +4,8 @@
 //! outside costs time, but does no harm: it is left out with the tets there. So whether a point is inside is not asked; only
 //! that the surface is met on both sides of it, along the shortest side of the box.
 
-use crate::base::{Point, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::mesh::bounds;
 use crate::spatial::NearestTriangle;
 
 /// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
@@ -27,14 +28,14 @@ pub(super) fn lattice(
     threads: &Threads,
 ) -> Result<Vec<Point>> {
     let side = size / EDGE_OVER_SIDE;
-    let [low, high] = crate::mesh::bounds(points).unwrap_or_default();
+    let [low, high] = bounds(points).unwrap_or_default();
     let sides = [0, 1, 2].map(|i| high[i] - low[i]);
     let expected = sides.iter().map(|s| s / side + 1.0).product::<f64>() * 2.0;
     if expected > MOST {
         let what = format!(
             "a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}"
         );
-        return Err(crate::base::Error::options(what).remedy("give a larger size"));
+        return Err(Error::options(what).remedy("give a larger size"));
     }
     let along = (0..3).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
     let tree = NearestTriangle::new(points, triangles, threads);

@@ -9,6 +9,7 @@
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
 //! | labels | `fill` | what surfaces enclose is a region, triangles keep their patches |
 
+mod compact;
 mod fill;
 mod interior;
 mod surfaces;

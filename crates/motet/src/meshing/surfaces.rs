@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::mesh::{Mesh, Surface};
-use crate::preflight::{self, Preflight, Repaired, Repairs, Role};
+use super::compact::{compact, named};
+use crate::base::{Error, Point, Result, Threads, VertexId, rising};
+use crate::mesh::{Mesh, Surface, firsts_at_place};
+use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
 
 /// Surfaces to be filled, joined: points at one place are one vertex.
 #[derive(Clone, Debug)]
@@ -41,8 +42,8 @@ impl Surfaces {
         for (number, &(mesh, _, name)) in meshes.iter().enumerate() {
             all.add(mesh, number as u32, name)?;
         }
-        let kept = preflight::weld(&all.points);
-        all.triangles = preflight::renamed(&all.triangles, &kept);
+        let kept = firsts_at_place(&all.points);
+        all.triangles = renamed(&all.triangles, &kept);
         Ok(all)
     }
 
@@ -111,16 +112,10 @@ impl Surfaces {
 
     /// Without points that no triangle uses: they need not even be apart from the triangles.
     pub(super) fn compact(mut self) -> Self {
-        let mut is_used = vec![false; self.points.len()];
-        self.triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
-        let mut old_to_new = vec![VertexId(0); is_used.len()];
-        let mut points = Vec::new();
-        for (v, &point) in self.points.iter().enumerate().filter(|(v, _)| is_used[*v]) {
-            old_to_new[v] = VertexId::new(points.len());
-            points.push(point);
-        }
-        self.triangles.as_flattened_mut().iter_mut().for_each(|v| *v = old_to_new[v.index()]);
+        let is_used = named(self.points.len(), self.triangles.as_flattened().iter());
+        let (points, old_to_new) = compact(&self.points, &is_used);
         self.points = points;
+        self.triangles = renamed(&self.triangles, &old_to_new);
         self
     }
 
@@ -143,9 +138,4 @@ impl Surfaces {
             ..self.clone()
         }
     }
-}
-
-fn rising(mut t: [VertexId; 3]) -> [VertexId; 3] {
-    t.sort_unstable();
-    t
 }

@@ -11,7 +11,7 @@ use crate::base::{Point, Threads, VertexId};
 
 /// Everything that stops surfaces from being meshed, and what else is worth knowing of them.
 ///
-/// Points at one place have one id: [`weld`](super::weld) sees to that. `surface_of` tells which surface each triangle is of, `roles` what each
+/// Points at one place have one id: [`crate::mesh::firsts_at_place`] sees to that. `surface_of` tells which surface each triangle is of, `roles` what each
 /// surface is for. Edges are those of triangles with three different vertices; of duplicates that face the same side one counts, and two that face
 /// opposite sides do not, since they enclose nothing. The answer is the same for any number of threads.
 ///

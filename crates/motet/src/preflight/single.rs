@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, FaultKind};
 use super::surfaces::Surfaces;
-use crate::base::{Csr, Threads, VertexId};
+use crate::base::{Csr, Threads, VertexId, rising};
 use crate::geometry::predicates::collinear;
 use crate::geometry::vector::is_finite;
 
@@ -49,7 +49,7 @@ impl Firsts {
     pub(super) fn new(surfaces: &Surfaces) -> Self {
         let mut keyed: Vec<([VertexId; 3], u32, u32)> = surfaces
             .ids()
-            .map(|t| (sorted(surfaces.triangles[t as usize]), surfaces.surface(t), t))
+            .map(|t| (rising(surfaces.triangles[t as usize]), surfaces.surface(t), t))
             .filter(|([a, b, c], ..)| a != b && b != c)
             .collect();
         keyed.sort_unstable();
@@ -82,11 +82,6 @@ fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> O
     let (n, n_rising) = (same.clone().count(), same.clone().filter(|&t| is_rising(t)).count());
     let mut of_more = same.filter(|&t| is_rising(t) == (2 * n_rising > n));
     if 2 * n_rising == n { None } else { of_more.next() }
-}
-
-fn sorted(mut triangle: [VertexId; 3]) -> [VertexId; 3] {
-    triangle.sort_unstable();
-    triangle
 }
 
 /// Points of triangles that are not finite, triangles without area, duplicates, and facets that surfaces share.

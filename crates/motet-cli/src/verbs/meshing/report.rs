@@ -36,7 +36,7 @@ struct Seconds {
     total: f64,
 }
 
-/// Faults told one by one.
+/// Faults told one by one, and volumes.
 const TOLD: usize = 20;
 
 impl<'a> Report<'a> {
@@ -87,7 +87,8 @@ impl<'a> Report<'a> {
     }
 
     fn tell_filled(&self, filled: &meshing::Report, console: &Console) {
-        let volumes: Vec<String> = filled.volumes.iter().map(|v| short(*v)).collect();
+        let mut volumes: Vec<String> = filled.volumes.iter().take(TOLD).map(|v| short(*v)).collect();
+        volumes.extend((filled.volumes.len() > TOLD).then(|| "...".to_string()));
         console.say(format_args!(
             "{} tets in {} regions of volume {}; worst EAS {}",
             count(filled.tets),

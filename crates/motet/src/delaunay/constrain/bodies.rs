@@ -1,7 +1,7 @@
 //! What the surfaces enclose: tets that are joined without crossing one of them are one body.
 
 use super::tets::Tets;
-use crate::base::{Csr, Error, Result, VertexId};
+use crate::base::{Csr, Error, Result, TetId, VertexId};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
@@ -10,7 +10,7 @@ pub(super) struct Bodies {
     /// The body of each slot; 0 lies outside of all, [`Self::NONE`] has no tet.
     pub(super) of_slot: Vec<u32>,
     /// How many there are, the outside included.
-    pub(super) count: u32,
+    count: u32,
     /// The bodies in front of each flat facet and behind it.
     pub(super) sides: Vec<[u32; 2]>,
 }
@@ -52,7 +52,7 @@ impl Bodies {
         Ok(bodies)
     }
 
-    fn flood(&mut self, tets: &Tets, walls: &[u8], first: crate::base::TetId) {
+    fn flood(&mut self, tets: &Tets, walls: &[u8], first: TetId) {
         self.of_slot[first.index()] = self.count;
         let mut todo = vec![first];
         while let Some(tet) = todo.pop() {

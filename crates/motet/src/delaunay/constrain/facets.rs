@@ -12,7 +12,7 @@ use super::segments::Segments;
 use super::sites::Sites;
 use super::tets::Tets;
 use super::wrap::Wrap;
-use crate::base::{Csr, Error, Result, TetId, VertexId};
+use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
 /// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is.
@@ -165,10 +165,4 @@ impl Work {
             }
         }
     }
-}
-
-/// The vertices of a face in rising order.
-fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }

@@ -104,8 +104,7 @@ impl Filled {
 
 /// New numbers of vertices: those given keep theirs, then come points on edges, then points inside.
 struct Numbers {
-    n_given: usize,
-    /// The others that are used, in their new order.
+    /// Those not given that are used, in their new order.
     later: Vec<VertexId>,
     old_to_new: Vec<u32>,
 }
@@ -124,11 +123,10 @@ impl Numbers {
         later.extend(inside);
         let mut old_to_new: Vec<u32> = (0..is_used.len() as u32).collect();
         later.iter().enumerate().for_each(|(i, v)| old_to_new[v.index()] = (n_given + i) as u32);
-        Self { n_given, later, old_to_new }
+        Self { later, old_to_new }
     }
 
     fn of(&self, vertex: VertexId) -> VertexId {
-        debug_assert!(vertex.index() < self.n_given || self.later.contains(&vertex));
         VertexId(self.old_to_new[vertex.index()])
     }
 }

@@ -4,9 +4,8 @@
 //! cut into two triangles each, half have the diagonal that Delaunay tets do not, and points on it would be in the way
 //! of others, and so on. What the triangles were is put right afterwards (`keep`).
 
-use super::insert::sorted;
 use super::sites::Sites;
-use crate::base::{Csr, VertexId};
+use crate::base::{Csr, Sets, VertexId, rising};
 
 /// The flat facets and the edges around them.
 pub(super) struct Flats {
@@ -21,17 +20,17 @@ impl Flats {
     pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], merged: bool) -> Self {
         let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
-            edges.extend([[a, b], [b, c], [c, a]].map(|e| (sorted(e), i as u32)));
+            edges.extend([[a, b], [b, c], [c, a]].map(|e| (rising(e), i as u32)));
         }
         edges.sort_unstable();
-        let mut first: Vec<u32> = (0..triangles.len() as u32).collect();
+        let mut flats = Sets::new(triangles.len());
         let mut creases = Vec::new();
         for run in edges.chunk_by(|a, b| a.0 == b.0) {
             match *run {
                 [(edge, i), (_, j)]
                     if merged && is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) =>
                 {
-                    join(&mut first, i, j);
+                    flats.join(i, j);
                 }
                 _ => creases.push(run[0].0),
             }
@@ -40,7 +39,7 @@ impl Flats {
         let mut count = 0;
         let flat_of: Vec<u32> = (0..triangles.len() as u32)
             .map(|i| {
-                let of = &mut number[find(&mut first, i) as usize];
+                let of = &mut number[flats.root(i) as usize];
                 if *of == u32::MAX {
                     *of = count;
                     count += 1;
@@ -60,18 +59,4 @@ fn is_flat(sites: &Sites, edge: [VertexId; 2], [s, t]: [[VertexId; 3]; 2]) -> bo
         (Some(p), Some(q)) if p != q => sites.orient3d([edge[0], edge[1], p, q]) == 0,
         _ => false,
     }
-}
-
-/// The first triangle of a set (a forest of sets; paths are halved on the way).
-fn find(first: &mut [u32], mut i: u32) -> u32 {
-    while first[i as usize] != i {
-        first[i as usize] = first[first[i as usize] as usize];
-        i = first[i as usize];
-    }
-    i
-}
-
-fn join(first: &mut [u32], i: u32, j: u32) {
-    let (i, j) = (find(first, i), find(first, j));
-    first[i.max(j) as usize] = i.min(j);
 }

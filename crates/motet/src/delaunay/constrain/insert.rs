@@ -3,7 +3,7 @@
 
 use super::sites::Sites;
 use super::tets::Tets;
-use crate::base::{TetId, VertexId};
+use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
@@ -14,8 +14,8 @@ pub(super) struct Insertion {
     cavity: Vec<TetId>,
     /// The facets around them, from outside, and their vertices seen from inside.
     shell: Vec<(HalfFacet, [VertexId; 3])>,
-    /// Edges of the shell with the facet of the new tet on one side of them.
-    sides: Vec<([VertexId; 2], HalfFacet)>,
+    /// Edges of the shell with the facets of the new tets on their sides.
+    seams: Vec<([VertexId; 2], HalfFacet)>,
     /// Edges of tets that went, each once, in order.
     touched: Vec<[VertexId; 2]>,
 }
@@ -33,7 +33,7 @@ impl Insertion {
         self.dig(tets, sites, vertex, first);
         self.list_edges(tets);
         self.cavity.iter().for_each(|&tet| tets.remove(tet));
-        self.fill(tets, vertex);
+        tets.cone(vertex, self.shell.iter().copied(), &mut self.seams);
         self.lost()
     }
 
@@ -65,36 +65,17 @@ impl Insertion {
         self.touched.clear();
         for &tet in &self.cavity {
             let v = tets.vertices(tet);
-            self.touched.extend(EDGES.map(|[i, j]| sorted([v[i], v[j]])));
+            self.touched.extend(EDGES.map(|[i, j]| rising([v[i], v[j]])));
         }
         self.touched.sort_unstable();
         self.touched.dedup();
     }
 
-    fn fill(&mut self, tets: &mut Tets, vertex: VertexId) {
-        self.sides.clear();
-        for &(outer, [a, b, c]) in &self.shell {
-            let tet = tets.add([a, b, c, vertex]);
-            tets.join(HalfFacet::new(tet, 3), outer);
-            let sides = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
-            self.sides.extend(sides.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
-        }
-        self.sides.sort_unstable();
-        for pair in self.sides.as_chunks::<2>().0 {
-            tets.join(pair[0].1, pair[1].1);
-        }
-    }
-
     /// The touched edges that the shell does not have.
     fn lost(&self) -> Vec<[VertexId; 2]> {
-        let is_kept = |edge: &&[VertexId; 2]| self.sides.binary_search_by_key(*edge, |s| s.0).is_ok();
+        let is_kept = |edge: &&[VertexId; 2]| self.seams.binary_search_by_key(*edge, |s| s.0).is_ok();
         self.touched.iter().filter(|edge| !is_kept(edge)).copied().collect()
     }
-}
-
-/// An edge with its smaller vertex first.
-pub(super) fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// The tet that holds a vertex yet to be inserted. A visibility walk: it does not go round in circles in a Delaunay

@@ -13,7 +13,7 @@ use super::recone::Side;
 use super::segments::Segments;
 use super::sites::{SegmentId, Sites};
 use super::tets::Tets;
-use crate::base::{Csr, Point, TetId, VertexId};
+use crate::base::{Csr, Point, TetId, VertexId, rising};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
@@ -248,13 +248,12 @@ impl<'a> Keep<'a> {
         let places: Option<Vec<Point>> = sides.iter().map(place).collect();
         let (mut on_base, mut came) = (Vec::new(), Vec::new());
         for (side, place) in sides.iter().zip(places?) {
-            let body = self.bodies.of_slot[side.tets[0].index()];
+            let is_inside = self.bodies.of_slot[side.tets[0].index()] != 0;
             let vertex = self.sites.add_point(place);
-            let (made, bare) = side.make(self.tets, vertex);
-            self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
-            made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
-            came.extend((body != 0).then_some(vertex));
-            on_base.extend(bare.into_iter().map(|(face, half)| (rising(face), half)));
+            let made = self.make(side, vertex);
+            came.extend(is_inside.then_some(vertex));
+            let bare = side.base.iter().zip(&made[side.shell.len()..]);
+            on_base.extend(bare.map(|(&face, &tet)| (rising(face), HalfFacet::new(tet, 3))));
         }
         on_base.sort_unstable();
         for pair in on_base.chunk_by(|a, b| a.0 == b.0) {
@@ -270,6 +269,15 @@ impl<'a> Keep<'a> {
         Some(())
     }
 
+    /// Makes a side anew from `apex`: the tets that come are of the body of those that go.
+    fn make(&mut self, side: &Side, apex: VertexId) -> Vec<TetId> {
+        let body = self.bodies.of_slot[side.tets[0].index()];
+        let made = side.make(self.tets, apex);
+        self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
+        made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+        made
+    }
+
     /// Does without a point inside, if another vertex can take its place; or else finds it a better place. Otherwise the next points nearby would have
     /// less and less room.
     fn settle(&mut self, vertex: VertexId) {
@@ -278,10 +286,7 @@ impl<'a> Keep<'a> {
         let side = Side::of_star(self.tets, vertex, &star);
         let worst = side.worst_to(self.sites, vertex);
         if let Some(apex) = side.best_apex(self.sites, worst.min(FAIR)) {
-            let body = self.bodies.of_slot[star[0].index()];
-            let made = side.make_from(self.tets, apex);
-            self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
-            made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+            self.make(&side, apex);
         } else if let Some(place) = side.better_place(self.sites, vertex, worst) {
             self.sites.move_to(vertex, place);
         }
@@ -353,10 +358,4 @@ fn crossing_share([a, b]: [Point; 2], [p, q]: [Point; 2]) -> f64 {
     let normal = cross(along, across);
     let share = dot(cross(sub(p, a), across), normal) / dot(normal, normal);
     if share > 0.0 && share < 1.0 { share } else { 0.5 }
-}
-
-/// The vertices of a face in rising order.
-fn rising(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }

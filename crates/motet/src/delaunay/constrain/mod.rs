@@ -37,6 +37,7 @@ use super::Triangulation;
 use super::input::{self, Scaled};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{distance, scale};
+use crate::mesh::bounds;
 use bodies::Bodies;
 use flats::Flats;
 use keep::Keep;
@@ -59,8 +60,8 @@ pub struct PointOnEdge {
     pub share: f64,
 }
 
-/// Tets that have every triangle of the surfaces among their facets, and no point of the surface inside the sphere of one that
-/// can see it.
+/// Tets that have every triangle of the surfaces among their facets. Where points stay on edges ([`EdgePoints::Stay`]), no vertex that a tet
+/// can see lies inside its sphere.
 #[derive(Clone, Debug)]
 pub struct Constrained {
     /// The points as they were given, then points on edges, rounded, then points inside.
@@ -92,7 +93,7 @@ pub enum EdgePoints {
 ///
 /// # Errors
 /// When a coordinate is not finite, when points that triangles use coincide or do not exist, when triangles meet in more than they share (where
-/// that comes to light: a check beforehand names all such places), when an edge would have to be divided beyond its digits.
+/// that comes to light: a check beforehand names all such places), when edges would have to be divided beyond their digits, or too often.
 pub fn constrain(
     points: &[Point],
     triangles: &[[VertexId; 3]],
@@ -147,12 +148,7 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
 /// The points, scaled by a power of two, and the corners of a box far around them; and what scales back.
 fn in_box(points: &[Point]) -> Result<(Vec<Point>, [f64; 2])> {
     let Scaled { points: mut given, back, .. } = input::scaled(points.to_vec());
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in &given {
-        for i in 0..3 {
-            (low[i], high[i]) = (low[i].min(p[i]), high[i].max(p[i]));
-        }
-    }
+    let [low, high] = bounds(&given).unwrap_or_default();
     let away = BOX * (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
     for k in 0..8 {
         given.push(std::array::from_fn(|i| if k >> i & 1 == 0 { low[i] - away } else { high[i] + away }));

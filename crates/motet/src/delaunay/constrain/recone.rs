@@ -4,7 +4,6 @@
 //! facets around them and to the new triangles fill the same room (a cone). So the surface can be cut otherwise at the price of a point
 //! inside, whatever tets there are.
 
-use super::insert::sorted;
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId};
@@ -135,27 +134,6 @@ impl Side {
         self.worst(sites, sites.near(vertex))
     }
 
-    /// Makes the tets from one of the vertices around.
-    pub(super) fn make_from(&self, tets: &mut Tets, apex: VertexId) -> Vec<TetId> {
-        self.tets.iter().for_each(|&tet| tets.remove(tet));
-        let (mut made, mut sides) = (Vec::new(), Vec::new());
-        for &(outer, [a, b, c]) in &self.shell {
-            if let Some(i) = [a, b, c].iter().position(|&v| v == apex) {
-                let edge = [[b, c], [c, a], [a, b]][i];
-                sides.push((sorted(edge), outer));
-                continue;
-            }
-            let tet = tets.add([a, b, c, apex]);
-            made.push(tet);
-            tets.join(HalfFacet::new(tet, 3), outer);
-            let edges = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
-            sides.extend(edges.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
-        }
-        sides.sort_unstable();
-        sides.as_chunks::<2>().0.iter().for_each(|pair| tets.join(pair[0].1, pair[1].1));
-        made
-    }
-
     /// Whether all tets are positive.
     fn sees(&self, sites: &Sites, p: Point) -> bool {
         let is_seen = |[a, b, c]: [VertexId; 3]| {
@@ -164,28 +142,12 @@ impl Side {
         self.faces().all(is_seen)
     }
 
-    /// Makes the tets; answers them with the facets on the base.
-    pub(super) fn make(
-        &self,
-        tets: &mut Tets,
-        vertex: VertexId,
-    ) -> (Vec<TetId>, Vec<([VertexId; 3], HalfFacet)>) {
+    /// Makes the tets to `apex`, a new vertex or one of those around; with a new one there is one for each facet of the shell, then one for each
+    /// triangle of the base.
+    pub(super) fn make(&self, tets: &mut Tets, apex: VertexId) -> Vec<TetId> {
         self.tets.iter().for_each(|&tet| tets.remove(tet));
-        let (mut made, mut on_base, mut sides) = (Vec::new(), Vec::new(), Vec::new());
-        let base = self.base.iter().map(|&face| (HalfFacet::NONE, face, true));
-        for (outer, [a, b, c], is_base) in self.shell.iter().map(|&(h, f)| (h, f, false)).chain(base) {
-            let tet = tets.add([a, b, c, vertex]);
-            made.push(tet);
-            tets.join(HalfFacet::new(tet, 3), outer);
-            if is_base {
-                on_base.push(([a, b, c], HalfFacet::new(tet, 3)));
-            }
-            let edges = [([b, c], 0), ([c, a], 1), ([a, b], 2)];
-            sides.extend(edges.map(|(edge, i)| (sorted(edge), HalfFacet::new(tet, i))));
-        }
-        sides.sort_unstable();
-        sides.as_chunks::<2>().0.iter().for_each(|pair| tets.join(pair[0].1, pair[1].1));
-        (made, on_base)
+        let base = self.base.iter().map(|&face| (HalfFacet::NONE, face));
+        tets.cone(apex, self.shell.iter().copied().chain(base), &mut Vec::new())
     }
 }
 

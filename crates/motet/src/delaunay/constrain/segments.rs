@@ -5,8 +5,8 @@
 //!
 //! *Where to divide.* If a b is missing, its diametral ball holds a vertex, and then one that is joined to a: shrink the ball towards
 //! a until the last vertex leaves it. Of the neighbours of both ends in the ball, p is the one that sees a b under the largest angle. The foot
-//! of p on a b leaves neither of the two pieces with p in its ball. On stretched triangles that takes half as many points as halving,
-//! or as cutting at the distance of p from an end. But segments that meet at a sharp angle can divide each other at their feet for ever. So
+//! of p on a b leaves neither of the two pieces with p in its ball. On the stretched triangles of a coil and of a tube that took two thirds of the points that halving
+//! took, and half of those of a cut at the distance of p from an end. But segments that meet at a sharp angle can divide each other at their feet for ever. So
 //! small pieces are cut at the distance of p from the corner, which is the same on all of them (Si and Gaertner 2005, *Meshing piecewise linear
 //! complexes by constrained Delaunay tetrahedralizations*; shells of Ruppert 1995 before them).
 
@@ -14,10 +14,10 @@ use std::collections::VecDeque;
 
 use hashbrown::HashMap;
 
-use super::insert::{Insertion, sorted};
+use super::insert::Insertion;
 use super::sites::{OnSegment, SegmentId, Sites};
 use super::tets::Tets;
-use crate::base::{Csr, Error, Result, TetId, VertexId};
+use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
@@ -52,7 +52,7 @@ impl Segments {
 
     /// The segment between two vertices of the surface.
     pub(super) fn find(&self, edge: [VertexId; 2]) -> Option<SegmentId> {
-        self.ends.binary_search(&sorted(edge)).ok().map(|s| SegmentId(s as u32))
+        self.ends.binary_search(&rising(edge)).ok().map(|s| SegmentId(s as u32))
     }
 
     /// The points on each segment, from its first end to its second.
@@ -73,16 +73,22 @@ impl Segments {
             if tets.find_edge(piece, &mut star).is_some() {
                 continue;
             }
-            let share = self.share(tets, sites, segment, piece, &mut star);
-            let Some(share) = share.filter(|_| sites.all_on_segments().len() < most) else {
-                return Err(self.too_fine(sites, segment));
+            if sites.all_on_segments().len() == most {
+                return Err(self.refused(sites, segment, "asks, with others, for too many points on edges"));
+            }
+            let Some(share) = self.share(tets, sites, segment, piece, &mut star) else {
+                return Err(self.refused(
+                    sites,
+                    segment,
+                    "would have to be divided beyond the digits of its coordinates",
+                ));
             };
             let start = tets.at(piece[0]);
             let vertex = sites.add(self.ends(segment), OnSegment { segment, share });
             self.pieces.remove(&piece);
             for end in piece {
-                self.pieces.insert(sorted([end, vertex]), segment);
-                queue.push_back(sorted([end, vertex]));
+                self.pieces.insert(rising([end, vertex]), segment);
+                queue.push_back(rising([end, vertex]));
             }
             let lost = insertion.insert(tets, sites, vertex, start);
             queue.extend(lost.into_iter().filter(|edge| self.pieces.contains_key(edge)));
@@ -90,14 +96,11 @@ impl Segments {
         Ok(())
     }
 
-    fn too_fine(&self, sites: &Sites, segment: SegmentId) -> Error {
+    fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Error {
         let [a, b] = self.ends(segment);
-        let what = format!(
-            "the edge of points {a} and {b} would have to be divided beyond the digits of its coordinates"
-        );
-        Error::input(what)
+        Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
-            .remedy("the surface comes too close to itself there: mend it")
+            .remedy("make the triangles there less stretched, or the surface keep farther from itself")
     }
 
     /// The segments that are no edges of tets; rising.
@@ -109,7 +112,7 @@ impl Segments {
         let mut found = vec![false; self.ends.len()];
         for (_, v) in tets.iter() {
             for [i, j] in EDGES {
-                let [a, b] = sorted([v[i], v[j]]);
+                let [a, b] = rising([v[i], v[j]]);
                 if a.index() < n_rows {
                     let row = starts[a.index()] as usize..starts[a.index() + 1] as usize;
                     let place = row.clone().find(|&s| self.ends[s][1] == b);

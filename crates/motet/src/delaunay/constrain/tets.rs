@@ -1,7 +1,7 @@
 //! Tets that come and go: flat arrays, a slot a tet, each facet linked to the one on its other side.
 
 use super::super::Triangulation;
-use crate::base::{TetId, VertexId};
+use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::FACETS;
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
@@ -117,6 +117,33 @@ impl Tets {
     pub(super) fn remove(&mut self, tet: TetId) {
         self.vertices[tet.index()] = FREE;
         self.free.push(tet);
+    }
+
+    /// Puts a tet from `apex` on each face that it is not itself a vertex of, and links them all. A face comes as seen from the apex, with what lies
+    /// behind it, which the tet gets across its facet 3; all faces together are closed. `seams` is working space: afterwards the edges of the faces, each
+    /// with the facets on its two sides, in order.
+    pub(super) fn cone(
+        &mut self,
+        apex: VertexId,
+        faces: impl Iterator<Item = (HalfFacet, [VertexId; 3])>,
+        seams: &mut Vec<([VertexId; 2], HalfFacet)>,
+    ) -> Vec<TetId> {
+        seams.clear();
+        let mut made = Vec::new();
+        for (outer, [a, b, c]) in faces {
+            let edges = [[b, c], [c, a], [a, b]].map(rising);
+            if let Some(i) = [a, b, c].iter().position(|&v| v == apex) {
+                seams.push((edges[i], outer));
+                continue;
+            }
+            let tet = self.add([a, b, c, apex]);
+            made.push(tet);
+            self.join(HalfFacet::new(tet, 3), outer);
+            seams.extend((0..3).map(|i| (edges[i], HalfFacet::new(tet, i))));
+        }
+        seams.sort_unstable();
+        seams.as_chunks::<2>().0.iter().for_each(|pair| self.join(pair[0].1, pair[1].1));
+        made
     }
 
     /// Makes two facets each other's other side.

@@ -6,7 +6,7 @@
 //! of what is still hollow.
 //!
 //! In a large hollow the Delaunay triangulation of its vertices tells the apex of nearly all faces. A tet of it is cut only by faces that
-//! are no facets of it, and those are few: that took 1,300 faces from minutes to milliseconds.
+//! are no facets of it, and those are few.
 
 use hashbrown::{HashMap, HashSet};
 

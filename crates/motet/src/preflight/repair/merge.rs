@@ -4,7 +4,7 @@ use super::report::RepairKind;
 use super::work::Work;
 use crate::base::VertexId;
 use crate::geometry::vector::{distance, is_finite};
-use crate::preflight::weld::weld;
+use crate::mesh::firsts_at_place;
 use crate::spatial::{Bounds, BoxTree};
 
 /// Merges the vertices that triangles use; for each vertex the one that stands for it.
@@ -21,7 +21,7 @@ pub(super) fn merge(work: &mut Work, within: f64) -> Vec<VertexId> {
 
 /// The first vertex in use at the place of each one in use; others stay themselves.
 fn at_one_place(work: &Work, is_used: &[bool]) -> Vec<VertexId> {
-    let mut kept = weld(work.points);
+    let mut kept = firsts_at_place(work.points);
     let mut first_in_use = vec![None; kept.len()];
     for v in (0..kept.len()).map(VertexId::new) {
         let place = kept[v.index()];

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
 use super::trees::{Knot, Trees};
-use crate::base::{Id, Point, VertexId};
+use crate::base::{Id, Point, VertexId, rising};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS};
@@ -31,7 +31,7 @@ pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point]
 /// Dissolves what has an edge with a middle that a tet of others has without: beside a middle that moved out of the line there is room for that.
 pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     let of_others = mesh.tets.iter().zip(&trees.knot_of).filter(|(_, knot)| **knot == NONE);
-    let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| sorted([tet[i], tet[j]])));
+    let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| rising([tet[i], tet[j]])));
     let edges: HashSet<[VertexId; 2]> = edges.collect();
     if edges.is_empty() {
         return;
@@ -39,15 +39,10 @@ pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     for knot in 0..trees.knots.len() as u32 {
         let vertices = trees.knots[knot as usize].vertices;
         let mut split = EDGES.iter().enumerate().filter(|(e, _)| vertices[4 + e] != VertexId::NONE);
-        if split.any(|(_, &[i, j])| edges.contains(&sorted([vertices[i], vertices[j]]))) {
+        if split.any(|(_, &[i, j])| edges.contains(&rising([vertices[i], vertices[j]]))) {
             trees.dissolve(knot);
         }
     }
-}
-
-fn sorted<const N: usize>(mut vertices: [VertexId; N]) -> [VertexId; N] {
-    vertices.sort_unstable();
-    vertices
 }
 
 /// Dissolves tets of several pieces that meet at a facet, cut by one or two middles, what has no such facet. Such a cut is not a step on the way to a facet divided in four, so
@@ -102,5 +97,5 @@ fn cut_facet(knot: &Knot, triangle: [VertexId; 3]) -> Option<[VertexId; 3]> {
         triangle.iter().all(|v| corners.contains(v) || middles.contains(v))
     })?;
     let n = FACET_EDGES[facet].iter().filter(|e| knot.vertices[4 + **e] != VertexId::NONE).count();
-    (n == 1 || n == 2).then(|| sorted(FACETS[facet].map(|k| knot.vertices[k])))
+    (n == 1 || n == 2).then(|| rising(FACETS[facet].map(|k| knot.vertices[k])))
 }
