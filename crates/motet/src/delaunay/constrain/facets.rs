@@ -7,35 +7,45 @@ use hashbrown::HashSet;
 
 use super::cut::{Cut, Face, Stuck};
 use super::flats::Flats;
+use super::pierce::Pierce;
 use super::plane::Plane;
 use super::segments::Segments;
 use super::sites::Sites;
+use super::split::Kept;
 use super::tets::Tets;
 use super::wrap::Wrap;
 use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
-/// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is.
+/// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is. Where that does not go, and
+/// `may_swap`, triangles get points inside.
 pub(super) fn recover(
     tets: &mut Tets,
-    sites: &Sites,
+    sites: &mut Sites,
     segments: &Segments,
     triangles: &[[VertexId; 3]],
     flats: &Flats,
+    may_swap: bool,
 ) -> Result<Csr<[VertexId; 3]>> {
     let on_segments = segments.points(sites);
     let mut work = Work::default();
     let mut parts = Csr::default();
     for flat in flats.triangles.iter() {
         let first = triangles[flat[0] as usize];
-        let own = match flat {
-            [_] => parts_of(sites, segments, &on_segments, first),
-            _ => parts_of_many(sites, segments, &on_segments, flat.iter().map(|&i| triangles[i as usize])),
+        let all = flat.iter().map(|&i| triangles[i as usize]);
+        let mut own = match flat {
+            [_] => parts_of(sites, &polygon_of(segments, &on_segments, first), first),
+            _ => parts_of_many(sites, all.clone(), |t| polygon_of(segments, &on_segments, t)),
         };
-        let missing: Vec<_> = own.iter().copied().filter(|&part| work.is_missing(tets, part)).collect();
-        if work.recover(tets, sites, first, missing).is_err() {
-            return Err(stuck(sites, flat[0], first));
-        }
+        let missing = work.missing(tets, &own);
+        let done = match missing[..] {
+            [] => Ok(()),
+            _ if may_swap => {
+                work.make(tets, sites, segments, flat.iter().copied().zip(all).collect(), &mut own)
+            }
+            _ => work.recover(tets, sites, first, missing),
+        };
+        done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
         work.walls.extend(own.iter().copied().map(rising));
         parts.push(own);
     }
@@ -49,28 +59,24 @@ fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Error {
         .remedy("look for triangles that cross or touch it")
 }
 
-/// The triangles of a flat facet, with the points on its outline, as constrained Delaunay triangles.
-fn parts_of_many(
-    sites: &Sites,
-    segments: &Segments,
-    on_segments: &Csr<VertexId>,
-    triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
-) -> Vec<[VertexId; 3]> {
-    let Some(first) = triangles.clone().next() else { return Vec::new() };
-    let plane = Plane::new(sites, first);
-    let turned = triangles.map(|t| plane.turned(t));
-    let mut parts: Vec<_> = turned.flat_map(|t| parts_of(sites, segments, on_segments, t)).collect();
-    plane.make_delaunay(&mut parts);
-    parts
+/// The edges and facets of the surface that are there.
+struct Walls<'a> {
+    segments: &'a Segments,
+    walls: &'a HashSet<[VertexId; 3]>,
 }
 
-/// A triangle as the Delaunay triangles of its corners and the points on its edges.
-fn parts_of(
-    sites: &Sites,
-    segments: &Segments,
-    on_segments: &Csr<VertexId>,
-    triangle: [VertexId; 3],
-) -> Vec<[VertexId; 3]> {
+impl Kept for Walls<'_> {
+    fn has_edge(&self, edge: [VertexId; 2]) -> bool {
+        self.segments.has_piece(edge)
+    }
+
+    fn has_facet(&self, face: [VertexId; 3]) -> bool {
+        self.walls.contains(&rising(face))
+    }
+}
+
+/// The corners of a triangle and the points on its edges, as it is turned.
+fn polygon_of(segments: &Segments, on_segments: &Csr<VertexId>, triangle: [VertexId; 3]) -> Vec<VertexId> {
     let mut polygon = Vec::with_capacity(3);
     for i in 0..3 {
         let [a, b] = [triangle[i], triangle[(i + 1) % 3]];
@@ -82,10 +88,26 @@ fn parts_of(
             polygon.extend(on.iter().rev());
         }
     }
-    if polygon.len() == 3 {
-        return vec![triangle];
-    }
-    Plane::new(sites, triangle).triangulate(&polygon)
+    polygon
+}
+
+/// The triangles of a flat facet, with the points on its outline, as constrained Delaunay triangles.
+fn parts_of_many(
+    sites: &Sites,
+    triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
+    polygon: impl Fn([VertexId; 3]) -> Vec<VertexId>,
+) -> Vec<[VertexId; 3]> {
+    let Some(first) = triangles.clone().next() else { return Vec::new() };
+    let plane = Plane::new(sites, first);
+    let turned = triangles.map(|t| plane.turned(t));
+    let mut parts: Vec<_> = turned.flat_map(|t| parts_of(sites, &polygon(t), t)).collect();
+    plane.make_delaunay(&mut parts);
+    parts
+}
+
+/// A triangle as the Delaunay triangles of its corners and the points on its edges.
+fn parts_of(sites: &Sites, polygon: &[VertexId], triangle: [VertexId; 3]) -> Vec<[VertexId; 3]> {
+    if polygon.len() == 3 { vec![triangle] } else { Plane::new(sites, triangle).triangulate(polygon) }
 }
 
 /// Working space.
@@ -99,8 +121,34 @@ struct Work {
 }
 
 impl Work {
-    fn is_missing(&mut self, tets: &mut Tets, part: [VertexId; 3]) -> bool {
-        tets.find_facet(part, &mut self.star).is_none()
+    fn missing(&mut self, tets: &mut Tets, parts: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
+        parts.iter().copied().filter(|&part| tets.find_facet(part, &mut self.star).is_none()).collect()
+    }
+
+    /// Makes a flat facet facets of tets: by swaps, or by filling the hollows on both sides anew, or with points inside.
+    fn make(
+        &mut self,
+        tets: &mut Tets,
+        sites: &mut Sites,
+        segments: &Segments,
+        triangles: Vec<(u32, [VertexId; 3])>,
+        own: &mut Vec<[VertexId; 3]>,
+    ) -> Result<(), Stuck> {
+        let first = triangles[0].1;
+        let mut pierce = Pierce::new(triangles, own);
+        if pierce.swap_all(tets, sites)
+            && let Some(facets) = pierce.facets(tets, sites)
+        {
+            *own = facets;
+            return Ok(());
+        }
+        // Swaps may have taken parts away that were there.
+        let missing = self.missing(tets, own);
+        if self.recover(tets, sites, first, missing).is_err() {
+            let kept = Walls { segments, walls: &self.walls };
+            *own = pierce.run(tets, sites, &kept).ok_or(Stuck)?;
+        }
+        Ok(())
     }
 
     /// Makes the missing parts of a triangle facets, those together between which there is no edge.
@@ -142,18 +190,39 @@ impl Work {
         rim: ([VertexId; 2], VertexId),
     ) -> Result<(), Stuck> {
         self.cut.find(tets, sites, triangle, rim, |face| self.walls.contains(&rising(face)))?;
+        let old: Vec<_> = self.cut.tets.iter().map(|&tet| tets.vertices(tet)).collect();
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
-        let [mut front, mut behind] = std::mem::take(&mut self.cut.shells);
-        front.extend(group.iter().map(|&vertices| Face { vertices, outer: HalfFacet::NONE }));
-        self.wrap.fill(tets, sites, &front, &self.cut.vertices[0])?;
+        let shells = std::mem::take(&mut self.cut.shells);
+        self.wrap.begin();
+        let filled = self.fill(tets, sites, group, &shells);
+        if filled.is_err() {
+            self.wrap.made().iter().for_each(|&tet| tets.remove(tet));
+            let outer = shells.iter().flatten().filter(|face| !face.outer.is_none());
+            tets.put(&old, outer.map(|face| (rising(face.vertices), face.outer)).collect());
+        }
+        self.cut.shells = shells;
+        filled
+    }
+
+    /// Fills both hollows of a group of parts.
+    fn fill(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        group: &[[VertexId; 3]],
+        shells: &[Vec<Face>; 2],
+    ) -> Result<(), Stuck> {
+        let mut faces = shells[0].clone();
+        faces.extend(group.iter().map(|&vertices| Face { vertices, outer: HalfFacet::NONE }));
+        self.wrap.fill(tets, sites, &faces, &self.cut.vertices[0])?;
         self.join_walls(tets);
+        faces.clone_from(&shells[1]);
         for &[a, b, c] in group {
             let outer = self.wrap.inner([a, b, c]).ok_or(Stuck)?;
-            behind.push(Face { vertices: [a, c, b], outer });
+            faces.push(Face { vertices: [a, c, b], outer });
         }
-        self.wrap.fill(tets, sites, &behind, &self.cut.vertices[1])?;
+        self.wrap.fill(tets, sites, &faces, &self.cut.vertices[1])?;
         self.join_walls(tets);
-        self.cut.shells = [front, behind];
         Ok(())
     }
 

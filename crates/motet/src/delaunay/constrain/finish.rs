@@ -2,7 +2,8 @@
 
 use super::bodies::Bodies;
 use super::plane::Plane;
-use super::{Constrained, Filled, PointOnEdge};
+use super::sites::Place;
+use super::{Constrained, Filled, PointInTriangle, PointOnEdge};
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::predicates::spot::Between;
 use crate::geometry::vector::{cross, dot, sub};
@@ -11,22 +12,33 @@ impl Filled {
     /// Leaves out what lies outside, and numbers the rest.
     pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: [f64; 2]) -> Constrained {
         let numbers = Numbers::new(&self, points.len());
-        let between = |on: &PointOnEdge| {
-            let [a, b] = on.ends.map(|v| points[v.index()]);
-            Between::new(a, b, on.share).rounded()
+        let on_edge = |v: &VertexId| match self.sites.place(*v)? {
+            Place::On(place) => {
+                Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share })
+            }
+            Place::In(..) => None,
         };
-        let on_edge = |v: &VertexId| {
-            let place = self.sites.on_segment(*v)?;
-            Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share })
+        let in_triangle = |v: &VertexId| match self.sites.place(*v)? {
+            Place::In(triangle, shares) => Some(PointInTriangle { triangle, shares }),
+            Place::On(_) => None,
         };
         let on_edges: Vec<_> = numbers.later.iter().filter_map(on_edge).collect();
-        let inside = numbers.later[on_edges.len()..]
+        let in_triangles: Vec<_> = numbers.later.iter().filter_map(in_triangle).collect();
+        let at = |v: VertexId| points[v.index()];
+        let of_edges = on_edges.iter().map(|on| Between::new(at(on.ends[0]), at(on.ends[1]), on.share));
+        let of_triangles = in_triangles.iter().map(|on| {
+            let [a, b, c] = triangles[on.triangle as usize].map(at);
+            Between::within(a, [b, c], on.shares)
+        });
+        let placed = of_edges.chain(of_triangles).map(|between| between.rounded());
+        let inside = numbers.later[on_edges.len() + in_triangles.len()..]
             .iter()
             .map(|&v| self.sites.near(v).map(|x| x * back[0] * back[1]));
         let tets = || self.tets.iter().filter_map(|(tet, v)| self.body(tet.index()).map(|b| (v, b)));
         Constrained {
-            points: points.iter().copied().chain(on_edges.iter().map(between)).chain(inside).collect(),
+            points: points.iter().copied().chain(placed).chain(inside).collect(),
             on_edges,
+            in_triangles,
             tets: tets().map(|(v, _)| v.map(|v| numbers.of(v))).collect(),
             bodies: tets().map(|(_, b)| b).collect(),
             triangle_to_facets: self.facets(triangles, &numbers),
@@ -102,7 +114,7 @@ impl Filled {
     }
 }
 
-/// New numbers of vertices: those given keep theirs, then come points on edges, then points inside.
+/// New numbers of vertices: those given keep theirs, then come points on edges, in triangles and inside.
 struct Numbers {
     /// Those not given that are used, in their new order.
     later: Vec<VertexId>,
@@ -119,8 +131,12 @@ impl Numbers {
         }
         filled.parts.items().as_flattened().iter().for_each(|v| is_used[v.index()] = true);
         let used = (n_given..is_used.len()).filter(|&v| is_used[v]).map(VertexId::new);
-        let (mut later, inside): (Vec<_>, Vec<_>) = used.partition(|&v| filled.sites.on_segment(v).is_some());
-        later.extend(inside);
+        let mut later: Vec<VertexId> = used.collect();
+        later.sort_by_key(|&v| match filled.sites.place(v) {
+            Some(Place::On(_)) => 0,
+            Some(Place::In(..)) => 1,
+            None => 2,
+        });
         let mut old_to_new: Vec<u32> = (0..is_used.len() as u32).collect();
         later.iter().enumerate().for_each(|(i, v)| old_to_new[v.index()] = (n_given + i) as u32);
         Self { later, old_to_new }

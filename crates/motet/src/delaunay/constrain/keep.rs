@@ -1,4 +1,4 @@
-//! The surface put right: points on its edges move inside, and flat facets get back the triangles that they were.
+//! The surface put right: points on its edges and in its triangles move inside, and flat facets get back the triangles that they were.
 //!
 //! What it takes is a point inside on each side that has tets (`recone`). A point stays on its edge where a side has no room for one, such as
 //! at the free edge of a membrane. Tets outside are made anew like the others, but nobody asks whether they are positive: they only keep together what
@@ -11,7 +11,7 @@ use super::flats::Flats;
 use super::plane::{Net, Plane};
 use super::recone::Side;
 use super::segments::Segments;
-use super::sites::{SegmentId, Sites};
+use super::sites::{Place, SegmentId, Sites};
 use super::tets::Tets;
 use crate::base::{Csr, Point, TetId, VertexId, rising};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
@@ -51,29 +51,31 @@ impl<'a> Keep<'a> {
         Self { tets, sites, bodies, triangles, flats, walls }
     }
 
-    /// Puts all right that can be; answers the facets of each flat facet.
-    pub(super) fn run(mut self, segments: &Segments) -> Csr<[VertexId; 3]> {
+    /// Puts all right that can be; answers the facets of each flat facet, and whether all of those have their triangles.
+    pub(super) fn run(mut self, segments: &Segments) -> (Csr<[VertexId; 3]>, bool) {
         let on_segments = segments.points(self.sites);
         let mut chains: Vec<(u32, Vec<VertexId>)> = (0..on_segments.len() as u32)
             .map(|s| (s, on_segments.list(s as usize).to_vec()))
             .filter(|(_, points)| !points.is_empty())
             .collect();
+        let is_in = |(v, place): (VertexId, Place)| matches!(place, Place::In(..)).then_some(v);
+        let mut in_triangles: Vec<VertexId> = self.sites.all_placed().filter_map(is_in).collect();
         // What has no room at first may have some once its neighbours have moved.
         for _ in 0..ROUNDS {
+            in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
             for (segment, points) in &mut chains {
                 self.free_all(segments.ends(SegmentId(*segment)), points);
             }
             chains.retain(|(_, points)| !points.is_empty());
         }
         let mut lists = self.lists();
+        let mut is_whole = true;
         for (flat, list) in lists.iter_mut().enumerate() {
-            if self.flats.triangles.list(flat).len() > 1 {
-                self.restore(flat, list);
-            }
+            is_whole &= self.flats.triangles.list(flat).len() == 1 || self.restore(flat, list).is_some();
         }
         let mut csr = Csr::default();
         lists.into_iter().for_each(|list| csr.push(list));
-        csr
+        (csr, is_whole)
     }
 
     /// Moves the points of a segment inside, those that can be; the others are left in the list.
@@ -81,7 +83,7 @@ impl<'a> Keep<'a> {
         let mut left = Vec::new();
         for (i, &vertex) in points.iter().enumerate() {
             let after = points.get(i + 1).copied().unwrap_or(last);
-            if self.free(vertex, [before, after]).is_none() {
+            if self.free(vertex, Some([before, after])).is_none() {
                 left.push(vertex);
                 before = vertex;
             }
@@ -106,8 +108,8 @@ impl<'a> Keep<'a> {
         lists
     }
 
-    /// Moves a point on an edge inside; its neighbours on the edge are joined. `None` where that cannot be.
-    fn free(&mut self, vertex: VertexId, ends: [VertexId; 2]) -> Option<()> {
+    /// Moves a point on an edge inside, whose neighbours `ends` on the edge are joined, or one in a triangle. `None` where that cannot be.
+    fn free(&mut self, vertex: VertexId, ends: Option<[VertexId; 2]>) -> Option<()> {
         let mut star = Vec::new();
         self.tets.star(vertex, &mut star);
         let fans = self.fans(vertex, &star);
@@ -156,7 +158,7 @@ impl<'a> Keep<'a> {
     fn joined(
         &self,
         vertex: VertexId,
-        ends: [VertexId; 2],
+        ends: Option<[VertexId; 2]>,
         fan: &[(u32, [VertexId; 3])],
     ) -> Option<Vec<(u32, [VertexId; 3])>> {
         let flat = fan[0].0;
@@ -166,6 +168,14 @@ impl<'a> Keep<'a> {
             v if v == a => (b, c),
             v if v == b => (c, a),
             _ => (a, b),
+        };
+        let Some(ends) = ends else {
+            let mut polygon = vec![step(&fan[0]).0];
+            for _ in 1..fan.len() {
+                let next = fan.iter().map(step).find(|s| Some(&s.0) == polygon.last())?;
+                polygon.push(next.1);
+            }
+            return Some(plane.clip(&polygon)?.into_iter().map(|t| (flat, t)).collect());
         };
         let mut triangles = Vec::new();
         let mut n_steps = 0;
@@ -294,7 +304,7 @@ impl<'a> Keep<'a> {
 
     /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained
     /// Delaunay triangulations*).
-    fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) {
+    fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) -> Option<()> {
         let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
         let wanted: Vec<_> = self
             .flats
@@ -304,7 +314,7 @@ impl<'a> Keep<'a> {
             .map(|&i| plane(self, self.triangles[i as usize]))
             .collect();
         if wanted.len() != list.len() {
-            return;
+            return None;
         }
         let mut net = Net::new(list);
         for edge in Net::new(&wanted).edges() {
@@ -318,21 +328,20 @@ impl<'a> Keep<'a> {
                 let Some([(s, p), (t, q)]) = net.sides([a, b]) else { continue };
                 left -= 1;
                 if left == 0 {
-                    return;
+                    return None;
                 }
                 if !self.plane(flat as u32).can_flip([a, b], [p, q]) {
                     crossing.push_back([a, b]);
                     continue;
                 }
-                if self.flip(flat as u32, [a, b], [p, q]).is_none() {
-                    return;
-                }
+                self.flip(flat as u32, [a, b], [p, q])?;
                 net.flip(list, [a, b], [(s, p), (t, q)]);
                 if self.plane(flat as u32).cross(edge, [p, q]) {
                     crossing.push_back([p, q]);
                 }
             }
         }
+        Some(())
     }
 
     /// Replaces the edge a b within a flat facet by p q.

@@ -3,10 +3,15 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | start | here | the Delaunay triangulation of all vertices, within a large box |
-//! | edges | `segments`, `insert` | a missing edge of the surface gets points on it until its pieces are edges of tets |
-//! | facets | `facets`, `plane`, `cut`, `wrap` | a missing part of a triangle removes the tets that it cuts; both hollows are filled again |
+//! | edges | `edges`, `way`, `swap`, `split` | a missing edge of the surface is made by swaps of tets; where none helps, it gets a point |
+//! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is made by swaps; or the tets that it cuts go, and both hollows are filled again; or it gets points |
 //! | bodies | `bodies` | what the surfaces part |
+//! | surface | `keep`, `recone` | points on edges and in triangles move inside |
 //!
+//! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, all begins anew, with
+//! each triangle for itself.
+//!
+//! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
 //! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
 //! higher-dimensional constrained Delaunay triangulations*), so no facet needs a point inside it.
 //!
@@ -20,17 +25,22 @@
 
 mod bodies;
 mod cut;
+mod edges;
 mod facets;
 mod finish;
 mod flats;
 mod hollow;
 mod insert;
 mod keep;
+mod pierce;
 mod plane;
 mod recone;
 mod segments;
 mod sites;
+mod split;
+mod swap;
 mod tets;
+mod way;
 mod wrap;
 
 use super::Triangulation;
@@ -39,6 +49,7 @@ use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
+use edges::Edges;
 use flats::Flats;
 use keep::Keep;
 use segments::Segments;
@@ -60,14 +71,25 @@ pub struct PointOnEdge {
     pub share: f64,
 }
 
+/// A point that was put in a triangle of the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointInTriangle {
+    /// The triangle, by its number.
+    pub triangle: u32,
+    /// Shares of the ways from its first corner to the others; the exact point is `first + s (second - first) + t (third - first)`.
+    pub shares: [f64; 2],
+}
+
 /// Tets that have every triangle of the surfaces among their facets. Where points stay on edges ([`EdgePoints::Stay`]), no vertex that a tet
 /// can see lies inside its sphere.
 #[derive(Clone, Debug)]
 pub struct Constrained {
-    /// The points as they were given, then points on edges, rounded, then points inside.
+    /// The points as they were given, then points on edges and in triangles, rounded, then points inside.
     pub points: Vec<Point>,
     /// What the points on edges are.
     pub on_edges: Vec<PointOnEdge>,
+    /// What the points in triangles are; none where points stay on edges.
+    pub in_triangles: Vec<PointInTriangle>,
     /// The tets within the surfaces, positively oriented before points were rounded.
     pub tets: Vec<[VertexId; 4]>,
     /// The body of each tet, from 0: tets that are joined without crossing the surface.
@@ -105,19 +127,17 @@ pub fn constrain(
     let (mut given, back) = in_box(points)?;
     let (triangulation, order) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
-    let mut tets = Tets::new(&triangulation);
-    drop(triangulation);
     given.extend(far_around(&given));
-    let mut sites = Sites::new(given, &order);
-    let flats = Flats::find(&sites, triangles, edge_points == EdgePoints::MoveInside);
-    let mut segments = Segments::new(flats.creases.clone());
-    segments.recover(&mut tets, &mut sites)?;
-    let mut parts = facets::recover(&mut tets, &sites, &segments, triangles, &flats)?;
-    let mut bodies = Bodies::find(&mut tets, &parts, VertexId::new(points.len()))?;
-    if edge_points == EdgePoints::MoveInside {
-        parts = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts).run(&segments);
-    }
-    let filled = Filled { tets, sites, segments, flats, bodies, parts };
+    let fill = |is_merged: bool| {
+        let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &order));
+        let flats = Flats::find(&sites, triangles, is_merged);
+        Filled::new(tets, sites, points.len(), triangles, flats, edge_points)
+    };
+    let filled = match edge_points {
+        EdgePoints::Stay => fill(false)?,
+        // With each triangle for itself all its edges are there, if in pieces.
+        EdgePoints::MoveInside => fill(true).ok().filter(Filled::is_kept).map_or_else(|| fill(false), Ok)?,
+    };
     Ok(filled.finish(points, triangles, back))
 }
 
@@ -174,4 +194,39 @@ struct Filled {
     flats: Flats,
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
+    /// Whether flat facets have the triangles that they came with, if in parts.
+    is_whole: bool,
+}
+
+impl Filled {
+    fn new(
+        mut tets: Tets,
+        mut sites: Sites,
+        n_points: usize,
+        triangles: &[[VertexId; 3]],
+        flats: Flats,
+        edge_points: EdgePoints,
+    ) -> Result<Self> {
+        let is_kept = edge_points == EdgePoints::MoveInside;
+        let mut segments = Segments::new(flats.creases.clone());
+        if is_kept {
+            Edges::new(&mut tets, &mut sites, &mut segments).recover()?;
+        } else {
+            segments.recover(&mut tets, &mut sites)?;
+        }
+        let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept)?;
+        let mut bodies = Bodies::find(&mut tets, &parts, VertexId::new(n_points))?;
+        let mut is_whole = true;
+        if is_kept {
+            let keep = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
+            (parts, is_whole) = keep.run(&segments);
+        }
+        Ok(Self { tets, sites, segments, flats, bodies, parts, is_whole })
+    }
+
+    /// Whether each triangle is a facet as it came.
+    fn is_kept(&self) -> bool {
+        let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
+        self.is_whole && self.parts.items().len() == n
+    }
 }

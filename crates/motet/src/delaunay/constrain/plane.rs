@@ -35,7 +35,7 @@ impl<'a> Plane<'a> {
     }
 
     /// 1 where three vertices of the plane turn as the triangle does.
-    fn turn(&self, v: [VertexId; 3]) -> i8 {
+    pub(super) fn turn(&self, v: [VertexId; 3]) -> i8 {
         let [a, b, c] = v.map(|v| self.sites.spot(v));
         orient3d_of([a, b, c, Spot::Given(self.beside)])
     }

@@ -15,7 +15,7 @@ use std::collections::VecDeque;
 use hashbrown::HashMap;
 
 use super::insert::Insertion;
-use super::sites::{OnSegment, SegmentId, Sites};
+use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
 use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
@@ -45,6 +45,11 @@ impl Segments {
         Self { ends, pieces }
     }
 
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.ends.len()
+    }
+
     /// The ends of a segment.
     pub(super) fn ends(&self, segment: SegmentId) -> [VertexId; 2] {
         self.ends[segment.0 as usize]
@@ -55,10 +60,52 @@ impl Segments {
         self.ends.binary_search(&rising(edge)).ok().map(|s| SegmentId(s as u32))
     }
 
+    /// Whether an edge is a piece of a segment.
+    pub(super) fn has_piece(&self, edge: [VertexId; 2]) -> bool {
+        self.pieces.contains_key(&edge)
+    }
+
+    /// The segment of a piece.
+    pub(super) fn of_piece(&self, piece: [VertexId; 2]) -> SegmentId {
+        self.pieces[&rising(piece)]
+    }
+
+    /// Where on a segment one of its vertices lies, in [0, 1].
+    pub(super) fn share(&self, sites: &Sites, segment: SegmentId, vertex: VertexId) -> f64 {
+        let of_end = if vertex == self.ends(segment)[0] { 0.0 } else { 1.0 };
+        sites.on_segment(vertex).map_or(of_end, |on| on.share)
+    }
+
+    /// The ends of a piece as they come on its segment.
+    pub(super) fn in_order(
+        &self,
+        sites: &Sites,
+        segment: SegmentId,
+        mut piece: [VertexId; 2],
+    ) -> [VertexId; 2] {
+        let share = |v: VertexId| self.share(sites, segment, v);
+        piece.sort_by(|&a, &b| share(a).total_cmp(&share(b)));
+        piece
+    }
+
+    /// Puts a vertex between the ends of a piece. The two new pieces.
+    pub(super) fn divide(&mut self, piece: [VertexId; 2], vertex: VertexId) -> [[VertexId; 2]; 2] {
+        let segment = self.of_piece(piece);
+        self.pieces.remove(&rising(piece));
+        piece.map(|end| {
+            let half = rising([end, vertex]);
+            self.pieces.insert(half, segment);
+            half
+        })
+    }
+
     /// The points on each segment, from its first end to its second.
     pub(super) fn points(&self, sites: &Sites) -> Csr<VertexId> {
-        let key = |(v, place): (VertexId, OnSegment)| (place.segment, place.share, v);
-        let mut on: Vec<(SegmentId, f64, VertexId)> = sites.all_on_segments().map(key).collect();
+        let key = |(v, place): (VertexId, Place)| match place {
+            Place::On(place) => Some((place.segment, place.share, v)),
+            Place::In(..) => None,
+        };
+        let mut on: Vec<(SegmentId, f64, VertexId)> = sites.all_placed().filter_map(key).collect();
         on.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         Csr::from_pairs(self.ends.len(), || on.iter().map(|&(s, _, v)| (s.0 as usize, v)))
     }
@@ -73,10 +120,10 @@ impl Segments {
             if tets.find_edge(piece, &mut star).is_some() {
                 continue;
             }
-            if sites.all_on_segments().len() == most {
+            if sites.n_on_segments() == most {
                 return Err(self.refused(sites, segment, "asks, with others, for too many points on edges"));
             }
-            let Some(share) = self.share(tets, sites, segment, piece, &mut star) else {
+            let Some(share) = self.where_to_divide(tets, sites, segment, piece, &mut star) else {
                 return Err(self.refused(
                     sites,
                     segment,
@@ -85,18 +132,14 @@ impl Segments {
             };
             let start = tets.at(piece[0]);
             let vertex = sites.add(self.ends(segment), OnSegment { segment, share });
-            self.pieces.remove(&piece);
-            for end in piece {
-                self.pieces.insert(rising([end, vertex]), segment);
-                queue.push_back(rising([end, vertex]));
-            }
+            queue.extend(self.divide(piece, vertex));
             let lost = insertion.insert(tets, sites, vertex, start);
             queue.extend(lost.into_iter().filter(|edge| self.pieces.contains_key(edge)));
         }
         Ok(())
     }
 
-    fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Error {
+    pub(super) fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Error {
         let [a, b] = self.ends(segment);
         Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
@@ -104,7 +147,7 @@ impl Segments {
     }
 
     /// The segments that are no edges of tets; rising.
-    fn missing(&self, tets: &Tets) -> Vec<[VertexId; 2]> {
+    pub(super) fn missing(&self, tets: &Tets) -> Vec<[VertexId; 2]> {
         let n_rows = self.ends.last().map_or(0, |e| e[0].index() + 1);
         let mut starts = vec![0u32; n_rows + 1];
         self.ends.iter().for_each(|e| starts[e[0].index() + 1] += 1);
@@ -124,7 +167,7 @@ impl Segments {
     }
 
     /// Where to divide a piece, as a share of its segment. `None` where no number lies between its ends.
-    fn share(
+    fn where_to_divide(
         &self,
         tets: &mut Tets,
         sites: &Sites,
@@ -132,12 +175,8 @@ impl Segments {
         piece: [VertexId; 2],
         star: &mut Vec<TetId>,
     ) -> Option<f64> {
-        let [from, _] = self.ends(segment);
-        let share_of =
-            |v: VertexId| sites.on_segment(v).map_or(if v == from { 0.0 } else { 1.0 }, |on| on.share);
-        let mut ends = piece;
-        ends.sort_by(|&a, &b| share_of(a).total_cmp(&share_of(b)));
-        let [low, high] = ends.map(share_of);
+        let ends = self.in_order(sites, segment, piece);
+        let [low, high] = ends.map(|v| self.share(sites, segment, v));
         let sharpest = sharpest(tets, sites, ends, star);
         let from_corner = sharpest.and_then(|p| self.as_far(sites, segment, p));
         let is_well_within = |&s: &f64| (LEAST..1.0 - LEAST).contains(&((s - low) / (high - low)));

@@ -4,7 +4,7 @@
 //! in the order of insertion; points on segments come last.
 
 use crate::base::{Point, VertexId};
-use crate::geometry::predicates::spot::{Between, Spot, insphere_perturbed_of, orient3d_of};
+use crate::geometry::predicates::spot::{Between, Spot, insphere_perturbed_of, orient3d_of, volume_ratios};
 use crate::geometry::predicates::{insphere_perturbed, orient3d};
 
 /// An input edge, by its place in the list.
@@ -19,14 +19,23 @@ pub(super) struct OnSegment {
     pub(super) share: f64,
 }
 
+/// Where a point lies that has no coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    On(OnSegment),
+    /// In a triangle of the surface, by its number, at shares of the ways from its first corner to the others.
+    In(u32, [f64; 2]),
+}
+
 /// All vertices.
 pub(super) struct Sites {
     /// Coordinates, rounded where they must be.
     near: Vec<Point>,
     n_given: usize,
-    /// For vertices after those given, their place in `on`, if they lie on a segment.
+    /// For vertices after those given, their place in `on`, if they lie on a segment or in a triangle.
     later: Vec<Option<u32>>,
-    on: Vec<(VertexId, OnSegment, Between)>,
+    on: Vec<(VertexId, Place, Between)>,
+    n_on_segments: usize,
     ranks: Vec<u32>,
 }
 
@@ -35,7 +44,7 @@ impl Sites {
     pub(super) fn new(given: Vec<Point>, order: &[u32]) -> Self {
         let mut ranks = vec![0; given.len()];
         order.iter().enumerate().skip(1).for_each(|(rank, &id)| ranks[id as usize] = rank as u32);
-        Self { n_given: given.len(), near: given, later: Vec::new(), on: Vec::new(), ranks }
+        Self { n_given: given.len(), near: given, later: Vec::new(), on: Vec::new(), n_on_segments: 0, ranks }
     }
 
     /// How many there are, those on segments included.
@@ -52,6 +61,17 @@ impl Sites {
     /// Adds a point on a segment between two given vertices.
     pub(super) fn add(&mut self, [from, to]: [VertexId; 2], place: OnSegment) -> VertexId {
         let between = Between::new(self.near[from.index()], self.near[to.index()], place.share);
+        self.n_on_segments += 1;
+        self.put(Place::On(place), between)
+    }
+
+    /// Adds a point in a triangle of given vertices, at shares of the ways from its first corner to the others.
+    pub(super) fn add_in(&mut self, triangle: u32, corners: [VertexId; 3], shares: [f64; 2]) -> VertexId {
+        let [from, to, third] = corners.map(|v| self.near[v.index()]);
+        self.put(Place::In(triangle, shares), Between::within(from, [to, third], shares))
+    }
+
+    fn put(&mut self, place: Place, between: Between) -> VertexId {
         let vertex = self.push(between.rounded(), Some(self.on.len() as u32));
         self.on.push((vertex, place, between));
         vertex
@@ -75,18 +95,31 @@ impl Sites {
         vertex
     }
 
-    fn on(&self, vertex: VertexId) -> Option<&(VertexId, OnSegment, Between)> {
+    fn on(&self, vertex: VertexId) -> Option<&(VertexId, Place, Between)> {
         let later = vertex.index().checked_sub(self.n_given)?;
         self.later[later].map(|i| &self.on[i as usize])
     }
 
-    /// Where a vertex lies, if it lies on a segment.
-    pub(super) fn on_segment(&self, vertex: VertexId) -> Option<OnSegment> {
+    /// Where a vertex lies, if it lies on a segment or in a triangle.
+    pub(super) fn place(&self, vertex: VertexId) -> Option<Place> {
         self.on(vertex).map(|on| on.1)
     }
 
-    /// All points on segments, in the order of their numbers.
-    pub(super) fn all_on_segments(&self) -> impl ExactSizeIterator<Item = (VertexId, OnSegment)> + '_ {
+    /// Where a vertex lies, if it lies on a segment.
+    pub(super) fn on_segment(&self, vertex: VertexId) -> Option<OnSegment> {
+        match self.place(vertex)? {
+            Place::On(place) => Some(place),
+            Place::In(..) => None,
+        }
+    }
+
+    /// How many points on segments there are.
+    pub(super) fn n_on_segments(&self) -> usize {
+        self.n_on_segments
+    }
+
+    /// All points on segments and in triangles, in the order of their numbers.
+    pub(super) fn all_placed(&self) -> impl Iterator<Item = (VertexId, Place)> + '_ {
         self.on.iter().map(|on| (on.0, on.1))
     }
 
@@ -111,6 +144,11 @@ impl Sites {
             return orient3d(a, b, c, d);
         }
         orient3d_of(v.map(|v| self.spot(v)))
+    }
+
+    /// Volumes of tets, all divided by one number; right to the last digits.
+    pub(super) fn volume_ratios<const N: usize>(&self, tets: [[VertexId; 4]; N]) -> [f64; N] {
+        volume_ratios(tets.map(|tet| tet.map(|v| self.spot(v))))
     }
 
     /// Whether `query` lies inside the sphere through a positive tet; ties are broken, so there is always an answer.

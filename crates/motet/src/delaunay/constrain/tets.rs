@@ -146,6 +146,35 @@ impl Tets {
         made
     }
 
+    /// Puts positive tets in the place of others that fill the same room.
+    pub(super) fn replace(&mut self, old: &[TetId], new: &[[VertexId; 4]]) {
+        self.begin();
+        old.iter().for_each(|&tet| _ = self.mark(tet));
+        let mut faces = Vec::with_capacity(4 * (old.len() + new.len()));
+        for half in old.iter().flat_map(|&tet| Self::facets(tet)) {
+            let other = self.across(half);
+            if other.is_none() || !self.is_marked(other.tet()) {
+                faces.push((rising(self.inward(half)), other));
+            }
+        }
+        old.iter().for_each(|&tet| self.remove(tet));
+        self.put(new, faces);
+    }
+
+    /// Adds positive tets and links them with each other and with what lies behind `faces`.
+    pub(super) fn put(&mut self, new: &[[VertexId; 4]], mut faces: Vec<([VertexId; 3], HalfFacet)>) {
+        for &vertices in new {
+            let tet = self.add(vertices);
+            faces.extend(Self::facets(tet).map(|half| (rising(self.inward(half)), half)));
+        }
+        faces.sort_unstable();
+        for pair in faces.chunk_by(|a, b| a.0 == b.0) {
+            if let [(_, a), (_, b)] = *pair {
+                self.join(a, b);
+            }
+        }
+    }
+
     /// Makes two facets each other's other side.
     pub(super) fn join(&mut self, a: HalfFacet, b: HalfFacet) {
         for (from, to) in [(a, b), (b, a)] {
@@ -215,6 +244,25 @@ impl Tets {
         let tet = star.iter().copied().find(has)?;
         let i = self.vertices(tet).iter().position(|&v| v != a && v != b && v != c)?;
         Some(HalfFacet::new(tet, i))
+    }
+
+    /// The tets around an edge, from one of them on.
+    pub(super) fn around_from(&mut self, edge: [VertexId; 2], first: TetId, ring: &mut Vec<TetId>) {
+        ring.clear();
+        self.begin();
+        self.mark(first);
+        ring.push(first);
+        let mut next = 0;
+        while let Some(&tet) = ring.get(next) {
+            next += 1;
+            for half in Self::facets(tet) {
+                let other = self.across(half);
+                let is_of_edge = !edge.contains(&self.vertices(tet)[half.facet()]);
+                if is_of_edge && !other.is_none() && self.mark(other.tet()) {
+                    ring.push(other.tet());
+                }
+            }
+        }
     }
 
     /// The tets around an edge that is there.

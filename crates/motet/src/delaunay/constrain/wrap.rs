@@ -14,7 +14,7 @@ use super::cut::{Face, Stuck};
 use super::hollow::{Guide, smallest_first};
 use super::sites::Sites;
 use super::tets::Tets;
-use crate::base::VertexId;
+use crate::base::{TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::kernel::HalfFacet;
 
@@ -36,6 +36,7 @@ pub(super) struct Wrap {
     strange: HashSet<[VertexId; 3]>,
     /// The facets of new tets on faces with nothing behind them.
     bare: HashMap<[VertexId; 3], HalfFacet>,
+    made: Vec<TetId>,
 }
 
 impl Wrap {
@@ -47,7 +48,7 @@ impl Wrap {
         faces: &[Face],
         vertices: &[VertexId],
     ) -> Result<(), Stuck> {
-        self.begin(sites, faces, vertices);
+        self.start(sites, faces, vertices);
         let mut most = 64 + 16 * faces.len() + faces.len() * faces.len();
         while let Some(key) = self.queue.pop() {
             let Some(&face) = self.open.get(&key) else { continue };
@@ -58,7 +59,17 @@ impl Wrap {
         if self.open.is_empty() { Ok(()) } else { Err(Stuck) }
     }
 
-    fn begin(&mut self, sites: &Sites, faces: &[Face], vertices: &[VertexId]) {
+    /// Forgets which tets it made.
+    pub(super) fn begin(&mut self) {
+        self.made.clear();
+    }
+
+    /// The tets made since it began.
+    pub(super) fn made(&self) -> &[TetId] {
+        &self.made
+    }
+
+    fn start(&mut self, sites: &Sites, faces: &[Face], vertices: &[VertexId]) {
         self.open.clear();
         self.queue.clear();
         self.bare.clear();
@@ -94,6 +105,7 @@ impl Wrap {
     fn place(&mut self, tets: &mut Tets, face: Face, apex: VertexId) {
         let [a, b, c] = face.vertices;
         let tet = tets.add([a, b, c, apex]);
+        self.made.push(tet);
         self.close(face.vertices);
         self.join(tets, HalfFacet::new(tet, 3), face);
         for (i, facet) in FACETS.into_iter().enumerate().take(3) {

@@ -161,17 +161,25 @@ impl Exact {
         Self { units: p.map(|x| in_big_units(x, exponent)), exponent }
     }
 
-    /// `from + share (to - from)`
-    pub(crate) fn between(from: Point, to: Point, share: f64) -> Self {
-        let unit = common_exponent(&[from, to]);
-        let (mantissa, exponent) = decode(share);
-        // A share below 1 has an exponent below 0, so a unit of the segment is a whole number of the result's.
-        let (down, mantissa) = (exponent.min(0), Big::shifted(mantissa, exponent.max(0) as u32));
+    /// `from + s (to - from) + t (third - from)`
+    pub(crate) fn between(from: Point, to: [Point; 2], shares: [f64; 2]) -> Self {
+        let unit = common_exponent(&[from, to[0], to[1]]);
+        let shares = shares.map(decode);
+        // Shares below 1 have exponents below 0, so a unit of the corners is a whole number of the result's.
+        let down = shares[0].1.min(shares[1].1).min(0);
+        let shares = shares.map(|(mantissa, exponent)| {
+            Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(down) })
+        });
         let coordinate = |i: usize| {
-            let along = in_big_units(to[i], unit).minus(&in_big_units(from[i], unit)).times(&mantissa);
-            in_big_units(from[i], unit.saturating_add(down)).plus(&along)
+            let start = in_big_units(from[i], unit);
+            let along = |k: usize| in_big_units(to[k][i], unit).minus(&start).times(&shares[k]);
+            in_big_units(from[i], unit.saturating_add(down)).plus(&along(0)).plus(&along(1))
         };
         Self { units: [coordinate(0), coordinate(1), coordinate(2)], exponent: unit.saturating_add(down) }
+    }
+
+    fn is_origin(&self) -> bool {
+        self.units.iter().all(|x| x.sign() == 0)
     }
 
     /// The coordinates as multiples of a smaller power of two.
@@ -187,12 +195,14 @@ fn in_big_units(x: f64, unit: i32) -> Big {
     Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
 }
 
+/// The largest power of two of which all coordinates of points are known to be multiples.
+fn unit_of(points: &[Exact]) -> i32 {
+    points.iter().filter(|p| !p.is_origin()).map(|p| p.exponent).min().unwrap_or(0)
+}
+
 /// Differences to the first point, in one unit.
-fn rows_of<const N: usize, const M: usize>(points: &[Exact; N]) -> [BigRow; M] {
-    let zero = |p: &Exact| p.units.iter().all(|x| x.sign() == 0);
-    let exponents = points.iter().filter(|p| !zero(p)).map(|p| p.exponent);
-    let unit = exponents.min().unwrap_or(0);
-    let units = |p: &Exact| if zero(p) { Default::default() } else { p.in_units(unit) };
+fn rows_of<const N: usize, const M: usize>(points: &[Exact; N], unit: i32) -> [BigRow; M] {
+    let units = |p: &Exact| if p.is_origin() { Default::default() } else { p.in_units(unit) };
     let origin = units(&points[0]);
     std::array::from_fn(|k| {
         let p = units(&points[k + 1]);
@@ -203,12 +213,24 @@ fn rows_of<const N: usize, const M: usize>(points: &[Exact; N]) -> [BigRow; M] {
 /// [`orient3d`] of points of any length.
 #[cold]
 pub(crate) fn orient3d_of(points: [Exact; 4]) -> i8 {
-    let [b, c, d] = rows_of(&points);
+    let [b, c, d] = rows_of(&points, unit_of(&points));
     det3(&b, &c, &d).sign()
+}
+
+/// [`orient3d_ratios`] for points of any length.
+#[cold]
+pub(crate) fn orient3d_ratios_of<const N: usize>(tets: [[Exact; 4]; N]) -> [f64; N] {
+    let unit = tets.iter().map(|points| unit_of(points)).min().unwrap_or(0);
+    let determinants = tets.map(|points| {
+        let [b, c, d] = rows_of(&points, unit);
+        det3(&b, &c, &d)
+    });
+    let bits = determinants.iter().map(Big::bits).max().unwrap_or(0);
+    determinants.map(|x| x.ratio_to_power(bits))
 }
 
 /// [`insphere`] of points of any length.
 #[cold]
 pub(crate) fn insphere_of(points: [Exact; 5]) -> i8 {
-    insphere_big(&rows_of(&points))
+    insphere_big(&rows_of(&points, unit_of(&points)))
 }

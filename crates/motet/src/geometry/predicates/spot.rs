@@ -1,7 +1,7 @@
-//! Signs for points that need not be representable: a vertex may lie anywhere on the segment between two given points.
+//! Signs for points that need not be representable: a vertex may lie anywhere on the segment between two given points, or in the triangle of three.
 //!
 //! A point that divides a segment has, as a rule, no coordinates in `f64`: rounded, it leaves its segment and every plane through
-//! it. Here it stays what it is, `from + share (to - from)` (Attene 2020, *Indirect predicates for geometric constructions*, calls such
+//! it. Here it stays what it is, `from + share (to - from)`, in a triangle with a second share of the way to its third corner (Attene 2020, *Indirect predicates for geometric constructions*, calls such
 //! points implicit). As the share is an `f64` as well, the coordinates are whole multiples of a power of two, so the exact stage
 //! needs no divisions: it is the one of given points with longer numbers.
 //!
@@ -19,27 +19,38 @@ use crate::base::Point;
 use crate::geometry::vector;
 use pulp::Scalar;
 
-/// A place on a segment.
+/// A place on a segment, or in a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Between {
     from: Point,
-    to: Point,
-    share: f64,
+    to: [Point; 2],
+    /// Of the ways to both; the second is 0 on a segment.
+    shares: [f64; 2],
     /// The coordinates, rounded.
     near: Point,
     /// What the rounding left out, rounded.
     rest: Point,
+    /// The largest coordinate that went into it.
+    size: f64,
 }
 
 impl Between {
     /// The point `from + share (to - from)`; both ends and the share finite, the share in (0, 1).
     pub(crate) fn new(from: Point, to: Point, share: f64) -> Self {
+        Self::within(from, [to, from], [share, 0.0])
+    }
+
+    /// The point `from + s (to - from) + t (third - from)`; all finite, both shares and their sum in [0, 1].
+    pub(crate) fn within(from: Point, to: [Point; 2], shares: [f64; 2]) -> Self {
         let value = |i: usize| {
-            let along = Pair::difference(to[i], from[i]).times::<Scalar>(Pair { high: share, low: 0.0 });
-            normalized(along.plus(Pair { high: from[i], low: 0.0 }))
+            let along = |k: usize| {
+                Pair::difference(to[k][i], from[i]).times::<Scalar>(Pair { high: shares[k], low: 0.0 })
+            };
+            normalized(along(0).plus(along(1)).plus(Pair { high: from[i], low: 0.0 }))
         };
         let value = [value(0), value(1), value(2)];
-        Self { from, to, share, near: value.map(|p| p.high), rest: value.map(|p| p.low) }
+        let size = [from, to[0], to[1]].as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        Self { from, to, shares, near: value.map(|p| p.high), rest: value.map(|p| p.low), size }
     }
 
     /// The nearest point with coordinates in `f64`, or one beside it.
@@ -47,14 +58,14 @@ impl Between {
         self.near
     }
 
-    /// The ends of the segment and the share.
+    /// The corners and the shares.
     #[cfg(test)]
-    pub(crate) fn parts(&self) -> ([Point; 2], f64) {
-        ([self.from, self.to], self.share)
+    pub(crate) fn parts(&self) -> ([Point; 3], [f64; 2]) {
+        ([self.from, self.to[0], self.to[1]], self.shares)
     }
 }
 
-/// A point that is given, or one on a segment.
+/// A point that is given, or one on a segment or in a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spot<'a> {
     Given(Point),
@@ -80,7 +91,15 @@ impl Spot<'_> {
     fn exact(&self) -> Exact {
         match self {
             Self::Given(p) => Exact::given(*p),
-            Self::On(between) => Exact::between(between.from, between.to, between.share),
+            Self::On(between) => Exact::between(between.from, between.to, between.shares),
+        }
+    }
+
+    /// The largest coordinate that went into it.
+    fn size(&self) -> f64 {
+        match self {
+            Self::Given(p) => p.iter().fold(0.0, |m: f64, x| m.max(x.abs())),
+            Self::On(between) => between.size,
         }
     }
 
@@ -105,15 +124,15 @@ const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 struct Reach {
     /// No difference is longer.
     length: f64,
-    /// Largest coordinate.
+    /// Largest coordinate, those included from which points on segments come: what cancels leaves its error behind.
     coordinate: f64,
 }
 
 impl Reach {
-    fn of(points: &[Point]) -> Self {
+    fn of(spots: &[Spot], points: &[Point]) -> Self {
         let origin = points[0];
         let longest = |m: f64, p: &Point| m.max(vector::norm(vector::sub(*p, origin)));
-        let largest = points.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let largest = spots.iter().fold(0.0, |m: f64, spot| m.max(spot.size()));
         Self { length: points.iter().fold(0.0, longest) * (1.0 + 1e-9), coordinate: largest }
     }
 
@@ -126,10 +145,10 @@ impl Reach {
         2.0 * U * self.coordinate
     }
 
-    /// Error of a coordinate as a pair: 8 u^2 (|from| + share |to - from|) by the rules in `pair`, at most 24 u^2 times the largest
-    /// coordinate; then normalised once, and once more as a difference.
+    /// Error of a coordinate as a pair: 15 u^2 (|from| + s |to - from| + t |third - from|) by the rules in `pair`, at most 45 u^2 times the
+    /// largest coordinate; then normalised once, and once more as a difference.
     fn in_pairs(&self) -> f64 {
-        64.0 * U * U * self.coordinate
+        128.0 * U * U * self.coordinate
     }
 }
 
@@ -139,7 +158,7 @@ pub(crate) fn orient3d_of(spots: [Spot; 4]) -> i8 {
         return orient3d(a, b, c, d);
     }
     let points = spots.map(|s| s.near());
-    let reach = Reach::of(&points);
+    let reach = Reach::of(&spots, &points);
     if reach.is_safe() {
         let [b, c, d] = [1, 2, 3].map(|i| vector::sub(points[i], points[0]));
         let determinant = vector::dot(vector::cross(b, c), d);
@@ -158,13 +177,18 @@ pub(crate) fn orient3d_of(spots: [Spot; 4]) -> i8 {
     exact::orient3d_of(spots.map(|s| s.exact()))
 }
 
+/// Volumes of several tets as floats, each right to the last digits and all divided by one number, so that their ratios are right too.
+pub(crate) fn volume_ratios<const N: usize>(tets: [[Spot; 4]; N]) -> [f64; N] {
+    exact::orient3d_ratios_of(tets.map(|spots| spots.map(|s| s.exact())))
+}
+
 /// [`insphere`] of five spots.
 pub(crate) fn insphere_of(spots: [Spot; 5]) -> i8 {
     if let Some([a, b, c, d, e]) = all_given(&spots) {
         return insphere(a, b, c, d, e);
     }
     let points = spots.map(|s| s.near());
-    let reach = Reach::of(&points);
+    let reach = Reach::of(&spots, &points);
     if reach.is_safe() {
         let [b, c, d, x] = [1, 2, 3, 4].map(|i| vector::sub(points[i], points[0]));
         let [b2, c2, d2, x2] = [b, c, d, x].map(|v| vector::dot(v, v));

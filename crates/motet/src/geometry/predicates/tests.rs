@@ -185,7 +185,7 @@ fn the_whole_range_of_floats_has_exact_signs() {
 }
 
 mod spots {
-    //! Points on segments: signs against rational arithmetic.
+    //! Points on segments and in triangles: signs against rational arithmetic.
 
     use super::{Rational, det3, points, rational, sign};
     use crate::base::Point;
@@ -198,8 +198,10 @@ mod spots {
         match spot {
             Spot::Given(p) => p.map(rational),
             Spot::On(between) => {
-                let ([a, b], share) = between.parts();
-                std::array::from_fn(|i| rational(a[i]) + rational(share) * (rational(b[i]) - rational(a[i])))
+                let ([a, b, c], shares) = between.parts();
+                let along =
+                    |p: Point, share: f64, i: usize| rational(share) * (rational(p[i]) - rational(a[i]));
+                std::array::from_fn(|i| rational(a[i]) + along(b, shares[0], i) + along(c, shares[1], i))
             }
         }
     }
@@ -226,17 +228,22 @@ mod spots {
         )
     }
 
-    /// Which of five are on segments, between which of the points, and where.
-    fn kinds() -> impl Strategy<Value = Vec<(bool, usize, usize, f64)>> {
+    /// Which of five are on segments or in triangles, between which of the points, and where.
+    fn kinds() -> impl Strategy<Value = Vec<(bool, [usize; 3], f64, f64)>> {
         let share = prop_oneof![Just(0.5), Just(0.25), 0.01..0.99f64, Just(1e-9), Just(1.0 - 1e-12)];
-        prop::collection::vec((any::<bool>(), 0..7usize, 0..7usize, share), 5)
+        let second = prop_oneof![Just(0.0), Just(0.5), 0.01..0.99f64, Just(1e-9)];
+        prop::collection::vec((any::<bool>(), [0..7usize, 0..7usize, 0..7usize], share, second), 5)
+    }
+
+    fn between(p: &[Point], &(_, [i, j, k], share, second): &(bool, [usize; 3], f64, f64)) -> Between {
+        Between::within(p[i], [p[j], p[k]], [share, second * (1.0 - share)])
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(4000))]
         #[test]
-        fn signs_of_points_on_segments_are_exact(p in points(7), kinds in kinds()) {
-            let on: Vec<Between> = kinds.iter().map(|&(_, i, j, share)| Between::new(p[i], p[j], share)).collect();
+        fn signs_of_points_on_segments_and_in_triangles_are_exact(p in points(7), kinds in kinds()) {
+            let on: Vec<Between> = kinds.iter().map(|kind| between(&p, kind)).collect();
             let spot = |k: usize| if kinds[k].0 { Spot::On(&on[k]) } else { Spot::Given(p[k]) };
             let spots = [spot(0), spot(1), spot(2), spot(3), spot(4)];
             // Differences of numbers near the largest f64 overflow; such points are scaled before they get here.
@@ -254,6 +261,15 @@ mod spots {
             // And lies on the same side of any other plane as the ends, where those agree.
             let sides = [orient3d_of([c, d, on, a]), orient3d_of([c, d, on, b])];
             prop_assert!(sides[0] * sides[1] <= 0);
+        }
+
+        #[test]
+        fn what_cancels_leaves_no_error(p in points(3), x in -1e-9..1e-9f64, share in 0.4999..0.5001f64) {
+            // Segments through the origin, and the signs of points near it.
+            let on: Vec<Between> = p.iter().map(|&q| Between::new(q, q.map(|x| -x), share)).collect();
+            let spots = [Spot::On(&on[0]), Spot::On(&on[1]), Spot::On(&on[2]), Spot::Given([x, -x, 0.5 * x])];
+            prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300));
+            prop_assert_eq!(orient3d_of(spots), orient_exact(&spots));
         }
 
         #[test]

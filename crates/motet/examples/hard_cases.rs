@@ -1,0 +1,61 @@
+//! Fills hard random surfaces with tets: `hard_cases FROM TO [KIND]`. Prints each that fails, is not kept or takes long, and counts by kind.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use common::filled::{faults, volumes};
+use common::hard::random_case;
+use motet::base::Threads;
+use motet::delaunay::{EdgePoints, constrain};
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+
+/// Seconds worth a line.
+const LONG: f64 = 2.0;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize| words.get(i).and_then(|w| w.parse::<u64>().ok());
+    let (from, to) = (number(0).unwrap_or(0), number(1).unwrap_or(1000));
+    // Of each kind: all, kept as they came, with points left on the surface, failed.
+    let mut counts: BTreeMap<String, [usize; 4]> = BTreeMap::new();
+    for case in (from..to).map(random_case) {
+        let kind = case.name.split([' ', ',']).nth(1).unwrap_or_default().to_owned();
+        if words.get(2).is_some_and(|only| *only != kind) {
+            continue;
+        }
+        let start = Instant::now();
+        let result = constrain(&case.points, &case.triangles, EdgePoints::MoveInside, &Threads::single());
+        let seconds = start.elapsed().as_secs_f64();
+        let (column, what) = match &result {
+            Err(error) => (3, error.to_string()),
+            Ok(filled) if filled.on_edges.is_empty() && filled.in_triangles.is_empty() => {
+                let faults = faults(&case.points, &case.triangles, filled, EdgePoints::MoveInside);
+                (if faults.is_empty() { 1 } else { 3 }, faults.into_iter().next().unwrap_or_default())
+            }
+            Ok(filled) => {
+                let off = volumes(&case.triangles, filled);
+                let left = format!(
+                    "{} points on edges, {} in triangles",
+                    filled.on_edges.len(),
+                    filled.in_triangles.len()
+                );
+                (if off.is_empty() { 2 } else { 3 }, off.into_iter().next().unwrap_or(left))
+            }
+        };
+        let of = counts.entry(kind).or_default();
+        of[0] += 1;
+        of[column] += 1;
+        if column > 1 || seconds > LONG {
+            println!("{} ({} triangles): {what} ({seconds:.2} s)", case.name, case.triangles.len());
+        }
+    }
+    println!("kind: all, kept, with points on the surface, failed");
+    let mut sum = [0; 4];
+    for (kind, of) in &counts {
+        println!("{kind}: {of:?}");
+        (0..4).for_each(|i| sum[i] += of[i]);
+    }
+    println!("all: {sum:?}");
+}

@@ -1,0 +1,192 @@
+//! Every edge of the surface becomes an edge of tets: by swaps of tets where that goes, by points on the edge where it does not.
+//!
+//! As tets need not stay Delaunay, nothing of the surface that is there is lost again, so there is no cascade: each swap lessens the facets that one
+//! edge meets, and a point halves them. If all else fails, points at all of these facets leave pieces that meet a single facet each, and
+//! of the two tets there two-three swaps are always possible (George, Borouchaki and Saltel 2003, *'Ultimate' robustness in meshing an arbitrary
+//! polyhedron*).
+
+use std::collections::VecDeque;
+
+use super::segments::Segments;
+use super::sites::{OnSegment, Sites};
+use super::split::{Kept, Split, faces_around, positive_part, round_between};
+use super::swap::{Swap, Wanted};
+use super::tets::Tets;
+use super::way::{Way, meets};
+use crate::base::{Result, TetId, VertexId, rising};
+use crate::kernel::HalfFacet;
+
+/// For each facet that an edge meets at first so many swaps that gain nothing, before it gets a point: they may make room for one that does.
+const SPARE: usize = 12;
+
+/// So many points on edges, beside those that an edge has on average, and it would take too long.
+const SPARE_POINTS: usize = 2_000;
+const POINTS_A_SEGMENT: usize = 4;
+
+/// Tets, and the edges of the surface that they are to have.
+pub(super) struct Edges<'a> {
+    tets: &'a mut Tets,
+    sites: &'a mut Sites,
+    segments: &'a mut Segments,
+    way: Way,
+    swap: Swap,
+    split: Split,
+    /// Edges that no swap can remove.
+    tried: Vec<[VertexId; 2]>,
+}
+
+/// Edges of the surface that must not be lost.
+struct Pieces<'a>(&'a Segments);
+
+impl Kept for Pieces<'_> {
+    fn has_edge(&self, edge: [VertexId; 2]) -> bool {
+        self.0.has_piece(edge)
+    }
+
+    fn has_facet(&self, _: [VertexId; 3]) -> bool {
+        false
+    }
+}
+
+/// A piece that is to be an edge.
+struct Missing<'a>(&'a Sites, [VertexId; 2]);
+
+impl Wanted for Missing<'_> {
+    fn meets_facet(&self, face: [VertexId; 3]) -> u32 {
+        u32::from(meets(self.0, self.1, face))
+    }
+
+    fn meets_edge(&self, _: [VertexId; 2]) -> u32 {
+        0
+    }
+}
+
+impl<'a> Edges<'a> {
+    pub(super) fn new(tets: &'a mut Tets, sites: &'a mut Sites, segments: &'a mut Segments) -> Self {
+        Self {
+            tets,
+            sites,
+            segments,
+            way: Way::default(),
+            swap: Swap::default(),
+            split: Split::default(),
+            tried: Vec::new(),
+        }
+    }
+
+    /// Makes all of them edges, in pieces where it must be.
+    ///
+    /// # Errors
+    /// Where an edge would have to be divided beyond its digits, or passes through a vertex or another edge.
+    pub(super) fn recover(mut self) -> Result<()> {
+        let mut queue: VecDeque<[VertexId; 2]> = self.segments.missing(self.tets).into();
+        while let Some(piece) = queue.pop_front() {
+            let mut spare = None;
+            while self.way.find(self.tets, self.sites, piece).is_some() {
+                let n = self.way.facets.len();
+                let spare = spare.get_or_insert(if n > SPARE { 0 } else { n });
+                if self.swap(piece, 0, 0) {
+                    continue;
+                }
+                if *spare == 0 || !self.swap(piece, 1, *spare) {
+                    queue.extend(self.divide(piece)?);
+                    break;
+                }
+                *spare -= 1;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes swaps after which the piece meets fewer facets; or, where `spare` is 1, one after which it meets as many, the first that can be from the
+    /// facet `from` on.
+    fn swap(&mut self, piece: [VertexId; 2], spare: u32, from: usize) -> bool {
+        let missing = Missing(self.sites, piece);
+        self.tried.clear();
+        let faces: Vec<_> = self.way.facets.iter().map(|&half| (half, self.tets.inward(half))).collect();
+        let mut has_swapped = false;
+        for i in 0..faces.len() {
+            let (half, [p, q, r]) = faces[(i + from) % faces.len()];
+            if self.tets.inward(half) != [p, q, r] {
+                continue;
+            }
+            let has_end = [p, q, r].iter().any(|v| piece.contains(v));
+            if !has_end && Swap::open(self.tets, self.sites, half, &missing) {
+                has_swapped = true;
+                continue;
+            }
+            for edge in [[p, q], [q, r], [r, p]].map(rising) {
+                if self.tried.contains(&edge) || self.segments.has_piece(edge) {
+                    continue;
+                }
+                self.tried.push(edge);
+                if self.swap.remove(self.tets, self.sites, edge, half.tet(), &missing, spare) {
+                    if spare > 0 {
+                        return true;
+                    }
+                    has_swapped = true;
+                    break;
+                }
+            }
+        }
+        has_swapped
+    }
+
+    /// Puts a point on a piece, where it sees all tets at the facet in the middle of those met. Answers the two new pieces.
+    fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2]> {
+        let segment = self.segments.of_piece(piece);
+        if self.sites.n_on_segments() > SPARE_POINTS + POINTS_A_SEGMENT * self.segments.len() {
+            return Err(self.segments.refused(
+                self.sites,
+                segment,
+                "asks, with others, for too many points on edges",
+            ));
+        }
+        let ends = self.segments.in_order(self.sites, segment, piece);
+        let [low, high] = ends.map(|v| self.segments.share(self.sites, segment, v));
+        let wanted = self.middle(ends).map_or(Vec::new(), |half| self.around_crossing(ends, half));
+        let of_ends =
+            |[p, q, r]: [VertexId; 3]| self.sites.volume_ratios([[p, q, r, ends[0]], [p, q, r, ends[1]]]);
+        let seen = positive_part(faces_around(self.tets, &wanted).into_iter().map(of_ends));
+        let share = round_between(seen.map(|at| low + (high - low) * at));
+        let share = [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high);
+        let Some(share) = share else {
+            let why = "would have to be divided beyond the digits of its coordinates";
+            return Err(self.segments.refused(self.sites, segment, why));
+        };
+        let vertex = self.sites.add(self.segments.ends(segment), OnSegment { segment, share });
+        let all = (&self.way.tets[..], &wanted[..]);
+        if !self.split.insert(self.tets, self.sites, vertex, all, &Pieces(self.segments)) {
+            let why = "passes through another edge, or through a triangle";
+            return Err(self.segments.refused(self.sites, segment, why));
+        }
+        Ok(self.segments.divide(piece, vertex))
+    }
+
+    /// The tets at a facet that is met, or all those around the edge of it that is met.
+    fn around_crossing(&mut self, [a, b]: [VertexId; 2], half: HalfFacet) -> Vec<TetId> {
+        let [p, q, r] = self.tets.inward(half);
+        let is_met = |&[p, q]: &[VertexId; 2]| self.sites.orient3d([a, b, p, q]) == 0;
+        let mut tets = Vec::new();
+        match [[p, q], [q, r], [r, p]].into_iter().find(is_met) {
+            Some(edge) => self.tets.around_from(edge, half.tet(), &mut tets),
+            None => tets.extend([half.tet(), self.tets.across(half).tet()]),
+        }
+        tets
+    }
+
+    /// The facet in the middle of those that are met on the way between two vertices.
+    fn middle(&self, [a, b]: [VertexId; 2]) -> Option<HalfFacet> {
+        let mut met: Vec<(f64, HalfFacet)> = Vec::new();
+        for &half in &self.way.facets {
+            let [p, q, r] = self.tets.inward(half);
+            let [of_a, of_b] = self.sites.volume_ratios([[p, q, r, a], [p, q, r, b]]);
+            let share = of_a / (of_a - of_b);
+            if share > 0.0 && share < 1.0 {
+                met.push((share, half));
+            }
+        }
+        met.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
+        met.get(met.len() / 2).map(|m| m.1)
+    }
+}

@@ -1,0 +1,249 @@
+//! A triangle that cannot be made facets as it is gets points inside, where edges of tets pierce it.
+//!
+//! A point where an edge pierces the triangle sees all tets around that edge. Put in, it takes the edge away and brings none that
+//! pierces. So there are as many steps at most as edges at first; then the triangle is made of facets, whichever they are.
+
+use hashbrown::HashSet;
+
+use super::plane::Plane;
+use super::sites::Sites;
+use super::split::{Kept, Split, faces_around, positive_part, round_between};
+use super::swap::{Swap, Wanted};
+use super::tets::Tets;
+use crate::base::{TetId, VertexId, rising};
+use crate::geometry::tet::EDGES;
+
+/// So many points, then it would not end.
+const MOST: usize = 4000;
+
+/// How often a point is put into the middle of where it may be, one way and the other.
+const STEPS: usize = 3;
+
+/// A triangle that is missing.
+pub(super) struct Pierce {
+    /// The triangles that it came as, with their numbers.
+    triangles: Vec<(u32, [VertexId; 3])>,
+    /// The first of them: tells the plane and how it is turned.
+    corners: [VertexId; 3],
+    /// What it is to be cut into at first: tells where it is.
+    parts: Vec<[VertexId; 3]>,
+    /// The edges of its outline as it is turned, each with a vertex on the inner side.
+    rim: Vec<([VertexId; 2], VertexId)>,
+    /// The vertices inside.
+    points: Vec<VertexId>,
+    n_added: usize,
+    split: Split,
+    swap: Swap,
+    star: Vec<TetId>,
+    cut: Vec<TetId>,
+    /// The edges that pierce it.
+    piercing: Vec<(TetId, [VertexId; 2])>,
+}
+
+/// A triangle that is to be made of facets.
+struct Whole<'a>(&'a Sites, [VertexId; 3], &'a [[VertexId; 3]]);
+
+impl Wanted for Whole<'_> {
+    fn meets_facet(&self, _: [VertexId; 3]) -> u32 {
+        0
+    }
+
+    fn meets_edge(&self, [u, v]: [VertexId; 2]) -> u32 {
+        let Self(sites, [a, b, c], parts) = *self;
+        let side = |v: VertexId| if [a, b, c].contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) };
+        if side(u) * side(v) >= 0 {
+            return 0;
+        }
+        u32::from(parts.iter().any(|&part| is_in(sites, [u, v], part)))
+    }
+}
+
+/// Whether the line of an edge passes through a triangle.
+fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
+    let turns = [[a, b], [b, c], [c, a]].map(|[p, q]| sites.orient3d([u, v, p, q]));
+    turns.iter().all(|&t| t >= 0) || turns.iter().all(|&t| t <= 0)
+}
+
+impl Pierce {
+    /// One that came as `triangles`, of which there is one at least, and is to be `parts`, turned as the first.
+    pub(super) fn new(triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) -> Self {
+        let sides = |&[a, b, c]: &[VertexId; 3]| [([a, b], c), ([b, c], a), ([c, a], b)];
+        let edges: HashSet<[VertexId; 2]> = parts.iter().flat_map(sides).map(|(edge, _)| edge).collect();
+        let is_outer = |(edge, _): &([VertexId; 2], VertexId)| !edges.contains(&[edge[1], edge[0]]);
+        let rim: Vec<_> = parts.iter().flat_map(sides).filter(is_outer).collect();
+        let on_rim: HashSet<VertexId> = rim.iter().flat_map(|(edge, _)| *edge).collect();
+        let mut points: Vec<VertexId> =
+            parts.as_flattened().iter().copied().filter(|v| !on_rim.contains(v)).collect();
+        points.sort_unstable();
+        points.dedup();
+        Self {
+            corners: triangles[0].1,
+            triangles,
+            parts: parts.to_vec(),
+            rim,
+            points,
+            n_added: 0,
+            split: Split::default(),
+            swap: Swap::default(),
+            star: Vec::new(),
+            cut: Vec::new(),
+            piercing: Vec::new(),
+        }
+    }
+
+    /// Makes it facets, without points inside. Whether that was possible.
+    pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites) -> bool {
+        loop {
+            self.find_piercing(tets, sites);
+            let wanted = Whole(sites, self.corners, &self.parts);
+            let is_piercing = |e: &&(TetId, [VertexId; 2])| wanted.meets_edge(e.1) > 0;
+            let mut edges = self.piercing.iter().filter(is_piercing);
+            if !edges.any(|&(tet, edge)| self.swap.remove(tets, sites, edge, tet, &wanted, 0)) {
+                return self.piercing.is_empty();
+            }
+        }
+    }
+
+    /// Makes it facets, with points inside.
+    pub(super) fn run(
+        mut self,
+        tets: &mut Tets,
+        sites: &mut Sites,
+        kept: &impl Kept,
+    ) -> Option<Vec<[VertexId; 3]>> {
+        while !self.swap_all(tets, sites) {
+            if self.n_added == MOST {
+                return None;
+            }
+            let (tet, edge) = self.piercing[self.piercing.len() / 2];
+            tets.around_from(edge, tet, &mut self.star);
+            let (number, triangle) = self.triangles.iter().copied().find(|t| is_in(sites, edge, t.1))?;
+            let shares = self.shares(tets, sites, edge, triangle);
+            let vertex = sites.add_in(number, triangle, shares);
+            if !self.split.insert(tets, sites, vertex, (&self.star, &self.star), kept) {
+                return None;
+            }
+            self.points.push(vertex);
+            self.n_added += 1;
+        }
+        self.facets(tets, sites)
+    }
+
+    /// Collects the edges that pierce the triangle, each once, with a tet of each.
+    fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites) {
+        let mut cut = std::mem::take(&mut self.cut);
+        cut.clear();
+        for &([a, b], beyond) in &self.rim {
+            tets.around([a, b], &mut self.star);
+            let is_cut = |tet: &&TetId| {
+                let Some([p, q]) = self.across(tets, sites, **tet) else { return false };
+                // Between the half planes of p and q, which are less than half a turn apart.
+                let turn = sites.orient3d([a, b, p, q]);
+                sites.orient3d([a, b, p, beyond]) == turn && sites.orient3d([a, b, beyond, q]) == turn
+            };
+            cut.extend(self.star.iter().find(is_cut));
+        }
+        for i in 0..self.points.len() {
+            tets.star(self.points[i], &mut self.star);
+            cut.extend(self.star.iter().filter(|&&tet| self.across(tets, sites, tet).is_some()));
+        }
+        cut.sort_unstable();
+        cut.dedup();
+        tets.begin();
+        cut.iter().for_each(|&tet| _ = tets.mark(tet));
+        self.piercing.clear();
+        let mut next = 0;
+        while let Some(&tet) = cut.get(next) {
+            next += 1;
+            let v = tets.vertices(tet);
+            let sides = v.map(|v| self.side(sites, v));
+            for [i, j] in EDGES.into_iter().filter(|&[i, j]| sides[i] * sides[j] < 0) {
+                self.piercing.push((tet, rising([v[i], v[j]])));
+            }
+            for half in Tets::facets(tet) {
+                let of = [0, 1, 2, 3].map(|i| if i == half.facet() { 0 } else { sides[i] });
+                let other = tets.across(half);
+                let is_cut = of.contains(&1) && of.contains(&-1) && !other.is_none();
+                if is_cut && tets.mark(other.tet()) {
+                    cut.push(other.tet());
+                }
+            }
+        }
+        self.piercing.sort_unstable_by_key(|&(tet, edge)| (edge, tet));
+        self.piercing.dedup_by_key(|p| p.1);
+        self.cut = cut;
+    }
+
+    /// An edge of a tet with its ends on both sides of the plane.
+    fn across(&self, tets: &Tets, sites: &Sites, tet: TetId) -> Option<[VertexId; 2]> {
+        let v = tets.vertices(tet);
+        let sides = v.map(|v| self.side(sites, v));
+        let front = sides.iter().position(|&s| s > 0)?;
+        let behind = sides.iter().position(|&s| s < 0)?;
+        Some([v[front], v[behind]])
+    }
+
+    fn side(&self, sites: &Sites, v: VertexId) -> i8 {
+        let [a, b, c] = self.corners;
+        if self.corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) }
+    }
+
+    fn turn(&self, sites: &Sites, t: [VertexId; 3]) -> i8 {
+        Plane::new(sites, self.corners).turn(t)
+    }
+
+    /// Where an edge pierces a triangle; moved to where a point there sees the tets around the edge, whose star is at hand, from the middle.
+    fn shares(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        [u, v]: [VertexId; 2],
+        [a, b, c]: [VertexId; 3],
+    ) -> [f64; 2] {
+        let weights = sites.volume_ratios([[u, v, b, c], [u, v, c, a], [u, v, a, b]]);
+        let all: f64 = weights.iter().sum();
+        let [_, mut s, mut t] = weights.map(|w| w / all);
+        let faces = faces_around(tets, &self.star);
+        let corner =
+            |[p, q, r]: [VertexId; 3]| sites.volume_ratios([[p, q, r, a], [p, q, r, b], [p, q, r, c]]);
+        // The height over each face at the corners; and the sides of the triangle.
+        let heights: Vec<[f64; 3]> = faces.into_iter().map(corner).collect();
+        for _ in 0..STEPS {
+            let along_s = |&[a, b, c]: &[f64; 3]| [a + t * (c - a), b + t * (c - a)];
+            let [low, high] = positive_part(heights.iter().map(along_s));
+            s = round_between([low, high.min(1.0 - t)]);
+            let along_t = |&[a, b, c]: &[f64; 3]| [a + s * (b - a), c + s * (b - a)];
+            let [low, high] = positive_part(heights.iter().map(along_t));
+            t = round_between([low, high.min(1.0 - s)]);
+        }
+        [s, t]
+    }
+
+    /// The facets that the triangle is made of, from its edges inwards.
+    pub(super) fn facets(&mut self, tets: &mut Tets, sites: &Sites) -> Option<Vec<[VertexId; 3]>> {
+        let mut facets: Vec<[VertexId; 3]> = Vec::new();
+        let mut todo: Vec<[VertexId; 2]> = self.rim.iter().map(|r| r.0).collect();
+        let outline: HashSet<[VertexId; 2]> = todo.iter().copied().collect();
+        let most = 2 * (self.rim.len() + self.points.len()) + self.parts.len();
+        let mut done: HashSet<[VertexId; 2]> = HashSet::new();
+        while let Some([a, b]) = todo.pop() {
+            if done.contains(&[a, b]) {
+                continue;
+            }
+            tets.around([a, b], &mut self.star);
+            let mut others = self.star.iter().flat_map(|&tet| tets.vertices(tet));
+            let c = others
+                .find(|&c| c != a && c != b && self.side(sites, c) == 0 && self.turn(sites, [a, b, c]) > 0)?;
+            facets.push([a, b, c]);
+            done.extend([[a, b], [b, c], [c, a]]);
+            todo.extend([[b, c], [c, a]].into_iter().filter(|e| !outline.contains(e)).map(|[p, q]| [q, p]));
+            if facets.len() > most {
+                return None;
+            }
+        }
+        let mut seen: Vec<_> = facets.iter().copied().map(rising).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        (seen.len() == facets.len()).then_some(facets)
+    }
+}

@@ -1,0 +1,150 @@
+//! Tets changed for others with the same outside, so that less is in the way of what is to be there.
+//!
+//! Two tets become three around the edge between their tips, or the tets around an edge become two for each triangle of the polygon
+//! around it (George 1991; Freitag and Ollivier-Gooch 1997). Of all its triangulations the one is taken with the least in the way
+//! (Klincsek 1980, *Minimal triangulations of polygonal domains*, by dynamic programming).
+
+use super::sites::Sites;
+use super::tets::Tets;
+use crate::base::{TetId, VertexId};
+use crate::kernel::HalfFacet;
+
+/// Edges with more tets are left alone.
+const LARGEST_RING: usize = 10;
+
+/// What is to be there: counts what would be in its way.
+pub(super) trait Wanted {
+    fn meets_facet(&self, face: [VertexId; 3]) -> u32;
+    fn meets_edge(&self, edge: [VertexId; 2]) -> u32;
+}
+
+/// Working space.
+#[derive(Default)]
+pub(super) struct Swap {
+    ring: Vec<TetId>,
+    around: Vec<VertexId>,
+    /// For each part of the polygon how much is in the way, and the corner between that makes it so.
+    best: Vec<Option<(u32, usize)>>,
+}
+
+impl Swap {
+    /// Replaces the two tets at a facet in the way by three, if they are positive and what they share is not in the way.
+    pub(super) fn open(tets: &mut Tets, sites: &Sites, half: HalfFacet, wanted: &impl Wanted) -> bool {
+        let ([p, q, r], other) = (tets.inward(half), tets.across(half));
+        let [c, d] = [half, other].map(|half| tets.vertices(half.tet())[half.facet()]);
+        let new = [[p, q, d, c], [q, r, d, c], [r, p, d, c]];
+        let is_better = new.iter().all(|&v| sites.orient3d(v) > 0)
+            && [p, q, r].into_iter().all(|v| wanted.meets_facet([c, d, v]) == 0)
+            && wanted.meets_edge([c, d]) == 0;
+        if is_better {
+            tets.replace(&[half.tet(), other.tet()], &new);
+        }
+        is_better
+    }
+
+    /// Replaces the tets around an edge, one of which is `first`, if then there is less in the way, or no more than `spare` beyond that.
+    pub(super) fn remove(
+        &mut self,
+        tets: &mut Tets,
+        sites: &Sites,
+        edge: [VertexId; 2],
+        first: TetId,
+        wanted: &impl Wanted,
+        spare: u32,
+    ) -> bool {
+        if self.go_round(tets, edge, first).is_none() {
+            return false;
+        }
+        let [u, v] = edge;
+        let facets = self.around.iter().map(|&w| wanted.meets_facet([u, v, w]));
+        let now = wanted.meets_edge(edge) + facets.sum::<u32>();
+        let n = self.around.len();
+        self.plan(sites, edge, now + spare, wanted);
+        if self.best[n - 1].is_none() {
+            return false;
+        }
+        let mut new = Vec::with_capacity(2 * n);
+        let mut parts = vec![(0, n - 1)];
+        while let Some((i, k)) = parts.pop() {
+            if let Some((_, j)) = self.best[i * n + k].filter(|_| k > i + 1) {
+                let [a, b, c] = [i, j, k].map(|i| self.around[i]);
+                new.extend([[a, b, c, v], [a, c, b, u]]);
+                parts.extend([(i, j), (j, k)]);
+            }
+        }
+        tets.replace(&self.ring, &new);
+        true
+    }
+
+    /// The best way to cut the polygon around `edge` into triangles, of those with less than `limit` in the way.
+    fn plan(&mut self, sites: &Sites, [u, v]: [VertexId; 2], limit: u32, wanted: &impl Wanted) {
+        let (n, w) = (self.around.len(), &self.around);
+        self.best.clear();
+        self.best.resize(n * n, None);
+        (0..n - 1).for_each(|i| self.best[i * n + i + 1] = Some((0, 0)));
+        for width in 2..n {
+            for i in 0..n - width {
+                let k = i + width;
+                // Only asked for where it matters: it is what costs most.
+                let mut diagonal = if width == n - 1 { Some(0) } else { None };
+                for j in i + 1..k {
+                    let (Some(left), Some(right)) = (self.best[i * n + j], self.best[j * n + k]) else {
+                        continue;
+                    };
+                    let best = self.best[i * n + k].map_or(limit, |best| best.0);
+                    let is_positive = || {
+                        sites.orient3d([w[i], w[j], w[k], v]) > 0 && sites.orient3d([w[i], w[k], w[j], u]) > 0
+                    };
+                    if left.0 + right.0 + diagonal.unwrap_or(0) >= best || !is_positive() {
+                        continue;
+                    }
+                    let of_diagonal = *diagonal.get_or_insert_with(|| {
+                        wanted.meets_edge([w[i], w[k]])
+                            + wanted.meets_facet([u, w[i], w[k]])
+                            + wanted.meets_facet([v, w[i], w[k]])
+                    });
+                    let least = left.0 + right.0 + of_diagonal;
+                    if least >= best {
+                        continue;
+                    }
+                    let of = least + wanted.meets_facet([w[i], w[j], w[k]]);
+                    if of < best {
+                        self.best[i * n + k] = Some((of, j));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Collects the tets around an edge and the polygon around it, counter-clockwise seen from its second end. `None` where there are too many.
+    fn go_round(&mut self, tets: &Tets, [u, v]: [VertexId; 2], first: TetId) -> Option<()> {
+        self.ring.clear();
+        self.around.clear();
+        let of_edge = |half: &HalfFacet| ![u, v].contains(&tets.vertices(first)[half.facet()]);
+        // The facet from which the edge runs from u to v.
+        let runs = |half: &HalfFacet| {
+            let [a, b, c] = tets.inward(*half);
+            [[a, b], [b, c], [c, a]].contains(&[u, v])
+        };
+        let last = Tets::facets(first).into_iter().find(|half| of_edge(half) && runs(half))?;
+        let mut half = Tets::facets(first).into_iter().find(|half| of_edge(half) && !runs(half))?;
+        // Vertices u, v, p, q of a positive tet: q is opposite `last`, and p opposite `half`.
+        let (mut tet, mut q) = (first, tets.vertices(first)[last.facet()]);
+        self.around.push(tets.vertices(first)[half.facet()]);
+        loop {
+            self.ring.push(tet);
+            let other = tets.across(half);
+            if other.is_none() || self.ring.len() > LARGEST_RING {
+                return None;
+            }
+            if other.tet() == first {
+                return (self.ring.len() > 2).then_some(());
+            }
+            self.around.push(q);
+            tet = other.tet();
+            let opposite_q = tets.vertices(tet).iter().position(|&x| x == q)?;
+            half = HalfFacet::new(tet, opposite_q);
+            q = tets.vertices(tet)[other.facet()];
+        }
+    }
+}

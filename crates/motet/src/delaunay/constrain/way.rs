@@ -1,0 +1,109 @@
+//! What a segment meets on its way through the tets.
+
+use super::sites::Sites;
+use super::tets::Tets;
+use crate::base::{TetId, VertexId};
+use crate::kernel::HalfFacet;
+
+/// So many steps around a vertex, then all its tets are looked at: among tets that are not Delaunay a walk may go round in circles.
+const STEPS: usize = 100;
+
+/// The tets that a segment touches, from one of its ends to the other.
+#[derive(Default)]
+pub(super) struct Way {
+    pub(super) tets: Vec<TetId>,
+    /// The facets between them that it meets, those included that it touches in an edge; each once.
+    pub(super) facets: Vec<HalfFacet>,
+    star: Vec<TetId>,
+}
+
+impl Way {
+    /// Follows the segment between two vertices. `None` where it is an edge of tets.
+    pub(super) fn find(&mut self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2]) -> Option<()> {
+        self.tets.clear();
+        self.facets.clear();
+        let first = self.first(tets, sites, ends)?;
+        tets.begin();
+        tets.mark(first);
+        self.tets.push(first);
+        let mut next = 0;
+        while let Some(&tet) = self.tets.get(next) {
+            next += 1;
+            for half in Tets::facets(tet) {
+                let other = tets.across(half);
+                let is_done = other.is_none() || tets.is_marked(other.tet()) && other < half;
+                if is_done || !meets(sites, ends, tets.inward(half)) {
+                    continue;
+                }
+                if tets.mark(other.tet()) {
+                    self.tets.push(other.tet());
+                }
+                if !self.facets.contains(&other) {
+                    self.facets.push(half);
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// The tet of the first end in which the segment starts. `None` where it is an edge.
+    fn first(&mut self, tets: &mut Tets, sites: &Sites, [a, b]: [VertexId; 2]) -> Option<TetId> {
+        // Through a facet to the side on which b lies; none for a tet whose cone from a holds b.
+        let step = |tets: &Tets, tet: TetId, came: HalfFacet, turn: usize| {
+            let v = tets.vertices(tet);
+            let leads = |half: &HalfFacet| {
+                let [p, q, r] = tets.inward(*half);
+                *half != came && v[half.facet()] != a && sites.orient3d([p, q, r, b]) < 0
+            };
+            (0..4).map(|i| HalfFacet::new(tet, (i + turn) % 4)).find(leads)
+        };
+        let (mut tet, mut came) = (tets.at(a), HalfFacet::NONE);
+        for turn in 0..STEPS {
+            if tets.vertices(tet).contains(&b) {
+                return None;
+            }
+            let Some(half) = step(tets, tet, came, turn) else { return Some(tet) };
+            came = tets.across(half);
+            if came.is_none() {
+                break;
+            }
+            tet = came.tet();
+        }
+        tets.star(a, &mut self.star);
+        if self.star.iter().any(|&tet| tets.vertices(tet).contains(&b)) {
+            return None;
+        }
+        self.star.iter().copied().find(|&tet| step(tets, tet, HalfFacet::NONE, 0).is_none())
+    }
+}
+
+/// Whether the segment between two vertices meets a facet, in more than its ends.
+pub(super) fn meets(sites: &Sites, [a, b]: [VertexId; 2], face: [VertexId; 3]) -> bool {
+    let [x, y, z] = face;
+    let edges = [[x, y], [y, z], [z, x]];
+    match [a, b].map(|end| face.contains(&end)) {
+        [true, true] => false,
+        [false, false] => match [a, b].map(|end| sites.orient3d([x, y, z, end])) {
+            [0, 0] => edges.into_iter().any(|edge| meet_in_plane(sites, [a, b], edge)),
+            [s, t] if s * t < 0 => {
+                let turns = edges.map(|[p, q]| sites.orient3d([a, b, p, q]));
+                turns.iter().all(|&t| t >= 0) || turns.iter().all(|&t| t <= 0)
+            }
+            // An end in the plane of a facet is not on it.
+            _ => false,
+        },
+        _ => edges.into_iter().any(|[p, q]| {
+            let is_opposite = ![p, q].contains(&a) && ![p, q].contains(&b);
+            is_opposite && sites.orient3d([a, b, p, q]) == 0 && meet_in_plane(sites, [a, b], [p, q])
+        }),
+    }
+}
+
+/// Whether the open segment a b meets the segment p q, all in one plane and not in one line.
+fn meet_in_plane(sites: &Sites, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> bool {
+    let sides = |beside: VertexId| [p, q].map(|v| sites.orient3d([a, b, v, beside]));
+    let Some(beside) = sites.around_all().into_iter().find(|&v| sides(v) != [0, 0]) else { return false };
+    let [of_p, of_q] = sides(beside);
+    let [of_a, of_b] = [a, b].map(|v| sites.orient3d([p, q, v, beside]));
+    of_p * of_q <= 0 && of_a * of_b < 0
+}
