@@ -105,9 +105,10 @@ def calibrated(count, target, size, tries):
         tried[size] = tets
         if abs(tets / target - 1) < NEAR:
             break
-        low = max((s for s, n in tried.items() if n > target), default=0.0)
-        high = min((s for s, n in tried.items() if n <= target), default=math.inf)
-        size *= min(max((tets / target) ** (1 / slope), 0.25), 4.0)
+        fine, coarse = [s for s, n in tried.items() if n > target], [s for s, n in tried.items() if n <= target]
+        low = max(fine) if fine else min(coarse) / 4
+        high = min(coarse) if coarse else 4 * max(fine)
+        size *= (tets / target) ** (1 / slope)
         if not low < size < high:
             size = math.sqrt(low * high)
     return min(tried, key=lambda size: abs(math.log(tried[size] / target)), default=None)
