@@ -130,7 +130,7 @@ def show(cases, all_results, more, extra):
         for name, result in results.items():
             rows.append([surface, f"{name} {result.get('version', '')}".strip(), *extra(cases[surface], result), *line(result, first)])
     print(table(["surface", "program", *more, *HEADER], rows))
-    print(f"\nSurfaces: {', '.join(f'{name} {len(case.triangles):,} triangles, size {case.size:g}' for name, case in cases.items())}.")
+    print(f"\nSurfaces: {'; '.join(f'{name}, {len(case.triangles):,} triangles, size {case.size:g}' for name, case in cases.items())}.")
 
 
 def line(result, first):
