@@ -7,13 +7,14 @@ import sys
 import bench_contact
 import bench_delaunay
 import bench_files
+import bench_mesh
 import bench_motion
 import bench_refine
 import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact, "refine": bench_refine}
+           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh}
 
 
 def words():
@@ -22,6 +23,7 @@ def words():
     parser.add_argument("--rounds", type=int, default=5, help="how often each program's turn comes (default 5)")
     parser.add_argument("--largest", type=int, default=1_000_000, help="largest point set of the Delaunay bench")
     parser.add_argument("--sizes", default="ABCD", help="which of the paper's four models (default ABCD)")
+    parser.add_argument("--surfaces", help="which surfaces of the mesh bench, with commas between (default: all)")
     parser.add_argument("--limit", type=float, default=120.0, help="seconds that one call of a program may take")
     parser.add_argument("--openfoam", action="store_true", help="install OpenFOAM too (it is used when it is there)")
     parser.add_argument("--quick", action="store_true", help="one round, small sizes")

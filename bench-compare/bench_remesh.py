@@ -1,12 +1,10 @@
 """Bad tets of a moved mesh repaired by motet and by the remeshers there are; boundary kept, one thread each."""
 import sys
 
-import numpy as np
-
 from common import HERE, MOTET, TARGET, cell, in_turn, seconds_text, table
 from remesh_files import Case, made
 from sameness import compared
-from tets import BAD, dihedrals, eas
+from tets import BAD, worth
 
 ROUNDS = 3
 # name in the table: word for rivals/remesh_python.py
@@ -44,14 +42,6 @@ def contenders(case, large):
         places["CGAL"] = out("CGAL")
         commands["CGAL"] = [TARGET / "remesh_cgal", case.medit(), 1, case.length(), places["CGAL"]]
     return commands, places
-
-
-def worth(points, tets):
-    """Counts of bad and inverted tets, quality, angles."""
-    quality, (least, greatest) = eas(points, tets), dihedrals(points, tets)
-    return {"tets": len(tets), "bad": int((quality < BAD).sum()), "inverted": int((quality <= 0).sum()),
-            "worst": float(quality.min()), "fifth_percentile": float(np.percentile(quality, 5)),
-            "least_dihedral": float(least.min()), "greatest_dihedral": float(greatest.max())}
 
 
 def run(record, options):

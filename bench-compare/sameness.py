@@ -1,4 +1,4 @@
-"""What two tet meshes have in common: corners compared bit by bit, and to 1e-9."""
+"""What two tet meshes, or a surface and its filling, have in common: corners compared bit by bit, and to 1e-9."""
 import numpy as np
 
 from tets import boundary
@@ -38,3 +38,11 @@ def compared(old_points, old_tets, points, tets):
     whole = len(old_facets) if len(old_facets) == len(facets) else -1
     edge = "exact" if facet_bits == whole else "to 1e-9" if facet_near == whole else "changed"
     return {"kept": bits / len(old_tets), "kept_near": near / len(old_tets), "touched": len(old_tets) - near, "boundary": edge}
+
+
+def surface_kept(old_points, triangles, points, tets):
+    """How many of the triangles are facets of the boundary, to the bit, and how many facets it has beyond these."""
+    row, to_the_bit = matched(old_points, np.ascontiguousarray(points, np.float64) + 0.0)  # no negative zeros
+    facets = boundary(tets)
+    found, _ = kept(triangles, facets, row, to_the_bit)
+    return found, len(facets) - found

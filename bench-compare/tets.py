@@ -49,6 +49,15 @@ def eas(points, tets):
     return np.sign(volumes(points, tets)) * (1 - np.maximum.reduce(skews))
 
 
+def worth(points, tets):
+    """Counts of bad and inverted tets, quality, angles."""
+    quality, (least, greatest) = eas(points, tets), dihedrals(points, tets)
+    return {"tets": len(tets), "bad": int((quality < BAD).sum()), "inverted": int((quality <= 0).sum()),
+            "worst": float(quality.min()), "fifth_percentile": float(np.percentile(quality, 5)),
+            "least_dihedral": float(least.min()), "fifth_percentile_dihedral": float(np.percentile(least, 5)),
+            "greatest_dihedral": float(greatest.max())}
+
+
 def mean_ratio(points, tets):
     """12 (3 V)^(2/3) over the sum of squared edges, with the sign of V (Liu and Joe 1994)."""
     volume = volumes(points, tets)

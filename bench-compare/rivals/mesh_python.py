@@ -1,0 +1,93 @@
+"""A closed surface filled by TetGen, Gmsh or fTetWild, one thread: points and triangles in, points and tets out, JSON out.
+
+usage: mesh_python.py PROGRAM SIZE RUNS IN.npz OUT.npz      IN: points, triangles
+
+SIZE is the length of edges that is asked for; TetGen gets the volume of the regular tet with such edges as its limit. The clock runs
+from the program's own surface in memory to its own mesh in memory; fewer repeats than RUNS if they take long.
+"""
+import json
+import os
+import sys
+import time
+from importlib.metadata import version
+
+import numpy as np
+
+BUDGET = 3.0  # no repeat is begun after so many seconds of work
+
+
+def clocked(work):
+    start = time.perf_counter()
+    done = work()
+    return time.perf_counter() - start, done
+
+
+def tetgen(points, triangles, size, switches):
+    import tetgen as program
+
+    surface = program.TetGen(points, triangles.astype(np.int32))
+    switches = switches.format(f"{size**3 / 72**0.5:.9g}")
+    seconds, _ = clocked(lambda: surface.tetrahedralize(switches=switches))
+    return seconds, surface.node, surface.elem, version("tetgen")
+
+
+def gmsh(points, triangles, size, algorithm):
+    import gmsh as program
+
+    program.initialize()
+    options = {"General.Terminal": 0, "General.NumThreads": 1, "Mesh.Algorithm3D": algorithm,
+               # One size for all of the inside, as the others have.
+               "Mesh.MeshSizeMin": size, "Mesh.MeshSizeMax": size, "Mesh.MeshSizeExtendFromBoundary": 0}
+    for name, value in options.items():
+        program.option.setNumber(name, value)
+    program.model.addDiscreteEntity(2, 1)
+    mesh = program.model.mesh
+    mesh.addNodes(2, 1, np.arange(len(points)) + 1, points.ravel())
+    mesh.addElementsByType(1, 2, [], triangles.ravel() + 1)
+    program.model.geo.addVolume([program.model.geo.addSurfaceLoop([1])])
+    program.model.geo.synchronize()
+    seconds, _ = clocked(lambda: mesh.generate(3))
+    tags, coordinates, _ = mesh.getNodes()
+    row = np.zeros(int(tags.max()) + 1, np.int64)
+    row[tags.astype(np.int64)] = np.arange(len(tags))
+    tets = row[mesh.getElementsByType(4)[1].astype(np.int64).reshape(-1, 4)]
+    program.finalize()
+    return seconds, coordinates.reshape(-1, 3), tets, program.__version__
+
+
+def ftetwild(points, triangles, size):
+    import pytetwild as program
+
+    work = lambda: program.tetrahedralize(points, triangles.astype(np.int32), edge_length_abs=size, num_threads=1)
+    seconds, (points, tets) = clocked(work)
+    return seconds, points, tets, version("pytetwild")
+
+
+PROGRAMS = {
+    "tetgen": (tetgen, "pQ"),
+    "tetgen-keep": (tetgen, "pYQ"),
+    "tetgen-quality": (tetgen, "pq1.2/14a{}YQ"),
+    "gmsh": (gmsh, 1),
+    "gmsh-hxt": (gmsh, 10),
+    "ftetwild": (ftetwild,),
+}
+
+
+def main(name, size, runs, source, target):
+    given = np.load(source)
+    os.chdir(os.path.dirname(target))  # fTetWild leaves a file where it runs
+    program, *words = PROGRAMS[name]
+    seconds = []
+    while len(seconds) < int(runs) and sum(seconds) < BUDGET:
+        took, points, tets, release = program(given["points"], given["triangles"], float(size), *words)
+        if len(tets) == 0:
+            raise ValueError("no tets")
+        seconds.append(took)
+    np.savez(target, points=points, tets=tets)
+    return {"seconds": seconds, "version": release, "tets": len(tets)}
+
+
+try:
+    print(json.dumps(main(*sys.argv[1:])))
+except Exception as error:  # a refusal is a result, too
+    print(json.dumps({"error": " ".join(str(error).split())[:200] or type(error).__name__}))
