@@ -7,7 +7,7 @@ use motet::Mesh;
 use motet::io::read;
 use motet::mesh::check::check;
 use motet::mesh::shapes::{Flap, ThickTube, ball};
-use motet::mesh::{CellKind, Cells, Surface};
+use motet::mesh::{CellKind, Cells, Field, Surface};
 use serde_json::Value;
 
 /// The surface of a ball, without some of its triangles.
@@ -40,7 +40,7 @@ fn regions_and_patches_are_those_of_the_surface() {
     let folder = Folder::new();
     folder.mesh("vessel.vtp", &ThickTube::default().mesh().unwrap());
     let told = report(&folder, &["mesh", "vessel.vtp", "-o", "vessel.vtu"]);
-    assert_eq!(told["filled"]["volumes"].as_array().map(Vec::len), Some(2), "{told}");
+    assert_eq!(told["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{told}");
     let mesh = read(folder.path("vessel.vtu")).unwrap();
     let patches = mesh.patches().unwrap();
     for name in ["lumen_inlet", "interface", "outer", "wall_outlet"] {
@@ -98,4 +98,68 @@ fn words_that_mean_nothing_are_refused() {
     }
     folder.motet(["mesh", "none.stl", "-o", "out.vtu"]).assert().code(3);
     folder.motet(["mesh", "ball.stl", "-o", "out.vtu", "--size", "1e-9"]).assert().code(2);
+}
+
+#[test]
+fn sizes_grow_from_the_surface_when_asked() {
+    let folder = Folder::new();
+    let mut ball = ball_surface(0);
+    ball.point_data.push(Field::scalars("h", vec![0.2; ball.points.len()]));
+    ball.cell_data.push(Field::scalars("bad", vec![-1.0; ball.cells.len()]));
+    folder.mesh("ball.vtp", &ball);
+    let inside = |words: &[&str]| {
+        let told = report(&folder, &[&["mesh", "ball.vtp", "-o", "out.vtu"], words].concat());
+        assert_eq!(
+            (&told["complete"], &told["improved"]["after"]["bad"]),
+            (&true.into(), &0.into()),
+            "{told}"
+        );
+        told["filled"]["points_inside"].as_u64().unwrap()
+    };
+    let auto = inside(&["--size", "auto"]);
+    let slow = inside(&["--size", "auto", "--growth", "0.1"]);
+    let limited = inside(&["--size", "0.15", "--growth", "0.5"]);
+    let array = inside(&["--size-array", "h"]);
+    let both = inside(&["--size-array", "h", "--size", "0.2"]);
+    assert!(auto < slow && slow < limited && array < both, "{auto} {slow} {limited} {array} {both}");
+    for (words, code, expected) in [
+        (&["--size", "large"][..], 2, "or auto"),
+        (&["--growth", "0.9"], 2, "at most 0.7"),
+        (&["--size-array", "none"], 3, "ball.vtp: the surface has no array `none`; point arrays: h"),
+        (&["--size-array", "bad"], 3, "array `bad`: cell 0"),
+        (&["--size", "1e-9", "--growth", "0.3"], 3, "larger"),
+    ] {
+        let call = folder.motet(["mesh", "ball.vtp", "-o", "no.vtu"].iter().chain(words)).assert().code(code);
+        assert!(stderr(&call).contains(expected), "{}", stderr(&call));
+    }
+    assert!(!folder.path("no.vtu").exists());
+}
+
+#[test]
+fn regions_are_named_and_left_out_by_their_places() {
+    let folder = Folder::new();
+    let outer = ball_surface(0);
+    let mut inner = outer.clone();
+    inner.points.iter_mut().flatten().for_each(|x| *x *= 0.5);
+    folder.mesh("outer.stl", &outer);
+    folder.mesh("inner.stl", &inner);
+    let words = ["mesh", "inner.stl", "outer.stl", "-o", "out.vtu", "--seed", "-0.01,0,0=core"];
+    let told = report(&folder, &words);
+    let names: Vec<_> =
+        told["filled"]["bodies"].as_array().unwrap().iter().map(|b| b["name"].clone()).collect();
+    assert_eq!(names, ["outer", "core"]);
+    let regions = read(folder.path("out.vtu")).unwrap().regions().unwrap();
+    assert_eq!((regions.find("outer"), regions.find("core")), (Some(1), Some(2)));
+    let said = folder.motet(words).assert().success();
+    assert!(stdout(&said).contains("region 2 core: "), "{}", stdout(&said));
+    let hole = report(&folder, &[&words[..5], &["--hole", "0,0,0"]].concat());
+    assert_eq!(hole["filled"]["bodies"].as_array().map(Vec::len), Some(1), "{hole}");
+    let whole = told["filled"]["bodies"][0]["volume"].as_f64().unwrap();
+    assert!((hole["filled"]["bodies"][0]["volume"].as_f64().unwrap() - whole).abs() < 1e-9);
+    for (word, code) in [("9,0,0=far", 3), ("0,0=two", 2), ("0,0,0=", 2)] {
+        folder.motet(["mesh", "outer.stl", "-o", "no.vtu", "--seed", word]).assert().code(code);
+    }
+    let twice = ["mesh", "outer.stl", "-o", "no.vtu", "--seed", "0,0,0=a", "--seed", "0.1,0,0=b"];
+    let call = folder.motet(twice).assert().code(2);
+    assert!(stderr(&call).contains("another seed names `a`"), "{}", stderr(&call));
 }

@@ -2,10 +2,14 @@
 
 use serde::Serialize;
 
+use super::bodies::{self, Body, Seed};
 use super::compact::{compact, named};
-use super::interior::lattice;
+use super::graded;
+use super::interior;
+use super::size_field::SizeField;
+use super::sizes::Sizes;
 use super::surfaces::Surfaces;
-use crate::base::{Error, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::volume;
@@ -19,8 +23,12 @@ use crate::remesh::{self, remesh_mesh};
 pub struct Options {
     /// What becomes of points that have to be put on edges of the surface. Default: they move inside.
     pub edge_points: EdgePoints,
-    /// How long edges inside are to be, in units of the surface; `None`: no points inside. Default: `None`.
-    pub size: Option<f64>,
+    /// How long edges inside are to be; `None`: no points inside. Default: `None`.
+    pub sizes: Option<Sizes>,
+    /// Names of regions. Default: none.
+    pub seeds: Vec<Seed>,
+    /// Places in bodies that are left out. Default: none.
+    pub holes: Vec<Point>,
     /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
 }
@@ -41,7 +49,7 @@ pub struct Filled {
 pub struct Report {
     /// Triangles that the surfaces came with, those that two surfaces share counted once.
     pub triangles: usize,
-    /// Tets made.
+    /// Tets made, before they were improved.
     pub tets: usize,
     /// Points that stayed on edges of the surface, where there was no room inside: the triangles there are in pieces.
     pub points_on_edges: usize,
@@ -51,19 +59,20 @@ pub struct Report {
     pub triangles_kept: usize,
     /// Triangles with nothing enclosed on either side, which are left out.
     pub triangles_outside: usize,
-    /// Tets of no positive volume, once points on edges were rounded.
-    pub not_positive: usize,
-    /// The volume of each region, from region 1 on.
-    pub volumes: Vec<f64>,
-    /// The worst EAS.
+    /// The worst EAS, before tets were improved.
     pub worst_eas: f64,
+    /// Tets of no positive volume in the mesh that came of it.
+    pub not_positive: usize,
+    /// The regions of the mesh that came of it, from region 1 on.
+    pub bodies: Vec<Body>,
 }
 
 /// Fills surfaces, of which `preflight` tells whether they are fit, with tets.
 ///
 /// # Errors
 /// When the surfaces are not fit: the first fault, and how many there are. When they enclose nothing. When an edge comes so close to
-/// others that its coordinates have no digits left to divide it. When a size is no length, or asks for too many points.
+/// others that its coordinates have no digits left to divide it. When a size is no length, or asks for too many points. When a seed or a hole lies in
+/// no body or on a surface, or contradicts another.
 pub fn fill(
     surfaces: &Surfaces,
     preflight: &Preflight,
@@ -73,52 +82,78 @@ pub fn fill(
     if let Some(error) = preflight.first_error() {
         return Err(error);
     }
-    if let Some(size) = options.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
-        return Err(Error::options(format!("a size of {size}, expected a length above 0")));
-    }
-    let surfaces = surfaces.without_shared().compact();
-    let mut points = surfaces.points.clone();
-    if let Some(size) = options.size {
-        points.extend(lattice(&points, &surfaces.triangles, size, threads)?);
-    }
-    let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
+    options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
+    let joined = surfaces.without_shared();
+    let triangles = joined.triangles.clone();
+    let at_corners = options.sizes.as_ref().map_or_else(Vec::new, |sizes| sizes.at_corners(&joined));
+    let joined = joined.compact();
+    let mut points = joined.points.clone();
+    points.extend(inside(&joined, options.sizes.as_ref(), at_corners, threads)?);
+    let mut tets = constrain(&points, &joined.triangles, options.edge_points, threads)?;
+    let n_points = points.len();
     drop(points);
     if tets.tets.is_empty() {
         return Err(Error::input("the surfaces enclose nothing")
             .remedy("close them, or see what `motet info` says of them"));
     }
-    let mut mesh = mesh(&surfaces, &tets);
+    let names = bodies::arrange(&mut tets, surfaces, &triangles, &options.seeds, &options.holes)?;
+    let mut report = report(&joined, &tets, n_points);
+    let mut mesh = mesh(&joined, &tets);
+    mesh.label_names.regions = names.into_iter().map(|(body, name)| (body as i32 + 1, name)).collect();
+    drop(tets);
     let mut improved = None;
     if let Some(improve) = &options.improve {
         let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
         (mesh, improved) = (outcome.mesh, Some(outcome.report));
     }
-    Ok(Filled { report: report(&surfaces, &tets), mesh, improved })
+    (report.bodies, report.not_positive) = (bodies::told(&mesh), not_positive(&mesh));
+    Ok(Filled { report, mesh, improved })
 }
 
-fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
-    let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
-    let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
-    let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
-    let mut volumes = vec![0.0; n_bodies];
-    let mut not_positive = 0;
-    for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
-        let volume = volume(corners(tet));
-        volumes[body as usize] += volume;
-        not_positive += usize::from(volume <= 0.0);
+/// Points inside, of the sizes that are asked for.
+fn inside(
+    surfaces: &Surfaces,
+    sizes: Option<&Sizes>,
+    at_corners: Vec<[f64; 3]>,
+    threads: &Threads,
+) -> Result<Vec<Point>> {
+    let (points, triangles) = (&surfaces.points, &surfaces.triangles);
+    match sizes {
+        None => Ok(Vec::new()),
+        Some(Sizes::Uniform(size)) => interior::lattice(points, triangles, *size, threads),
+        Some(Sizes::Graded(grading)) => {
+            graded::check(surfaces, &at_corners, grading)?;
+            let field = SizeField::new(points, triangles, at_corners, grading, threads);
+            graded::lattice(points, triangles, &field, threads)
+        }
     }
+}
+
+fn not_positive(mesh: &Mesh) -> usize {
+    let tets = mesh.cells.iter().filter_map(|(_, kind, vertices)| match (kind, vertices) {
+        (CellKind::TETRA, &[a, b, c, d]) => Some([a, b, c, d].map(|v| mesh.points[v.index()])),
+        _ => None,
+    });
+    tets.filter(|tet| volume(*tet) <= 0.0).count()
+}
+
+/// `n_points` were given; behind them are those on edges.
+fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report {
+    let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
+    let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
+    let used = |of: std::ops::Range<usize>| is_named[of].iter().filter(|n| **n).count();
+    let points_on_edges = used(n_points..n_points + filled.on_edges.len());
     let is_kept = |list: &[[VertexId; 3]]| list.len() == 1;
     Report {
         triangles: surfaces.triangles.len(),
         tets: filled.tets.len(),
-        points_on_edges: filled.on_edges.len(),
-        points_inside: is_named[surfaces.points.len()..].iter().filter(|n| **n).count()
-            - filled.on_edges.len(),
+        points_on_edges,
+        points_inside: used(surfaces.points.len()..is_named.len()) - points_on_edges,
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
-        not_positive,
-        volumes,
         worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
+        not_positive: 0,
+        bodies: Vec::new(),
     }
 }
 

@@ -9,10 +9,10 @@ use crate::mesh::bounds;
 use crate::spatial::NearestTriangle;
 
 /// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
-const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
+pub(super) const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
 
 /// How near to the surface points may be, over the length of edges. An even tet on a facet has its apex at 0.82.
-const AWAY: f64 = 0.6;
+pub(super) const AWAY: f64 = 0.6;
 
 /// More points than this are refused.
 const MOST: f64 = 2e8;

@@ -4,15 +4,25 @@
 //! |---|---|---|
 //! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
-//! | points | `interior` | a lattice inside, a little away from the surface |
+//! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
+//! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, a little away from the surface; one of cubes within cubes |
 //! | tets | [`mod@crate::delaunay::constrain`] | every triangle is a facet of tets |
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
+//! | bodies | `bodies` | numbered from the outside in, named, left out on request |
 //! | labels | `fill` | what surfaces enclose is a region, triangles keep their patches |
 
+mod bodies;
 mod compact;
 mod fill;
+mod graded;
 mod interior;
+mod octree;
+mod shadow;
+mod size_field;
+mod sizes;
 mod surfaces;
 
+pub use bodies::{Body, Seed};
 pub use fill::{Filled, Options, Report, fill};
+pub use sizes::{Grading, MOST_GROWTH, Sizes, sizes_by};
 pub use surfaces::Surfaces;

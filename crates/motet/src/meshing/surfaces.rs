@@ -18,6 +18,8 @@ pub struct Surfaces {
     pub surface_of: Vec<u32>,
     /// What each mesh is.
     pub roles: Vec<Role>,
+    /// The name that each mesh came with.
+    pub names: Vec<String>,
     /// The patch of each triangle. Where no mesh but one has labels of its own, those; otherwise new ones.
     pub patches: Vec<i32>,
     /// Names of patches, where there are any.
@@ -36,6 +38,7 @@ impl Surfaces {
             triangles: Vec::new(),
             surface_of: Vec::new(),
             roles: meshes.iter().map(|m| m.1).collect(),
+            names: meshes.iter().map(|m| m.2.to_owned()).collect(),
             patches: Vec::new(),
             patch_names: BTreeMap::new(),
         };

@@ -184,7 +184,17 @@ impl BoxTree {
         p: Point,
         measure: impl Fn(u32) -> Option<(f64, T)>,
     ) -> Option<(f64, u32, T)> {
-        self.tree.nearest(p, f64::INFINITY, |place| measure(self.tree.ids[place]))
+        self.nearest_within(p, f64::INFINITY, measure)
+    }
+
+    /// The same, looking no farther than the square root of `reach`.
+    pub fn nearest_within<T: Copy>(
+        &self,
+        p: Point,
+        reach: f64,
+        measure: impl Fn(u32) -> Option<(f64, T)>,
+    ) -> Option<(f64, u32, T)> {
+        self.tree.nearest(p, reach, |place| measure(self.tree.ids[place]))
     }
 }
 

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use motet::base::Point;
 use motet::delaunay::EdgePoints;
-use motet::meshing::Options;
+use motet::meshing::{Grading, Options, Seed, Sizes};
 use motet::preflight::Repairs;
 use motet::remesh;
 
+use super::words::{self, Size};
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
@@ -18,11 +20,20 @@ use crate::words::positive;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Triangles keep their patches. Points at one place, within a file or between files, are one.
-Without --size the tets have the vertices of the surfaces, and few others.
+Without --size the tets have the vertices of the surfaces, and few others. Sizes that grow are at a place the least of
+`size there + G * distance` over all places of the surface: its edges say the size there, or an array.
+Regions are numbered from the outside in. Where there are several surfaces, a region without a seed is named after the
+smallest that holds it.
 
 Examples:
   A lumen, edges inside about 0.4 long:
     motet mesh lumen.stl -o lumen.vtu --size 0.4
+  As long as those of the surface, growing inwards by 0.2 of the distance, up to 2:
+    motet mesh lumen.stl -o lumen.vtu --size 2 --growth 0.2
+  By an array of the surface, such as a part of the radius:
+    motet mesh lumen.vtp -o lumen.vtu --size-array h
+  A lumen within its wall, named:
+    motet mesh lumen.stl outside.stl -o vessel.vtu --seed 0,0,5=blood --seed 1.1,0,5=wall
   A lumen with a dissection flap, a sheet that ends inside it:
     motet mesh lumen.vtp --membrane flap.vtp -o lumen.vtu
   A surface with small holes and flat triangles, mended first:
@@ -39,10 +50,24 @@ pub(crate) struct MeshArgs {
     /// Where the result goes, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Put points inside so that edges are about so long, in units of the surface; and repair bad tets
-    #[arg(long, value_name = "H", value_parser = positive)]
-    pub(crate) size: Option<f64>,
-    /// Repair tets below this EAS, the surface kept [default: 0.2 with --size]
+    /// Put points inside so that edges are about so long, in units of the surface; and repair bad tets.
+    /// auto: as long as those of the surface, and growing inwards
+    #[arg(long, value_name = "H|auto", value_parser = words::size)]
+    pub(crate) size: Option<Size>,
+    /// Sizes grow from the surface inwards, by G per unit of distance, up to --size; at most 0.7 [default: 0.3
+    /// with --size auto or --size-array]
+    #[arg(long, value_name = "G", value_parser = positive)]
+    pub(crate) growth: Option<f64>,
+    /// Sizes at the surface by an array of its points or cells, growing inwards, up to --size
+    #[arg(long, value_name = "NAME")]
+    pub(crate) size_array: Option<String>,
+    /// Name the region that holds a place. Repeatable
+    #[arg(long, value_name = "X,Y,Z=NAME", value_parser = words::seed, allow_hyphen_values = true)]
+    pub(crate) seed: Vec<Seed>,
+    /// Leave out what the surfaces enclose round a place. Repeatable
+    #[arg(long, value_name = "X,Y,Z", value_parser = words::place, allow_hyphen_values = true)]
+    pub(crate) hole: Vec<Point>,
+    /// Repair tets below this EAS, the surface kept [default: 0.2 with sizes]
     #[arg(long, value_name = "EAS")]
     pub(crate) min_eas: Option<f64>,
     /// A surface that may end inside the others, such as a flap. Repeatable
@@ -68,13 +93,30 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    pub(super) fn options(&self) -> Options {
-        let improve = self.min_eas.or(self.size.map(|_| remesh::Options::default().min_eas));
+    /// What the call asks for; `at_points` are sizes by its array.
+    pub(super) fn options(&self, at_points: Option<Vec<f64>>) -> Options {
+        let sizes = self.sizes(at_points);
+        let improve = self.min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
         Options {
             edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
-            size: self.size,
+            sizes,
+            seeds: self.seed.clone(),
+            holes: self.hole.clone(),
             improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
         }
+    }
+
+    fn sizes(&self, at_points: Option<Vec<f64>>) -> Option<Sizes> {
+        let largest = match self.size {
+            Some(Size::Length(h)) => Some(h),
+            _ => None,
+        };
+        let is_graded = self.growth.is_some() || at_points.is_some() || self.size == Some(Size::Auto);
+        if !is_graded {
+            return largest.map(Sizes::Uniform);
+        }
+        let growth = self.growth.unwrap_or(Grading::default().growth);
+        Some(Sizes::Graded(Grading { at_points, growth, largest }))
     }
 
     pub(super) fn repairs(&self) -> Option<Repairs> {

@@ -2,11 +2,12 @@
 
 mod args;
 mod report;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use motet::meshing::{Surfaces, fill};
+use motet::meshing::{Surfaces, fill, sizes_by};
 use motet::preflight::{Preflight, Role, culprits};
 use motet::{Mesh, io};
 
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     }
     let threads = common.threads()?;
     let bar = console.bar(4, "meshing");
-    let mut surfaces = read(args, console)?;
+    let (mut surfaces, sizes) = read(args, console)?;
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
     let done = args.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let filled = fill(&surfaces, &preflight, &args.options(), &threads)?;
+    let filled = fill(&surfaces, &preflight, &args.options(sizes), &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     bar.inc(1);
     let writing = Instant::now();
@@ -71,17 +72,24 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
 }
 
-fn read(args: &MeshArgs, console: &Console) -> motet::Result<Surfaces> {
+/// The surfaces, and the sizes at their points by the array that the call names.
+fn read(args: &MeshArgs, console: &Console) -> motet::Result<(Surfaces, Option<Vec<f64>>)> {
     let mut meshes: Vec<(Mesh, Role, String)> = Vec::new();
+    let mut sizes = Vec::new();
     let roles = [(&args.surfaces, Role::Boundary), (&args.membrane, Role::Membrane)];
     for (file, role) in roles.into_iter().flat_map(|(files, role)| files.iter().map(move |file| (file, role)))
     {
         let (mesh, notes) = io::read_noted(file)?;
         notes.iter().for_each(|what| console.warn(what));
+        if let Some(array) = &args.size_array {
+            sizes.push(sizes_by(&mesh, array).map_err(|e| e.in_file(file))?);
+        }
         meshes.push((mesh, role, name(file)));
     }
     let meshes: Vec<_> = meshes.iter().map(|(mesh, role, name)| (mesh, *role, name.as_str())).collect();
-    Surfaces::new(&meshes)
+    let surfaces = Surfaces::new(&meshes)?;
+    let sizes = args.size_array.as_ref().map(|_| surfaces.sizes(&sizes));
+    Ok((surfaces, sizes))
 }
 
 /// The file's name without its ending.

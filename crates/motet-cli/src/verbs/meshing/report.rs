@@ -36,7 +36,7 @@ struct Seconds {
     total: f64,
 }
 
-/// Faults told one by one, and volumes.
+/// Faults told one by one, and regions.
 const TOLD: usize = 20;
 
 impl<'a> Report<'a> {
@@ -87,13 +87,10 @@ impl<'a> Report<'a> {
     }
 
     fn tell_filled(&self, filled: &meshing::Report, console: &Console) {
-        let mut volumes: Vec<String> = filled.volumes.iter().take(TOLD).map(|v| short(*v)).collect();
-        volumes.extend((filled.volumes.len() > TOLD).then(|| "...".to_string()));
         console.say(format_args!(
-            "{} tets in {} regions of volume {}; worst EAS {}",
+            "{} tets in {} regions; worst EAS {}",
             count(filled.tets),
-            filled.volumes.len(),
-            volumes.join(", "),
+            filled.bodies.len(),
             short(filled.worst_eas)
         ));
         console.say(format_args!(
@@ -123,6 +120,19 @@ impl<'a> Report<'a> {
                 count(improved.before.bad.saturating_sub(improved.after.bad)),
                 count(improved.after.bad)
             ));
+        }
+        for body in filled.bodies.iter().take(TOLD) {
+            let name = body.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
+            console.say(format_args!(
+                "region {}{name}: {} tets, volume {}",
+                body.region,
+                count(body.tets),
+                short(body.volume)
+            ));
+        }
+        let more = filled.bodies.len().saturating_sub(TOLD);
+        if more > 0 {
+            console.say(format_args!("and {} more (--json lists them)", count(more)));
         }
         console.say(format_args!(
             "filled {}, all {}",

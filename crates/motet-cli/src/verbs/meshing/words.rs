@@ -1,0 +1,62 @@
+//! The words of `motet mesh`: how each is written, and what it means.
+
+use motet::base::Point;
+use motet::meshing::Seed;
+
+use crate::words::{numbers, positive};
+
+/// `H` or `auto`
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Size {
+    Length(f64),
+    Auto,
+}
+
+pub(super) fn size(text: &str) -> Result<Size, String> {
+    match text {
+        "auto" => Ok(Size::Auto),
+        _ => positive(text).map(Size::Length).map_err(|_| "a positive number is expected, or auto".into()),
+    }
+}
+
+/// `X,Y,Z`
+pub(super) fn place(text: &str) -> Result<Point, String> {
+    let numbers = numbers(text)?;
+    <[f64; 3]>::try_from(numbers).map_err(|other| format!("X,Y,Z has 3 numbers, this {}", other.len()))
+}
+
+/// `X,Y,Z=NAME`, parted at the first `=`, since numbers hold none.
+pub(super) fn seed(text: &str) -> Result<Seed, String> {
+    match text.split_once('=') {
+        Some((at, name)) if !name.trim().is_empty() => {
+            Ok(Seed { place: place(at)?, name: name.trim().to_owned() })
+        }
+        _ => Err("X,Y,Z=NAME, such as 0,0,12.5=lumen, is expected".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_mean_what_the_help_says() {
+        assert_eq!(size("auto"), Ok(Size::Auto));
+        assert_eq!(size("0.3"), Ok(Size::Length(0.3)));
+        assert_eq!(place("-1,2.5,3e-1"), Ok([-1.0, 2.5, 0.3]));
+        let told = seed("0,0,1=the=lumen").unwrap();
+        assert_eq!((told.place, told.name.as_str()), ([0.0, 0.0, 1.0], "the=lumen"));
+    }
+
+    #[test]
+    fn what_is_off_is_told() {
+        for text in ["0", "-1", "nan", "inf", "", "Auto"] {
+            assert!(size(text).unwrap_err().contains("or auto"), "{text}");
+        }
+        assert!(place("1,2").unwrap_err().contains("3 numbers, this 2"));
+        assert!(place("1,2,x").unwrap_err().contains("`x`"));
+        for text in ["1,2,3", "1,2,3=", "1,2=a", "=a", ""] {
+            assert!(seed(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,273 @@
+//! What the surfaces enclose: numbered from the outside in, named, left out on request.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use serde::Serialize;
+
+use super::surfaces::Surfaces;
+use crate::base::{Error, Point, Result, VertexId, rising};
+use crate::delaunay::Constrained;
+use crate::geometry::predicates::orient3d;
+use crate::geometry::tet::{FACETS, holds, volume};
+use crate::geometry::vector::is_finite;
+use crate::mesh::{CellKind, Mesh, bounds};
+use crate::preflight::Role;
+
+/// A place in a body, and the name that the body is to have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seed {
+    /// Any place in the body, not on a surface.
+    pub place: Point,
+    /// The name of its region.
+    pub name: String,
+}
+
+/// One of the regions of a mesh that was made.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Body {
+    /// Its number.
+    pub region: i32,
+    /// Its name, where it has one.
+    pub name: Option<String>,
+    /// How many tets it has.
+    pub tets: usize,
+    /// Its volume.
+    pub volume: f64,
+}
+
+/// The bodies of a mesh, by their numbers.
+pub(super) fn told(mesh: &Mesh) -> Vec<Body> {
+    let Some(regions) = mesh.regions() else { return Vec::new() };
+    let mut bodies: BTreeMap<i32, Body> = BTreeMap::new();
+    for (cell, kind, vertices) in mesh.cells.iter() {
+        let (CellKind::TETRA, &[a, b, c, d]) = (kind, vertices) else { continue };
+        let region = regions.ids[cell.index()];
+        let name = || regions.names.get(&region).cloned();
+        let body =
+            bodies.entry(region).or_insert_with(|| Body { region, name: name(), tets: 0, volume: 0.0 });
+        body.tets += 1;
+        body.volume += volume([a, b, c, d].map(|v| mesh.points[v.index()]));
+    }
+    bodies.into_values().collect()
+}
+
+/// The side of a triangle: a body, or `None` outside of all.
+type Side = Option<u32>;
+
+/// Leaves out the bodies with holes and numbers the others from the outside in; the names by the new numbers.
+///
+/// Names are those of seeds; of other bodies, where there are several closed surfaces, that of the smallest that holds the body.
+///
+/// # Errors
+/// When a place lies in no body or on a surface, when places contradict each other, when nothing is left.
+pub(super) fn arrange(
+    tets: &mut Constrained,
+    surfaces: &Surfaces,
+    triangles: &[[VertexId; 3]],
+    seeds: &[Seed],
+    holes: &[Point],
+) -> Result<BTreeMap<u32, String>> {
+    let mut names = BTreeMap::new();
+    for seed in seeds {
+        let body = body_at(tets, seed.place)?;
+        check_seed(&names, body, seed)?;
+        names.insert(body, seed.name.clone());
+    }
+    let holes = holes.iter().map(|&place| hole_at(tets, place, &names)).collect::<Result<BTreeSet<_>>>()?;
+    let order = from_outside(&tets.triangle_to_bodies);
+    let by_surface = Holders::find(tets, surfaces, triangles).names(surfaces, &order);
+    for (body, name) in by_surface {
+        if !names.contains_key(&body) && !holes.contains(&body) {
+            let unused = unused(&name, &names);
+            names.insert(body, unused);
+        }
+    }
+    let kept = order.iter().filter(|body| !holes.contains(body));
+    let new: BTreeMap<u32, u32> = kept.copied().zip(0..).collect();
+    if new.is_empty() && !order.is_empty() {
+        return Err(Error::options("every body is a hole").remedy("leave a body to be filled"));
+    }
+    renumber(tets, &new);
+    Ok(names.into_iter().filter_map(|(body, name)| Some((*new.get(&body)?, name))).collect())
+}
+
+/// A name that no body has.
+fn unused(name: &str, names: &BTreeMap<u32, String>) -> String {
+    let is_free = |name: &String| names.values().all(|other| other != name);
+    let numbered = (2u32..).map(|k| format!("{name}_{k}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
+}
+
+fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {
+    let kept = |body: &u32| new.get(body).copied();
+    let both = tets.tets.iter().zip(&tets.bodies);
+    (tets.tets, tets.bodies) = both.filter_map(|(tet, body)| Some((*tet, kept(body)?))).unzip();
+    for sides in &mut tets.triangle_to_bodies {
+        *sides = sides.map(|side| kept(&side?));
+    }
+}
+
+fn told_place([x, y, z]: Point) -> String {
+    format!("{x}, {y}, {z}")
+}
+
+fn check_seed(names: &BTreeMap<u32, String>, body: u32, seed: &Seed) -> Result<()> {
+    let at = |what: String, remedy: &str| {
+        Err(Error::options(what).at(format!("seed at {}", told_place(seed.place))).remedy(remedy))
+    };
+    match names.iter().find(|(other, name)| (**other == body) != (**name == seed.name)) {
+        Some((other, name)) if *other == body => {
+            let what = format!("lies in the body that another seed names `{name}`, and this `{}`", seed.name);
+            at(what, "give one of them, or a surface between them")
+        }
+        Some((_, name)) if *name == seed.name => {
+            at(format!("the name `{name}` is that of another body already"), "give each body its own name")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> Result<u32> {
+    let body = body_at(tets, place)?;
+    match names.get(&body) {
+        None => Ok(body),
+        Some(name) => {
+            let what = format!("the hole lies in the body that a seed names `{name}`");
+            Err(Error::options(what).at(told_place(place)).remedy("give either the hole or the seed"))
+        }
+    }
+}
+
+/// The body that holds a place.
+fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
+    if !is_finite(place) {
+        return Err(Error::options("a place needs finite numbers").at(told_place(place)));
+    }
+    let corners = |tet: &[VertexId; 4]| tet.map(|v| tets.points[v.index()]);
+    let is_around = |tet: [Point; 4]| {
+        (0..3).all(|i| tet.iter().any(|p| p[i] <= place[i]) && tet.iter().any(|p| p[i] >= place[i]))
+    };
+    let holder = |tet: &[VertexId; 4]| is_around(corners(tet)) && holds(corners(tet), place);
+    let Some(t) = tets.tets.iter().position(holder) else {
+        let [low, high] = bounds(&tets.points).unwrap_or_default();
+        return Err(Error::input("the place lies outside of all that the surfaces enclose")
+            .at(told_place(place))
+            .remedy(format!(
+                "give one inside; the surfaces reach from {} to {}",
+                told_place(low),
+                told_place(high)
+            )));
+    };
+    let tet = tets.tets[t];
+    let on = FACETS.map(|f| f.map(|k| tet[k])).into_iter().filter(|facet| {
+        let [a, b, c] = facet.map(|v| tets.points[v.index()]);
+        orient3d(a, b, c, place) == 0
+    });
+    match on.filter_map(|facet| wall(tets, facet)).next() {
+        None => Ok(tets.bodies[t]),
+        Some(triangle) => {
+            Err(Error::input("the place lies on the surface, between two bodies or on the border of one")
+                .at(format!("{} on triangle {triangle}", told_place(place)))
+                .remedy("give one inside"))
+        }
+    }
+}
+
+/// The triangle that a facet is a part of, if it parts bodies.
+fn wall(tets: &Constrained, facet: [VertexId; 3]) -> Option<usize> {
+    let is_part = |part: &[VertexId; 3]| rising(*part) == rising(facet);
+    let mut parting = tets.triangle_to_bodies.iter().enumerate().filter(|(_, sides)| sides[0] != sides[1]);
+    parting.find(|(i, _)| tets.triangle_to_facets.list(*i).iter().any(is_part)).map(|(i, _)| i)
+}
+
+/// For each side of a wall, the outside first, what lies beyond: `(triangle, side)`.
+fn beyond(triangle_to_bodies: &[[Side; 2]]) -> BTreeMap<Side, Vec<(usize, Side)>> {
+    let mut beyond: BTreeMap<Side, Vec<(usize, Side)>> = BTreeMap::new();
+    for (i, &[front, behind]) in triangle_to_bodies.iter().enumerate().filter(|(_, [a, b])| a != b) {
+        beyond.entry(front).or_default().push((i, behind));
+        beyond.entry(behind).or_default().push((i, front));
+    }
+    beyond
+}
+
+/// All bodies from the outside in, those equally far by their first triangle.
+fn from_outside(triangle_to_bodies: &[[Side; 2]]) -> Vec<u32> {
+    let beyond = beyond(triangle_to_bodies);
+    let mut depths: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
+    let mut todo = VecDeque::from([(None, 0)]);
+    while let Some((side, depth)) = todo.pop_front() {
+        for &(_, other) in beyond.get(&side).map_or(&[][..], Vec::as_slice) {
+            let Some(body) = other else { continue };
+            depths.entry(body).or_insert_with(|| {
+                todo.push_back((other, depth + 1));
+                (depth, beyond[&other].first().map_or(usize::MAX, |first| first.0))
+            });
+        }
+    }
+    let mut order: Vec<u32> = depths.keys().copied().collect();
+    order.sort_by_key(|body| depths[body]);
+    order
+}
+
+/// Which closed surfaces hold each body.
+struct Holders {
+    /// Surfaces, rising.
+    of_body: BTreeMap<u32, BTreeSet<u32>>,
+    /// The volume that each surface holds; none for those that are not closed in themselves.
+    volumes: BTreeMap<u32, f64>,
+}
+
+impl Holders {
+    /// Whoever crosses a triangle goes into its surfaces, or out of them.
+    fn find(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> Self {
+        let is_boundary = |s: &u32| surfaces.roles[*s as usize] == Role::Boundary;
+        let mut of_triangle: Vec<([VertexId; 3], u32)> =
+            surfaces.triangles.iter().map(|t| rising(*t)).zip(surfaces.surface_of.iter().copied()).collect();
+        of_triangle.retain(|(_, s)| is_boundary(s));
+        of_triangle.sort_unstable();
+        let crossed = |i: usize| {
+            let key = rising(triangles[i]);
+            let first = of_triangle.partition_point(|(t, _)| *t < key);
+            of_triangle[first..].iter().take_while(move |(t, _)| *t == key).map(|(_, s)| *s)
+        };
+        let across = |from: &BTreeSet<u32>, i: usize| from ^ &crossed(i).collect();
+        let mut of_side: BTreeMap<Side, BTreeSet<u32>> = BTreeMap::from([(None, BTreeSet::new())]);
+        let beyond = beyond(&tets.triangle_to_bodies);
+        let mut todo = VecDeque::from([None]);
+        let mut torn = BTreeSet::new();
+        while let Some(side) = todo.pop_front() {
+            for &(i, other) in beyond.get(&side).map_or(&[][..], Vec::as_slice) {
+                let there = across(&of_side[&side], i);
+                match of_side.get(&other) {
+                    Some(known) => torn.extend(known ^ &there),
+                    None => {
+                        of_side.insert(other, there);
+                        todo.push_back(other);
+                    }
+                }
+            }
+        }
+        let of_body: BTreeMap<u32, BTreeSet<u32>> =
+            of_side.into_iter().filter_map(|(side, of)| Some((side?, &of - &torn))).collect();
+        let mut volumes = BTreeMap::new();
+        for (tet, body) in tets.tets.iter().zip(&tets.bodies) {
+            let volume = volume(tet.map(|v| tets.points[v.index()]));
+            let of_body = of_body.get(body).into_iter().flatten();
+            of_body.for_each(|s| *volumes.entry(*s).or_insert(0.0) += volume);
+        }
+        Self { of_body, volumes }
+    }
+
+    /// The name of the smallest surface that holds a body, for each body in this order; nothing where there is one surface alone.
+    fn names(&self, surfaces: &Surfaces, order: &[u32]) -> Vec<(u32, String)> {
+        if surfaces.roles.iter().filter(|role| **role == Role::Boundary).count() < 2 {
+            return Vec::new();
+        }
+        let smallest = |body: &u32| {
+            let holders = self.of_body.get(body)?.iter();
+            holders.min_by(|a, b| self.volumes[a].total_cmp(&self.volumes[b]))
+        };
+        let named = |body: &u32| Some((*body, surfaces.names[*smallest(body)? as usize].clone()));
+        order.iter().filter_map(named).filter(|(_, name)| !name.is_empty()).collect()
+    }
+}

@@ -1,0 +1,79 @@
+//! Points inside, of sizes that grow from the surface: a lattice of cubes within cubes.
+//!
+//! Cubes are divided until they fit their sizes, neighbours at most once more than each other; corners and middles of those that are
+//! not divided are the points. Where neighbours are alike that is a body-centred cubic lattice, as for sizes that are the same everywhere; where
+//! they are not, the tets between are halves and quarters of those of the lattice (Labelle and Shewchuk 2007, *Isosurface stuffing*),
+//! and points of different levels are no nearer to each other than half a side of the smaller cube.
+
+use super::interior::{AWAY, EDGE_OVER_SIDE};
+use super::octree::{Grid, Octree};
+use super::shadow::Shadow;
+use super::size_field::SizeField;
+use super::sizes::Grading;
+use super::surfaces::Surfaces;
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::triangle::{self, area};
+use crate::mesh::bounds;
+
+/// Edges of cubes that are not divided are within this factor of their sizes.
+const WITHIN: f64 = std::f64::consts::SQRT_2;
+
+/// More points than this near the surface are refused at once; what comes inside shows when it is made.
+const MOST: f64 = 5e7;
+
+/// # Errors
+/// When the sizes ask for too many points.
+pub(super) fn check(surfaces: &Surfaces, at_corners: &[[f64; 3]], grading: &Grading) -> Result<()> {
+    let size = |at: &[f64; 3]| (at.iter().sum::<f64>() / 3.0).min(grading.largest.unwrap_or(f64::INFINITY));
+    let corners = |t: [VertexId; 3]| t.map(|v| surfaces.points[v.index()]);
+    let both = || surfaces.triangles.iter().zip(at_corners);
+    let expected: f64 = both().map(|(t, at)| area(corners(*t)) / (size(at) * size(at))).sum();
+    if expected <= MOST {
+        return Ok(());
+    }
+    let what =
+        format!("these sizes ask for {expected:.1e} points at the surface, expected at most {MOST:.0e}");
+    let least = both().min_by(|x, y| size(x.1).total_cmp(&size(y.1)));
+    let at = least.map_or_else(String::new, |(t, at)| {
+        let [x, y, z] = triangle::centroid(corners(*t));
+        format!("{x}, {y}, {z}, where the size is {}", size(at))
+    });
+    Err(Error::input(what).at(at).remedy("give larger sizes"))
+}
+
+/// Points of a lattice with edges as long as the sizes between the surfaces.
+///
+/// # Errors
+/// When there would be too many.
+pub(super) fn lattice(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    field: &SizeField<'_>,
+    threads: &Threads,
+) -> Result<Vec<Point>> {
+    let ends = bounds(points).unwrap_or_default();
+    let shadow = Shadow::new(points, triangles);
+    let is_to_be_divided = |grid: &Grid, cube| {
+        let edge = grid.bounds(cube)[1][0] - grid.bounds(cube)[0][0];
+        shadow.may_hold(grid.bounds(cube)) && edge * EDGE_OVER_SIDE > WITHIN * field.at(grid.middle(cube))
+    };
+    let tree = Octree::new(Grid::new(ends, first_side(ends, field))?, is_to_be_divided, threads)?;
+    let leaves = tree.leaves();
+    let is_between = threads.map(leaves.len(), |i| shadow.may_hold(tree.grid.bounds(leaves[i])));
+    let leaves: Vec<_> =
+        leaves.into_iter().zip(is_between).filter(|(_, is)| *is).map(|(cube, _)| cube).collect();
+    let mut found = tree.corners(&leaves);
+    found.extend(leaves.iter().map(|&cube| tree.grid.middle(cube)));
+    let is_away = threads.map(found.len(), |i| !field.is_near(found[i], AWAY * field.at(found[i])));
+    Ok(found.into_iter().zip(is_away).filter(|(_, away)| *away).map(|(p, _)| p).collect())
+}
+
+/// The side of the largest cubes: such that cubes of some level fit the largest size, or where there is none that of most triangles.
+fn first_side([low, high]: [Point; 2], field: &SizeField<'_>) -> f64 {
+    let longest = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    if let Some(largest) = field.largest() {
+        return largest.min(longest) / EDGE_OVER_SIDE;
+    }
+    let side = field.median() / EDGE_OVER_SIDE;
+    side * (longest / side).log2().ceil().max(0.0).exp2()
+}

@@ -1,0 +1,178 @@
+//! How long edges inside are to be: what a caller can ask for, held against what can be done.
+
+use super::surfaces::Surfaces;
+use crate::base::{Error, Result};
+use crate::geometry::vector::distance;
+use crate::mesh::{Field, Mesh, Surface, firsts_at_place};
+
+/// Sizes that grow faster than this part of the distance mean nothing: neighbours in the lattice differ by a factor of 2 at most. Below it a cube of
+/// the lattice is never so large that what is small within it goes unseen from its middle.
+pub const MOST_GROWTH: f64 = 0.7;
+
+/// How long edges inside are to be, in units of the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sizes {
+    /// The same everywhere.
+    Uniform(f64),
+    /// What they are at the surface, growing from there.
+    Graded(Grading),
+}
+
+/// Sizes that grow from the surface: at a place the least of `size there + growth * distance` over all places of the surface, so
+/// two places never differ by more than `growth` times their distance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grading {
+    /// The size at each of [`Surfaces::points`], linear on triangles; `None`: the mean length of the edges of the surface there.
+    /// Default: `None`.
+    pub at_points: Option<Vec<f64>>,
+    /// How much sizes grow per unit of distance, above 0 and at most [`MOST_GROWTH`]. Default: 0.3.
+    pub growth: f64,
+    /// No size is above this. Default: `None`.
+    pub largest: Option<f64>,
+}
+
+impl Default for Grading {
+    fn default() -> Self {
+        Self { at_points: None, growth: 0.3, largest: None }
+    }
+}
+
+impl Sizes {
+    /// # Errors
+    /// When a size is no length, or sizes grow in a way that means nothing.
+    pub(super) fn check(&self, surfaces: &Surfaces) -> Result<()> {
+        match self {
+            Self::Uniform(size) => check_length(*size),
+            Self::Graded(grading) => grading.check(surfaces),
+        }
+    }
+
+    /// The sizes at the corners of each triangle, where they are not the same everywhere.
+    pub(super) fn at_corners(&self, surfaces: &Surfaces) -> Vec<[f64; 3]> {
+        let Self::Graded(grading) = self else { return Vec::new() };
+        let of_edges = || edge_lengths(surfaces);
+        let sizes = grading.at_points.as_ref().map_or_else(of_edges, Vec::clone);
+        surfaces.triangles.iter().map(|t| t.map(|v| sizes[v.index()])).collect()
+    }
+}
+
+impl Grading {
+    fn check(&self, surfaces: &Surfaces) -> Result<()> {
+        self.largest.map_or(Ok(()), check_length)?;
+        if !(self.growth > 0.0 && self.growth <= MOST_GROWTH) {
+            let what =
+                format!("sizes that grow by {}, expected more than 0 and at most {MOST_GROWTH}", self.growth);
+            return Err(Error::options(what).remedy("0.3 is a good start"));
+        }
+        let Some(sizes) = &self.at_points else { return Ok(()) };
+        if sizes.len() != surfaces.points.len() {
+            let what = format!("{} sizes for {} points of the surfaces", sizes.len(), surfaces.points.len());
+            return Err(Error::input(what).remedy("give a size for each point"));
+        }
+        let used = surfaces.triangles.as_flattened().iter();
+        match used.filter(|v| !is_length(sizes[v.index()])).min() {
+            None => Ok(()),
+            Some(v) => Err(no_length(sizes[v.index()]).at(format!("point {v} of the surfaces"))),
+        }
+    }
+}
+
+/// The mean length of the edges at each point; of inner edges each counts for both its triangles.
+fn edge_lengths(surfaces: &Surfaces) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); surfaces.points.len()];
+    for &[a, b, c] in &surfaces.triangles {
+        for [a, b] in [[a, b], [b, c], [c, a]] {
+            let length = distance(surfaces.points[a.index()], surfaces.points[b.index()]);
+            for end in [a, b] {
+                let (sum, n) = &mut sums[end.index()];
+                *sum += length;
+                *n += 1.0;
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, n)| sum / f64::max(n, 1.0)).collect()
+}
+
+fn is_length(size: f64) -> bool {
+    size > 0.0 && size.is_finite()
+}
+
+fn check_length(size: f64) -> Result<()> {
+    if is_length(size) {
+        return Ok(());
+    }
+    Err(Error::options(format!("a size of {size}, expected a length above 0")))
+}
+
+fn no_length(size: f64) -> Error {
+    Error::input(format!("the size {size} is no length of an edge"))
+        .remedy("give every point of the surface a number above 0")
+}
+
+/// The sizes at the points of a mesh by an array of its points or its surface cells (of a mesh without any, its volume cells); of cells that
+/// share a point the least counts. Points that no cell uses have a size of infinity.
+///
+/// # Errors
+/// When there is no such array, when it has more than a number a row, or when a number is no length: the place is the point or cell.
+pub fn sizes_by(mesh: &Mesh, array: &str) -> Result<Vec<f64>> {
+    let mut surface = Surface::of(mesh);
+    if surface.triangles.is_empty() {
+        surface = Surface::boundary_of(mesh);
+    }
+    let mut sizes = vec![f64::INFINITY; mesh.points.len()];
+    if let Some(field) = mesh.point_field(array) {
+        let values = scalars(field)?;
+        for v in surface.vertices() {
+            sizes[v.index()] = values[v.index()];
+            if !is_length(values[v.index()]) {
+                return Err(no_length(values[v.index()]).at(format!("array `{array}`: point {v}")));
+            }
+        }
+        return Ok(sizes);
+    }
+    let Some(field) = mesh.cell_field(array) else { return Err(unknown(mesh, array)) };
+    let values = scalars(field)?;
+    for (triangle, cell) in surface.triangles.iter().zip(&surface.triangle_to_cell) {
+        let size = values[cell.index()];
+        if !is_length(size) {
+            return Err(no_length(size).at(format!("array `{array}`: cell {cell}")));
+        }
+        triangle.iter().for_each(|v| sizes[v.index()] = sizes[v.index()].min(size));
+    }
+    Ok(sizes)
+}
+
+fn scalars(field: &Field) -> Result<Vec<f64>> {
+    let values = field.values.to_f64().filter(|_| field.components == 1);
+    values.ok_or_else(|| {
+        Error::input("does not have one number a row, which sizes are")
+            .at(format!("array `{}`", field.name))
+            .remedy("give an array of one component")
+    })
+}
+
+fn unknown(mesh: &Mesh, array: &str) -> Error {
+    let names = |fields: &[Field]| match fields {
+        [] => "none".to_owned(),
+        _ => fields.iter().map(|field| field.name.as_str()).collect::<Vec<_>>().join(", "),
+    };
+    Error::input(format!("the surface has no array `{array}`")).remedy(format!(
+        "point arrays: {}; cell arrays: {}",
+        names(&mesh.point_data),
+        names(&mesh.cell_data)
+    ))
+}
+
+impl Surfaces {
+    /// Sizes at all points, from those of the points of each mesh: of points at one place the least.
+    pub fn sizes(&self, of_meshes: &[Vec<f64>]) -> Vec<f64> {
+        let mut sizes = of_meshes.concat();
+        if sizes.len() == self.points.len() {
+            let kept = firsts_at_place(&self.points);
+            for (v, first) in kept.iter().enumerate() {
+                sizes[first.index()] = sizes[first.index()].min(sizes[v]);
+            }
+        }
+        sizes
+    }
+}
