@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::compact::{compact, named};
 use super::interior::lattice;
+use super::layers::{self, Grown, Layers};
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
@@ -23,6 +24,8 @@ pub struct Options {
     pub size: Option<f64>,
     /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
+    /// Layers of thin cells on walls. Default: `None`.
+    pub layers: Option<Layers>,
 }
 
 /// What came of filling surfaces.
@@ -34,6 +37,8 @@ pub struct Filled {
     pub report: Report,
     /// How improving went, where it was asked for.
     pub improved: Option<remesh::Report>,
+    /// How the layers went, where they were asked for.
+    pub layers: Option<layers::Report>,
 }
 
 /// How filling went.
@@ -77,23 +82,59 @@ pub fn fill(
         return Err(Error::options(format!("a size of {size}, expected a length above 0")));
     }
     let surfaces = surfaces.without_shared().compact();
+    let Some(layers) = &options.layers else {
+        let tets = fill_once(&surfaces, options, threads)?;
+        let (mesh, _) = mesh(&surfaces, &tets);
+        let (mesh, improved) = improve(mesh, options, threads)?;
+        return Ok(Filled { report: report(&surfaces, &tets), mesh, improved, layers: None });
+    };
+    fill_with_layers(&surfaces, layers, options, threads)
+}
+
+fn fill_with_layers(
+    surfaces: &Surfaces,
+    layers: &Layers,
+    options: &Options,
+    threads: &Threads,
+) -> Result<Filled> {
+    if options.edge_points == EdgePoints::Stay {
+        return Err(Error::options("layers, and points that stay on edges of the surface")
+            .remedy("layers stand on whole triangles: let points move inside"));
+    }
+    let mut grown = Grown::new(surfaces, layers, threads)?;
+    let tets = grown.fill(threads, |core| fill_once(core, options, threads))?;
+    let (core, core_to_mesh) = mesh(grown.core(), &tets);
+    let (mut mesh, improved) = improve(grown.glue(&core, &core_to_mesh), options, threads)?;
+    if !layers.keep_prisms {
+        mesh = layers::divided(mesh);
+    }
+    let mut report = report(grown.core(), &tets);
+    let (of_layers, volumes) = grown.report(report.volumes.len());
+    report.volumes.iter_mut().zip(volumes).for_each(|(volume, of_layers)| *volume += of_layers);
+    report.triangles = surfaces.triangles.len();
+    [report.triangles_kept, report.triangles_outside] =
+        grown.count(|i| tets.triangle_to_facets.list(i).len() == 1);
+    Ok(Filled { mesh, report, improved, layers: Some(of_layers) })
+}
+
+/// Tets within surfaces, with points inside where a size is asked for.
+fn fill_once(surfaces: &Surfaces, options: &Options, threads: &Threads) -> Result<Constrained> {
     let mut points = surfaces.points.clone();
     if let Some(size) = options.size {
         points.extend(lattice(&points, &surfaces.triangles, size, threads)?);
     }
     let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
-    drop(points);
     if tets.tets.is_empty() {
         return Err(Error::input("the surfaces enclose nothing")
             .remedy("close them, or see what `motet info` says of them"));
     }
-    let mut mesh = mesh(&surfaces, &tets);
-    let mut improved = None;
-    if let Some(improve) = &options.improve {
-        let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
-        (mesh, improved) = (outcome.mesh, Some(outcome.report));
-    }
-    Ok(Filled { report: report(&surfaces, &tets), mesh, improved })
+    Ok(tets)
+}
+
+fn improve(mesh: Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Option<remesh::Report>)> {
+    let Some(improve) = &options.improve else { return Ok((mesh, None)) };
+    let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
+    Ok((outcome.mesh, Some(outcome.report)))
 }
 
 fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
@@ -122,8 +163,8 @@ fn report(surfaces: &Surfaces, filled: &Constrained) -> Report {
     }
 }
 
-/// Tets and triangles as cells; points that no cell uses are left out.
-fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
+/// Tets and triangles as cells, and the new number of each point; points that no cell uses are left out.
+fn mesh(surfaces: &Surfaces, filled: &Constrained) -> (Mesh, Vec<VertexId>) {
     let mut triangles = Vec::new();
     for (i, list) in filled.triangle_to_facets.iter().enumerate() {
         if filled.triangle_to_bodies[i] != [None; 2] {
@@ -144,9 +185,10 @@ fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
         regions.push(0);
         patches.push(patch);
     }
-    Mesh {
+    let mesh = Mesh {
         cell_data: vec![Field::scalars("region", regions), Field::scalars("patch", patches)],
         label_names: LabelNames { patches: surfaces.patch_names.clone(), ..LabelNames::default() },
         ..Mesh::new(points, cells)
-    }
+    };
+    (mesh, old_to_new)
 }

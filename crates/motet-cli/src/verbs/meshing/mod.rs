@@ -2,6 +2,7 @@
 
 mod args;
 mod report;
+mod words;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let filled = fill(&surfaces, &preflight, &args.options(), &threads)?;
+    let filled = fill(&surfaces, &preflight, &args.options(&surfaces)?, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     bar.inc(1);
     let writing = Instant::now();
@@ -60,10 +61,12 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     lost.iter().for_each(|what| console.warn(what));
     let is_reached = args.delaunay || filled.report.points_on_edges == 0;
     let is_good = filled.improved.as_ref().is_none_or(motet::remesh::Report::is_complete);
-    let is_complete = is_reached && is_good && filled.report.not_positive == 0;
+    let has_layers = filled.layers.as_ref().is_none_or(|layers| layers.prisms > 0);
+    let is_complete = is_reached && is_good && has_layers && filled.report.not_positive == 0;
     report.end(
         filled.report,
         filled.improved,
+        filled.layers,
         [read, check, fill, write, begin.elapsed().as_secs_f64()],
         is_complete,
     );
