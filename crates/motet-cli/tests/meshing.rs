@@ -139,7 +139,7 @@ fn layers_grow_on_walls_and_are_told() {
     assert!(check(&prisms).is_empty());
     assert!(prisms.cells.counts().contains(&(CellKind::WEDGE, 4 * 2 * 24 * 24)));
     let call = folder.motet(with(&["4,0.02,1.2"])).assert().success();
-    assert!(stderr(&call).contains("as thick as asked at 600 of 600 vertices"), "{}", stderr(&call));
+    assert!(stdout(&call).contains("as thick as asked at 600 of 600 vertices"), "{}", stdout(&call));
 }
 
 #[test]

@@ -106,7 +106,7 @@ fn fill_with_layers(
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
     let (mut mesh, improved) = improve(grown.glue(&core, &core_to_mesh), options, threads)?;
     if !layers.keep_prisms {
-        mesh = layers::divided(mesh);
+        mesh = layers::split(mesh);
     }
     let mut report = report(grown.core(), &tets);
     let (of_layers, volumes) = grown.report(report.volumes.len());

@@ -8,7 +8,7 @@
 use super::flats::unit;
 use super::neighbors::NONE;
 use super::skin::Skin;
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{across, add, cross, dot, norm, scale, sub};
 
 /// The least cosine with which a wall may be seen: 78 degrees from its normal. Below, nothing grows.
@@ -89,7 +89,7 @@ pub(super) struct Directions {
 
 impl Directions {
     /// `around` has the neighbors of each vertex along walls.
-    pub(super) fn find(skin: &Skin, around: &[Vec<VertexId>], threads: &Threads) -> Self {
+    pub(super) fn find(skin: &Skin, around: &Csr<VertexId>, threads: &Threads) -> Self {
         let found: Vec<(Point, f64, Freedom)> = threads.map(skin.points.len(), |w| {
             let vertex = VertexId::new(w);
             let normals = inward(skin, vertex);
@@ -105,7 +105,7 @@ impl Directions {
             Self { ways: found.iter().map(|f| f.0).collect(), cosines: found.iter().map(|f| f.1).collect() };
         for _ in 0..SWEEPS {
             all.ways = threads.map(found.len(), |w| {
-                let sum = around[w].iter().fold(all.ways[w], |sum, v| add(sum, all.ways[v.index()]));
+                let sum = around.list(w).iter().fold(all.ways[w], |sum, v| add(sum, all.ways[v.index()]));
                 let (way, best) = (unit(sum), found[w].1);
                 let may_turn = found[w].2 == Freedom::Anywhere && best > 0.0;
                 let is_seen = || least(&inward(skin, VertexId::new(w)), way) >= KEPT * best;

@@ -62,12 +62,17 @@ impl Flats {
     }
 }
 
+/// Fewer triangles than this are no cap: a rough wall has some that stand out alone.
+const LEAST: usize = 3;
+
 /// Which triangles are of caps: flat parts with a sharp crease all round. Where all are, none is.
 pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
     let behind = neighbors(triangles);
     let flats = Flats::find(points, triangles, &behind, |_| true);
     let normal = |t: usize| unit(area_vector(triangles[t].map(|v| points[v.index()])));
-    let mut is_cap = vec![true; flats.normals.len()];
+    let mut counts = vec![0; flats.normals.len()];
+    flats.of.iter().for_each(|&part| counts[part as usize] += 1);
+    let mut is_cap: Vec<bool> = counts.iter().map(|&n| n >= LEAST).collect();
     for (t, next) in behind.iter().enumerate() {
         let part = flats.of[t] as usize;
         let beyond = next.iter().filter(|&&s| s != NONE && flats.of[s as usize] != flats.of[t]);

@@ -8,10 +8,10 @@ use super::options::Layers;
 use super::report::Report;
 use super::skin::{Sides, Skin};
 use super::slide::Slide;
-use super::split::{n_tets, split};
+use super::split::n_tets;
 use super::tangles::{Rims, tangles};
 use super::thickness::Heights;
-use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::tet::volume;
 use crate::mesh::Mesh;
@@ -38,7 +38,7 @@ pub(crate) struct Grown<'a> {
     sides: Vec<Sides>,
     skin: Skin,
     /// The neighbors of each vertex along walls.
-    around: Vec<Vec<VertexId>>,
+    around: Csr<VertexId>,
     slide: Slide,
     rims: Rims,
     heights: Heights,
@@ -94,7 +94,7 @@ impl<'a> Grown<'a> {
             self.heights.heights[w] *= if goes { 0.0 } else { THINNER };
         }
         if self.rounds > PATIENT_ROUNDS {
-            let beside = blamed.iter().flat_map(|v| &self.around[v.index()]);
+            let beside = blamed.iter().flat_map(|v| self.around.list(v.index()));
             beside.for_each(|v| self.heights.heights[v.index()] = 0.0);
         }
         if self.rounds > ROUNDS {
@@ -204,31 +204,18 @@ impl<'a> Grown<'a> {
     }
 }
 
-/// A mesh with prisms divided into tets, quads into triangles.
-pub(crate) fn divided(mesh: Mesh) -> Mesh {
-    split(mesh)
-}
-
 fn build(surfaces: &Surfaces, sides: &[Sides], skin: &Skin, heights: &Heights, slide: &Slide) -> Core {
     let motions: Vec<Point> = slide.motions(skin, heights);
     Core::new(surfaces, sides, skin, &Columns::new(skin, heights), &motions)
 }
 
-fn around(skin: &Skin) -> Vec<Vec<VertexId>> {
-    let mut around = vec![Vec::new(); skin.points.len()];
-    for (t, &[a, b, c]) in skin.triangles.iter().enumerate() {
-        if skin.stack_of[t] != NONE {
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                around[from.index()].push(to);
-                around[to.index()].push(from);
-            }
-        }
-    }
-    around.iter_mut().for_each(|list: &mut Vec<VertexId>| {
-        list.sort_unstable();
-        list.dedup();
-    });
-    around
+fn around(skin: &Skin) -> Csr<VertexId> {
+    let walls = skin.triangles.iter().zip(&skin.stack_of).filter(|(_, stack)| **stack != NONE);
+    let ends = walls.flat_map(|(&[a, b, c], _)| [(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
+    let mut ends: Vec<(VertexId, VertexId)> = ends.collect();
+    ends.sort_unstable();
+    ends.dedup();
+    Csr::from_pairs(skin.points.len(), || ends.iter().map(|&(from, to)| (from.index(), to)))
 }
 
 fn check_count(skin: &Skin) -> Result<()> {

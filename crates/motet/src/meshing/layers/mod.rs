@@ -28,6 +28,7 @@ mod split;
 mod tangles;
 mod thickness;
 
-pub(super) use grown::{Grown, divided};
+pub(super) use grown::Grown;
 pub use options::{Layers, MOST_LAYERS, Stack};
 pub use report::Report;
+pub(super) use split::split;

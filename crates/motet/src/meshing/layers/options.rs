@@ -65,8 +65,8 @@ impl Stack {
 /// Which walls get layers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
-    /// On every triangle that is no cap and whose patch has no stack of its own. A cap is a flat part of the surface with a sharp crease all
-    /// round; where the whole surface is made of such parts, none is a cap. Default: `None`.
+    /// On every triangle that is no cap and whose patch has no stack of its own. A cap is a flat part of the surface, three triangles or more,
+    /// with a crease of 45 degrees or more all round; where the whole surface is made of such parts, none is a cap. Default: `None`.
     pub everywhere: Option<Stack>,
     /// By patch. Default: none.
     pub by_patch: BTreeMap<i32, Stack>,

@@ -44,7 +44,6 @@ impl Report {
         let mut report = Self { rounds, least_share: 1.0, ..Self::default() };
         let mut found = Vec::new();
         for (w, &asked) in heights.asked.iter().enumerate().filter(|(_, asked)| **asked > 0.0) {
-            // A column that leans too far is no longer than twice its thickness.
             let thickness = heights.heights[w];
             let share = thickness / asked;
             report.vertices += 1;

@@ -6,7 +6,7 @@ use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Cells, Mesh};
 
 /// The mesh with nothing but tets and triangles; rows of cell arrays go to all parts.
-pub(super) fn split(mesh: Mesh) -> Mesh {
+pub(crate) fn split(mesh: Mesh) -> Mesh {
     let (mut cells, mut from) = (Cells::new(), Vec::new());
     for (cell, kind, vertices) in mesh.cells.iter() {
         match kind {

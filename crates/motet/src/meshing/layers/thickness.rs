@@ -15,7 +15,7 @@ use std::collections::BinaryHeap;
 use super::directions::Directions;
 use super::neighbors::NONE;
 use super::skin::Skin;
-use crate::base::{Point, Threads, VertexId};
+use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{add, distance, dot, scale, sub};
 use crate::spatial::NearestTriangle;
 
@@ -28,7 +28,7 @@ const OF_EDGE: f64 = 0.6;
 /// How much thicker layers may get, over the way along the wall.
 const SLOPE: f64 = 0.3;
 
-/// The most by which a column is longer than its layers are thick, where it leans.
+/// How many times as long as the asked thickness a column may be, where it leans.
 const STRETCH: f64 = 2.0;
 
 /// A wall faces a column when the cosine of its normal with it is less: 60 degrees and more apart.
@@ -54,7 +54,7 @@ pub(super) struct Heights {
 }
 
 impl Heights {
-    pub(super) fn find(skin: &Skin, around: &[Vec<VertexId>], threads: &Threads) -> Self {
+    pub(super) fn find(skin: &Skin, around: &Csr<VertexId>, threads: &Threads) -> Self {
         let directions = Directions::find(skin, around, threads);
         let full: Vec<f64> = skin.stacks.iter().map(super::Stack::thickness).collect();
         let thinnest = |w: usize| {
@@ -66,7 +66,7 @@ impl Heights {
         let asked: Vec<f64> =
             stack_of.iter().map(|&s| if s == NONE { 0.0 } else { full[s as usize] }).collect();
         let lift = |w: usize| match directions.cosines[w] {
-            cosine if cosine > 0.0 => scale(directions.ways[w], (1.0 / cosine).min(STRETCH)),
+            cosine if cosine > 0.0 => scale(directions.ways[w], 1.0 / cosine),
             _ => [0.0; 3],
         };
         let lifts: Vec<Point> = (0..n).map(lift).collect();
@@ -77,8 +77,9 @@ impl Heights {
                 return 0.0;
             }
             let ball = room(skin, &tree, VertexId::new(w), directions.ways[w], asked[w] * stretch / OF_BALL);
-            let beside = around[w].iter().map(|v| at_edge(skin, &lifts, [VertexId::new(w), *v]));
-            beside.fold(asked[w].min(OF_BALL * ball / stretch), f64::min)
+            let beside = around.list(w).iter().map(|v| at_edge(skin, &lifts, [VertexId::new(w), *v]));
+            let most = asked[w].min(asked[w] * STRETCH / stretch);
+            beside.fold(most.min(OF_BALL * ball / stretch), f64::min)
         });
         let mut all = Self { stack_of, asked, heights, lifts };
         all.limit_slope(skin, around);
@@ -94,14 +95,14 @@ impl Heights {
     }
 
     /// Makes what is too thick beside thinner layers thinner, the thinnest first.
-    pub(super) fn limit_slope(&mut self, skin: &Skin, around: &[Vec<VertexId>]) {
+    pub(super) fn limit_slope(&mut self, skin: &Skin, around: &Csr<VertexId>) {
         // Heights are not negative, so their bits rise as they do.
         let key = |height: f64, w: usize| Reverse((height.to_bits(), w));
         let mut next: BinaryHeap<_> = self
             .heights
             .iter()
             .enumerate()
-            .filter(|(w, _)| !around[*w].is_empty())
+            .filter(|(w, _)| !around.list(*w).is_empty())
             .map(|(w, &h)| key(h, w))
             .collect();
         while let Some(Reverse((bits, w))) = next.pop() {
@@ -109,7 +110,7 @@ impl Heights {
             if height > self.heights[w] {
                 continue;
             }
-            for &v in &around[w] {
+            for &v in around.list(w) {
                 let most = height + SLOPE * distance(skin.points[w], skin.points[v.index()]);
                 if most < self.heights[v.index()] {
                     self.heights[v.index()] = most;
