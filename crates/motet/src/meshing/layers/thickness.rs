@@ -73,7 +73,7 @@ impl Heights {
         let tree = NearestTriangle::new(&skin.points, &skin.triangles, threads);
         let heights = threads.map(n, |w| {
             let stretch = dot(lifts[w], directions.ways[w]);
-            if !(stretch > 0.0) || stack_of[w] == NONE {
+            if stretch.is_nan() || stretch <= 0.0 || stack_of[w] == NONE {
                 return 0.0;
             }
             let ball = room(skin, &tree, VertexId::new(w), directions.ways[w], asked[w] * stretch / OF_BALL);
@@ -135,7 +135,7 @@ fn room(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut r
         let Some(met) = tree.closest_where(middle, radius, |t, _| is_facing(t)) else { break };
         let offset = sub(met.point, from);
         let smaller = dot(offset, offset) / (2.0 * dot(offset, way));
-        if !(smaller < radius * (1.0 - 1e-6)) {
+        if smaller.is_nan() || smaller >= radius * (1.0 - 1e-6) {
             break;
         }
         radius = smaller;
