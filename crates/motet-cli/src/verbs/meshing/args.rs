@@ -60,7 +60,7 @@ pub(crate) struct MeshArgs {
     /// The --layers without a patch go on this one alone, and on others named so. Repeatable
     #[arg(long, value_name = "PATCH", requires = "layers")]
     pub(crate) layers_on: Vec<String>,
-    /// Leave layers as wedges and pyramids, not divided into tets
+    /// Leave layers as wedges and pyramids, not divided into tets: for formats that hold these, such as VTU, VTK and MSH
     #[arg(long, requires = "layers")]
     pub(crate) keep_prisms: bool,
     /// Mend first: drop triangles without area and those that are there twice, turn all outward, close small holes

@@ -193,7 +193,8 @@ impl<'a> Grown<'a> {
         (report, volumes)
     }
 
-    /// How many triangles of the surfaces are facets as they came, of those of the core `is_kept` are in one piece; and how many have nothing inside.
+    /// How many triangles of the surfaces are facets as they came, where `is_whole` tells which of the core's are in one piece; and how many have
+    /// nothing inside.
     pub(crate) fn count(&self, is_whole: impl Fn(usize) -> bool) -> [usize; 2] {
         let mut is_kept = vec![false; self.surfaces.triangles.len()];
         for (i, &t) in self.core.to_triangle.iter().enumerate() {
