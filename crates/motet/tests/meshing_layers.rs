@@ -8,8 +8,8 @@ use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::predicates::orient3d;
 use motet::geometry::tet::{FACETS, volume};
-use motet::geometry::triangle::area_vector;
-use motet::geometry::vector::{add, cross, distance, dot, norm, sub};
+use motet::geometry::triangle::{area_vector, centroid};
+use motet::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use motet::mesh::check::check;
 use motet::mesh::shapes::{Aneurysm, Bifurcation, Flap, ThickTube, ball, box_grid};
 use motet::mesh::{CellKind, Cells, Surface};
@@ -114,38 +114,41 @@ fn enclosed(surface: &Mesh) -> f64 {
     outer.map(|(_, t)| t.map(|v| surface.points[v.index()])).map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
 }
 
-/// Triangles that are not there as they came, with their patches, of patches that are not flat: on flat ones edges of layers may slide.
+/// Triangles that are not there as they came, with their patches, though they lie in no flat patch's plane: there edges of layers may slide.
 fn lost_walls(surface: &Mesh, made: &Filled) -> Vec<String> {
     let (before, after) = (surface.patches().unwrap(), made.mesh.patches().unwrap());
     let there: HashMap<_, i32> =
         triangles(&made.mesh).map(|(i, t)| (places(&made.mesh.points, t), after.ids[i])).collect();
-    let mut kept: BTreeMap<i32, [usize; 2]> = BTreeMap::new();
+    let planes: Vec<[Point; 2]> = before.used().iter().filter_map(|&patch| plane(surface, patch)).collect();
+    let is_in_plane = |t: [VertexId; 3]| {
+        planes.iter().any(|&[middle, normal]| {
+            let offsets = t.map(|v| sub(surface.points[v.index()], middle));
+            offsets.iter().all(|&o| dot(o, normal).abs() <= 2e-3 * norm(o))
+        })
+    };
+    let (mut faults, mut n_kept) = (Vec::new(), 0);
     for (i, t) in triangles(surface) {
-        let count = kept.entry(before.ids[i]).or_default();
-        count[0] += 1;
-        count[1] += usize::from(there.get(&places(&surface.points, t)) == Some(&before.ids[i]));
+        let is_kept = there.get(&places(&surface.points, t)) == Some(&before.ids[i]);
+        n_kept += usize::from(is_kept);
+        if !is_kept && !is_in_plane(t) {
+            faults.push(format!("triangle {i} of `{}` is lost", before.name(before.ids[i])));
+        }
     }
-    let n_kept: usize = kept.values().map(|[_, kept]| kept).sum();
-    let mut faults = Vec::new();
     if n_kept != made.report.triangles_kept {
         faults.push(format!("{} triangles are told to be kept, {n_kept} are", made.report.triangles_kept));
-    }
-    for (patch, [n, kept]) in kept {
-        let name = before.name(patch);
-        if kept != n && !is_flat(surface, patch) {
-            faults.push(format!("{kept} of {n} triangles of `{name}` are kept"));
-        }
     }
     faults
 }
 
-fn is_flat(surface: &Mesh, patch: i32) -> bool {
+/// A point in the plane of a patch, and the normal of that; `None` where it is not flat.
+fn plane(surface: &Mesh, patch: i32) -> Option<[Point; 2]> {
     let labels = surface.patches().unwrap();
     let of_patch = triangles(surface).filter(|(cell, _)| labels.ids[*cell] == patch);
-    let normals: Vec<Point> =
-        of_patch.map(|(_, t)| area_vector(t.map(|v| surface.points[v.index()]))).collect();
+    let corners: Vec<[Point; 3]> = of_patch.map(|(_, t)| t.map(|v| surface.points[v.index()])).collect();
+    let normals: Vec<Point> = corners.iter().map(|&t| area_vector(t)).collect();
     let sum = normals.iter().fold([0.0; 3], |sum, n| add(sum, *n));
-    normals.iter().all(|&n| dot(n, sum) > 0.999 * norm(n) * norm(sum))
+    let is_flat = normals.iter().all(|&n| dot(n, sum) > 0.999 * norm(n) * norm(sum));
+    is_flat.then(|| [centroid(corners[0]), scale(sum, 1.0 / norm(sum))])
 }
 
 /// A tube whose radius is this along z, with flat ends; patches `wall`, `inlet`, `outlet`.

@@ -66,7 +66,8 @@ impl Stack {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
     /// On every triangle that is no cap and whose patch has no stack of its own. A cap is a flat part of the surface, three triangles or more,
-    /// with a crease of 45 degrees or more all round; where the whole surface is made of such parts, none is a cap. Default: `None`.
+    /// with a crease of 45 degrees or more all round; where the whole surface is made of such parts, none is a cap. A
+    /// triangle of a wall that lies in the plane of a cap beside it is a part of the cap. Default: `None`.
     pub everywhere: Option<Stack>,
     /// By patch. Default: none.
     pub by_patch: BTreeMap<i32, Stack>,
