@@ -25,7 +25,7 @@ pub(crate) struct Call {
 pub(crate) enum Verb {
     Info(info::InfoArgs),
     Convert(convert::ConvertArgs),
-    Mesh(meshing::MeshArgs),
+    Mesh(Box<meshing::MeshArgs>),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
     Refine(Box<refine::RefineArgs>),

@@ -163,3 +163,75 @@ fn regions_are_named_and_left_out_by_their_places() {
     let call = folder.motet(twice).assert().code(2);
     assert!(stderr(&call).contains("another seed names `a`"), "{}", stderr(&call));
 }
+
+#[test]
+fn layers_grow_on_walls_and_are_told() {
+    let folder = Folder::new();
+    let whole = ThickTube::default().mesh().unwrap();
+    let labels = whole.patches().unwrap();
+    let lumen = ["lumen_inlet", "lumen_outlet", "interface"].map(|name| labels.find(name).unwrap());
+    let (mut cells, mut patches) = (Cells::new(), Vec::new());
+    for (cell, kind, vertices) in whole.cells.iter() {
+        if lumen.contains(&labels.ids[cell.index()]) {
+            cells.push(kind, vertices.iter().copied());
+            patches.push(labels.ids[cell.index()]);
+        }
+    }
+    let mut mesh = Mesh::new(whole.points.clone(), cells);
+    mesh.label_names = whole.label_names.clone();
+    mesh.cell_data = vec![motet::mesh::Field::scalars("patch", patches)];
+    folder.mesh("lumen.vtp", &mesh);
+    let call = ["mesh", "lumen.vtp", "-o", "lumen.vtu", "--size", "0.4", "--layers"];
+    let with = |words: &[&'static str]| call.iter().copied().chain(words.iter().copied()).collect::<Vec<_>>();
+    let everywhere = report(&folder, &with(&["4,0.02,1.2"]));
+    assert_eq!(everywhere["complete"], true, "{everywhere}");
+    let layers = &everywhere["layers"];
+    assert_eq!((&layers["full"], &layers["without"]), (&layers["vertices"], &0.into()), "{layers}");
+    assert_eq!(layers["prisms"], 4 * 2 * 24 * 24, "{layers}");
+    let made = read(folder.path("lumen.vtu")).unwrap();
+    assert!(check(&made).is_empty());
+    assert!(made.patches().unwrap().find("interface").is_some());
+    // The same said by patch, in two ways.
+    for words in [&["interface=4,0.02,1.2"][..], &["4,0.02,1.2", "--layers-on", "interface"]] {
+        let told = report(&folder, &with(words));
+        assert_eq!(told["layers"], everywhere["layers"]);
+        assert_eq!(read(folder.path("lumen.vtu")).unwrap(), made);
+    }
+    let told = report(&folder, &with(&["4,0.02,1.2", "--keep-prisms"]));
+    assert_eq!(told["layers"], everywhere["layers"]);
+    let prisms = read(folder.path("lumen.vtu")).unwrap();
+    assert!(check(&prisms).is_empty());
+    assert!(prisms.cells.counts().contains(&(CellKind::WEDGE, 4 * 2 * 24 * 24)));
+    let call = folder.motet(with(&["4,0.02,1.2"])).assert().success();
+    assert!(stdout(&call).contains("as thick as asked at 600 of 600 vertices"), "{}", stdout(&call));
+}
+
+#[test]
+fn layers_that_mean_nothing_are_refused() {
+    let folder = Folder::new();
+    folder.mesh("ball.stl", &ball_surface(0));
+    for words in [
+        &["--layers", "0,0.1,1"][..],
+        &["--layers", "-1,0.1,1"],
+        &["--layers", "3,-0.1,1"],
+        &["--layers", "3,nan,1"],
+        &["--layers", "3,0.1,0"],
+        &["--layers", "999999999,0.1,1"],
+        &["--layers", "3,0.1"],
+        &["--layers", "none=3,0.1,1"],
+        &["--layers", "3,0.1,1", "--layers", "2,0.1,1"],
+        &["--layers", "ball=3,0.1,1", "--layers", "1=3,0.1,1"],
+        &["--layers", "ball=3,0.1,1", "--layers-on", "ball"],
+        &["--layers-on", "ball"],
+        &["--keep-prisms"],
+        &["--layers", "3,0.1,1", "--delaunay"],
+    ] {
+        let call = ["mesh", "ball.stl", "-o", "out.vtu"].iter().chain(words);
+        let call = folder.motet(call).assert().code(2);
+        assert!(!stderr(&call).is_empty());
+        assert!(!folder.path("out.vtu").exists());
+    }
+    // No digits for the layers: none is there, the mesh is.
+    folder.motet(["mesh", "ball.stl", "-o", "out.vtu", "--layers", "3,1e-30,1"]).assert().code(4);
+    assert!(check(&read(folder.path("out.vtu")).unwrap()).is_empty());
+}

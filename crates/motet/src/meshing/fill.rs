@@ -1,11 +1,14 @@
 //! Tets within surfaces, with regions and patches.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::bodies::{self, Body, Seed};
 use super::compact::{compact, named};
 use super::graded;
 use super::interior;
+use super::layers::{self, Grown, Layers};
 use super::size_field::SizeField;
 use super::sizes::Sizes;
 use super::surfaces::Surfaces;
@@ -31,6 +34,8 @@ pub struct Options {
     pub holes: Vec<Point>,
     /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
+    /// Layers of thin cells on walls. Default: `None`.
+    pub layers: Option<Layers>,
 }
 
 /// What came of filling surfaces.
@@ -42,6 +47,8 @@ pub struct Filled {
     pub report: Report,
     /// How improving went, where it was asked for.
     pub improved: Option<remesh::Report>,
+    /// How layers came out, where they were asked for.
+    pub layers: Option<layers::Report>,
 }
 
 /// How filling went.
@@ -87,27 +94,87 @@ pub fn fill(
     let triangles = joined.triangles.clone();
     let at_corners = options.sizes.as_ref().map_or_else(Vec::new, |sizes| sizes.at_corners(&joined));
     let joined = joined.compact();
-    let mut points = joined.points.clone();
-    points.extend(inside(&joined, options.sizes.as_ref(), at_corners, threads)?);
-    let mut tets = constrain(&points, &joined.triangles, options.edge_points, threads)?;
-    let n_points = points.len();
-    drop(points);
+    if let Some(layers) = &options.layers {
+        if options.edge_points == EdgePoints::Stay {
+            return Err(Error::options("layers, and points that stay on edges of the surface")
+                .remedy("layers stand on whole triangles: let points move inside"));
+        }
+        // This tells which body lies on which side, and where places are.
+        let mut whole = filled(&joined, Vec::new(), options, threads)?;
+        let names = bodies::arrange(&mut whole, surfaces, &triangles, &options.seeds, &options.holes)?;
+        let grown = Grown::new(&joined, layers, whole.triangle_to_bodies, threads)?;
+        return fill_with_layers(grown, &at_corners, names, layers, options, threads);
+    }
+    let points = inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
+    let n_points = joined.points.len() + points.len();
+    let mut tets = filled(&joined, points, options, threads)?;
+    let names = bodies::arrange(&mut tets, surfaces, &triangles, &options.seeds, &options.holes)?;
+    let mut report = report(&joined, &tets, n_points);
+    let (mut mesh, _) = mesh(&joined, &tets);
+    mesh.label_names.regions = region_names(names);
+    drop(tets);
+    let (mesh, improved) = improve(mesh, options, threads)?;
+    (report.bodies, report.not_positive) = (bodies::told(&mesh), not_positive(&mesh));
+    Ok(Filled { report, mesh, improved, layers: None })
+}
+
+/// The room that layers leave filled, and joined with them; `at_corners` are sizes at the triangles of the surfaces.
+fn fill_with_layers(
+    mut grown: Grown,
+    at_corners: &[[f64; 3]],
+    names: BTreeMap<u32, String>,
+    layers: &Layers,
+    options: &Options,
+    threads: &Threads,
+) -> Result<Filled> {
+    let (tets, n_points) = grown.fill(threads, |core, to_triangle| {
+        let of_core = to_triangle.iter().filter_map(|&t| at_corners.get(t as usize).copied()).collect();
+        let points = inside(core, options.sizes.as_ref(), of_core, threads)?;
+        let n_points = core.points.len() + points.len();
+        Ok((filled(core, points, options, threads)?, n_points))
+    })?;
+    let mut report = report(grown.core(), &tets, n_points);
+    let (core, core_to_mesh) = mesh(grown.core(), &tets);
+    let mut glued = grown.glue(&core, &core_to_mesh);
+    glued.label_names.regions = region_names(names);
+    let (mut mesh, improved) = improve(glued, options, threads)?;
+    let split = layers::split(mesh.clone());
+    (report.bodies, report.not_positive) = (bodies::told(&split), not_positive(&split));
+    if !layers.keep_prisms {
+        mesh = split;
+    }
+    report.triangles = grown.n_triangles();
+    [report.triangles_kept, report.triangles_outside] =
+        grown.count(|i| tets.triangle_to_facets.list(i).len() == 1);
+    Ok(Filled { mesh, report, improved, layers: Some(grown.report()) })
+}
+
+/// Tets within surfaces and with `points` inside.
+fn filled(
+    surfaces: &Surfaces,
+    inside: Vec<Point>,
+    options: &Options,
+    threads: &Threads,
+) -> Result<Constrained> {
+    let mut points = surfaces.points.clone();
+    points.extend(inside);
+    let tets = constrain(&points, &surfaces.triangles, options.edge_points, threads)?;
     if tets.tets.is_empty() {
         return Err(Error::input("the surfaces enclose nothing")
             .remedy("close them, or see what `motet info` says of them"));
     }
-    let names = bodies::arrange(&mut tets, surfaces, &triangles, &options.seeds, &options.holes)?;
-    let mut report = report(&joined, &tets, n_points);
-    let mut mesh = mesh(&joined, &tets);
-    mesh.label_names.regions = names.into_iter().map(|(body, name)| (body as i32 + 1, name)).collect();
-    drop(tets);
-    let mut improved = None;
-    if let Some(improve) = &options.improve {
-        let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
-        (mesh, improved) = (outcome.mesh, Some(outcome.report));
-    }
-    (report.bodies, report.not_positive) = (bodies::told(&mesh), not_positive(&mesh));
-    Ok(Filled { report, mesh, improved })
+    Ok(tets)
+}
+
+fn improve(mesh: Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Option<remesh::Report>)> {
+    let Some(improve) = &options.improve else { return Ok((mesh, None)) };
+    let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
+    Ok((outcome.mesh, Some(outcome.report)))
+}
+
+/// Names of bodies as those of regions, which are numbered from 1.
+fn region_names(names: BTreeMap<u32, String>) -> BTreeMap<i32, String> {
+    names.into_iter().map(|(body, name)| (body as i32 + 1, name)).collect()
 }
 
 /// Points inside, of the sizes that are asked for.
@@ -157,8 +224,8 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
     }
 }
 
-/// Tets and triangles as cells; points that no cell uses are left out.
-fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
+/// Tets and triangles as cells, and the new number of each point; points that no cell uses are left out.
+fn mesh(surfaces: &Surfaces, filled: &Constrained) -> (Mesh, Vec<VertexId>) {
     let mut triangles = Vec::new();
     for (i, list) in filled.triangle_to_facets.iter().enumerate() {
         if filled.triangle_to_bodies[i] != [None; 2] {
@@ -179,9 +246,10 @@ fn mesh(surfaces: &Surfaces, filled: &Constrained) -> Mesh {
         regions.push(0);
         patches.push(patch);
     }
-    Mesh {
+    let mesh = Mesh {
         cell_data: vec![Field::scalars("region", regions), Field::scalars("patch", patches)],
         label_names: LabelNames { patches: surfaces.patch_names.clone(), ..LabelNames::default() },
         ..Mesh::new(points, cells)
-    }
+    };
+    (mesh, old_to_new)
 }

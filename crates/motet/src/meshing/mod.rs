@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
+//! | layers | [`layers`] | thin prisms on walls, where they are asked for; what follows fills the room that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
 //! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, a little away from the surface; one of cubes within cubes |
 //! | tets | [`mod@crate::delaunay::constrain`] | every triangle is a facet of tets |
@@ -16,6 +17,7 @@ mod compact;
 mod fill;
 mod graded;
 mod interior;
+pub mod layers;
 mod octree;
 mod shadow;
 mod size_field;

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use motet::base::Point;
 use motet::delaunay::EdgePoints;
-use motet::meshing::{Grading, Options, Seed, Sizes};
+use motet::meshing::{Grading, Options, Seed, Sizes, Surfaces};
 use motet::preflight::Repairs;
 use motet::remesh;
 
+use super::layer_words::{LayersWord, layers, stacks};
 use super::words::{self, Size};
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
@@ -38,11 +39,15 @@ Examples:
     motet mesh lumen.vtp --membrane flap.vtp -o lumen.vtu
   A surface with small holes and flat triangles, mended first:
     motet mesh scan.stl -o scan.vtu --repair
+  Five thin layers on all walls but flat ends, the first 0.02 thick, each 1.2 times as thick as the one before:
+    motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers 5,0.02,1.2
+  The same on one patch, more on another:
+    motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers wall=5,0.02,1.2 --layers sac=8,0.01,1.2
   What is wrong with a surface, to look at:
     motet mesh scan.stl -o scan.vtu --culprits wrong.vtp
 
 Exit status 3: a surface cannot be filled; nothing is written but the culprits. 4: a triangle is there in pieces only,
-a tet has no volume in the digits of its coordinates, or bad tets are left; the mesh is written.")]
+a tet has no volume in the digits of its coordinates, bad tets are left, or no layer found room; the mesh is written.")]
 pub(crate) struct MeshArgs {
     /// Surface files: closed each
     #[arg(value_name = "SURFACE", required = true)]
@@ -73,6 +78,16 @@ pub(crate) struct MeshArgs {
     /// A surface that may end inside the others, such as a flap. Repeatable
     #[arg(long, value_name = "SURFACE")]
     pub(crate) membrane: Vec<PathBuf>,
+    /// Thin layers on walls: how many, the first one's thickness, how many times as thick each next one is. On one patch, or on all that is
+    /// neither a cap (flat, with a sharp crease round it) nor named. Where there is no room they are thinner, or none. Repeatable
+    #[arg(long, value_name = "[PATCH=]N,FIRST,GROWTH", value_parser = layers)]
+    pub(crate) layers: Vec<LayersWord>,
+    /// The --layers without a patch go on this one alone, and on others named so. Repeatable
+    #[arg(long, value_name = "PATCH", requires = "layers")]
+    pub(crate) layers_on: Vec<String>,
+    /// Leave layers as wedges and pyramids, not divided into tets: for formats that hold these, such as VTU, VTK and MSH
+    #[arg(long, requires = "layers")]
+    pub(crate) keep_prisms: bool,
     /// Mend first: drop triangles without area and those that are there twice, turn all outward, close small holes
     #[arg(long)]
     pub(crate) repair: bool,
@@ -94,16 +109,20 @@ pub(crate) struct MeshArgs {
 
 impl MeshArgs {
     /// What the call asks for; `at_points` are sizes by its array.
-    pub(super) fn options(&self, at_points: Option<Vec<f64>>) -> Options {
+    ///
+    /// # Errors
+    /// When layers are asked for on a patch that is not there, or twice.
+    pub(super) fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
         let sizes = self.sizes(at_points);
         let improve = self.min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
-        Options {
+        Ok(Options {
             edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
             sizes,
             seeds: self.seed.clone(),
             holes: self.hole.clone(),
             improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
-        }
+            layers: stacks(&self.layers, &self.layers_on, self.keep_prisms, surfaces)?,
+        })
     }
 
     fn sizes(&self, at_points: Option<Vec<f64>>) -> Option<Sizes> {

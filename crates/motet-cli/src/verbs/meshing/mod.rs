@@ -1,6 +1,7 @@
 //! `motet mesh`: closed surfaces in, volume mesh out.
 
 mod args;
+mod layer_words;
 mod report;
 mod words;
 
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let filled = fill(&surfaces, &preflight, &args.options(sizes), &threads)?;
+    let filled = fill(&surfaces, &preflight, &args.options(sizes, &surfaces)?, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     bar.inc(1);
     let writing = Instant::now();
@@ -61,10 +62,12 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     lost.iter().for_each(|what| console.warn(what));
     let is_reached = args.delaunay || filled.report.points_on_edges == 0;
     let is_good = filled.improved.as_ref().is_none_or(motet::remesh::Report::is_complete);
-    let is_complete = is_reached && is_good && filled.report.not_positive == 0;
+    let has_layers = filled.layers.as_ref().is_none_or(|layers| layers.prisms > 0);
+    let is_complete = is_reached && is_good && has_layers && filled.report.not_positive == 0;
     report.end(
         filled.report,
         filled.improved,
+        filled.layers,
         [read, check, fill, write, begin.elapsed().as_secs_f64()],
         is_complete,
     );

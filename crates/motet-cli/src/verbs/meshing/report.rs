@@ -24,6 +24,8 @@ pub(crate) struct Report<'a> {
     filled: Option<meshing::Report>,
     /// `null` where nothing was asked to be improved.
     improved: Option<remesh::Report>,
+    /// `null` where no layers were asked for.
+    layers: Option<meshing::layers::Report>,
     seconds: Seconds,
 }
 
@@ -49,6 +51,7 @@ impl<'a> Report<'a> {
             preflight,
             filled: None,
             improved: None,
+            layers: None,
             seconds: Seconds::default(),
         }
     }
@@ -57,11 +60,13 @@ impl<'a> Report<'a> {
         &mut self,
         filled: meshing::Report,
         improved: Option<remesh::Report>,
+        layers: Option<meshing::layers::Report>,
         [read, check, fill, write, total]: [f64; 5],
         complete: bool,
     ) {
         self.filled = Some(filled);
         self.improved = improved;
+        self.layers = layers;
         self.complete = complete;
         self.seconds = Seconds { read, check, fill, write, total };
     }
@@ -112,6 +117,9 @@ impl<'a> Report<'a> {
                 count(filled.not_positive)
             ));
         }
+        if let Some(layers) = &self.layers {
+            tell_layers(layers, console);
+        }
         if let Some(improved) = &self.improved {
             console.say(format_args!(
                 "improved: {} tets, worst EAS {}; {} bad tets were repaired, {} are left",
@@ -138,6 +146,29 @@ impl<'a> Report<'a> {
             "filled {}, all {}",
             seconds(self.seconds.fill),
             seconds(self.seconds.total)
+        ));
+    }
+}
+
+fn tell_layers(layers: &meshing::layers::Report, console: &Console) {
+    let thickness = layers.thickness.map_or("none".into(), |t| t.map(short).join(", "));
+    console.say(format_args!(
+        "layers: {} prisms of volume {}; thickness (least, median, largest) {thickness}",
+        count(layers.prisms),
+        short(layers.volume)
+    ));
+    console.say(format_args!(
+        "as thick as asked at {} of {} vertices of walls, thinner at {}, none at {}",
+        count(layers.full),
+        count(layers.vertices),
+        count(layers.reduced - layers.without),
+        count(layers.without)
+    ));
+    if let Some(place) = layers.least_at {
+        console.say(format_args!(
+            "least part of what was asked {}, at {}",
+            short(layers.least_share),
+            place.map(short).join(", ")
         ));
     }
 }

@@ -1,0 +1,118 @@
+//! The words of `motet mesh` for layers.
+
+use motet::Error;
+use motet::meshing::Surfaces;
+use motet::meshing::layers::{Layers, Stack};
+
+use crate::words::number;
+
+/// `[PATCH=]N,FIRST,GROWTH`
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct LayersWord {
+    pub(crate) patch: Option<String>,
+    pub(crate) stack: Stack,
+}
+
+pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
+    // Parted at the last equals sign, since numbers hold none and names might.
+    let (patch, numbers) = match text.rsplit_once('=') {
+        Some((patch, numbers)) if !patch.is_empty() => (Some(patch.to_string()), numbers),
+        Some(_) => return Err("[PATCH=]N,FIRST,GROWTH is expected, such as wall=5,0.02,1.2".into()),
+        None => (None, text),
+    };
+    let words: Vec<&str> = numbers.split(',').map(str::trim).collect();
+    let [n, first, growth] = words[..] else {
+        return Err(format!("N,FIRST,GROWTH has 3 numbers, this {}", words.len()));
+    };
+    let count = n.parse().map_err(|_| format!("`{n}` is no number of layers"))?;
+    let stack = Stack { count, first: number(first)?, growth: number(growth)? };
+    stack.check().map_err(|error| error.to_string())?;
+    Ok(LayersWord { patch, stack })
+}
+
+/// What the words ask for; `None` where there is none.
+///
+/// # Errors
+/// When a patch is not there, or has layers twice.
+pub(super) fn stacks(
+    words: &[LayersWord],
+    on: &[String],
+    keep_prisms: bool,
+    surfaces: &Surfaces,
+) -> motet::Result<Option<Layers>> {
+    if words.is_empty() {
+        return Ok(None);
+    }
+    let mut layers = Layers { keep_prisms, ..Layers::default() };
+    let twice = |what: &str| Error::options(format!("layers {what} are given twice")).remedy("leave one out");
+    for word in words.iter().filter(|word| word.patch.is_none()) {
+        if layers.everywhere.replace(word.stack).is_some() {
+            return Err(twice("without a patch"));
+        }
+    }
+    let mut named: Vec<(&str, Stack)> =
+        words.iter().filter_map(|word| Some((word.patch.as_deref()?, word.stack))).collect();
+    if !on.is_empty() {
+        let stack = layers.everywhere.take().ok_or_else(|| {
+            Error::options("--layers-on without layers for it").remedy("give --layers N,FIRST,GROWTH as well")
+        })?;
+        named.extend(on.iter().map(|patch| (patch.as_str(), stack)));
+    }
+    for (patch, stack) in named {
+        if layers.by_patch.insert(find(surfaces, patch)?, stack).is_some() {
+            return Err(twice(&format!("on `{patch}`")));
+        }
+    }
+    Ok(Some(layers))
+}
+
+/// The patch that a word means: its name, or its number.
+fn find(surfaces: &Surfaces, word: &str) -> motet::Result<i32> {
+    let named = surfaces.patch_names.iter().find(|(_, name)| *name == word).map(|(&id, _)| id);
+    let numbered = || word.parse().ok().filter(|id| surfaces.patches.contains(id));
+    named.or_else(numbered).ok_or_else(|| {
+        let mut known = surfaces.patches.clone();
+        known.sort_unstable();
+        known.dedup();
+        let name = |id: &i32| surfaces.patch_names.get(id).cloned().unwrap_or_else(|| id.to_string());
+        let known: Vec<String> = known.iter().map(name).collect();
+        Error::options(format!("the surface has no patch `{word}`"))
+            .remedy(format!("it has {}", known.join(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_are_read_with_and_without_a_patch() {
+        let stack = Stack { count: 5, first: 0.02, growth: 1.2 };
+        assert_eq!(layers("5,0.02,1.2"), Ok(LayersWord { patch: None, stack }));
+        assert_eq!(layers("a=b=5, 2e-2, 1.2"), Ok(LayersWord { patch: Some("a=b".into()), stack }));
+    }
+
+    #[test]
+    fn what_is_off_is_told() {
+        for (text, part) in [
+            ("5,0.02", "3 numbers"),
+            ("=5,0.02,1", "expected"),
+            ("x,0.02,1", "`x`"),
+            ("-1,0.02,1", "`-1`"),
+            ("2.5,0.02,1", "`2.5`"),
+            ("0,0.02,1", "1 to 200"),
+            ("1000000,0.02,1", "1 to 200"),
+            ("99999999999,0.02,1", "no number of layers"),
+            ("3,0,1", "above 0"),
+            ("3,-1,1", "above 0"),
+            ("3,nan,1", "finite"),
+            ("3,0.1,0", "above 0"),
+            ("3,0.1,-2", "above 0"),
+            ("3,0.1,inf", "finite"),
+            ("200,1e300,10", "beyond numbers"),
+            ("200,1,1e-9", "beyond numbers"),
+        ] {
+            assert!(layers(text).is_err_and(|told| told.contains(part)), "{text}: {:?}", layers(text));
+        }
+    }
+}

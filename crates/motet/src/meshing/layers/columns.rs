@@ -1,0 +1,117 @@
+//! Columns on the vertices of walls, and the prisms between them.
+//!
+//! ```text
+//!   a2----c2        A column has a place for each level, the wall's own vertex the lowest. Where one has fewer levels than
+//!   | \  / |        those beside it, or none, its last place is all of the levels above: the prisms there are pyramids
+//!   |  b2  |        (one corner that does not rise), tets (two), or nothing (three).
+//!   a1-|--c1
+//!   | \b1/ |
+//!   a--|--c   wall
+//!    \ b /
+//! ```
+
+use super::neighbors::NONE;
+use super::skin::Skin;
+use super::thickness::Heights;
+use crate::base::{Point, VertexId};
+use crate::geometry::vector::{add, scale};
+use crate::mesh::CellKind;
+
+/// A place in a column: the vertex of the skin at its foot, and the level.
+pub(super) type Site = (VertexId, u32);
+
+/// Columns of some heights.
+pub(super) struct Columns<'a> {
+    skin: &'a Skin,
+    heights: &'a Heights,
+    /// How high the levels of each stack lie.
+    levels: Vec<Vec<f64>>,
+}
+
+impl<'a> Columns<'a> {
+    pub(super) fn new(skin: &'a Skin, heights: &'a Heights) -> Self {
+        Self { skin, heights, levels: skin.stacks.iter().map(super::Stack::levels).collect() }
+    }
+
+    /// How many levels a column has above its foot.
+    pub(super) fn count(&self, vertex: VertexId) -> u32 {
+        self.heights.count(self.skin, vertex) as u32
+    }
+
+    /// Where a site is.
+    pub(super) fn at(&self, (vertex, level): Site) -> Point {
+        let (foot, w) = (self.skin.points[vertex.index()], vertex.index());
+        let stack = self.heights.stack_of[w];
+        if level == 0 || stack == NONE {
+            return foot;
+        }
+        let share = self.heights.heights[w] / self.heights.asked[w];
+        add(foot, scale(self.heights.lifts[w], self.levels[stack as usize][level as usize] * share))
+    }
+
+    /// The uppermost site of a column.
+    pub(super) fn top(&self, vertex: VertexId) -> Site {
+        (vertex, self.count(vertex))
+    }
+
+    /// The prisms on a triangle of the skin, from the wall inward.
+    pub(super) fn prisms(&self, triangle: u32) -> impl Iterator<Item = Prism> + '_ {
+        let corners = self.skin.triangles[triangle as usize];
+        let counts = corners.map(|v| if self.skin.has_stack(triangle) { self.count(v) } else { 0 });
+        let at_level = move |level: u32| [0, 1, 2].map(|k| (corners[k], level.min(counts[k])));
+        let most = counts.into_iter().max().unwrap_or(0);
+        (0..most).map(move |level| Prism { bottom: at_level(level), top: at_level(level + 1) })
+    }
+
+    /// The sides of the prisms at edge `k` of a triangle of the skin, turned as what lies beyond the edge: out of the body.
+    pub(super) fn sides(&self, triangle: u32, k: usize) -> impl Iterator<Item = [Site; 4]> + '_ {
+        let prisms = self.prisms(triangle);
+        let next = (k + 1) % 3;
+        prisms.map(move |p| [p.bottom[next], p.bottom[k], p.top[k], p.top[next]])
+    }
+}
+
+/// What lies between two levels of three columns. Corners run counter-clockwise seen from outside the body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Prism {
+    pub(super) bottom: [Site; 3],
+    pub(super) top: [Site; 3],
+}
+
+impl Prism {
+    /// All tets of four of its corners that can be a part of it, however its sides are divided, as they are when positive.
+    pub(super) fn tets(&self) -> impl Iterator<Item = [Site; 4]> {
+        let ([a, b, c], [d, e, f]) = (self.bottom, self.top);
+        let round = [([a, b, c], [d, e, f]), ([b, c, a], [e, f, d]), ([c, a, b], [f, d, e])];
+        let all = round.map(|([i, j, k], [over_i, over_j, over_k])| {
+            [[i, k, j, over_i], [over_i, over_j, over_k, i], [i, j, over_i, over_k], [i, j, over_j, over_k]]
+        });
+        all.into_iter().flatten().filter(|tet| (1..4).all(|i| !tet[..i].contains(&tet[i])))
+    }
+
+    /// The cell that it is, with its vertices in VTK's order.
+    pub(super) fn cell(&self) -> Option<(CellKind, Vec<Site>)> {
+        let ([a, b, c], [d, e, f]) = (self.bottom, self.top);
+        Some(match [a == d, b == e, c == f] {
+            [false, false, false] => (CellKind::WEDGE, vec![a, c, b, d, f, e]),
+            [true, false, false] => (CellKind::PYRAMID, vec![c, f, e, b, a]),
+            [false, true, false] => (CellKind::PYRAMID, vec![a, d, f, c, b]),
+            [false, false, true] => (CellKind::PYRAMID, vec![b, e, d, a, c]),
+            [false, true, true] => (CellKind::TETRA, vec![a, c, b, d]),
+            [true, false, true] => (CellKind::TETRA, vec![a, c, b, e]),
+            [true, true, false] => (CellKind::TETRA, vec![a, c, b, f]),
+            [true, true, true] => return None,
+        })
+    }
+}
+
+/// A ring of sites without those that are there twice: four, three or fewer.
+pub(super) fn distinct(ring: [Site; 4]) -> Vec<Site> {
+    let mut found: Vec<Site> = Vec::with_capacity(4);
+    ring.into_iter().for_each(|site| {
+        if !found.contains(&site) {
+            found.push(site)
+        }
+    });
+    found
+}

@@ -1,0 +1,89 @@
+//! Flat parts of a surface, and those of them that are caps.
+
+use super::neighbors::{NONE, neighbors};
+use crate::base::{Point, VertexId};
+use crate::geometry::triangle::{area_vector, centroid};
+use crate::geometry::vector::{add, dot, norm, scale, sub};
+
+/// How far from the plane of a part's largest triangle a corner may lie, over its distance from the middle of that: what rounding to single
+/// precision leaves of a plane is ten times flatter, and walls are curved far more.
+const FLAT: f64 = 1e-3;
+
+/// The cosine of the least angle of a sharp crease: 45 degrees.
+const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Triangles that hang together by edges in one plane.
+#[derive(Debug, Default)]
+pub(super) struct Flats {
+    /// The part of each triangle; [`NONE`] for those that were not asked about.
+    pub(super) of: Vec<u32>,
+    /// The normal of each part, of length 1.
+    pub(super) normals: Vec<Point>,
+}
+
+impl Flats {
+    /// The flat parts of those triangles that are `wanted`.
+    pub(super) fn find(
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        behind: &[[u32; 3]],
+        wanted: impl Fn(usize) -> bool,
+    ) -> Self {
+        let corners = |t: usize| triangles[t].map(|v| points[v.index()]);
+        let areas: Vec<Point> = (0..triangles.len()).map(|t| area_vector(corners(t))).collect();
+        let mut order: Vec<usize> = (0..triangles.len()).filter(|&t| wanted(t)).collect();
+        order.sort_by(|&s, &t| norm(areas[t]).total_cmp(&norm(areas[s])).then(s.cmp(&t)));
+        let mut flats = Self { of: vec![NONE; triangles.len()], normals: Vec::new() };
+        for seed in order {
+            if flats.of[seed] != NONE {
+                continue;
+            }
+            let part = flats.normals.len() as u32;
+            let (normal, middle) = (unit(areas[seed]), centroid(corners(seed)));
+            let is_flat = |t: usize| {
+                let offsets = corners(t).map(|p| sub(p, middle));
+                offsets.iter().all(|&o| dot(o, normal).abs() <= FLAT * norm(o))
+            };
+            let (mut todo, mut sum) = (vec![seed], [0.0; 3]);
+            flats.of[seed] = part;
+            while let Some(t) = todo.pop() {
+                sum = add(sum, areas[t]);
+                for &next in behind[t].iter().filter(|&&next| next != NONE) {
+                    let next = next as usize;
+                    if flats.of[next] == NONE && wanted(next) && is_flat(next) {
+                        flats.of[next] = part;
+                        todo.push(next);
+                    }
+                }
+            }
+            flats.normals.push(unit(sum));
+        }
+        flats
+    }
+}
+
+/// Fewer triangles than this are no cap: a rough wall has some that stand out alone.
+const LEAST: usize = 3;
+
+/// Which triangles are of caps: flat parts with a sharp crease all round. Where all are, none is.
+pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
+    let behind = neighbors(triangles);
+    let flats = Flats::find(points, triangles, &behind, |_| true);
+    let normal = |t: usize| unit(area_vector(triangles[t].map(|v| points[v.index()])));
+    let mut counts = vec![0; flats.normals.len()];
+    flats.of.iter().for_each(|&part| counts[part as usize] += 1);
+    let mut is_cap: Vec<bool> = counts.iter().map(|&n| n >= LEAST).collect();
+    for (t, next) in behind.iter().enumerate() {
+        let part = flats.of[t] as usize;
+        let beyond = next.iter().filter(|&&s| s != NONE && flats.of[s as usize] != flats.of[t]);
+        is_cap[part] &= !beyond.into_iter().any(|&s| dot(flats.normals[part], normal(s as usize)) > SHARP);
+    }
+    let of_caps: Vec<bool> = flats.of.iter().map(|&part| is_cap[part as usize]).collect();
+    if of_caps.iter().all(|cap| *cap) { vec![false; triangles.len()] } else { of_caps }
+}
+
+/// The direction of a vector; zero where it has none.
+pub(super) fn unit(v: Point) -> Point {
+    let length = norm(v);
+    if length > 0.0 && length.is_finite() { scale(v, 1.0 / length) } else { [0.0; 3] }
+}

@@ -1,0 +1,185 @@
+//! The surface of every body that gets layers, as it is seen from inside: each body has vertices of its own.
+//!
+//! Where a surface parts two bodies, the layers of one do not move the other. So the skin of a body shares no vertex with that of
+//! another, and what grows on it needs to know of one side only.
+
+use std::collections::BTreeMap;
+
+use super::flats::{Flats, caps, unit};
+use super::neighbors::{NONE, neighbors};
+use super::options::{Layers, Stack};
+use crate::base::{Csr, Error, Point, Result, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::meshing::surfaces::Surfaces;
+use crate::preflight::Role;
+
+/// The bodies in front of a triangle and behind it.
+pub(super) type Sides = [Option<u32>; 2];
+
+/// Triangles around bodies that get layers.
+#[derive(Debug, Default)]
+pub(super) struct Skin {
+    pub(super) points: Vec<Point>,
+    /// The vertex of the surfaces that each vertex is.
+    pub(super) to_vertex: Vec<VertexId>,
+    /// Turned so that they face out of their body.
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    /// The triangle of the surfaces that each is.
+    pub(super) to_triangle: Vec<u32>,
+    /// Whether the triangle of the surfaces is turned the other way round.
+    pub(super) is_turned: Vec<bool>,
+    /// The body behind each.
+    pub(super) bodies: Vec<u32>,
+    /// What grows on each: its place in `stacks`; [`NONE`] where nothing does.
+    pub(super) stack_of: Vec<u32>,
+    pub(super) stacks: Vec<Stack>,
+    /// The normal of each triangle, out of the body, of length 1.
+    pub(super) normals: Vec<Point>,
+    /// The triangles around each vertex.
+    pub(super) stars: Csr<u32>,
+    /// Behind each edge of each triangle the other triangle.
+    pub(super) behind: Vec<[u32; 3]>,
+    /// Flat parts of the triangles on which nothing grows, and beyond which there is nothing: there, edges of layers may slide.
+    pub(super) flats: Flats,
+    /// For each vertex of the surfaces the vertices of the skin that it is, with their bodies.
+    of_vertex: Csr<(u32, VertexId)>,
+    /// For each triangle of the surfaces the triangles of the skin that it is.
+    pub(super) of_triangle: Csr<u32>,
+}
+
+impl Skin {
+    /// # Errors
+    /// When layers are asked for on a membrane, or on no triangle.
+    pub(super) fn new(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Self> {
+        let stacks: Vec<Stack> = layers.everywhere.iter().chain(layers.by_patch.values()).copied().collect();
+        let chosen = choose(surfaces, layers, sides)?;
+        let mut grows_in = vec![false; sides.iter().flatten().flatten().max().map_or(0, |&b| b as usize + 1)];
+        for (t, side) in chosen.iter().enumerate().filter_map(|(t, c)| c.map(|(_, side)| (t, side))) {
+            sides[t][side].into_iter().for_each(|body| grows_in[body as usize] = true);
+        }
+        let mut skin = Self { stacks, ..Self::default() };
+        let mut corners = Vec::new();
+        for (t, &[a, b, c]) in surfaces.triangles.iter().enumerate() {
+            for (side, body) in sides[t].into_iter().enumerate() {
+                let Some(body) = body.filter(|&body| grows_in[body as usize]) else { continue };
+                // Behind a triangle it faces out of the body, in front of it into the body.
+                corners.push(if side == 1 { [a, b, c] } else { [a, c, b] });
+                skin.is_turned.push(side == 0);
+                skin.bodies.push(body);
+                skin.to_triangle.push(t as u32);
+                skin.stack_of.push(match chosen[t] {
+                    Some((stack, grows_on)) if grows_on == side => stack,
+                    _ => NONE,
+                });
+            }
+        }
+        skin.number(surfaces, &corners);
+        skin.relate(sides);
+        Ok(skin)
+    }
+
+    /// Gives the corners of each body numbers of their own.
+    fn number(&mut self, surfaces: &Surfaces, corners: &[[VertexId; 3]]) {
+        let with_body = |(corners, &body): (&[VertexId; 3], &u32)| corners.map(|v| (v, body));
+        let mut all: Vec<(VertexId, u32)> = corners.iter().zip(&self.bodies).flat_map(with_body).collect();
+        all.sort_unstable();
+        all.dedup();
+        self.of_vertex = Csr::from_pairs(surfaces.points.len(), || {
+            all.iter().enumerate().map(|(w, &(v, body))| (v.index(), (body, VertexId::new(w))))
+        });
+        self.to_vertex = all.iter().map(|&(v, _)| v).collect();
+        self.points = self.to_vertex.iter().map(|v| surfaces.points[v.index()]).collect();
+        let of =
+            |(corners, &body): (&[VertexId; 3], &u32)| corners.map(|v| self.vertex(v, body).unwrap_or(v));
+        self.triangles = corners.iter().zip(&self.bodies).map(of).collect();
+        self.of_triangle = Csr::from_pairs(surfaces.triangles.len(), || {
+            self.to_triangle.iter().zip(0..).map(|(&t, s)| (t as usize, s))
+        });
+    }
+
+    /// The vertex of a body's skin that a vertex of the surfaces is.
+    pub(super) fn vertex(&self, vertex: VertexId, body: u32) -> Option<VertexId> {
+        self.of_vertex.list(vertex.index()).iter().find(|(of, _)| *of == body).map(|&(_, w)| w)
+    }
+
+    fn relate(&mut self, sides: &[Sides]) {
+        let area = |t: &[VertexId; 3]| area_vector(t.map(|v| self.points[v.index()]));
+        self.normals = self.triangles.iter().map(|t| unit(area(t))).collect();
+        self.stars = Csr::from_pairs(self.points.len(), || {
+            (0u32..).zip(&self.triangles).flat_map(|(t, corners)| corners.map(|v| (v.index(), t)))
+        });
+        self.behind = neighbors(&self.triangles);
+        let is_free = |s: usize| {
+            self.stack_of[s] == NONE && sides[self.to_triangle[s] as usize].iter().any(Option::is_none)
+        };
+        self.flats = Flats::find(&self.points, &self.triangles, &self.behind, is_free);
+    }
+
+    pub(super) fn has_stack(&self, triangle: u32) -> bool {
+        self.stack_of[triangle as usize] != NONE
+    }
+
+    /// The triangles around a vertex on which layers grow.
+    pub(super) fn walls(&self, vertex: VertexId) -> impl Iterator<Item = u32> + Clone + '_ {
+        self.stars.list(vertex.index()).iter().copied().filter(|&t| self.has_stack(t))
+    }
+
+    /// Whether the triangles around a vertex are one fan, so that there is but one way inside.
+    pub(super) fn is_one_fan(&self, vertex: VertexId) -> bool {
+        let star = self.stars.list(vertex.index());
+        let Some(&first) = star.first() else { return false };
+        let (mut t, mut n) = (first, 0);
+        loop {
+            n += 1;
+            let corners = self.triangles[t as usize];
+            let Some(k) = corners.iter().position(|&v| v == vertex) else { return false };
+            t = self.behind[t as usize][k];
+            if t == first || t == NONE || n > star.len() {
+                return t == first && n == star.len();
+            }
+        }
+    }
+}
+
+/// For each triangle of the surfaces the stack on it, and the side on which that grows.
+fn choose(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Vec<Option<(u32, usize)>>> {
+    let places: BTreeMap<i32, u32> =
+        layers.by_patch.keys().copied().zip(u32::from(layers.everywhere.is_some())..).collect();
+    let is_cap = match layers.everywhere {
+        Some(_) => caps(&surfaces.points, &surfaces.triangles),
+        None => Vec::new(),
+    };
+    let mut chosen = vec![None; surfaces.triangles.len()];
+    let mut is_met = vec![false; layers.by_patch.len()];
+    for (t, patch) in surfaces.patches.iter().enumerate() {
+        let [front, behind] = sides[t];
+        let is_membrane = surfaces.roles[surfaces.surface_of[t] as usize] == Role::Membrane
+            || front.is_some() && front == behind;
+        let stack = match places.get(patch) {
+            Some(_) if is_membrane => return Err(on_membrane(surfaces, *patch, t)),
+            Some(&stack) => {
+                is_met[stack as usize - usize::from(layers.everywhere.is_some())] = true;
+                stack
+            }
+            None if layers.everywhere.is_none() || is_membrane || is_cap[t] => continue,
+            None => 0,
+        };
+        // Between two bodies layers grow where the triangle faces away from.
+        chosen[t] = match sides[t] {
+            [None, None] => None,
+            [Some(_), None] => Some((stack, 0)),
+            [_, Some(_)] => Some((stack, 1)),
+        };
+    }
+    if let Some((patch, _)) = layers.by_patch.keys().zip(is_met).find(|(_, met)| !met) {
+        return Err(Error::options(format!("layers on patch {patch}, but no triangle is of it")));
+    }
+    Ok(chosen)
+}
+
+fn on_membrane(surfaces: &Surfaces, patch: i32, triangle: usize) -> Error {
+    let name = surfaces.patch_names.get(&patch).cloned().unwrap_or_else(|| patch.to_string());
+    Error::options(format!("layers are asked for on `{name}`, which is a membrane"))
+        .at(format!("triangle {triangle}"))
+        .remedy("layers grow on walls alone: leave the membrane out")
+}
