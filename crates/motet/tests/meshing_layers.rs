@@ -414,7 +414,7 @@ fn in_a_thick_tube_layers_grow_in_the_lumen() {
     let (interface, outer) = (find("interface"), find("outer"));
     let one = Layers { by_patch: [(interface, STACK)].into(), ..Layers::default() };
     let made = filled(&mesh, one, Some(0.4));
-    assert_eq!(made.layers.unwrap().reduced, 0);
+    assert_eq!(made.layers.as_ref().unwrap().reduced, 0);
     let plain = fill_plain(&mesh);
     let volumes = |of: &Filled| of.report.bodies.iter().map(|body| body.volume).collect::<Vec<_>>();
     let (with, without) = (volumes(&made), volumes(&plain));

@@ -3,14 +3,14 @@
 use super::bodies::Bodies;
 use super::plane::Plane;
 use super::sites::Place;
-use super::{Constrained, Filled, PointInTriangle, PointOnEdge};
+use super::{Back, Constrained, Filled, PointInTriangle, PointOnEdge};
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::predicates::spot::Between;
 use crate::geometry::vector::{cross, dot, sub};
 
 impl Filled {
     /// Leaves out what lies outside, and numbers the rest.
-    pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: [f64; 2]) -> Constrained {
+    pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: Back) -> Constrained {
         let numbers = Numbers::new(&self, points.len());
         let on_edge = |v: &VertexId| match self.sites.place(*v)? {
             Place::On(place) => {
@@ -31,9 +31,8 @@ impl Filled {
             Between::within(a, [b, c], on.shares)
         });
         let placed = of_edges.chain(of_triangles).map(|between| between.rounded());
-        let inside = numbers.later[on_edges.len() + in_triangles.len()..]
-            .iter()
-            .map(|&v| self.sites.near(v).map(|x| x * back[0] * back[1]));
+        let inside =
+            numbers.later[on_edges.len() + in_triangles.len()..].iter().map(|&v| back.of(self.sites.near(v)));
         let tets = || self.tets.iter().filter_map(|(tet, v)| self.body(tet.index()).map(|b| (v, b)));
         Constrained {
             points: points.iter().copied().chain(placed).chain(inside).collect(),

@@ -59,6 +59,9 @@ use tets::Tets;
 /// The box around all points is larger than theirs by this factor: so far away it hardly makes an edge less Delaunay.
 const BOX: f64 = 8.0;
 
+/// What is shorter than this along an axis, beside the longest, is stretched.
+const SHORT: f64 = 1.0 / 32.0;
+
 /// What is far around the box, where a hollow is filled, is larger by this factor than the box.
 const FAR: f64 = 4096.0;
 
@@ -124,7 +127,7 @@ pub fn constrain(
 ) -> Result<Constrained> {
     input::check(points)?;
     check_ids(points, triangles)?;
-    let (mut given, back) = in_box(points)?;
+    let (mut given, back) = in_box(points, edge_points)?;
     let (triangulation, order) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
     given.extend(far_around(&given));
@@ -165,16 +168,42 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
         .remedy("merge points that coincide"))
 }
 
-/// The points, scaled by a power of two, and the corners of a box far around them; and what scales back.
-fn in_box(points: &[Point]) -> Result<(Vec<Point>, [f64; 2])> {
+/// What gives points their own scale back.
+#[derive(Clone, Copy)]
+struct Back {
+    all: [f64; 2],
+    by_axis: Point,
+}
+
+impl Back {
+    fn of(&self, p: Point) -> Point {
+        std::array::from_fn(|i| p[i] * self.by_axis[i] * self.all[0] * self.all[1])
+    }
+}
+
+/// The points, scaled by powers of two, and the corners of a box far around them; and what scales back.
+///
+/// Where points need not be Delaunay in the end, axes along which all is far shorter are stretched: what is flat as a whole, or long, would
+/// have tets at first that cross its surface everywhere.
+fn in_box(points: &[Point], edge_points: EdgePoints) -> Result<(Vec<Point>, Back)> {
     let Scaled { points: mut given, back, .. } = input::scaled(points.to_vec());
+    let extent = |[low, high]: [Point; 2]| -> Point { std::array::from_fn(|i| high[i] - low[i]) };
+    let size = extent(bounds(&given).unwrap_or_default());
+    let largest = size.into_iter().fold(0.0, f64::max);
+    let is_far_shorter =
+        |size: f64| size > 0.0 && size < SHORT * largest && edge_points == EdgePoints::MoveInside;
+    let stretch =
+        size.map(
+            |size| if is_far_shorter(size) { 2f64.powi((largest / size).log2().floor() as i32) } else { 1.0 },
+        );
+    given.iter_mut().for_each(|p| (0..3).for_each(|i| p[i] *= stretch[i]));
     let [low, high] = bounds(&given).unwrap_or_default();
-    let away = BOX * (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    let away = BOX * extent([low, high]).into_iter().fold(0.0, f64::max);
     for k in 0..8 {
         given.push(std::array::from_fn(|i| if k >> i & 1 == 0 { low[i] - away } else { high[i] + away }));
     }
     if away > 0.0 && (away * FAR).is_finite() && given.as_flattened().iter().all(|x| x.is_finite()) {
-        return Ok((given, back));
+        return Ok((given, Back { all: back, by_axis: stretch.map(f64::recip) }));
     }
     Err(Error::input("the points have no extent, or one too large for numbers")
         .remedy("give surfaces of another size"))
