@@ -21,14 +21,12 @@ fn check(name: &str, points: &[Point], triangles: &[Triangle], rule: EdgePoints)
     filled
 }
 
-/// Kinds of hard surfaces of which not every one is filled and kept yet: flat faces cut into needles, many sharp notches side by side, surfaces
-/// that touch in many vertices.
-const OPEN_KINDS: [&str; 5] = ["cut_box", "wedges", "chazelle", "star_in_star", "axis"];
+/// A kind of hard surfaces of which some take too long yet: many sharp notches side by side, with long thin triangles across them.
+const OPEN_KIND: &str = "wedges";
 
-/// The first so many hard surfaces that are no open kind; of those with "axis" in their name, one axis is stretched up to a million times.
+/// The first so many hard surfaces that are no open kind.
 fn cases(n: usize) -> impl Iterator<Item = Case> {
-    let is_open = |case: &Case| OPEN_KINDS.iter().any(|kind| case.name.contains(kind));
-    (0..).map(random_case).filter(move |case| !is_open(case)).take(n)
+    (0..).map(random_case).filter(|case| !case.name.contains(OPEN_KIND)).take(n)
 }
 
 /// `MOTET_CASES=1000` checks more of them.
@@ -43,22 +41,19 @@ fn hard_surfaces_are_filled_and_kept() {
         let filled =
             constrain(&case.points, &case.triangles, EdgePoints::MoveInside, &Threads::single()).unwrap();
         n += 1;
-        if filled.on_edges.is_empty() {
-            kept += 1;
-            let faults = faults(&case.points, &case.triangles, &filled, EdgePoints::MoveInside);
-            assert!(faults.is_empty(), "{}: {}", case.name, faults[0]);
-        } else {
-            println!("{}: {} points stayed on edges", case.name, filled.on_edges.len());
-            assert!(volumes(&case.triangles, &filled).is_empty(), "{}", case.name);
-        }
+        kept += usize::from(filled.on_edges.is_empty() && filled.in_triangles.is_empty());
+        let faults = faults(&case.points, &case.triangles, &filled, EdgePoints::MoveInside);
+        assert!(faults.is_empty(), "{}: {}", case.name, faults[0]);
     }
     println!("{kept} of {n} kept as they came");
-    assert!(10 * kept >= 9 * n, "{kept} of {n}");
+    assert!(20 * kept >= 17 * n, "{kept} of {n}");
 }
 
 #[test]
 fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
-    for case in cases(n_cases()).filter(|case| case.triangles.len() < 120) {
+    // Stretched along one axis, edges would need too many points.
+    let is_small = |case: &Case| case.triangles.len() < 120 && !case.name.contains("axis");
+    for case in cases(n_cases()).filter(is_small) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::Stay);
     }
 }

@@ -45,5 +45,5 @@ mod store;
 mod triangulation;
 mod walk;
 
-pub use constrain::{Constrained, EdgePoints, PointOnEdge, constrain};
+pub use constrain::{Constrained, EdgePoints, PointInTriangle, PointOnEdge, constrain};
 pub use triangulation::{HullFacet, Triangulation};

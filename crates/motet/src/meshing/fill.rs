@@ -58,7 +58,7 @@ pub struct Report {
     pub triangles: usize,
     /// Tets made, before they were improved.
     pub tets: usize,
-    /// Points that stayed on edges of the surface, where there was no room inside: the triangles there are in pieces.
+    /// Points that stayed on edges of the surface, or in its triangles, where there was no room inside: the triangles there are in pieces.
     pub points_on_edges: usize,
     /// Points inside.
     pub points_inside: usize,
@@ -209,7 +209,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
     let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
     let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
     let used = |of: std::ops::Range<usize>| is_named[of].iter().filter(|n| **n).count();
-    let points_on_edges = used(n_points..n_points + filled.on_edges.len());
+    let points_on_edges = used(n_points..n_points + filled.on_edges.len() + filled.in_triangles.len());
     let is_kept = |list: &[[VertexId; 3]]| list.len() == 1;
     Report {
         triangles: surfaces.triangles.len(),

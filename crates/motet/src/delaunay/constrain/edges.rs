@@ -84,7 +84,7 @@ impl<'a> Edges<'a> {
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece).is_some() {
                 let n = self.way.facets.len();
-                let spare = spare.get_or_insert(if n > SPARE { 0 } else { n });
+                let spare = spare.get_or_insert(if n > SPARE { 0 } else { 2 * n });
                 if self.swap(piece, 0, 0) {
                     continue;
                 }
