@@ -2,10 +2,13 @@
 
 use std::collections::{HashMap, HashSet};
 
+use num_rational::BigRational;
+use num_traits::{ToPrimitive, Zero};
+
 use motet::base::{Point, VertexId};
 use motet::delaunay::{Constrained, EdgePoints};
 use motet::geometry::predicates::insphere;
-use motet::geometry::tet::{FACETS, volume};
+use motet::geometry::tet::FACETS;
 use motet::geometry::triangle::area;
 use motet::geometry::vector::distance;
 
@@ -66,31 +69,40 @@ pub(crate) fn faults(
     faults
 }
 
-/// Bodies whose tets do not sum to what their surface encloses.
+/// Bodies whose tets do not sum to what their surface encloses: to the last bit where no rounded point is on the surface, since sums are exact.
 pub(crate) fn volumes(triangles: &[Triangle], filled: &Constrained) -> Vec<String> {
     let n = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
-    let (mut of_tets, mut of_surface, mut size) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let origin = filled.tets.first().map_or([0.0; 3], |t| filled.points[t[0].index()]);
-    let from = |v: &VertexId| {
-        let p = filled.points[v.index()];
-        [0, 1, 2].map(|i| p[i] - origin[i])
+    let at = |v: VertexId| filled.points[v.index()];
+    let six_times = |[a, b, c, d]: [Point; 4]| {
+        let exact = |x: f64| BigRational::from_float(x).unwrap();
+        let from = |p: Point| [0, 1, 2].map(|i| exact(p[i]) - exact(a[i]));
+        let [b, c, d] = [b, c, d].map(from);
+        let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];
+        minor(1, 2) * &d[0] + minor(2, 0) * &d[1] + minor(0, 1) * &d[2]
     };
+    let (mut of_tets, mut of_surface) = (vec![BigRational::zero(); n], vec![BigRational::zero(); n]);
+    let mut size = vec![0.0; n];
     for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
-        of_tets[body as usize] += volume([0, 1, 2, 3].map(|k| from(&tet[k])));
+        of_tets[body as usize] += six_times(tet.map(at));
     }
+    let origin = filled.tets.first().map_or([0.0; 3], |t| at(t[0]));
     for (triangle, bodies) in triangles.iter().zip(&filled.triangle_to_bodies) {
-        let [a, b, c] = [0, 1, 2].map(|k| from(&triangle[k]));
-        let part = volume([[0.0; 3], a, b, c]);
-        for (body, sign) in bodies.iter().zip([-1.0, 1.0]) {
-            if let Some(body) = body {
-                of_surface[*body as usize] += sign * part;
-                size[*body as usize] += part.abs();
-            }
+        let [a, b, c] = triangle.map(at);
+        let part = six_times([origin, a, b, c]);
+        for (body, is_behind) in bodies.iter().zip([false, true]) {
+            let Some(body) = *body else { continue };
+            size[body as usize] += part.to_f64().unwrap().abs();
+            of_surface[body as usize] += if is_behind { part.clone() } else { -part.clone() };
         }
     }
-    let off =
-        (0..n).filter(|&b| (of_tets[b] - of_surface[b]).abs() > 1e-10 * (of_tets[b].abs() + 1e-3 * size[b]));
-    off.map(|b| format!("body {b}: {} of {}", of_tets[b], of_surface[b])).collect()
+    let is_exact = filled.on_edges.is_empty() && filled.in_triangles.is_empty();
+    let is_off = |b: &usize| {
+        let off = (&of_tets[*b] - &of_surface[*b]).to_f64().unwrap().abs();
+        let volume = of_surface[*b].to_f64().unwrap();
+        off > if is_exact { 0.0 } else { 1e-10 * (volume + 1e-3 * size[*b]) }
+    };
+    let told = |b: usize| format!("body {b}: {:?} of {:?}", of_tets[b].to_f64(), of_surface[b].to_f64());
+    (0..n).filter(is_off).map(told).collect()
 }
 
 /// Facets between tets, not of the surface, with the one tet's vertex inside the sphere of the other (exact, so only without points on edges).

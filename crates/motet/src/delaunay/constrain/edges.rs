@@ -19,6 +19,9 @@ use crate::kernel::HalfFacet;
 /// For each facet that an edge meets at first so many swaps that gain nothing, before it gets a point: they may make room for one that does.
 const SPARE: usize = 12;
 
+/// A share of an edge with room for enough numbers.
+const ROOM: f64 = 1e-9;
+
 /// So many points on edges, beside those that an edge has on average, and it would take too long.
 const SPARE_POINTS: usize = 2_000;
 const POINTS_A_SEGMENT: usize = 4;
@@ -132,7 +135,7 @@ impl<'a> Edges<'a> {
         has_swapped
     }
 
-    /// Puts a point on a piece, where it sees all tets at the facet in the middle of those met. Answers the two new pieces.
+    /// Puts a point on a piece, where it sees all tets at one of the facets met. Answers the two new pieces.
     fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2]> {
         let segment = self.segments.of_piece(piece);
         if self.sites.n_on_segments() > SPARE_POINTS + POINTS_A_SEGMENT * self.segments.len() {
@@ -144,10 +147,7 @@ impl<'a> Edges<'a> {
         }
         let ends = self.segments.in_order(self.sites, segment, piece);
         let [low, high] = ends.map(|v| self.segments.share(self.sites, segment, v));
-        let wanted = self.middle(ends).map_or(Vec::new(), |half| self.around_crossing(ends, half));
-        let of_ends =
-            |[p, q, r]: [VertexId; 3]| self.sites.volume_ratios([[p, q, r, ends[0]], [p, q, r, ends[1]]]);
-        let seen = positive_part(faces_around(self.tets, &wanted).into_iter().map(of_ends));
+        let (seen, wanted) = self.room(ends, high - low);
         let share = round_between(seen.map(|at| low + (high - low) * at));
         let share = [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high);
         let Some(share) = share else {
@@ -175,8 +175,32 @@ impl<'a> Edges<'a> {
         tets
     }
 
-    /// The facet in the middle of those that are met on the way between two vertices.
-    fn middle(&self, [a, b]: [VertexId; 2]) -> Option<HalfFacet> {
+    /// Where on the way between two vertices all tets at a facet that is met are seen, and those tets: at the facet nearest to the middle where there is room
+    /// for numbers, or where there is most. `length` is that of the way, as a share.
+    fn room(&mut self, ends: [VertexId; 2], length: f64) -> ([f64; 2], Vec<TetId>) {
+        let mut met = self.met(ends);
+        let middle = met.len() / 2;
+        let mut from_middle: Vec<(usize, HalfFacet)> =
+            met.drain(..).enumerate().map(|(i, (_, half))| (i.abs_diff(middle), half)).collect();
+        from_middle.sort_unstable();
+        let mut best = ([0.0, 0.0], Vec::new());
+        for (_, half) in from_middle {
+            let tets = self.around_crossing(ends, half);
+            let of_ends =
+                |[p, q, r]: [VertexId; 3]| self.sites.volume_ratios([[p, q, r, ends[0]], [p, q, r, ends[1]]]);
+            let seen = positive_part(faces_around(self.tets, &tets).into_iter().map(of_ends));
+            if seen[1] - seen[0] > best.0[1] - best.0[0] {
+                best = (seen, tets);
+            }
+            if (seen[1] - seen[0]) * length > ROOM {
+                break;
+            }
+        }
+        if best.1.is_empty() { ([0.0, 1.0], best.1) } else { best }
+    }
+
+    /// The facets that are met on the way between two vertices, as they come, with where.
+    fn met(&self, [a, b]: [VertexId; 2]) -> Vec<(f64, HalfFacet)> {
         let mut met: Vec<(f64, HalfFacet)> = Vec::new();
         for &half in &self.way.facets {
             let [p, q, r] = self.tets.inward(half);
@@ -187,6 +211,6 @@ impl<'a> Edges<'a> {
             }
         }
         met.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
-        met.get(met.len() / 2).map(|m| m.1)
+        met
     }
 }

@@ -96,8 +96,7 @@ impl Pierce {
         loop {
             self.find_piercing(tets, sites);
             let wanted = Whole(sites, self.corners, &self.parts);
-            let is_piercing = |e: &&(TetId, [VertexId; 2])| wanted.meets_edge(e.1) > 0;
-            let mut edges = self.piercing.iter().filter(is_piercing);
+            let mut edges = self.piercing.iter();
             if !edges.any(|&(tet, edge)| self.swap.remove(tets, sites, edge, tet, &wanted, 0)) {
                 return self.piercing.is_empty();
             }
@@ -115,18 +114,30 @@ impl Pierce {
             if self.n_added == MOST {
                 return None;
             }
-            let (tet, edge) = self.piercing[self.piercing.len() / 2];
-            tets.around_from(edge, tet, &mut self.star);
-            let (number, triangle) = self.triangles.iter().copied().find(|t| is_in(sites, edge, t.1))?;
-            let shares = self.shares(tets, sites, edge, triangle);
-            let vertex = sites.add_in(number, triangle, shares);
-            if !self.split.insert(tets, sites, vertex, (&self.star, &self.star), kept) {
-                return None;
-            }
-            self.points.push(vertex);
-            self.n_added += 1;
+            self.pierce(tets, sites, kept)?;
         }
         self.facets(tets, sites)
+    }
+
+    /// Puts a point where one of the edges pierces, from the middle one of the list on the first where that can be.
+    fn pierce(&mut self, tets: &mut Tets, sites: &mut Sites, kept: &impl Kept) -> Option<()> {
+        let n = self.piercing.len();
+        for i in 0..n {
+            let (tet, edge) = self.piercing[(n / 2 + i) % n];
+            tets.around_from(edge, tet, &mut self.star);
+            let Some((number, triangle)) = self.triangles.iter().copied().find(|t| is_in(sites, edge, t.1))
+            else {
+                continue;
+            };
+            let shares = self.shares(tets, sites, edge, triangle);
+            let vertex = sites.add_in(number, triangle, shares);
+            if self.split.insert(tets, sites, vertex, (&self.star, &self.star), kept) {
+                self.points.push(vertex);
+                self.n_added += 1;
+                return Some(());
+            }
+        }
+        None
     }
 
     /// Collects the edges that pierce the triangle, each once, with a tet of each.
@@ -171,6 +182,8 @@ impl Pierce {
         }
         self.piercing.sort_unstable_by_key(|&(tet, edge)| (edge, tet));
         self.piercing.dedup_by_key(|p| p.1);
+        let wanted = Whole(sites, self.corners, &self.parts);
+        self.piercing.retain(|&(_, edge)| wanted.meets_edge(edge) > 0);
         self.cut = cut;
     }
 
