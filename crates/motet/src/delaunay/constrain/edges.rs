@@ -16,7 +16,7 @@ use super::way::{Way, meets};
 use crate::base::{Result, TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
-/// For each facet that an edge meets at first so many swaps that gain nothing, before it gets a point: they may make room for one that does.
+/// An edge that meets no more facets may have twice as many swaps that gain nothing before it gets a point: they may make room for one that does.
 const SPARE: usize = 12;
 
 /// A share of an edge with room for enough numbers.
@@ -38,12 +38,16 @@ pub(super) struct Edges<'a> {
     tried: Vec<[VertexId; 2]>,
 }
 
-/// Edges of the surface that must not be lost.
-struct Pieces<'a>(&'a Segments);
+/// A piece that is to be an edge, among others that must not be lost.
+struct Missing<'a> {
+    sites: &'a Sites,
+    segments: &'a Segments,
+    piece: [VertexId; 2],
+}
 
-impl Kept for Pieces<'_> {
+impl Kept for Missing<'_> {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool {
-        self.0.has_piece(edge)
+        self.segments.has_piece(edge)
     }
 
     fn has_facet(&self, _: [VertexId; 3]) -> bool {
@@ -51,12 +55,9 @@ impl Kept for Pieces<'_> {
     }
 }
 
-/// A piece that is to be an edge.
-struct Missing<'a>(&'a Sites, [VertexId; 2]);
-
 impl Wanted for Missing<'_> {
     fn meets_facet(&self, face: [VertexId; 3]) -> u32 {
-        u32::from(meets(self.0, self.1, face))
+        u32::from(meets(self.sites, self.piece, face))
     }
 
     fn meets_edge(&self, _: [VertexId; 2]) -> u32 {
@@ -85,7 +86,7 @@ impl<'a> Edges<'a> {
         let mut queue: VecDeque<[VertexId; 2]> = self.segments.missing(self.tets).into();
         while let Some(piece) = queue.pop_front() {
             let mut spare = None;
-            while self.way.find(self.tets, self.sites, piece).is_some() {
+            while self.way.find(self.tets, self.sites, piece) {
                 let n = self.way.facets.len();
                 let spare = spare.get_or_insert(if n > SPARE { 0 } else { 2 * n });
                 if self.swap(piece, 0, 0) {
@@ -104,7 +105,7 @@ impl<'a> Edges<'a> {
     /// Makes swaps after which the piece meets fewer facets; or, where `spare` is 1, one after which it meets as many, the first that can be from the
     /// facet `from` on.
     fn swap(&mut self, piece: [VertexId; 2], spare: u32, from: usize) -> bool {
-        let missing = Missing(self.sites, piece);
+        let missing = Missing { sites: self.sites, segments: self.segments, piece };
         self.tried.clear();
         let faces: Vec<_> = self.way.facets.iter().map(|&half| (half, self.tets.inward(half))).collect();
         let mut has_swapped = false;
@@ -119,7 +120,7 @@ impl<'a> Edges<'a> {
                 continue;
             }
             for edge in [[p, q], [q, r], [r, p]].map(rising) {
-                if self.tried.contains(&edge) || self.segments.has_piece(edge) {
+                if self.tried.contains(&edge) {
                     continue;
                 }
                 self.tried.push(edge);
@@ -156,7 +157,8 @@ impl<'a> Edges<'a> {
         };
         let vertex = self.sites.add(self.segments.ends(segment), OnSegment { segment, share });
         let all = (&self.way.tets[..], &wanted[..]);
-        if !self.split.insert(self.tets, self.sites, vertex, all, &Pieces(self.segments)) {
+        let missing = Missing { sites: self.sites, segments: self.segments, piece };
+        if !self.split.insert(self.tets, self.sites, vertex, all, &missing) {
             let why = "passes through another edge, or through a triangle";
             return Err(self.segments.refused(self.sites, segment, why));
         }
@@ -178,10 +180,10 @@ impl<'a> Edges<'a> {
     /// Where on the way between two vertices all tets at a facet that is met are seen, and those tets: at the facet nearest to the middle where there is room
     /// for numbers, or where there is most. `length` is that of the way, as a share.
     fn room(&mut self, ends: [VertexId; 2], length: f64) -> ([f64; 2], Vec<TetId>) {
-        let mut met = self.met(ends);
+        let met = self.met(ends);
         let middle = met.len() / 2;
         let mut from_middle: Vec<(usize, HalfFacet)> =
-            met.drain(..).enumerate().map(|(i, (_, half))| (i.abs_diff(middle), half)).collect();
+            met.into_iter().enumerate().map(|(i, half)| (i.abs_diff(middle), half)).collect();
         from_middle.sort_unstable();
         let mut best = ([0.0, 0.0], Vec::new());
         for (_, half) in from_middle {
@@ -199,8 +201,8 @@ impl<'a> Edges<'a> {
         if best.1.is_empty() { ([0.0, 1.0], best.1) } else { best }
     }
 
-    /// The facets that are met on the way between two vertices, as they come, with where.
-    fn met(&self, [a, b]: [VertexId; 2]) -> Vec<(f64, HalfFacet)> {
+    /// The facets that are met on the way between two vertices, as they come.
+    fn met(&self, [a, b]: [VertexId; 2]) -> Vec<HalfFacet> {
         let mut met: Vec<(f64, HalfFacet)> = Vec::new();
         for &half in &self.way.facets {
             let [p, q, r] = self.tets.inward(half);
@@ -211,6 +213,6 @@ impl<'a> Edges<'a> {
             }
         }
         met.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
-        met
+        met.into_iter().map(|(_, half)| half).collect()
     }
 }

@@ -136,7 +136,8 @@ impl Work {
     ) -> Result<(), Stuck> {
         let first = triangles[0].1;
         let mut pierce = Pierce::new(triangles, own);
-        if pierce.swap_all(tets, sites)
+        let kept = Walls { segments, walls: &self.walls };
+        if pierce.swap_all(tets, sites, &kept)
             && let Some(facets) = pierce.facets(tets, sites)
         {
             *own = facets;

@@ -131,15 +131,19 @@ pub fn constrain(
     let (triangulation, order) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
     given.extend(far_around(&given));
-    let fill = |is_merged: bool| {
+    let fill = |flats: Flats| {
         let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &order));
-        let flats = Flats::find(&sites, triangles, is_merged);
         Filled::new(tets, sites, points.len(), triangles, flats, edge_points)
     };
-    let filled = match edge_points {
-        EdgePoints::Stay => fill(false)?,
+    let sites = Sites::new(given.clone(), &order);
+    let flats = Flats::find(&sites, triangles, edge_points == EdgePoints::MoveInside);
+    let has_merged = flats.triangles.len() < triangles.len();
+    let filled = match fill(flats) {
         // With each triangle for itself all its edges are there, if in pieces.
-        EdgePoints::MoveInside => fill(true).ok().filter(Filled::is_kept).map_or_else(|| fill(false), Ok)?,
+        first if has_merged && !first.as_ref().is_ok_and(Filled::is_kept) => {
+            fill(Flats::find(&sites, triangles, false))?
+        }
+        first => first?,
     };
     Ok(filled.finish(points, triangles, back))
 }

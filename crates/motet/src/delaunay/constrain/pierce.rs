@@ -40,22 +40,39 @@ pub(super) struct Pierce {
     piercing: Vec<(TetId, [VertexId; 2])>,
 }
 
-/// A triangle that is to be made of facets.
-struct Whole<'a>(&'a Sites, [VertexId; 3], &'a [[VertexId; 3]]);
+/// A triangle that is to be made of facets, among others that must not be lost.
+struct Whole<'a, K> {
+    sites: &'a Sites,
+    corners: [VertexId; 3],
+    parts: &'a [[VertexId; 3]],
+    kept: &'a K,
+}
 
-impl Wanted for Whole<'_> {
+impl<K: Kept> Kept for Whole<'_, K> {
+    fn has_edge(&self, edge: [VertexId; 2]) -> bool {
+        self.kept.has_edge(edge)
+    }
+
+    fn has_facet(&self, face: [VertexId; 3]) -> bool {
+        self.kept.has_facet(face)
+    }
+}
+
+impl<K: Kept> Wanted for Whole<'_, K> {
     fn meets_facet(&self, _: [VertexId; 3]) -> u32 {
         0
     }
 
     fn meets_edge(&self, [u, v]: [VertexId; 2]) -> u32 {
-        let Self(sites, [a, b, c], parts) = *self;
-        let side = |v: VertexId| if [a, b, c].contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) };
-        if side(u) * side(v) >= 0 {
-            return 0;
-        }
-        u32::from(parts.iter().any(|&part| is_in(sites, [u, v], part)))
+        let is_cut = side(self.sites, self.corners, u) * side(self.sites, self.corners, v) < 0;
+        u32::from(is_cut && self.parts.iter().any(|&part| is_in(self.sites, [u, v], part)))
     }
+}
+
+/// On which side of the plane of `corners` a vertex lies.
+fn side(sites: &Sites, corners: [VertexId; 3], v: VertexId) -> i8 {
+    let [a, b, c] = corners;
+    if corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) }
 }
 
 /// Whether the line of an edge passes through a triangle.
@@ -92,10 +109,10 @@ impl Pierce {
     }
 
     /// Makes it facets, without points inside. Whether that was possible.
-    pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites) -> bool {
+    pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) -> bool {
         loop {
-            self.find_piercing(tets, sites);
-            let wanted = Whole(sites, self.corners, &self.parts);
+            self.find_piercing(tets, sites, kept);
+            let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
             let mut edges = self.piercing.iter();
             if !edges.any(|&(tet, edge)| self.swap.remove(tets, sites, edge, tet, &wanted, 0)) {
                 return self.piercing.is_empty();
@@ -110,7 +127,7 @@ impl Pierce {
         sites: &mut Sites,
         kept: &impl Kept,
     ) -> Option<Vec<[VertexId; 3]>> {
-        while !self.swap_all(tets, sites) {
+        while !self.swap_all(tets, sites, kept) {
             if self.n_added == MOST {
                 return None;
             }
@@ -141,7 +158,7 @@ impl Pierce {
     }
 
     /// Collects the edges that pierce the triangle, each once, with a tet of each.
-    fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites) {
+    fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) {
         let mut cut = std::mem::take(&mut self.cut);
         cut.clear();
         for &([a, b], beyond) in &self.rim {
@@ -182,7 +199,7 @@ impl Pierce {
         }
         self.piercing.sort_unstable_by_key(|&(tet, edge)| (edge, tet));
         self.piercing.dedup_by_key(|p| p.1);
-        let wanted = Whole(sites, self.corners, &self.parts);
+        let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
         self.piercing.retain(|&(_, edge)| wanted.meets_edge(edge) > 0);
         self.cut = cut;
     }
@@ -197,8 +214,7 @@ impl Pierce {
     }
 
     fn side(&self, sites: &Sites, v: VertexId) -> i8 {
-        let [a, b, c] = self.corners;
-        if self.corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) }
+        side(sites, self.corners, v)
     }
 
     fn turn(&self, sites: &Sites, t: [VertexId; 3]) -> i8 {

@@ -5,6 +5,7 @@
 //! (Klincsek 1980, *Minimal triangulations of polygonal domains*, by dynamic programming).
 
 use super::sites::Sites;
+use super::split::Kept;
 use super::tets::Tets;
 use crate::base::{TetId, VertexId};
 use crate::kernel::HalfFacet;
@@ -12,8 +13,8 @@ use crate::kernel::HalfFacet;
 /// Edges with more tets are left alone.
 const LARGEST_RING: usize = 10;
 
-/// What is to be there: counts what would be in its way.
-pub(super) trait Wanted {
+/// What is to be there: counts what would be in its way. What must not be lost is not swapped away.
+pub(super) trait Wanted: Kept {
     fn meets_facet(&self, face: [VertexId; 3]) -> u32;
     fn meets_edge(&self, edge: [VertexId; 2]) -> u32;
 }
@@ -33,7 +34,8 @@ impl Swap {
         let ([p, q, r], other) = (tets.inward(half), tets.across(half));
         let [c, d] = [half, other].map(|half| tets.vertices(half.tet())[half.facet()]);
         let new = [[p, q, d, c], [q, r, d, c], [r, p, d, c]];
-        let is_better = new.iter().all(|&v| sites.orient3d(v) > 0)
+        let is_better = !wanted.has_facet([p, q, r])
+            && new.iter().all(|&v| sites.orient3d(v) > 0)
             && [p, q, r].into_iter().all(|v| wanted.meets_facet([c, d, v]) == 0)
             && wanted.meets_edge([c, d]) == 0;
         if is_better {
@@ -52,10 +54,13 @@ impl Swap {
         wanted: &impl Wanted,
         spare: u32,
     ) -> bool {
-        if self.go_round(tets, edge, first).is_none() {
+        let [u, v] = edge;
+        if wanted.has_edge(edge)
+            || self.go_round(tets, edge, first).is_none()
+            || self.around.iter().any(|&w| wanted.has_facet([u, v, w]))
+        {
             return false;
         }
-        let [u, v] = edge;
         let facets = self.around.iter().map(|&w| wanted.meets_facet([u, v, w]));
         let now = wanted.meets_edge(edge) + facets.sum::<u32>();
         let n = self.around.len();

@@ -206,19 +206,24 @@ impl Tets {
     pub(super) fn star(&mut self, vertex: VertexId, star: &mut Vec<TetId>) {
         star.clear();
         let first = self.at(vertex);
-        if first == OUTSIDE {
-            return;
+        if first != OUTSIDE {
+            self.flood(first, star, |opposite| opposite != vertex);
         }
+    }
+
+    /// The tets from `first` on that are reached through facets whose vertices opposite `passes` lets through, marked; a round begins.
+    fn flood(&mut self, first: TetId, reached: &mut Vec<TetId>, passes: impl Fn(VertexId) -> bool) {
         self.begin();
         self.mark(first);
-        star.push(first);
+        reached.clear();
+        reached.push(first);
         let mut next = 0;
-        while let Some(&tet) = star.get(next) {
+        while let Some(&tet) = reached.get(next) {
             next += 1;
             for half in Self::facets(tet) {
                 let other = self.across(half);
-                if self.vertices(tet)[half.facet()] != vertex && !other.is_none() && self.mark(other.tet()) {
-                    star.push(other.tet());
+                if passes(self.vertices(tet)[half.facet()]) && !other.is_none() && self.mark(other.tet()) {
+                    reached.push(other.tet());
                 }
             }
         }
@@ -248,21 +253,7 @@ impl Tets {
 
     /// The tets around an edge, from one of them on.
     pub(super) fn around_from(&mut self, edge: [VertexId; 2], first: TetId, ring: &mut Vec<TetId>) {
-        ring.clear();
-        self.begin();
-        self.mark(first);
-        ring.push(first);
-        let mut next = 0;
-        while let Some(&tet) = ring.get(next) {
-            next += 1;
-            for half in Self::facets(tet) {
-                let other = self.across(half);
-                let is_of_edge = !edge.contains(&self.vertices(tet)[half.facet()]);
-                if is_of_edge && !other.is_none() && self.mark(other.tet()) {
-                    ring.push(other.tet());
-                }
-            }
-        }
+        self.flood(first, ring, |opposite| !edge.contains(&opposite));
     }
 
     /// The tets around an edge that is there.

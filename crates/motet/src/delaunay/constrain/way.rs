@@ -18,11 +18,11 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Follows the segment between two vertices. `None` where it is an edge of tets.
-    pub(super) fn find(&mut self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2]) -> Option<()> {
+    /// Follows the segment between two vertices. Whether there is a way to follow, and it is no edge of tets.
+    pub(super) fn find(&mut self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2]) -> bool {
         self.tets.clear();
         self.facets.clear();
-        let first = self.first(tets, sites, ends)?;
+        let Some(first) = self.first(tets, sites, ends) else { return false };
         tets.begin();
         tets.mark(first);
         self.tets.push(first);
@@ -43,7 +43,7 @@ impl Way {
                 }
             }
         }
-        Some(())
+        true
     }
 
     /// The tet of the first end in which the segment starts. `None` where it is an edge.
