@@ -4,7 +4,7 @@ use super::body::Prepared;
 use super::side::Side;
 use crate::base::Point;
 use crate::geometry::distance::triangle_triangle;
-use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 
 /// The least cosine between a surface and the way to a place nearest to it: 75 degrees from its normal. Neighbours on one smooth surface lie
 /// at right angles to that.
@@ -128,9 +128,4 @@ fn is_free(free: Side, normal: Point, way: Point, least: f64) -> bool {
 fn sum_of_normals(points: &[Point], body: &Prepared, triangles: impl Iterator<Item = u32>) -> Point {
     let sum = triangles.fold([0.0; 3], |sum, t| add(sum, body.normal(points, t)));
     unit(sum).unwrap_or_default()
-}
-
-fn unit(way: Point) -> Option<Point> {
-    let length = norm(way);
-    (length > 0.0).then(|| scale(way, 1.0 / length))
 }

@@ -44,6 +44,12 @@ pub fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// The same way, of length 1; `None` where it has no length, or one beyond numbers.
+pub fn unit(v: Point) -> Option<Point> {
+    let length = norm(v);
+    (length > 0.0 && length.is_finite()).then(|| scale(v, 1.0 / length))
+}
+
 /// `|a - b|`
 #[inline(always)]
 pub fn distance(a: Point, b: Point) -> f64 {

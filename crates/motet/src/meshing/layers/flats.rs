@@ -3,7 +3,7 @@
 use super::neighbors::{NONE, neighbors};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{area_vector, centroid};
-use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::geometry::vector::{self, add, dot, norm, sub};
 
 /// How far from the plane of a part's largest triangle a corner may lie, over its distance from the middle of that: what rounding to single
 /// precision leaves of a plane is ten times flatter, and walls are curved far more.
@@ -84,6 +84,5 @@ pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
 
 /// The direction of a vector; zero where it has none.
 pub(super) fn unit(v: Point) -> Point {
-    let length = norm(v);
-    if length > 0.0 && length.is_finite() { scale(v, 1.0 / length) } else { [0.0; 3] }
+    vector::unit(v).unwrap_or_default()
 }
