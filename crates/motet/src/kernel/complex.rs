@@ -49,7 +49,7 @@ pub struct Complex {
     pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
-    /// Qualities that count as good; see [`Complex::spare`].
+    /// Qualities that count as good, in rising order; see [`Complex::spare`].
     pub(super) spared: Vec<f64>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
@@ -189,13 +189,19 @@ impl Complex {
     /// Cannot be taken back by [`Self::undo`].
     pub fn spare(&mut self, qualities: Vec<f64>) {
         self.spared = qualities;
+        self.spared.sort_unstable_by(f64::total_cmp);
         self.qualities.fill(UNMEASURED);
         self.forget();
     }
 
     #[inline]
     fn is_spared(&self, quality: f64) -> bool {
-        self.spared.iter().any(|spared| (quality - spared).abs() <= SAME * spared.abs())
+        if self.spared.is_empty() {
+            return false;
+        }
+        // There may be ten thousands of them.
+        let from = self.spared.partition_point(|spared| *spared < quality - SAME * quality.abs());
+        self.spared.get(from).is_some_and(|spared| *spared <= quality + SAME * quality.abs())
     }
 
     /// Whether a tet is one of the first mesh, with its vertices where they were.

@@ -116,29 +116,30 @@ const FORCED: f64 = 1e-6;
 /// wall forces nothing but between two features.
 pub(super) fn forced(complex: &Complex, surface: Option<&Surface>, tets: &[TetId]) -> Vec<f64> {
     let mut shell = Shell::default();
-    let mut forced = Vec::new();
-    for &tet in tets {
-        let quality = complex.quality(tet);
-        let is_reached = |best: f64| quality > 0.0 && best - quality < FORCED;
-        let vertices = complex.vertices(tet);
-        let mut is_firm = |[at, p, q]: [usize; 3]| {
-            surface.is_none_or(|surface| {
-                [p, q].into_iter().all(|end| {
-                    let edge = [vertices[at], vertices[end]];
-                    shell.walk(complex, tet, edge[0], edge[1]);
-                    !surface.is_smooth(complex, edge, &shell)
-                })
-            })
-        };
-        if wall_bounds(complex, tet).any(|wall| is_reached(wall.bound.1) && is_firm(wall.corner))
-            || edge_bounds(complex, tet, &mut shell).into_iter().any(|bound| is_reached(bound.1))
-        {
-            forced.push(quality);
-        }
-    }
+    let mut is_forced = |tet: &&TetId| is_forced(complex, surface, **tet, &mut shell);
+    let mut forced: Vec<f64> =
+        tets.iter().filter(|tet| is_forced(tet)).map(|&tet| complex.quality(tet)).collect();
     forced.sort_by(f64::total_cmp);
     forced.dedup();
     forced
+}
+
+/// Whether a tet is as good as the walls at it allow: see [`forced`].
+pub(super) fn is_forced(complex: &Complex, surface: Option<&Surface>, tet: TetId, shell: &mut Shell) -> bool {
+    let quality = complex.quality(tet);
+    let is_reached = |best: f64| quality > 0.0 && best - quality < FORCED;
+    let vertices = complex.vertices(tet);
+    let mut is_firm = |[at, p, q]: [usize; 3]| {
+        surface.is_none_or(|surface| {
+            [p, q].into_iter().all(|end| {
+                let edge = [vertices[at], vertices[end]];
+                shell.walk(complex, tet, edge[0], edge[1]);
+                !surface.is_smooth(complex, edge, shell)
+            })
+        })
+    };
+    wall_bounds(complex, tet).any(|wall| is_reached(wall.bound.1) && is_firm(wall.corner))
+        || edge_bounds(complex, tet, shell).into_iter().any(|bound| is_reached(bound.1))
 }
 
 /// What the angle of a wall leaves to a tet on it.

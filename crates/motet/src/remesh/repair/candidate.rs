@@ -14,7 +14,12 @@ pub(super) struct Candidate {
     score: Option<Score>,
     operation: Operation,
     came: Vec<TetId>,
+    /// A worst quality from which a change may leave more bad tets than it found.
+    worth_more_bad: f64,
 }
+
+/// A worst quality this many times as high is worth more bad tets: one that is nearly flat ruins a solution, some that are only bad do not.
+const MUCH_BETTER: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]
 struct Score {
@@ -23,8 +28,11 @@ struct Score {
 }
 
 impl Candidate {
-    pub(super) fn begin(&mut self) {
+    /// `last_chance` is the quality of the bad tet when all stages are tried: then a worst quality that rises much may cost more bad tets.
+    pub(super) fn begin(&mut self, last_chance: Option<f64>) {
         self.score = None;
+        self.worth_more_bad =
+            last_chance.map_or(f64::INFINITY, |quality| (MUCH_BETTER * quality).max(f64::MIN_POSITIVE));
     }
 
     /// Whether one has been found whose tets are all at least `target`.
@@ -63,7 +71,7 @@ impl Candidate {
         // More bad tets in place of fewer are no progress, even if the worst of them is better.
         let n_bad = self.proposal.fill.iter().filter(|tet| is_bad(tet.quality)).count();
         let n_bad_before = || self.proposal.cavity.iter().filter(|&&t| is_bad(complex.quality(t))).count();
-        let is_better = is_better && (n_bad == 0 || n_bad <= n_bad_before());
+        let is_better = is_better && (n_bad == 0 || worst >= self.worth_more_bad || n_bad <= n_bad_before());
         if is_better
             && surface.is_none_or(|s| s.accepts(complex, &self.proposal))
             && complex.check(&self.proposal).is_ok()

@@ -73,7 +73,7 @@ impl Repair {
         longest
     }
 
-    /// Splits the edge whose shell was walked last, if every tet stays positive.
+    /// Splits the edge whose shell was walked last, if every tet stays positive and the surface where it may be.
     fn split_unjudged(&mut self, edge: [VertexId; 2]) {
         let [a, b] = edge;
         let shell = &self.shells[0];
@@ -84,8 +84,10 @@ impl Repair {
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let mut came = Vec::new();
         let proposal = &mut self.candidate.proposal;
-        let is_positive = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal);
-        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_positive) {
+        // Of a wall as near as it may be, some places were looked at: its halves have others.
+        let is_fit = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal)
+            && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, proposal));
+        if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_fit) {
             self.complex.commit(checked, &mut came);
             self.operations.add(Operation::SplitEdge);
         }

@@ -6,16 +6,18 @@ mod divide;
 mod sizing;
 mod stages;
 mod thin;
+mod tried;
 
 pub(super) use sizing::Sizing;
 
 use crate::base::TetId;
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing};
-use crate::remesh::left::forced;
+use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
+use crate::remesh::repair::tried::Tried;
 use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Crease, Surface};
 
@@ -65,6 +67,8 @@ pub(super) struct Repair {
     shells: [Shell; 2],
     /// Tets that came and are bad.
     came_bad: Vec<TetId>,
+    /// What this run has tried in vain.
+    tried: Tried,
 }
 
 impl Repair {
@@ -84,6 +88,7 @@ impl Repair {
             star: Star::default(),
             shells: Default::default(),
             came_bad: Vec::new(),
+            tried: Tried::nothing(),
         }
     }
 
@@ -92,7 +97,8 @@ impl Repair {
     /// Where it does not get on, what lies round those that are left is made better first: a change that would repair one
     /// is often held up by a neighbour that is hardly better.
     pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Vec<TetId> {
-        let mut asked = WIDER.iter();
+        self.tried = Tried::of(self.target);
+        let (mut asked, mut before) = (WIDER.iter(), None);
         for _ in 0..rounds {
             let is_on = self.round(&mut bad);
             if bad.is_empty() {
@@ -105,9 +111,14 @@ impl Repair {
             if is_on {
                 continue;
             }
-            let Some(more) = asked.next() else { break };
+            // With thousands left it is the surface that makes them, and what lies round them is made better in vain.
+            let is_worth =
+                before.is_none_or(|before: usize| before - bad.len().min(before) >= bad.len() / 100);
+            let Some(more) = asked.next().filter(|_| is_worth) else { break };
+            before = Some(bad.len());
             self.improve_around(&bad, self.target + more);
         }
+        self.tried = Tried::nothing();
         bad.append(&mut self.came_bad);
         bad.retain(|&t| self.is_bad(t));
         self.sort(&mut bad);
@@ -203,15 +214,30 @@ impl Repair {
 
     /// Makes the best change for one bad tet; whether there was one.
     fn repair(&mut self, tet: TetId) -> bool {
-        self.candidate.begin();
+        if self.tried.knows(&self.complex, tet, self.target) {
+            return false;
+        }
+        // Where the surface may change, so may the walls that force it.
+        if self.surface.is_none() && is_forced(&self.complex, None, tet, &mut self.shells[0]) {
+            self.tried.in_vain(tet, self.target);
+            return false;
+        }
+        let (complex, is_last) = (&self.complex, self.n_stages == STAGES.len());
+        self.candidate.begin(is_last.then(|| complex.quality(tet)));
         for stage in &STAGES[..self.n_stages] {
             stage(self, tet);
             if self.candidate.reaches(self.target) {
                 break;
             }
         }
-        let Some((operation, came)) = self.candidate.commit(&mut self.complex) else { return false };
+        let Some((operation, came)) = self.candidate.commit(&mut self.complex) else {
+            if is_last {
+                self.tried.in_vain(tet, self.target);
+            }
+            return false;
+        };
         self.operations.add(operation);
+        self.tried.came(&self.complex, came);
         let (complex, target) = (&self.complex, self.target);
         self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
         true

@@ -2,7 +2,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, scale};
+use crate::geometry::vector::{add, cross, norm, scale, sub};
 use crate::kernel::{Behind, Hold};
 use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
@@ -22,6 +22,9 @@ pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
 /// How many of them the first round tries. Each round that leaves bad tets tries one more: many of those that seem to need a vertex
 /// inserted no longer do once their neighbours are repaired.
 pub(super) const FIRST_STAGES: usize = 3;
+
+/// Heights over walls, as parts of the root of twice their area: the first is that of a regular tet on one wall.
+const HEIGHTS: [f64; 3] = [0.877, 0.44, 0.22];
 
 impl Repair {
     /// Stage one of the paper: its edges removed, and its facets.
@@ -208,6 +211,30 @@ impl Repair {
                 let [a, b, c] = facet.map(|corner| corners[corner]);
                 self.insert_at(tet, &[tet, half.tet()], scale(add(add(a, b), c), 1.0 / 3.0));
             }
+        }
+        self.insert_off_walls(tet);
+    }
+
+    /// A vertex put over its walls, from as high as a regular tet is: a tet that lies flat on them has all its own middles too near.
+    fn insert_off_walls(&mut self, tet: TetId) {
+        let corners = self.complex.corners(tet);
+        let (mut inwards, mut middle, mut area) = ([0.0; 3], [0.0; 3], 0.0);
+        for facet in
+            FACETS.into_iter().enumerate().filter_map(|(i, f)| self.complex.is_wall(tet, i).then_some(f))
+        {
+            let [a, b, c] = facet.map(|corner| corners[corner]);
+            let normal = cross(sub(b, a), sub(c, a));
+            let of_facet = norm(normal);
+            (inwards, area) = (sub(inwards, normal), area + of_facet);
+            middle = add(middle, scale(add(add(a, b), c), of_facet / 3.0));
+        }
+        if area <= 0.0 {
+            return;
+        }
+        let (inwards, middle) = (scale(inwards, 1.0 / area), scale(middle, 1.0 / area));
+        for height in HEIGHTS {
+            let height = height * area.sqrt();
+            self.insert_at(tet, &[tet], add(middle, scale(inwards, height)));
         }
     }
 
