@@ -70,6 +70,18 @@ fn what_cannot_be_kept_is_told_and_nothing_hangs() {
     }
 }
 
+/// An edge or a triangle in these cannot be made in its turn, for lack of digits or since others are in the way.
+#[test]
+fn what_cannot_be_made_in_its_turn_is_made_first() {
+    for case in [129, 244, 297].map(random_case) {
+        check(&case.name, &case.points, &case.triangles, EdgePoints::MoveInside);
+    }
+    // Facets round one edge cut another within the last digit of a place on it.
+    let Case { points, triangles, .. } = random_case(658);
+    let error = constrain(&points, &triangles, EdgePoints::MoveInside, &Threads::single()).unwrap_err();
+    assert!(error.place().is_some_and(|place| place.contains("edge")), "{error}");
+}
+
 fn surface(mesh: &Mesh) -> (Vec<Point>, Vec<Triangle>) {
     let surface = Surface::of(mesh);
     let kept = firsts_at_place(&surface.points);

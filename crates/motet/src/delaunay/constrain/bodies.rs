@@ -1,7 +1,9 @@
 //! What the surfaces enclose: tets that are joined without crossing one of them are one body.
 
+use super::flats::Flats;
 use super::tets::Tets;
-use crate::base::{Csr, Error, Result, TetId, VertexId};
+use super::unmade::{Part, Unmade};
+use crate::base::{Csr, Error, TetId, VertexId};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
@@ -22,12 +24,18 @@ impl Bodies {
     ///
     /// # Errors
     /// When a part is no facet.
-    pub(super) fn find(tets: &mut Tets, parts: &Csr<[VertexId; 3]>, corner: VertexId) -> Result<Self> {
+    pub(super) fn find(
+        tets: &mut Tets,
+        flats: &Flats,
+        parts: &Csr<[VertexId; 3]>,
+        corner: VertexId,
+    ) -> Result<Self, Unmade> {
         let mut walls = vec![0u8; tets.n_slots()];
         let (mut halves, mut star) = (Vec::with_capacity(parts.items().len()), Vec::new());
         for (i, list) in parts.iter().enumerate() {
             for &part in list {
-                let half = tets.find_facet(part, &mut star).ok_or_else(|| lost(i))?;
+                let half =
+                    tets.find_facet(part, &mut star).ok_or_else(|| lost(flats.triangles.list(i)[0]))?;
                 let other = tets.across(half);
                 let (front, behind) = if faces(tets, half, part) { (half, other) } else { (other, half) };
                 for side in [front, behind] {
@@ -75,8 +83,9 @@ fn faces(tets: &Tets, half: HalfFacet, [a, b, c]: [VertexId; 3]) -> bool {
     [[a, b, c], [b, c, a], [c, a, b]].contains(&inward)
 }
 
-fn lost(triangle: usize) -> Error {
-    Error::input("a part of the surface is no facet of tets")
+fn lost(triangle: u32) -> Unmade {
+    let error = Error::input("a part of the surface is no facet of tets")
         .at(format!("triangle {triangle}"))
-        .remedy("look for triangles that cross or touch it")
+        .remedy("look for triangles that cross or touch it");
+    Unmade { what: Part::Triangle(triangle), error }
 }

@@ -12,8 +12,9 @@ use super::sites::{OnSegment, Sites};
 use super::split::{Kept, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Wanted};
 use super::tets::Tets;
+use super::unmade::{Order, Part, Unmade};
 use super::way::{Way, meets};
-use crate::base::{Result, TetId, VertexId, rising};
+use crate::base::{TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
 /// An edge that meets no more facets may have twice as many swaps that gain nothing before it gets a point: they may make room for one that does.
@@ -82,8 +83,10 @@ impl<'a> Edges<'a> {
     ///
     /// # Errors
     /// Where an edge would have to be divided beyond its digits, or passes through a vertex or another edge.
-    pub(super) fn recover(mut self) -> Result<()> {
-        let mut queue: VecDeque<[VertexId; 2]> = self.segments.missing(self.tets).into();
+    pub(super) fn recover(mut self, order: &Order) -> Result<(), Unmade> {
+        let mut missing = self.segments.missing(self.tets);
+        missing.sort_by_key(|&edge| order.rank(|part| part == Part::Edge(edge)));
+        let mut queue = VecDeque::from(missing);
         while let Some(piece) = queue.pop_front() {
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece) {
@@ -137,7 +140,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Puts a point on a piece, where it sees all tets at one of the facets met. Answers the two new pieces.
-    fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2]> {
+    fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2], Unmade> {
         let segment = self.segments.of_piece(piece);
         if self.sites.n_on_segments() > SPARE_POINTS + POINTS_A_SEGMENT * self.segments.len() {
             return Err(self.segments.refused(
@@ -152,15 +155,21 @@ impl<'a> Edges<'a> {
         let share = round_between(seen.map(|at| low + (high - low) * at));
         let share = [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high);
         let Some(share) = share else {
-            let why = "would have to be divided beyond the digits of its coordinates";
-            return Err(self.segments.refused(self.sites, segment, why));
+            return Err(self.segments.refused(
+                self.sites,
+                segment,
+                "would have to be divided beyond the digits of its coordinates",
+            ));
         };
         let vertex = self.sites.add(self.segments.ends(segment), OnSegment { segment, share });
         let all = (&self.way.tets[..], &wanted[..]);
         let missing = Missing { sites: self.sites, segments: self.segments, piece };
         if !self.split.insert(self.tets, self.sites, vertex, all, &missing) {
-            let why = "passes through another edge, or through a triangle";
-            return Err(self.segments.refused(self.sites, segment, why));
+            return Err(self.segments.refused(
+                self.sites,
+                segment,
+                "passes through another edge, or through a triangle",
+            ));
         }
         Ok(self.segments.divide(piece, vertex))
     }

@@ -13,8 +13,9 @@ use super::segments::Segments;
 use super::sites::Sites;
 use super::split::Kept;
 use super::tets::Tets;
+use super::unmade::{Order, Part, Unmade};
 use super::wrap::Wrap;
-use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
+use crate::base::{Csr, Error, TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
 /// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is. Where that does not go, and
@@ -26,11 +27,15 @@ pub(super) fn recover(
     triangles: &[[VertexId; 3]],
     flats: &Flats,
     may_swap: bool,
-) -> Result<Csr<[VertexId; 3]>> {
+    order: &Order,
+) -> Result<Csr<[VertexId; 3]>, Unmade> {
     let on_segments = segments.points(sites);
     let mut work = Work::default();
-    let mut parts = Csr::default();
-    for flat in flats.triangles.iter() {
+    let mut all_parts = vec![Vec::new(); flats.triangles.len()];
+    let mut in_line: Vec<usize> = (0..flats.triangles.len()).collect();
+    in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
+    for i in in_line {
+        let flat = flats.triangles.list(i);
         let first = triangles[flat[0] as usize];
         let all = flat.iter().map(|&i| triangles[i as usize]);
         let mut own = match flat {
@@ -47,16 +52,21 @@ pub(super) fn recover(
         };
         done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
         work.walls.extend(own.iter().copied().map(rising));
-        parts.push(own);
+        all_parts[i] = own;
     }
+    let mut parts = Csr::default();
+    all_parts.into_iter().for_each(|own| parts.push(own));
     Ok(parts)
 }
 
-fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Error {
+fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unmade {
     let corners = triangle.map(|v| sites.near(v));
-    Error::input(format!("the triangle of points {triangle:?} could not be made facets of tets"))
-        .at(format!("triangle {i}, at {:?}", corners[0]))
-        .remedy("look for triangles that cross or touch it")
+    let [a, b, c] = triangle;
+    let error =
+        Error::input(format!("the triangle of points {a}, {b} and {c} could not be made facets of tets"))
+            .at(format!("triangle {i}, at {:?}", corners[0]))
+            .remedy("look for triangles that cross or touch it");
+    Unmade { what: Part::Triangle(i), error }
 }
 
 /// The edges and facets of the surface that are there.

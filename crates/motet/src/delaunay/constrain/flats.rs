@@ -5,9 +5,11 @@
 //! of others, and so on. What the triangles were is put right afterwards (`keep`).
 
 use super::sites::Sites;
+use super::unmade::Part;
 use crate::base::{Csr, Sets, VertexId, rising};
 
 /// The flat facets and the edges around them.
+#[derive(Clone)]
 pub(super) struct Flats {
     /// The triangles of each.
     pub(super) triangles: Csr<u32>,
@@ -49,6 +51,11 @@ impl Flats {
             .collect();
         let pairs = || flat_of.iter().enumerate().map(|(i, &flat)| (flat as usize, i as u32));
         Self { triangles: Csr::from_pairs(count as usize, pairs), creases }
+    }
+
+    /// Whether a part is a triangle of a flat facet.
+    pub(super) fn has(&self, flat: usize, part: Part) -> bool {
+        matches!(part, Part::Triangle(i) if self.triangles.list(flat).contains(&i))
     }
 }
 

@@ -40,6 +40,7 @@ mod sites;
 mod split;
 mod swap;
 mod tets;
+mod unmade;
 mod way;
 mod wrap;
 
@@ -55,6 +56,7 @@ use keep::Keep;
 use segments::Segments;
 use sites::Sites;
 use tets::Tets;
+use unmade::{Order, Unmade};
 
 /// The box around all points is larger than theirs by this factor: so far away it hardly makes an edge less Delaunay.
 const BOX: f64 = 8.0;
@@ -128,22 +130,25 @@ pub fn constrain(
     input::check(points)?;
     check_ids(points, triangles)?;
     let (mut given, back) = in_box(points, edge_points)?;
-    let (triangulation, order) = Triangulation::ordered(&given, threads)?;
+    let (triangulation, sorted) = Triangulation::ordered(&given, threads)?;
     check_distinct(&triangulation, triangles)?;
     given.extend(far_around(&given));
-    let fill = |flats: Flats| {
-        let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &order));
-        Filled::new(tets, sites, points.len(), triangles, flats, edge_points)
+    let moves = edge_points == EdgePoints::MoveInside;
+    let fill = |flats: &Flats, order: &Order| {
+        let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &sorted));
+        Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
-    let sites = Sites::new(given.clone(), &order);
-    let flats = Flats::find(&sites, triangles, edge_points == EdgePoints::MoveInside);
+    let fill = |flats: &Flats| Order::retried(moves, |order| fill(flats, order));
+    let sites = Sites::new(given.clone(), &sorted);
+    let flats = Flats::find(&sites, triangles, moves);
     let has_merged = flats.triangles.len() < triangles.len();
-    let filled = match fill(flats) {
+    let filled = match fill(&flats) {
         // With each triangle for itself all its edges are there, if in pieces.
-        first if has_merged && !first.as_ref().is_ok_and(Filled::is_kept) => {
-            fill(Flats::find(&sites, triangles, false))?
+        merged if has_merged && !merged.as_ref().is_ok_and(Filled::is_kept) => {
+            let each = fill(&Flats::find(&sites, triangles, false));
+            each.or_else(|error| merged.ok().filter(|merged| merged.is_whole).ok_or(error))?
         }
-        first => first?,
+        filled => filled?,
     };
     Ok(filled.finish(points, triangles, back))
 }
@@ -239,16 +244,17 @@ impl Filled {
         triangles: &[[VertexId; 3]],
         flats: Flats,
         edge_points: EdgePoints,
-    ) -> Result<Self> {
+        order: &Order,
+    ) -> Result<Self, Unmade> {
         let is_kept = edge_points == EdgePoints::MoveInside;
         let mut segments = Segments::new(flats.creases.clone());
         if is_kept {
-            Edges::new(&mut tets, &mut sites, &mut segments).recover()?;
+            Edges::new(&mut tets, &mut sites, &mut segments).recover(order)?;
         } else {
             segments.recover(&mut tets, &mut sites)?;
         }
-        let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept)?;
-        let mut bodies = Bodies::find(&mut tets, &parts, VertexId::new(n_points))?;
+        let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept, order)?;
+        let mut bodies = Bodies::find(&mut tets, &flats, &parts, VertexId::new(n_points))?;
         let mut is_whole = true;
         if is_kept {
             let keep = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);

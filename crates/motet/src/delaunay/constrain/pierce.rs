@@ -175,6 +175,18 @@ impl Pierce {
             tets.star(self.points[i], &mut self.star);
             cut.extend(self.star.iter().filter(|&&tet| self.across(tets, sites, tet).is_some()));
         }
+        let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
+        if self.rim.len() > 3 {
+            // What is missing may lie between edges that are there, none of them on the outline.
+            for &([a, _], _) in &self.rim {
+                tets.star(a, &mut self.star);
+                let is_pierced = |tet: &&TetId| {
+                    let v = tets.vertices(**tet);
+                    EDGES.iter().any(|&[i, j]| wanted.meets_edge([v[i], v[j]]) > 0)
+                };
+                cut.extend(self.star.iter().filter(is_pierced));
+            }
+        }
         cut.sort_unstable();
         cut.dedup();
         tets.begin();
@@ -199,7 +211,6 @@ impl Pierce {
         }
         self.piercing.sort_unstable_by_key(|&(tet, edge)| (edge, tet));
         self.piercing.dedup_by_key(|p| p.1);
-        let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
         self.piercing.retain(|&(_, edge)| wanted.meets_edge(edge) > 0);
         self.cut = cut;
     }

@@ -17,7 +17,8 @@ use hashbrown::HashMap;
 use super::insert::Insertion;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
-use crate::base::{Csr, Error, Result, TetId, VertexId, rising};
+use super::unmade::{Part, Unmade};
+use crate::base::{Csr, Error, TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
@@ -111,7 +112,7 @@ impl Segments {
     }
 
     /// Divides segments until all pieces are edges of tets.
-    pub(super) fn recover(&mut self, tets: &mut Tets, sites: &mut Sites) -> Result<()> {
+    pub(super) fn recover(&mut self, tets: &mut Tets, sites: &mut Sites) -> Result<(), Unmade> {
         let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets).into();
         let most = SPARE_POINTS + POINTS_A_SEGMENT * self.ends.len();
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
@@ -139,11 +140,12 @@ impl Segments {
         Ok(())
     }
 
-    pub(super) fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Error {
+    pub(super) fn refused(&self, sites: &Sites, segment: SegmentId, why: &str) -> Unmade {
         let [a, b] = self.ends(segment);
-        Error::input(format!("the edge of points {a} and {b} {why}"))
+        let error = Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
-            .remedy("make the triangles there less stretched, or the surface keep farther from itself")
+            .remedy("make the triangles there less stretched, or the surface keep farther from itself");
+        Unmade { what: Part::Edge([a, b]), error }
     }
 
     /// The segments that are no edges of tets; rising.

@@ -1,0 +1,68 @@
+//! What could not be made is made first the next time, or last: what stands in its way may do so only because it came before, or does not
+//! stand there yet.
+
+use crate::base::{Error, VertexId};
+
+/// So often it is begun anew.
+const MOST: usize = 8;
+
+/// An edge or a triangle of the surface that could not be made, and why.
+#[derive(Debug)]
+pub(super) struct Unmade {
+    pub(super) what: Part,
+    pub(super) error: Error,
+}
+
+/// A part of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// An edge by its ends, smaller one first.
+    Edge([VertexId; 2]),
+    /// A triangle by its number.
+    Triangle(u32),
+}
+
+/// What is made out of line.
+#[derive(Debug, Default)]
+pub(super) struct Order {
+    /// Before all else, latest failure first.
+    first: Vec<Part>,
+    /// After all else.
+    last: Vec<Part>,
+}
+
+impl Order {
+    /// Works until nothing is left unmade; or until it has been begun too often, or what came first could be made neither then nor last. Once
+    /// only where the order does not matter.
+    pub(super) fn retried<T>(
+        matters: bool,
+        mut work: impl FnMut(&Self) -> Result<T, Unmade>,
+    ) -> Result<T, Error> {
+        let mut order = Self::default();
+        let mut n_retries = 0;
+        loop {
+            let Unmade { what, error } = match work(&order) {
+                Ok(done) => return Ok(done),
+                Err(unmade) => unmade,
+            };
+            if !matters || n_retries == MOST || order.last.contains(&what) {
+                return Err(error);
+            }
+            let was_first = order.first.first() == Some(&what);
+            order.first.retain(|part| *part != what);
+            if was_first {
+                order.last.push(what);
+            } else {
+                order.first.insert(0, what);
+            }
+            n_retries += 1;
+        }
+    }
+
+    /// Where in line a part is; all that are not named are in one place.
+    pub(super) fn rank(&self, is_it: impl Fn(Part) -> bool) -> usize {
+        let place = |list: &[Part]| list.iter().position(|&part| is_it(part));
+        let n = self.first.len();
+        place(&self.first).or_else(|| place(&self.last).map(|i| n + 1 + i)).unwrap_or(n)
+    }
+}
