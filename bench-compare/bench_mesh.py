@@ -7,13 +7,13 @@ from mesh_files import calibrated, surfaces
 
 ROUNDS = 3
 RUNS = 3  # repeats in a process, fewer where they take long
-LIMIT = 300.0  # seconds that a process may take, and all that look for a size together
+LIMIT = 120.0  # seconds that a process may take, and all that look for a size together
 # name in the table: words for `motet mesh`
 OURS = {"motet --delaunay": ["--delaunay"], "motet": []}
 # name in the table: word for rivals/mesh_python.py
 PLAIN = {"TetGen -p": "tetgen", "TetGen -pY": "tetgen-keep"}
-# the same, the size that is tried first over motet's, and how many are tried until there are as many tets as motet's
-SIZED = {"TetGen -pq1.2/14aVY": ("tetgen-quality", 1.3, 6), "Gmsh": ("gmsh", 0.8, 6), "Gmsh HXT": ("gmsh-hxt", 0.8, 6), "fTetWild": ("ftetwild", 1.0, 2)}
+# the same, the size that is tried first over motet's, and how many are tried until there are as many tets as motet's (0: that one is taken)
+SIZED = {"TetGen -pq1.2/14aVY": ("tetgen-quality", 1.3, 6), "Gmsh": ("gmsh", 0.8, 6), "Gmsh HXT": ("gmsh-hxt", 0.8, 6), "fTetWild": ("ftetwild", 1.0, 0)}
 ONCE = ("fTetWild",)  # takes minutes: one round
 
 
@@ -81,7 +81,7 @@ def size_for(case, name, word, target, first, tries, limit):
         why[0] = result.get("error")
         return result.get("tets")
 
-    if target is None:  # nothing to come near to
+    if target is None or tries == 0:  # nothing to come near to
         return first, None
     return calibrated(count, target, first, tries), why[0]
 

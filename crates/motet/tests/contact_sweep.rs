@@ -320,32 +320,3 @@ fn a_surface_meets_itself_as_two_would() {
     let found = sweep_own(&points, &shrink, &a, 2.0, always, &threads);
     assert!(found.times[0].iter().all(|t| (0.999..=1.0).contains(t)), "{:?}", found.first);
 }
-
-#[test]
-#[ignore = "a measurement"]
-fn how_long_it_takes() {
-    let n = 65;
-    let still = [0.2, 1.0, f64::INFINITY].map(|horizon| (horizon, 0.0));
-    let noisy = [0.05, 0.2, 1.0, f64::INFINITY].map(|horizon| (horizon, 0.1));
-    for (horizon, spread) in still.into_iter().chain(noisy) {
-        let (points, mut velocity, [a, b]) = balls(n, 1);
-        let half = points.len() / 2;
-        for (k, v) in velocity.iter_mut().enumerate() {
-            let whole = if k < half { [8.3, 1.0, 0.2] } else { [5.7, 1.0, 0.2] };
-            *v = add(whole, scale(sub(*v, whole), spread / 0.1));
-        }
-        for n_threads in [1, 2] {
-            let threads = Threads::new(n_threads).unwrap();
-            let clock = std::time::Instant::now();
-            let found = sweep(&points, &velocity, &a, &b, horizon, always, &threads);
-            let n_touch = found.times[0].iter().filter(|t| t.is_finite()).count();
-            println!(
-                "{} and {} triangles, {n_threads} threads, horizon {horizon}, own motion {spread}: {:.1?}; {n_touch} touch, first at {:?}",
-                a.len(),
-                b.len(),
-                clock.elapsed(),
-                found.first.map(|f| f.time)
-            );
-        }
-    }
-}

@@ -1,0 +1,54 @@
+"""Draws an aneurysm filled with tets, as it is and with layers (writes docs/mesh.png).
+
+    ./test --setup                                        (once: the Python packages)
+    cargo run --release -p motet --example shapes target
+    cargo run --release -- mesh target/aneurysm.vtp -o target/filled.vtu --size auto
+    cargo run --release -- mesh target/aneurysm.vtp -o target/layered.vtu --size 0.4 --growth 0.3 --layers 4,0.02,1.4
+    target/venv/bin/python docs/mesh_picture.py target/filled.vtu target/layered.vtu
+
+The tets behind a plane along the vessel, coloured by their equi-angle quality; on the right the neck of the sac.
+"""
+import sys
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, tets
+
+PANEL = (520, 400)
+# Where the camera looks, and how much it sees from top to bottom.
+WHOLE, NECK = ((0.0, 0.3, 0.0), 8.2), ((-1.25, 1.0, 0.0), 1.3)
+
+
+def panel(mesh, centre, height):
+    """The cells behind the plane, and the wall behind them."""
+    plotter = lit(mesh, PANEL)
+    behind = mesh.extract_cells(mesh.cell_centers().points[:, 2] < 0.0)
+    plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, show_edges=True, edge_color=INK, line_width=0.8,
+                     edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
+    centre = np.array(centre)
+    plotter.camera_position = [centre + (0.0, -8.0, 40.0), centre, (0.0, 1.0, 0.0)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = height / 2
+    plotter.enable_anti_aliasing("ssaa")
+    image = Image.fromarray(plotter.screenshot(return_img=True))
+    plotter.close()
+    return image
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    filled, layered = (tets(path) for path in sys.argv[1:])
+    panels = [(filled, WHOLE, f"{filled.n_cells:,} tets, sizes from the surface"), (layered, WHOLE, f"{layered.n_cells:,} tets, four layers on the wall"),
+              (layered, NECK, "the neck of the sac")]
+    sheet = Image.new("RGB", (len(panels) * PANEL[0], PANEL[1] + 40), "white")
+    draw = ImageDraw.Draw(sheet)
+    for column, (mesh, (centre, height), text) in enumerate(panels):
+        sheet.paste(panel(mesh, centre, height), (column * PANEL[0], 0))
+        draw.text((column * PANEL[0] + PANEL[0] // 2, PANEL[1] + 8), text, fill=INK, font=font(17), anchor="ma")
+    save(sheet, HERE / "mesh.png")
+
+
+if __name__ == "__main__":
+    main()
