@@ -10,10 +10,9 @@ The tets behind a plane along the vessel, coloured by their equi-angle quality; 
 """
 import sys
 
-import numpy as np
 from PIL import Image, ImageDraw
 
-from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, tets
+from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, seen_straight, tets
 
 PANEL = (520, 400)
 # Where the camera looks, and how much it sees from top to bottom.
@@ -21,19 +20,12 @@ WHOLE, NECK = ((0.0, 0.3, 0.0), 8.2), ((-1.25, 1.0, 0.0), 1.3)
 
 
 def panel(mesh, centre, height):
-    """The cells behind the plane, and the wall behind them."""
+    """The cells behind the plane."""
     plotter = lit(mesh, PANEL)
     behind = mesh.extract_cells(mesh.cell_centers().points[:, 2] < 0.0)
     plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, show_edges=True, edge_color=INK, line_width=0.8,
                      edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
-    centre = np.array(centre)
-    plotter.camera_position = [centre + (0.0, -8.0, 40.0), centre, (0.0, 1.0, 0.0)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = height / 2
-    plotter.enable_anti_aliasing("ssaa")
-    image = Image.fromarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
+    return seen_straight(plotter, centre, (0.0, -8.0, 40.0), (0.0, 1.0, 0.0), height)
 
 
 def main():

@@ -83,6 +83,15 @@ def shot(plotter):
     return image
 
 
+def seen_straight(plotter, centre, offset, up, height):
+    """What the camera sees from `centre` + `offset` without perspective, so much from top to bottom."""
+    centre = np.array(centre)
+    plotter.camera_position = [centre + offset, centre, up]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = height / 2
+    return shot(plotter)
+
+
 def panel(mesh):
     """One cut, seen from the front."""
     plotter = lit(mesh)

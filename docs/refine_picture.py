@@ -10,11 +10,10 @@ the tets; dark is the outline of the wire, on the right of one turn.
 """
 import sys
 
-import numpy as np
 import pyvista as pv
 from PIL import Image, ImageDraw
 
-from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, tets
+from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, seen_straight, tets
 
 PANEL = (520, 560)
 PLANE = 43.3
@@ -32,14 +31,7 @@ def panel(cut, coil, wall, centre, height):
     plotter.add_mesh(lift, color="#14181c", line_width=1.5 if is_whole else 4.0, lighting=False)
     if is_whole:
         plotter.add_mesh(wall, color="#d9a79a", opacity=0.3, ambient=0.4, diffuse=0.6)
-    centre = np.array(centre)
-    plotter.camera_position = [centre + (0.0, -100.0, 0.0), centre, (0.0, 0.0, 1.0)]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = height / 2
-    plotter.enable_anti_aliasing("ssaa")
-    image = Image.fromarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
+    return seen_straight(plotter, centre, (0.0, -100.0, 0.0), (0.0, 0.0, 1.0), height)
 
 
 def main():
