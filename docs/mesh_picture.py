@@ -10,9 +10,7 @@ The tets behind a plane along the vessel, coloured by their equi-angle quality; 
 """
 import sys
 
-from PIL import Image, ImageDraw
-
-from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, seen_straight, tets
+from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight, tets
 
 PANEL = (520, 400)
 # Where the camera looks, and how much it sees from top to bottom.
@@ -34,12 +32,7 @@ def main():
     filled, layered = (tets(path) for path in sys.argv[1:])
     panels = [(filled, WHOLE, f"{filled.n_cells:,} tets, sizes from the surface"), (layered, WHOLE, f"{layered.n_cells:,} tets, four layers on the wall"),
               (layered, NECK, "the neck of the sac")]
-    sheet = Image.new("RGB", (len(panels) * PANEL[0], PANEL[1] + 40), "white")
-    draw = ImageDraw.Draw(sheet)
-    for column, (mesh, (centre, height), text) in enumerate(panels):
-        sheet.paste(panel(mesh, centre, height), (column * PANEL[0], 0))
-        draw.text((column * PANEL[0] + PANEL[0] // 2, PANEL[1] + 8), text, fill=INK, font=font(17), anchor="ma")
-    save(sheet, HERE / "mesh.png")
+    save_row([(panel(mesh, *view), text) for mesh, view, text in panels], HERE / "mesh.png")
 
 
 if __name__ == "__main__":

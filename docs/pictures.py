@@ -92,6 +92,17 @@ def seen_straight(plotter, centre, offset, up, height):
     return shot(plotter)
 
 
+def save_row(pictures, path):
+    """Pictures of one size beside each other, each with its text below."""
+    width, height = pictures[0][0].size
+    sheet = Image.new("RGB", (len(pictures) * width, height + 40), "white")
+    draw = ImageDraw.Draw(sheet)
+    for column, (picture, text) in enumerate(pictures):
+        sheet.paste(picture, (column * width, 0))
+        draw.text((column * width + width // 2, height + 8), text, fill=INK, font=font(17), anchor="ma")
+    save(sheet, path)
+
+
 def panel(mesh):
     """One cut, seen from the front."""
     plotter = lit(mesh)

@@ -11,9 +11,8 @@ the tets; dark is the outline of the wire, on the right of one turn.
 import sys
 
 import pyvista as pv
-from PIL import Image, ImageDraw
 
-from pictures import HERE, INK, QUALITY, RANGE, font, lit, save, seen_straight, tets
+from pictures import HERE, QUALITY, RANGE, lit, save_row, seen_straight, tets
 
 PANEL = (520, 560)
 PLANE = 43.3
@@ -40,13 +39,8 @@ def main():
     mesh, coil = tets(sys.argv[1]), pv.read(sys.argv[2])
     cut = mesh.slice(normal="y", origin=(0.0, PLANE, 0.0), generate_triangles=False)
     wall = mesh.extract_surface(algorithm="dataset_surface")
-    sheet = Image.new("RGB", (len(VIEWS) * PANEL[0], PANEL[1] + 40), "white")
-    draw = ImageDraw.Draw(sheet)
     texts = (f"{mesh.n_cells:,} tets", "the sac, cut through", "one turn of the wire, four tets across")
-    for column, ((centre, height), text) in enumerate(zip(VIEWS, texts)):
-        sheet.paste(panel(cut, coil, wall, centre, height), (column * PANEL[0], 0))
-        draw.text((column * PANEL[0] + PANEL[0] // 2, PANEL[1] + 8), text, fill=INK, font=font(17), anchor="ma")
-    save(sheet, HERE / "refine.png")
+    save_row([(panel(cut, coil, wall, *view), text) for view, text in zip(VIEWS, texts)], HERE / "refine.png")
 
 
 if __name__ == "__main__":

@@ -60,7 +60,9 @@ fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
 
 #[test]
 fn what_cannot_be_kept_is_told_and_nothing_hangs() {
-    for case in (0..40).map(random_case).filter(|case| case.triangles.len() < 200) {
+    let small = (0..40).map(random_case).filter(|case| case.triangles.len() < 200);
+    // Of the last, facets round one edge cut another within the last digit of a place on it.
+    for case in small.chain([random_case(658)]) {
         match constrain(&case.points, &case.triangles, EdgePoints::MoveInside, &Threads::single()) {
             Err(error) => assert!(error.place().is_some(), "{}: {error}", case.name),
             Ok(filled) => {
@@ -76,10 +78,6 @@ fn what_cannot_be_made_in_its_turn_is_made_first() {
     for case in [129, 244, 297].map(random_case) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::MoveInside);
     }
-    // Facets round one edge cut another within the last digit of a place on it.
-    let Case { points, triangles, .. } = random_case(658);
-    let error = constrain(&points, &triangles, EdgePoints::MoveInside, &Threads::single()).unwrap_err();
-    assert!(error.place().is_some_and(|place| place.contains("edge")), "{error}");
 }
 
 fn surface(mesh: &Mesh) -> (Vec<Point>, Vec<Triangle>) {

@@ -183,13 +183,13 @@ impl Complex {
         if self.is_spared(quality) { SPARED } else { quality }
     }
 
-    /// From now on tets count as good whose quality is one of these, up to rounding. For those that walls force upon a tet between them:
+    /// From now on tets count as good whose quality is one of these, in rising order, up to rounding. For those that walls force upon a tet between them:
     /// nothing raises it, and as the worst of every cavity round it it would forbid whatever helps the others. None: no tet is spared any more.
     ///
     /// Cannot be taken back by [`Self::undo`].
     pub fn spare(&mut self, qualities: Vec<f64>) {
         self.spared = qualities;
-        self.spared.sort_unstable_by(f64::total_cmp);
+        debug_assert!(self.spared.is_sorted());
         self.qualities.fill(UNMEASURED);
         self.forget();
     }

@@ -43,8 +43,7 @@ pub(crate) fn faults(
         let whole = area(triangle.map(at));
         let total: f64 = parts.iter().map(|p| area(p.map(at))).sum();
         let edge = (0..3).map(|k| distance(at(triangle[k]), at(triangle[(k + 1) % 3]))).fold(0.0, f64::max);
-        let largest = triangle.iter().flat_map(|&v| at(v)).fold(0.0, |m: f64, x| m.max(x.abs()));
-        let rounding = largest * f64::EPSILON;
+        let rounding = at(triangle[0]).iter().fold(0.0, |m: f64, x| m.max(x.abs())) * f64::EPSILON;
         if (total - whole).abs() > 1e-10 * edge * edge + 4.0 * rounding * edge * parts.len() as f64 {
             faults.push(format!("triangle {i}: {total} of {whole}"));
         }

@@ -113,7 +113,7 @@ impl Repair {
             }
             // With thousands left it is the surface that makes them, and what lies round them is made better in vain.
             let is_worth =
-                before.is_none_or(|before: usize| before - bad.len().min(before) >= bad.len() / 100);
+                before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
             before = Some(bad.len());
             self.improve_around(&bad, self.target + more);

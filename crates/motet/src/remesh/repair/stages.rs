@@ -2,7 +2,8 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{add, cross, norm, scale, sub};
+use crate::geometry::triangle::{self, area_vector};
+use crate::geometry::vector::{add, norm, scale, sub};
 use crate::kernel::{Behind, Hold};
 use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
@@ -23,8 +24,8 @@ pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
 /// inserted no longer do once their neighbours are repaired.
 pub(super) const FIRST_STAGES: usize = 3;
 
-/// Heights over walls, as parts of the root of twice their area: the first is that of a regular tet on one wall.
-const HEIGHTS: [f64; 3] = [0.877, 0.44, 0.22];
+/// Heights over walls, as parts of the root of their area: the first is that of a regular tet on one wall.
+const HEIGHTS: [f64; 3] = [1.24, 0.62, 0.31];
 
 impl Repair {
     /// Stage one of the paper: its edges removed, and its facets.
@@ -222,11 +223,11 @@ impl Repair {
         for facet in
             FACETS.into_iter().enumerate().filter_map(|(i, f)| self.complex.is_wall(tet, i).then_some(f))
         {
-            let [a, b, c] = facet.map(|corner| corners[corner]);
-            let normal = cross(sub(b, a), sub(c, a));
-            let of_facet = norm(normal);
-            (inwards, area) = (sub(inwards, normal), area + of_facet);
-            middle = add(middle, scale(add(add(a, b), c), of_facet / 3.0));
+            let wall = facet.map(|corner| corners[corner]);
+            let outwards = area_vector(wall);
+            let of_wall = norm(outwards);
+            (inwards, area) = (sub(inwards, outwards), area + of_wall);
+            middle = add(middle, scale(triangle::centroid(wall), of_wall));
         }
         if area <= 0.0 {
             return;
