@@ -54,7 +54,7 @@ impl Repair {
     /// better.
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Vec<TetId> {
         self.sizing = Some(sizing);
-        let mut asked = WIDER.iter();
+        let (mut asked, mut before) = (WIDER.iter(), usize::MAX);
         for _ in 0..rounds {
             let n_made = self.with_sizing(Self::split_long) + self.with_sizing(Self::collapse_short);
             let mut bad = self.below(self.target);
@@ -65,6 +65,9 @@ impl Repair {
             let short = self.with_sizing(|repair, sizing| repair.short_edges(&mut sizing.field));
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
+            }
+            if asked.len() == 0 && short.len() < before {
+                (asked, before) = (WIDER.iter(), short.len());
             }
             let Some(more) = asked.next().filter(|_| !short.is_empty()) else { break };
             let tets: Vec<TetId> = short.iter().map(|edge| edge.tet).collect();
