@@ -59,23 +59,10 @@ fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
 }
 
 #[test]
-fn what_cannot_be_kept_is_told_and_nothing_hangs() {
-    let small = (0..40).map(random_case).filter(|case| case.triangles.len() < 200);
-    // Of the last, facets round one edge cut another within the last digit of a place on it.
-    for case in small.chain([random_case(658)]) {
-        match constrain(&case.points, &case.triangles, EdgePoints::MoveInside, &Threads::single()) {
-            Err(error) => assert!(error.place().is_some(), "{}: {error}", case.name),
-            Ok(filled) => {
-                assert!(volumes(&case.triangles, &filled).is_empty() || !filled.on_edges.is_empty())
-            }
-        }
-    }
-}
-
-/// An edge or a triangle in these cannot be made in its turn, for lack of digits or since others are in the way.
-#[test]
-fn what_cannot_be_made_in_its_turn_is_made_first() {
-    for case in [129, 244, 297].map(random_case) {
+fn bodies_that_were_hard_once_are_filled() {
+    // An edge or a triangle in the first three could not be made in its turn; a hollow in 413 had corners that none of its old tets had; facets round one
+    // edge of 658 cut another within the last digit of an `f64` share of it.
+    for case in [129, 244, 297, 413, 658].map(random_case) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::MoveInside);
     }
 }
@@ -150,12 +137,9 @@ fn real_surfaces_are_filled() {
             filled.on_edges.len(),
             filled.tets.len()
         );
-        // The stretched triangles of the devices leave a few points on edges.
-        assert!(filled.on_edges.is_empty() || file.starts_with("devices"), "{file}");
-        if filled.on_edges.is_empty() {
-            let faults = faults(&points, &triangles, &filled, EdgePoints::MoveInside);
-            assert!(faults.is_empty(), "{file}: {}", faults[0]);
-        }
+        assert_eq!(n_kept, triangles.len(), "{file}");
+        let faults = faults(&points, &triangles, &filled, EdgePoints::MoveInside);
+        assert!(faults.is_empty(), "{file}: {}", faults[0]);
     }
 }
 

@@ -8,6 +8,7 @@
 use std::collections::VecDeque;
 
 use super::segments::Segments;
+use super::share::Share;
 use super::sites::{OnSegment, Sites};
 use super::split::{Kept, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Wanted};
@@ -22,6 +23,12 @@ const SPARE: usize = 12;
 
 /// A share of an edge with room for enough numbers.
 const ROOM: f64 = 1e-9;
+
+/// A share of an edge with room for an `f64`.
+const ROOM_FOR_ONE: f64 = 1e-13;
+
+/// Where facets cannot be told apart, a point so far beside them leaves a piece on which they are farther apart.
+const BESIDE: f64 = 1e-9;
 
 /// So many points on edges, beside those that an edge has on average, and it would take too long.
 const SPARE_POINTS: usize = 2_000;
@@ -151,10 +158,15 @@ impl<'a> Edges<'a> {
         }
         let ends = self.segments.in_order(self.sites, segment, piece);
         let [low, high] = ends.map(|v| self.segments.share(self.sites, segment, v));
-        let (seen, wanted) = self.room(ends, high - low);
-        let share = round_between(seen.map(|at| low + (high - low) * at));
-        let share = [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high);
-        let Some(share) = share else {
+        let length = high.minus(low);
+        let (seen, wanted) = self.room(ends, length);
+        let share = if (seen[1] - seen[0]) * length > ROOM_FOR_ONE {
+            Share::of(round_between(seen.map(|at| low.near() + length * at)))
+        } else {
+            low.plus(length * round_between(seen))
+        };
+        let is_between = |s: &Share| low.order(s).is_lt() && s.order(&high).is_lt();
+        let Some(share) = [share, low.plus(0.5 * length)].into_iter().find(is_between) else {
             return Err(self.segments.refused(
                 self.sites,
                 segment,
@@ -191,8 +203,9 @@ impl<'a> Edges<'a> {
     fn room(&mut self, ends: [VertexId; 2], length: f64) -> ([f64; 2], Vec<TetId>) {
         let met = self.met(ends);
         let middle = met.len() / 2;
+        let Some(&(at_middle, _)) = met.get(middle) else { return ([0.0, 1.0], Vec::new()) };
         let mut from_middle: Vec<(usize, HalfFacet)> =
-            met.into_iter().enumerate().map(|(i, half)| (i.abs_diff(middle), half)).collect();
+            met.into_iter().enumerate().map(|(i, (_, half))| (i.abs_diff(middle), half)).collect();
         from_middle.sort_unstable();
         let mut best = ([0.0, 0.0], Vec::new());
         for (_, half) in from_middle {
@@ -200,6 +213,7 @@ impl<'a> Edges<'a> {
             let of_ends =
                 |[p, q, r]: [VertexId; 3]| self.sites.volume_ratios([[p, q, r, ends[0]], [p, q, r, ends[1]]]);
             let seen = positive_part(faces_around(self.tets, &tets).into_iter().map(of_ends));
+            let Some(seen) = seen else { continue };
             if seen[1] - seen[0] > best.0[1] - best.0[0] {
                 best = (seen, tets);
             }
@@ -207,11 +221,15 @@ impl<'a> Edges<'a> {
                 break;
             }
         }
-        if best.1.is_empty() { ([0.0, 1.0], best.1) } else { best }
+        if !best.1.is_empty() {
+            return best;
+        }
+        let beside = if at_middle < 0.5 { at_middle + BESIDE } else { at_middle - BESIDE };
+        ([beside; 2], best.1)
     }
 
-    /// The facets that are met on the way between two vertices, as they come.
-    fn met(&self, [a, b]: [VertexId; 2]) -> Vec<HalfFacet> {
+    /// The facets that are met on the way between two vertices, as they come, and where.
+    fn met(&self, [a, b]: [VertexId; 2]) -> Vec<(f64, HalfFacet)> {
         let mut met: Vec<(f64, HalfFacet)> = Vec::new();
         for &half in &self.way.facets {
             let [p, q, r] = self.tets.inward(half);
@@ -222,6 +240,6 @@ impl<'a> Edges<'a> {
             }
         }
         met.sort_by(|s, t| s.0.total_cmp(&t.0).then(s.1.cmp(&t.1)));
-        met.into_iter().map(|(_, half)| half).collect()
+        met
     }
 }

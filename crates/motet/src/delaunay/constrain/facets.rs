@@ -202,12 +202,15 @@ impl Work {
     ) -> Result<(), Stuck> {
         self.cut.find(tets, sites, triangle, rim, |face| self.walls.contains(&rising(face)))?;
         let old: Vec<_> = self.cut.tets.iter().map(|&tet| tets.vertices(tet)).collect();
+        let at: Vec<_> = group.as_flattened().iter().map(|&v| (v, tets.at(v))).collect();
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));
         let shells = std::mem::take(&mut self.cut.shells);
         self.wrap.begin();
         let filled = self.fill(tets, sites, group, &shells);
         if filled.is_err() {
             self.wrap.made().iter().for_each(|&tet| tets.remove(tet));
+            // Not all vertices of the group need be those of old tets.
+            at.into_iter().for_each(|(vertex, tet)| tets.set_at(vertex, tet));
             let outer = shells.iter().flatten().filter(|face| !face.outer.is_none());
             tets.put(&old, outer.map(|face| (rising(face.vertices), face.outer)).collect());
         }

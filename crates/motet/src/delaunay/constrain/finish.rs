@@ -14,7 +14,7 @@ impl Filled {
         let numbers = Numbers::new(&self, points.len());
         let on_edge = |v: &VertexId| match self.sites.place(*v)? {
             Place::On(place) => {
-                Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share })
+                Some(PointOnEdge { ends: self.segments.ends(place.segment), share: place.share.near() })
             }
             Place::In(..) => None,
         };
@@ -25,7 +25,8 @@ impl Filled {
         let on_edges: Vec<_> = numbers.later.iter().filter_map(on_edge).collect();
         let in_triangles: Vec<_> = numbers.later.iter().filter_map(in_triangle).collect();
         let at = |v: VertexId| points[v.index()];
-        let of_edges = on_edges.iter().map(|on| Between::new(at(on.ends[0]), at(on.ends[1]), on.share));
+        let of_edges =
+            on_edges.iter().map(|on| Between::new(at(on.ends[0]), at(on.ends[1]), [on.share, 0.0]));
         let of_triangles = in_triangles.iter().map(|on| {
             let [a, b, c] = triangles[on.triangle as usize].map(at);
             Between::within(a, [b, c], on.shares)

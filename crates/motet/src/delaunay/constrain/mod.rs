@@ -36,6 +36,7 @@ mod pierce;
 mod plane;
 mod recone;
 mod segments;
+mod share;
 mod sites;
 mod split;
 mod swap;
@@ -72,7 +73,7 @@ const FAR: f64 = 4096.0;
 pub struct PointOnEdge {
     /// The ends of the edge.
     pub ends: [VertexId; 2],
-    /// How far from the first end to the second, in (0, 1). The exact point is `first + share (second - first)`.
+    /// How far from the first end to the second, in (0, 1), rounded. The point is `first + share (second - first)`.
     pub share: f64,
 }
 

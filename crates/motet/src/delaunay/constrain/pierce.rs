@@ -3,6 +3,8 @@
 //! A point where an edge pierces the triangle sees all tets around that edge. Put in, it takes the edge away and brings none that
 //! pierces. So there are as many steps at most as edges at first; then the triangle is made of facets, whichever they are.
 
+use std::cell::Cell;
+
 use hashbrown::HashSet;
 
 use super::plane::Plane;
@@ -23,8 +25,7 @@ const STEPS: usize = 3;
 pub(super) struct Pierce {
     /// The triangles that it came as, with their numbers.
     triangles: Vec<(u32, [VertexId; 3])>,
-    /// The first of them: tells the plane and how it is turned.
-    corners: [VertexId; 3],
+    sides: Sides,
     /// What it is to be cut into at first: tells where it is.
     parts: Vec<[VertexId; 3]>,
     /// The edges of its outline as it is turned, each with a vertex on the inner side.
@@ -43,7 +44,7 @@ pub(super) struct Pierce {
 /// A triangle that is to be made of facets, among others that must not be lost.
 struct Whole<'a, K> {
     sites: &'a Sites,
-    corners: [VertexId; 3],
+    sides: &'a Sides,
     parts: &'a [[VertexId; 3]],
     kept: &'a K,
 }
@@ -64,15 +65,34 @@ impl<K: Kept> Wanted for Whole<'_, K> {
     }
 
     fn meets_edge(&self, [u, v]: [VertexId; 2]) -> u32 {
-        let is_cut = side(self.sites, self.corners, u) * side(self.sites, self.corners, v) < 0;
+        let is_cut = self.sides.of(self.sites, u) * self.sides.of(self.sites, v) < 0;
         u32::from(is_cut && self.parts.iter().any(|&part| is_in(self.sites, [u, v], part)))
     }
 }
 
-/// On which side of the plane of `corners` a vertex lies.
-fn side(sites: &Sites, corners: [VertexId; 3], v: VertexId) -> i8 {
-    let [a, b, c] = corners;
-    if corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) }
+/// On which side of a plane each vertex lies.
+struct Sides {
+    /// They tell the plane and how it is turned.
+    corners: [VertexId; 3],
+    /// By vertex, where it has been asked for: among points on edges the same few signs are, ever again, and they are the dear ones.
+    known: Vec<Cell<Option<i8>>>,
+}
+
+impl Sides {
+    fn of(&self, sites: &Sites, v: VertexId) -> i8 {
+        let known = self.known.get(v.index());
+        known.and_then(Cell::get).unwrap_or_else(|| {
+            let [a, b, c] = self.corners;
+            let side = if self.corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) };
+            known.inspect(|known| known.set(Some(side)));
+            side
+        })
+    }
+
+    /// Makes room for vertices that have come.
+    fn grow(&mut self, sites: &Sites) {
+        self.known.resize(sites.len(), Cell::new(None));
+    }
 }
 
 /// Whether the line of an edge passes through a triangle.
@@ -94,7 +114,7 @@ impl Pierce {
         points.sort_unstable();
         points.dedup();
         Self {
-            corners: triangles[0].1,
+            sides: Sides { corners: triangles[0].1, known: Vec::new() },
             triangles,
             parts: parts.to_vec(),
             rim,
@@ -112,7 +132,7 @@ impl Pierce {
     pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) -> bool {
         loop {
             self.find_piercing(tets, sites, kept);
-            let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
+            let wanted = Whole { sites, sides: &self.sides, parts: &self.parts, kept };
             let mut edges = self.piercing.iter();
             if !edges.any(|&(tet, edge)| self.swap.remove(tets, sites, edge, tet, &wanted, 0)) {
                 return self.piercing.is_empty();
@@ -159,6 +179,7 @@ impl Pierce {
 
     /// Collects the edges that pierce the triangle, each once, with a tet of each.
     fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) {
+        self.sides.grow(sites);
         let mut cut = std::mem::take(&mut self.cut);
         cut.clear();
         for &([a, b], beyond) in &self.rim {
@@ -175,7 +196,7 @@ impl Pierce {
             tets.star(self.points[i], &mut self.star);
             cut.extend(self.star.iter().filter(|&&tet| self.across(tets, sites, tet).is_some()));
         }
-        let wanted = Whole { sites, corners: self.corners, parts: &self.parts, kept };
+        let wanted = Whole { sites, sides: &self.sides, parts: &self.parts, kept };
         if self.rim.len() > 3 {
             // What is missing may lie between edges that are there, none of them on the outline.
             for &([a, _], _) in &self.rim {
@@ -225,11 +246,11 @@ impl Pierce {
     }
 
     fn side(&self, sites: &Sites, v: VertexId) -> i8 {
-        side(sites, self.corners, v)
+        self.sides.of(sites, v)
     }
 
     fn turn(&self, sites: &Sites, t: [VertexId; 3]) -> i8 {
-        Plane::new(sites, self.corners).turn(t)
+        Plane::new(sites, self.sides.corners).turn(t)
     }
 
     /// Where an edge pierces a triangle; moved to where a point there sees the tets around the edge, whose star is at hand, from the middle.
@@ -250,10 +271,10 @@ impl Pierce {
         let heights: Vec<[f64; 3]> = faces.into_iter().map(corner).collect();
         for _ in 0..STEPS {
             let along_s = |&[a, b, c]: &[f64; 3]| [a + t * (c - a), b + t * (c - a)];
-            let [low, high] = positive_part(heights.iter().map(along_s));
+            let [low, high] = positive_part(heights.iter().map(along_s)).unwrap_or([0.0, 1.0]);
             s = round_between([low, high.min(1.0 - t)]);
             let along_t = |&[a, b, c]: &[f64; 3]| [a + s * (b - a), c + s * (b - a)];
-            let [low, high] = positive_part(heights.iter().map(along_t));
+            let [low, high] = positive_part(heights.iter().map(along_t)).unwrap_or([0.0, 1.0]);
             t = round_between([low, high.min(1.0 - s)]);
         }
         [s, t]

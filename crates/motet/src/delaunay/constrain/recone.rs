@@ -7,9 +7,12 @@
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId};
+use crate::geometry::deepest::deepest;
+use crate::geometry::predicates::pair::{self, Pair, cross as cross_in_pairs, dot as dot_in_pairs};
 use crate::geometry::predicates::spot::{Spot, orient3d_of};
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use crate::kernel::HalfFacet;
+use pulp::Scalar;
 
 /// What is to be made anew on one side of the surface.
 #[derive(Default)]
@@ -23,10 +26,6 @@ pub(super) struct Side {
 
 /// How far from the surface the point may be, as a share of the way to the middle of the facets around.
 const WAYS: [f64; 12] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04, 0.02, 0.005, 1e-3, 1e-4, 1e-6, 1e-8];
-
-/// How far from all facets a point is to be, as shares of the size of what is made anew, and in how many steps.
-const MARGINS: [f64; 6] = [0.05, 5e-3, 5e-4, 1e-5, 1e-7, 1e-9];
-const STEPS: usize = 200;
 
 impl Side {
     fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + Clone + '_ {
@@ -59,34 +58,24 @@ impl Side {
                 break;
             }
         }
-        best.map(|(_, p)| p).or_else(|| self.approach(sites, middle, reach))
+        best.map(|(_, p)| p).or_else(|| self.deepest(sites, middle, reach))
     }
 
-    /// A point that sees all facets around, found by steps to the inner side of the one that sees it least (Agmon 1954; Motzkin and
-    /// Schoenberg 1954, *The relaxation method for linear inequalities*).
-    fn approach(&self, sites: &Sites, middle: Point, reach: f64) -> Option<Point> {
-        let plane = |face: [VertexId; 3]| {
+    /// The point that is farthest from the nearest plane of a facet around, if it sees all facets; not farther from `middle` than `reach`.
+    fn deepest(&self, sites: &Sites, middle: Point, reach: f64) -> Option<Point> {
+        // Facets may be needles, and the room between their planes a billion times narrower than they are long.
+        let half_space = |face: [VertexId; 3]| {
             let [a, b, c] = face.map(|v| sites.near(v));
-            let normal = cross(sub(b, a), sub(c, a));
-            (a, scale(normal, 1.0 / norm(normal)))
+            let normal = cross_in_pairs::<Scalar>(pair::difference(b, a), pair::difference(c, a));
+            let offset = dot_in_pairs::<Scalar>(normal, pair::difference(a, middle)).value();
+            let normal = normal.map(Pair::value);
+            let length = norm(normal);
+            (scale(normal, 1.0 / length), offset / length / reach)
         };
-        let planes: Vec<(Point, Point)> = self.faces().map(plane).filter(|p| p.1[0].is_finite()).collect();
-        for margin in MARGINS.map(|share| share * reach) {
-            let mut p = middle;
-            for _ in 0..STEPS {
-                let height = |&(a, normal): &(Point, Point)| dot(normal, sub(p, a));
-                let lowest = planes.iter().min_by(|s, t| height(s).total_cmp(&height(t)))?;
-                let height = height(lowest);
-                if height >= margin {
-                    break;
-                }
-                p = add(p, scale(lowest.1, 1.5 * (margin - height)));
-            }
-            if self.sees(sites, p) {
-                return Some(p);
-            }
-        }
-        None
+        let half_spaces = self.faces().map(half_space).filter(|(normal, _)| normal[0].is_finite());
+        let (way, depth) = deepest(half_spaces);
+        let p = add(middle, scale(way, reach));
+        (depth > 0.0 && self.sees(sites, p)).then_some(p)
     }
 
     /// The least share of a tet to a facet around; a little where it may be positive and is too small to tell.

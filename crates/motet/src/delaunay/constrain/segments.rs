@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 use hashbrown::HashMap;
 
 use super::insert::Insertion;
+use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
 use super::unmade::{Part, Unmade};
@@ -72,8 +73,8 @@ impl Segments {
     }
 
     /// Where on a segment one of its vertices lies, in [0, 1].
-    pub(super) fn share(&self, sites: &Sites, segment: SegmentId, vertex: VertexId) -> f64 {
-        let of_end = if vertex == self.ends(segment)[0] { 0.0 } else { 1.0 };
+    pub(super) fn share(&self, sites: &Sites, segment: SegmentId, vertex: VertexId) -> Share {
+        let of_end = if vertex == self.ends(segment)[0] { Share::START } else { Share::END };
         sites.on_segment(vertex).map_or(of_end, |on| on.share)
     }
 
@@ -85,7 +86,7 @@ impl Segments {
         mut piece: [VertexId; 2],
     ) -> [VertexId; 2] {
         let share = |v: VertexId| self.share(sites, segment, v);
-        piece.sort_by(|&a, &b| share(a).total_cmp(&share(b)));
+        piece.sort_by(|&a, &b| share(a).order(&share(b)));
         piece
     }
 
@@ -106,8 +107,8 @@ impl Segments {
             Place::On(place) => Some((place.segment, place.share, v)),
             Place::In(..) => None,
         };
-        let mut on: Vec<(SegmentId, f64, VertexId)> = sites.all_placed().filter_map(key).collect();
-        on.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut on: Vec<(SegmentId, Share, VertexId)> = sites.all_placed().filter_map(key).collect();
+        on.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.order(&b.1)));
         Csr::from_pairs(self.ends.len(), || on.iter().map(|&(s, _, v)| (s.0 as usize, v)))
     }
 
@@ -132,7 +133,7 @@ impl Segments {
                 ));
             };
             let start = tets.at(piece[0]);
-            let vertex = sites.add(self.ends(segment), OnSegment { segment, share });
+            let vertex = sites.add(self.ends(segment), OnSegment { segment, share: Share::of(share) });
             queue.extend(self.divide(piece, vertex));
             let lost = insertion.insert(tets, sites, vertex, start);
             queue.extend(lost.into_iter().filter(|edge| self.pieces.contains_key(edge)));
@@ -178,7 +179,7 @@ impl Segments {
         star: &mut Vec<TetId>,
     ) -> Option<f64> {
         let ends = self.in_order(sites, segment, piece);
-        let [low, high] = ends.map(|v| self.share(sites, segment, v));
+        let [low, high] = ends.map(|v| self.share(sites, segment, v).near());
         let sharpest = sharpest(tets, sites, ends, star);
         let from_corner = sharpest.and_then(|p| self.as_far(sites, segment, p));
         let is_well_within = |&s: &f64| (LEAST..1.0 - LEAST).contains(&((s - low) / (high - low)));

@@ -3,6 +3,7 @@
 //! Ties are broken as in the triangulation of the points: each vertex is lifted by an infinitesimal that grows with its rank, the place
 //! in the order of insertion; points on segments come last.
 
+use super::share::Share;
 use crate::base::{Point, VertexId};
 use crate::geometry::predicates::spot::{Between, Spot, insphere_perturbed_of, orient3d_of, volume_ratios};
 use crate::geometry::predicates::{insphere_perturbed, orient3d};
@@ -16,7 +17,7 @@ pub(super) struct SegmentId(pub(super) u32);
 pub(super) struct OnSegment {
     pub(super) segment: SegmentId,
     /// 0 at the segment's first end, 1 at its second.
-    pub(super) share: f64,
+    pub(super) share: Share,
 }
 
 /// Where a point lies that has no coordinates.
@@ -60,7 +61,7 @@ impl Sites {
 
     /// Adds a point on a segment between two given vertices.
     pub(super) fn add(&mut self, [from, to]: [VertexId; 2], place: OnSegment) -> VertexId {
-        let between = Between::new(self.near[from.index()], self.near[to.index()], place.share);
+        let between = Between::new(self.near[from.index()], self.near[to.index()], place.share.parts());
         self.n_on_segments += 1;
         self.put(Place::On(place), between)
     }

@@ -136,8 +136,8 @@ pub(super) fn faces_around(tets: &mut Tets, within: &[TetId]) -> Vec<[VertexId; 
     all.map(|half| tets.inward(half)).collect()
 }
 
-/// The part of (0, 1) in which all of the functions are positive that come with their values at 0 and 1; all of it where there is none.
-pub(super) fn positive_part(functions: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
+/// The part of (0, 1) in which all of the functions are positive that come with their values at 0 and 1.
+pub(super) fn positive_part(functions: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
     let [mut low, mut high] = [0.0f64, 1.0f64];
     for [at_0, at_1] in functions {
         let root = at_0 / (at_0 - at_1);
@@ -147,7 +147,7 @@ pub(super) fn positive_part(functions: impl Iterator<Item = [f64; 2]>) -> [f64; 
             high = high.min(root);
         }
     }
-    if low < high { [low, high] } else { [0.0, 1.0] }
+    (low < high).then_some([low, high])
 }
 
 /// A number near the middle of two, with few digits: what is computed from it has fewer as well.

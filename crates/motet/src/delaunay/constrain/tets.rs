@@ -93,6 +93,11 @@ impl Tets {
         self.at.get(vertex.index()).copied().unwrap_or(OUTSIDE)
     }
 
+    /// Says which tet a vertex has, where those that came last are gone again.
+    pub(super) fn set_at(&mut self, vertex: VertexId, tet: TetId) {
+        self.at[vertex.index()] = tet;
+    }
+
     /// Puts a positive tet into a free slot; nothing is linked yet.
     pub(super) fn add(&mut self, vertices: [VertexId; 4]) -> TetId {
         let tet = self.free.pop().unwrap_or_else(|| {

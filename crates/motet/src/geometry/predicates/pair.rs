@@ -44,6 +44,14 @@ impl Pair {
         self.high + self.low
     }
 
+    /// The same sum with a correction below the last place of what it corrects.
+    #[inline(always)]
+    pub(crate) fn normalized(self) -> Self {
+        let high = self.high + self.low;
+        let back = high - self.high;
+        Self { high, low: (self.high - (high - back)) + (self.low - back) }
+    }
+
     /// `self + other`
     #[inline(always)]
     pub(crate) fn plus(self, other: Self) -> Self {

@@ -24,7 +24,7 @@ use pulp::Scalar;
 pub(crate) struct Between {
     from: Point,
     to: [Point; 2],
-    /// Of the ways to both; the second is 0 on a segment.
+    /// Of the ways to both, which are one way on a segment.
     shares: [f64; 2],
     /// The coordinates, rounded.
     near: Point,
@@ -35,18 +35,18 @@ pub(crate) struct Between {
 }
 
 impl Between {
-    /// The point `from + share (to - from)`; both ends and the share finite, the share in (0, 1).
-    pub(crate) fn new(from: Point, to: Point, share: f64) -> Self {
-        Self::within(from, [to, from], [share, 0.0])
+    /// The point `from + share (to - from)`, where the share is the sum of two: what an `f64` holds of it, and what is left. All finite, the share in (0, 1).
+    pub(crate) fn new(from: Point, to: Point, share: [f64; 2]) -> Self {
+        Self::within(from, [to, to], share)
     }
 
-    /// The point `from + s (to - from) + t (third - from)`; all finite, both shares and their sum in [0, 1].
+    /// The point `from + s (to - from) + t (third - from)`; all finite, both shares in [-1, 1] and their sum in [0, 1].
     pub(crate) fn within(from: Point, to: [Point; 2], shares: [f64; 2]) -> Self {
         let value = |i: usize| {
             let along = |k: usize| {
                 Pair::difference(to[k][i], from[i]).times::<Scalar>(Pair { high: shares[k], low: 0.0 })
             };
-            normalized(along(0).plus(along(1)).plus(Pair { high: from[i], low: 0.0 }))
+            along(0).plus(along(1)).plus(Pair { high: from[i], low: 0.0 }).normalized()
         };
         let value = [value(0), value(1), value(2)];
         let size = [from, to[0], to[1]].as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -223,16 +223,9 @@ fn differences<const N: usize, const M: usize>(spots: &[Spot; N]) -> [PairVector
         let p = spots[k + 1].in_pairs();
         std::array::from_fn(|i| {
             let Pair { high, low } = Pair::difference(p[i].high, origin[i].high);
-            normalized(Pair { high, low: low + (p[i].low - origin[i].low) })
+            Pair { high, low: low + (p[i].low - origin[i].low) }.normalized()
         })
     })
-}
-
-/// The same sum with a correction below the last place of what it corrects.
-fn normalized(pair: Pair) -> Pair {
-    let high = pair.high + pair.low;
-    let back = high - pair.high;
-    Pair { high, low: (pair.high - (high - back)) + (pair.low - back) }
 }
 
 fn insphere_in_pairs([b, c, d, x]: [PairVector; 4]) -> Pair {

@@ -231,7 +231,8 @@ mod spots {
     /// Which of five are on segments or in triangles, between which of the points, and where.
     fn kinds() -> impl Strategy<Value = Vec<(bool, [usize; 3], f64, f64)>> {
         let share = prop_oneof![Just(0.5), Just(0.25), 0.01..0.99f64, Just(1e-9), Just(1.0 - 1e-12)];
-        let second = prop_oneof![Just(0.0), Just(0.5), 0.01..0.99f64, Just(1e-9)];
+        let second =
+            prop_oneof![Just(0.0), Just(0.5), 0.01..0.99f64, Just(1e-9), -1e-17..1e-17f64, Just(-1e-25)];
         prop::collection::vec((any::<bool>(), [0..7usize, 0..7usize, 0..7usize], share, second), 5)
     }
 
@@ -253,8 +254,12 @@ mod spots {
         }
 
         #[test]
-        fn a_point_on_a_segment_stays_in_every_plane_through_it(p in points(4), share in 0.001..0.999f64) {
-            let between = Between::new(p[0], p[1], share);
+        fn a_point_on_a_segment_stays_in_every_plane_through_it(
+            p in points(4),
+            share in 0.001..0.999f64,
+            rest in -1e-17..1e-17f64,
+        ) {
+            let between = Between::new(p[0], p[1], [share, rest]);
             let on = Spot::On(&between);
             let [a, b, c, d] = [p[0], p[1], p[2], p[3]].map(Spot::Given);
             prop_assert_eq!(orient3d_of([a, b, c, on]), 0);
@@ -266,7 +271,7 @@ mod spots {
         #[test]
         fn what_cancels_leaves_no_error(p in points(3), x in -1e-9..1e-9f64, share in 0.4999..0.5001f64) {
             // Segments through the origin, and the signs of points near it.
-            let on: Vec<Between> = p.iter().map(|&q| Between::new(q, q.map(|x| -x), share)).collect();
+            let on: Vec<Between> = p.iter().map(|&q| Between::new(q, q.map(|x| -x), [share, 0.0])).collect();
             let spots = [Spot::On(&on[0]), Spot::On(&on[1]), Spot::On(&on[2]), Spot::Given([x, -x, 0.5 * x])];
             prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300));
             prop_assert_eq!(orient3d_of(spots), orient_exact(&spots));
@@ -275,7 +280,7 @@ mod spots {
         #[test]
         fn rounding_is_by_at_most_a_place(p in points(2), share in 0.001..0.999f64) {
             prop_assume!(p.iter().flatten().all(|x| x.abs() < 1e300 && (x.abs() > 1e-290 || *x == 0.0)));
-            let between = Between::new(p[0], p[1], share);
+            let between = Between::new(p[0], p[1], [share, 0.0]);
             let truth = place(&Spot::On(&between));
             let near: Point = between.rounded();
             for i in 0..3 {

@@ -1,0 +1,73 @@
+//! How far along a segment a point lies: a number with twice the digits of an `f64`.
+//!
+//! Facets around one edge that comes within 1e-16 of a segment meet it at places that an `f64` cannot tell apart, and a point is needed between them.
+
+use std::cmp::Ordering;
+
+use crate::geometry::predicates::pair::Pair;
+
+/// A share of the way from the first end of a segment to its second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Share {
+    /// The nearest number.
+    high: f64,
+    /// What is left of it: at most half of the last place of `high`.
+    low: f64,
+}
+
+impl Share {
+    pub(super) const START: Self = Self::of(0.0);
+    pub(super) const END: Self = Self::of(1.0);
+
+    pub(super) const fn of(share: f64) -> Self {
+        Self { high: share, low: 0.0 }
+    }
+
+    /// The nearest `f64`.
+    pub(super) fn near(self) -> f64 {
+        self.high
+    }
+
+    /// Two numbers whose sum it is.
+    pub(super) fn parts(self) -> [f64; 2] {
+        [self.high, self.low]
+    }
+
+    /// `self + step`, rounded to twice the digits.
+    pub(super) fn plus(self, step: f64) -> Self {
+        let sum = self.pair().plus(Pair { high: step, low: 0.0 }).normalized();
+        Self { high: sum.high, low: sum.low }
+    }
+
+    /// `self - other`, rounded.
+    pub(super) fn minus(self, other: Self) -> f64 {
+        self.pair().minus(other.pair()).value()
+    }
+
+    /// By size.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        self.high.total_cmp(&other.high).then(self.low.total_cmp(&other.low))
+    }
+
+    fn pair(self) -> Pair {
+        Pair { high: self.high, low: self.low }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Share;
+    use std::cmp::Ordering;
+
+    #[test]
+    fn steps_far_below_the_last_place_count() {
+        let third = Share::of(1.0 / 3.0);
+        let beyond = third.plus(1e-30);
+        assert_eq!((beyond.near(), beyond.parts()), (1.0 / 3.0, [1.0 / 3.0, 1e-30]));
+        assert_eq!((beyond.minus(third), third.minus(beyond)), (1e-30, -1e-30));
+        assert_eq!((third.order(&beyond), beyond.order(&third)), (Ordering::Less, Ordering::Greater));
+        let across = Share::of(0.5).plus(-1e-20).plus(0.25);
+        assert_eq!(across.minus(Share::of(0.75)), -1e-20);
+        assert_eq!((Share::END.minus(Share::START), Share::END.parts()), (1.0, [1.0, 0.0]));
+    }
+}

@@ -1,0 +1,191 @@
+//! The point deepest inside half-spaces: farthest from the nearest of their planes.
+//!
+//! It is a linear program in three coordinates and the depth, solved constraint by constraint: one that the optimum so far breaks goes through the
+//! optimum of those before it, and that is the same problem with one unknown less (Seidel 1991, *Small-dimensional linear programming and convex hulls made
+//! easy*). The time is linear in the number of half-spaces as a rule.
+
+use crate::base::Point;
+
+/// Unknowns of the program: coordinates, then the depth.
+const N: usize = 4;
+
+/// Coordinates and depth stay below this.
+const REACH: f64 = 1.0;
+
+/// An unknown that nothing has bound yet.
+const FAR: f64 = 16.0;
+
+/// What is left of coefficients, and what breaks a constraint, below this is rounding.
+const ROUNDING: f64 = 1e-15;
+
+/// `a . x <= b`
+#[derive(Clone, Copy)]
+struct Constraint {
+    a: [f64; N],
+    b: f64,
+}
+
+impl Constraint {
+    fn is_broken(&self, x: &[f64; N]) -> bool {
+        self.excess(x) > ROUNDING
+    }
+
+    /// `a . x - b`
+    fn excess(&self, x: &[f64; N]) -> f64 {
+        self.a.iter().zip(x).map(|(a, x)| a * x).sum::<f64>() - self.b
+    }
+
+    /// The unknown with the largest coefficient, if any is left.
+    fn largest(&self) -> Option<usize> {
+        let largest = (0..N).max_by(|&i, &j| self.a[i].abs().total_cmp(&self.a[j].abs()))?;
+        (self.a[largest].abs() > ROUNDING).then_some(largest)
+    }
+
+    /// The same constraint where `x[gone]` is such that `other` is met with equality.
+    fn on(&self, other: &Self, gone: usize) -> Self {
+        let share = self.a[gone] / other.a[gone];
+        let mut a: [f64; N] = std::array::from_fn(|i| self.a[i] - share * other.a[i]);
+        a[gone] = 0.0;
+        Self { a, b: self.b - share * other.b }
+    }
+}
+
+/// The point of the cube from -1 to 1 that is deepest inside half-spaces `normal . p >= offset`, and how deep: below 0 where no point is inside all. Normals are of unit
+/// length. Right to some roundings.
+pub(crate) fn deepest(half_spaces: impl Iterator<Item = (Point, f64)>) -> (Point, f64) {
+    let mut constraints: Vec<Constraint> =
+        half_spaces.map(|([x, y, z], offset)| Constraint { a: [-x, -y, -z, 1.0], b: -offset }).collect();
+    for unknown in 0..N {
+        for side in [1.0, -1.0] {
+            let mut a = [0.0; N];
+            a[unknown] = side;
+            constraints.push(Constraint { a, b: REACH });
+        }
+    }
+    shuffle(&mut constraints);
+    let depth = Constraint { a: [0.0, 0.0, 0.0, 1.0], b: 0.0 };
+    let [x, y, z, depth] = maximum(&constraints, depth, &[0, 1, 2, 3]);
+    ([x, y, z], depth)
+}
+
+/// An order that has nothing to do with the one that they come in, the same every time.
+fn shuffle(constraints: &mut [Constraint]) {
+    let mut state = 1u64;
+    for i in (1..constraints.len()).rev() {
+        // The constants of Knuth's MMIX; the upper bits are the random ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        constraints.swap(i, (state >> 33) as usize % (i + 1));
+    }
+}
+
+/// Where `of . x` is largest, in some of the unknowns; the others are 0.
+fn maximum(constraints: &[Constraint], of: Constraint, unknowns: &[usize]) -> [f64; N] {
+    if let [last] = *unknowns {
+        let mut x = [0.0; N];
+        x[last] = farthest(constraints, of.a[last], last);
+        return x;
+    }
+    let mut x = [0.0; N];
+    unknowns.iter().filter(|&&i| of.a[i] != 0.0).for_each(|&i| x[i] = FAR.copysign(of.a[i]));
+    for (i, tight) in constraints.iter().enumerate() {
+        if !tight.is_broken(&x) {
+            continue;
+        }
+        let Some(gone) = tight.largest() else { continue };
+        let before: Vec<Constraint> = constraints[..i].iter().map(|c| c.on(tight, gone)).collect();
+        let others: Vec<usize> = unknowns.iter().copied().filter(|&i| i != gone).collect();
+        x = maximum(&before, of.on(tight, gone), &others);
+        x[gone] = -tight.excess(&x) / tight.a[gone];
+    }
+    x
+}
+
+/// How far the only unknown may go to where `slope` leads.
+fn farthest(constraints: &[Constraint], slope: f64, unknown: usize) -> f64 {
+    let [mut low, mut high] = [-FAR, FAR];
+    for constraint in constraints {
+        let a = constraint.a[unknown];
+        if a > ROUNDING {
+            high = high.min(constraint.b / a);
+        } else if a < -ROUNDING {
+            low = low.max(constraint.b / a);
+        }
+    }
+    // By rounding only can they have passed each other.
+    match slope {
+        _ if low > high => 0.5 * (low + high),
+        s if s > 0.0 => high,
+        s if s < 0.0 => low,
+        _ => 0.0f64.clamp(low, high),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::deepest;
+    use crate::base::Point;
+    use crate::geometry::tet::{FACETS, volume};
+    use crate::geometry::triangle::area_vector;
+    use crate::geometry::vector::{dot, norm, scale, sub};
+    use proptest::prelude::*;
+
+    /// The half-spaces on whose planes faces lie, seen from inside.
+    fn inside(faces: impl Iterator<Item = [Point; 3]>) -> Vec<(Point, f64)> {
+        let half_space = |face: [Point; 3]| {
+            let outwards = area_vector(face);
+            let normal = scale(outwards, -1.0 / norm(outwards));
+            (normal, dot(normal, face[0]))
+        };
+        faces.map(half_space).collect()
+    }
+
+    fn height(half_spaces: &[(Point, f64)], p: Point) -> f64 {
+        half_spaces.iter().map(|&(normal, offset)| dot(normal, p) - offset).fold(f64::INFINITY, f64::min)
+    }
+
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![-0.9..0.9f64, (-2i8..3).prop_map(|i| f64::from(i) / 4.0)]
+    }
+
+    proptest! {
+        #[test]
+        fn in_a_tet_it_is_the_middle_of_the_sphere_inscribed(
+            corners in prop::array::uniform4(prop::array::uniform3(number())),
+            flatness in prop_oneof![Just(1.0), Just(1e-3), Just(1e-9)],
+        ) {
+            let mut corners = corners.map(|[x, y, z]| [x, y, z * flatness]);
+            if volume(corners) < 0.0 {
+                corners.swap(0, 1);
+            }
+            prop_assume!(volume(corners) > 1e-3 * flatness);
+            let faces = FACETS.map(|facet| facet.map(|i| corners[i]));
+            let radius = 3.0 * volume(corners) / faces.iter().map(|&f| norm(area_vector(f))).sum::<f64>();
+            let half_spaces = inside(faces.into_iter());
+            let (p, depth) = deepest(half_spaces.iter().copied());
+            prop_assert!((depth - radius).abs() < 1e-6 * radius + 1e-14, "{depth} for {radius}");
+            prop_assert!((height(&half_spaces, p) - radius).abs() < 1e-6 * radius + 1e-14);
+        }
+
+        #[test]
+        fn no_other_point_is_deeper(
+            planes in prop::collection::vec((prop::array::uniform3(number()), -0.5..0.3f64), 1..30),
+            others in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 200),
+        ) {
+            let is_long = |normal: &Point| norm(*normal) > 0.1;
+            let half_spaces: Vec<(Point, f64)> = planes
+                .into_iter()
+                .filter(|(normal, _)| is_long(normal))
+                .map(|(normal, offset)| (scale(normal, 1.0 / norm(normal)), offset))
+                .collect();
+            let (p, depth) = deepest(half_spaces.iter().copied());
+            prop_assert!(p.iter().all(|x| x.abs() <= 1.0 + 1e-12) && depth <= 1.0 + 1e-12);
+            prop_assert!((height(&half_spaces, p).min(1.0) - depth).abs() < 1e-12);
+            for other in others {
+                prop_assert!(height(&half_spaces, other).min(1.0) <= depth + 1e-12);
+                // Nor one nearby.
+                let near = sub(p, scale(sub(p, other), 1e-3));
+                prop_assert!(height(&half_spaces, near).min(1.0) <= depth + 1e-12);
+            }
+        }
+    }
+}
