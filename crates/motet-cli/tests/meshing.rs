@@ -70,6 +70,41 @@ fn a_flap_in_the_same_file_or_its_own_has_two_sides() {
     folder.motet(["mesh", "lumen.vtp", "flap.vtp", "-o", "no.vtu"]).assert().code(3);
 }
 
+/// As vessels come from programs that model them: a file a patch.
+#[test]
+fn files_that_end_at_common_edges_are_one_surface() {
+    let folder = Folder::new();
+    let whole = ThickTube::default().mesh().unwrap();
+    let labels = whole.patches().unwrap();
+    let mut words: Vec<String> = vec!["mesh".into()];
+    for (patch, name) in &labels.names {
+        let mut cells = Cells::new();
+        let of_patch = whole.cells.iter().filter(|(cell, _, _)| labels.ids[cell.index()] == *patch);
+        of_patch.for_each(|(_, kind, vertices)| cells.push(kind, vertices.iter().copied()));
+        words.push(format!("{name}.stl"));
+        folder.mesh(&words[words.len() - 1], &Mesh::new(whole.points.clone(), cells));
+    }
+    let call = |words: &[String], output: &str| {
+        let words: Vec<&str> = words.iter().map(String::as_str).chain(["-o", output]).collect();
+        report(&folder, &words)
+    };
+    let told = call(&words, "vessel.vtu");
+    assert_eq!(told["preflight"]["n_surfaces"], 1, "{told}");
+    assert_eq!(told["filled"]["bodies"].as_array().map(Vec::len), Some(2), "{told}");
+    let mesh = read(folder.path("vessel.vtu")).unwrap();
+    for name in labels.names.values() {
+        assert!(mesh.patches().unwrap().find(name).is_some(), "{name}");
+    }
+    // The wall between two meshes may come with both: it is there once.
+    std::fs::copy(folder.path("interface.stl"), folder.path("inner.stl")).unwrap();
+    let twice: Vec<String> = words.iter().cloned().chain(["inner.stl".to_owned()]).collect();
+    assert_eq!(call(&twice, "twice.vtu")["filled"]["triangles"], told["filled"]["triangles"]);
+    // Without the last of them it is open, and all that are left are named.
+    words.pop();
+    let call = folder.motet(words.iter().map(String::as_str).chain(["-o", "no.vtu"])).assert().code(3);
+    assert!(words[1..].iter().all(|file| stderr(&call).contains(file.as_str())), "{}", stderr(&call));
+}
+
 #[test]
 fn a_hole_is_refused_with_its_place_and_mended_on_request() {
     let folder = Folder::new();

@@ -61,8 +61,8 @@ fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
 #[test]
 fn bodies_that_were_hard_once_are_filled() {
     // An edge or a triangle in the first three could not be made in its turn; a hollow in 413 had corners that none of its old tets had; facets round one
-    // edge of 658 cut another within the last digit of an `f64` share of it.
-    for case in [129, 244, 297, 413, 658].map(random_case) {
+    // edge of 658 cut another within the last digit of an `f64` share of it; 1082 lies far from the origin for its size.
+    for case in [129, 244, 297, 413, 658, 1082].map(random_case) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::MoveInside);
     }
 }
@@ -123,6 +123,7 @@ fn real_surfaces_are_filled() {
         "devices/sphinxsys_coil.stl",
         "devices/confluent_nitinol_strut_deployed.stl",
         "devices/endobeams_braided_stent/arcStretchObj.obj",
+        "hostile_surfaces/manifold_Cray_right.obj",
         "hostile_surfaces/trimesh_7_8ths_cube.stl",
         "hostile_surfaces/trimesh_shared.STL",
     ];

@@ -3,23 +3,26 @@
 use std::collections::BTreeMap;
 
 use super::compact::{compact, named};
+use super::joint::joint;
 use crate::base::{Error, Point, Result, Threads, VertexId, rising};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
 use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
 
-/// Surfaces to be filled, joined: points at one place are one vertex.
+/// Surfaces to be filled, joined: points at one place are one vertex, and meshes that end at a common edge are one surface.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
     /// The points of all meshes, one mesh after the other, also those that no triangle uses.
     pub points: Vec<Point>,
     /// The triangles of all meshes.
     pub triangles: Vec<[VertexId; 3]>,
-    /// Which mesh each triangle is of.
+    /// Which surface each triangle is of.
     pub surface_of: Vec<u32>,
-    /// What each mesh is.
+    /// What each surface is.
     pub roles: Vec<Role>,
-    /// The name that each mesh came with.
+    /// The name that each surface's first mesh came with.
     pub names: Vec<String>,
+    /// The meshes that each surface is made of, rising.
+    pub meshes: Vec<Vec<u32>>,
     /// The patch of each triangle. Where no mesh but one has labels of its own, those; otherwise new ones.
     pub patches: Vec<i32>,
     /// Names of patches, where there are any.
@@ -39,6 +42,7 @@ impl Surfaces {
             surface_of: Vec::new(),
             roles: meshes.iter().map(|m| m.1).collect(),
             names: meshes.iter().map(|m| m.2.to_owned()).collect(),
+            meshes: (0..meshes.len() as u32).map(|mesh| vec![mesh]).collect(),
             patches: Vec::new(),
             patch_names: BTreeMap::new(),
         };
@@ -47,7 +51,50 @@ impl Surfaces {
         }
         let kept = firsts_at_place(&all.points);
         all.triangles = renamed(&all.triangles, &kept);
+        all.join();
         Ok(all)
+    }
+
+    /// Makes one of surfaces that end at a common edge; a triangle that several of them have stays in the first.
+    fn join(&mut self) {
+        let part_of = joint(&self.triangles, &self.surface_of, &self.roles);
+        if (0..).eq(part_of.iter().copied()) {
+            return;
+        }
+        self.keep_firsts(|this, t| (part_of[this.surface_of[t] as usize], this.surface_of[t]));
+        let is_first = |s: &usize| part_of[*s] as usize == *s;
+        let firsts: Vec<usize> = (0..part_of.len()).filter(is_first).collect();
+        let new = |s: u32| firsts.partition_point(|&first| first < part_of[s as usize] as usize);
+        let mut meshes = vec![Vec::new(); firsts.len()];
+        for (s, own) in (0u32..).zip(&self.meshes) {
+            meshes[new(s)].extend(own);
+        }
+        meshes.iter_mut().for_each(|own| own.sort_unstable());
+        self.surface_of.iter_mut().for_each(|s| *s = new(*s) as u32);
+        self.roles = firsts.iter().map(|&s| self.roles[s]).collect();
+        self.names = firsts.iter().map(|&s| self.names[s].clone()).collect();
+        self.meshes = meshes;
+    }
+
+    /// Of triangles with the same vertices within a group those of the group's first member stay; `of` tells group and member of a triangle.
+    fn keep_firsts(&mut self, of: impl Fn(&Self, usize) -> (u32, u32)) {
+        let key = |t: usize| {
+            let (group, member) = of(self, t);
+            (group, rising(self.triangles[t]), member)
+        };
+        let mut order: Vec<_> = (0..self.triangles.len()).map(|t| (key(t), t)).collect();
+        order.sort_unstable();
+        let mut is_kept = vec![true; self.triangles.len()];
+        for same in order.chunk_by(|x, y| (x.0.0, x.0.1) == (y.0.0, y.0.1)) {
+            same.iter().filter(|(key, _)| key.2 != same[0].0.2).for_each(|&(_, t)| is_kept[t] = false);
+        }
+        fn keep<T>(all: &mut Vec<T>, is_kept: &[bool]) {
+            let mut kept = is_kept.iter();
+            all.retain(|_| *kept.next().unwrap_or(&true));
+        }
+        keep(&mut self.triangles, &is_kept);
+        keep(&mut self.surface_of, &is_kept);
+        keep(&mut self.patches, &is_kept);
     }
 
     fn add(&mut self, mesh: &Mesh, number: u32, name: &str) -> Result<()> {
@@ -83,7 +130,7 @@ impl Surfaces {
         }
         for (old, &new) in &old_to_new {
             let own = surface.patch_names.get(old).cloned();
-            let name = own.or_else(|| (*old == 0).then(|| name.to_string()));
+            let name = own.or_else(|| (*old == 0 || old_to_new.len() == 1).then(|| name.to_string()));
             self.patch_names.extend(name.map(|name| (new, name)));
         }
         self.patches.extend(surface.patches.iter().map(|old| old_to_new[old]));
@@ -110,6 +157,7 @@ impl Surfaces {
         self.patches = done.labels(&self.patches);
         self.triangles = done.triangles.clone();
         self.surface_of = done.surface_of.clone();
+        self.join();
         Ok(done)
     }
 
@@ -122,23 +170,10 @@ impl Surfaces {
         self
     }
 
-    /// Without triangles that an earlier surface has as well.
+    /// Without triangles that an earlier one is as well.
     pub(super) fn without_shared(&self) -> Self {
-        let mut order: Vec<(u32, [VertexId; 3])> =
-            self.triangles.iter().map(|&t| rising(t)).zip(0..).map(|(t, i)| (i, t)).collect();
-        order.sort_unstable_by_key(|&(i, t)| (t, i));
-        let mut is_kept = vec![true; self.triangles.len()];
-        for pair in order.windows(2) {
-            is_kept[pair[1].0 as usize] &= pair[0].1 != pair[1].1;
-        }
-        fn keep<T: Copy>(all: &[T], is_kept: &[bool]) -> Vec<T> {
-            all.iter().zip(is_kept).filter(|(_, kept)| **kept).map(|(x, _)| *x).collect()
-        }
-        Self {
-            triangles: keep(&self.triangles, &is_kept),
-            surface_of: keep(&self.surface_of, &is_kept),
-            patches: keep(&self.patches, &is_kept),
-            ..self.clone()
-        }
+        let mut kept = self.clone();
+        kept.keep_firsts(|_, t| (0, t as u32));
+        kept
     }
 }

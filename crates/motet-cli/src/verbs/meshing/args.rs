@@ -49,7 +49,7 @@ Examples:
 Exit status 3: a surface cannot be filled; nothing is written but the culprits. 4: a triangle is there in pieces only,
 a tet has no volume in the digits of its coordinates, bad tets are left, or no layer found room; the mesh is written.")]
 pub(crate) struct MeshArgs {
-    /// Surface files: closed each
+    /// Surface files: each closed, or together with others that end at the same edges
     #[arg(value_name = "SURFACE", required = true)]
     pub(crate) surfaces: Vec<PathBuf>,
     /// Where the result goes, in any mesh format

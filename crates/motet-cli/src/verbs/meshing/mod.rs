@@ -48,7 +48,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let mut report = Report::new(args, &preflight, done.as_ref().map_or(&[], |done| &done.done));
     if !preflight.is_fit() {
         bar.finish_and_clear();
-        return Err(refused(args, &report, &preflight, console));
+        return Err(refused(args, &surfaces, &report, &preflight, console));
     }
     let filling = Instant::now();
     let filled = fill(&surfaces, &preflight, &args.options(sizes, &surfaces)?, &threads)?;
@@ -101,13 +101,24 @@ fn name(file: &Path) -> String {
 }
 
 /// Says all that is wrong; the error is the first of it.
-fn refused(args: &MeshArgs, report: &Report, preflight: &Preflight, console: &Console) -> motet::Error {
+fn refused(
+    args: &MeshArgs,
+    surfaces: &Surfaces,
+    report: &Report,
+    preflight: &Preflight,
+    console: &Console,
+) -> motet::Error {
     report.tell(console);
     let error = preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces are not fit"));
     let fault = preflight.faults.iter().find(|fault| fault.is_fatal);
-    let file = fault.and_then(|fault| args.surfaces.iter().chain(&args.membrane).nth(fault.surface as usize));
-    match file {
-        Some(file) => error.in_file(file),
+    let meshes = fault.and_then(|fault| surfaces.meshes.get(fault.surface as usize));
+    let files: Vec<&PathBuf> = args.surfaces.iter().chain(&args.membrane).collect();
+    let names = |meshes: &Vec<u32>| {
+        let of = meshes.iter().filter_map(|&mesh| files.get(mesh as usize));
+        of.map(|file| file.display().to_string()).collect::<Vec<_>>().join(", ")
+    };
+    match meshes.map(names) {
+        Some(names) => error.in_file(names),
         None => error,
     }
 }

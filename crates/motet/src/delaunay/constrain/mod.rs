@@ -48,7 +48,7 @@ mod wrap;
 use super::Triangulation;
 use super::input::{self, Scaled};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
-use crate::geometry::vector::{distance, scale};
+use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
@@ -221,8 +221,10 @@ fn in_box(points: &[Point], edge_points: EdgePoints) -> Result<(Vec<Point>, Back
 
 /// The corners of a positive tet that holds the box of the last eight points, and is far larger.
 fn far_around(given: &[Point]) -> [Point; 4] {
-    let size = FAR * distance(given[given.len() - 8], given[given.len() - 1]);
-    [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(|p| scale(p, size))
+    let [low, high] = [given[given.len() - 8], given[given.len() - 1]];
+    let (middle, size) = (scale(add(low, high), 0.5), FAR * distance(low, high));
+    let corners = [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]];
+    corners.map(|corner| add(middle, scale(corner, size)))
 }
 
 /// All that has been made.
