@@ -1,5 +1,7 @@
 //! A complex from plain tets, and what the tets became of it.
 
+use std::cell::Cell;
+
 use crate::base::{Error, Result, TetId, VertexId};
 use crate::geometry::quality::rough_eas;
 use crate::geometry::tet::FACETS;
@@ -52,7 +54,7 @@ impl Complex {
             tets,
             links: joined.links,
             regions: regions.clone(),
-            qualities: vec![UNMEASURED; n_tets],
+            qualities: vec![Cell::new(UNMEASURED); n_tets],
             is_tangled: rough.iter().any(|&q| q <= 0.0),
             rough,
             walls: joined.walls,

@@ -1,5 +1,7 @@
 //! The only code that writes connectivity.
 
+use std::cell::Cell;
+
 use crate::base::{TetId, VertexId};
 use crate::kernel::change::{Fill, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
@@ -79,7 +81,7 @@ impl Complex {
         let i = tet.index();
         self.tets[i] = fill.vertices;
         self.regions[i] = fill.region;
-        self.qualities[i] = fill.quality;
+        self.qualities[i].set(fill.quality);
         self.is_new[i] = true;
     }
 
@@ -99,7 +101,7 @@ impl Complex {
                 vertices: c.tets[i],
                 links: c.links[i],
                 region: c.regions[i],
-                quality: c.qualities[i],
+                quality: c.qualities[i].get(),
                 is_new: c.is_new[i],
             };
             Entry::Tet(tet, record)
@@ -187,7 +189,7 @@ impl Complex {
         self.tets.push(FREE);
         self.links.push([Link::tet(HalfFacet::NONE); 4]);
         self.regions.push(0);
-        self.qualities.push(0.0);
+        self.qualities.push(Cell::new(0.0));
         self.is_new.push(true);
         TetId::new(self.tets.len() - 1)
     }

@@ -1,5 +1,7 @@
 //! Tets that can be changed: with what lies behind each facet, and a free list.
 
+use std::cell::Cell;
+
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
 use crate::kernel::journal::Journal;
@@ -31,8 +33,8 @@ pub struct Complex {
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) links: Vec<[Link; 4]>,
     pub(super) regions: Vec<i32>,
-    /// [`UNMEASURED`] until somebody who may write has asked.
-    pub(super) qualities: Vec<f64>,
+    /// [`UNMEASURED`] until somebody has asked.
+    pub(super) qualities: Vec<Cell<f64>>,
     /// The first mesh's qualities, nearly.
     pub(super) rough: Vec<f32>,
     /// Whether a tet is not one of the first mesh; one whose vertex has moved is not.
@@ -153,8 +155,11 @@ impl Complex {
     /// The quality of a tet: see [`Self::measure`].
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
-        let known = self.qualities[tet.index()];
-        if known.is_nan() { self.measure(self.corners(tet)) } else { known }
+        let known = &self.qualities[tet.index()];
+        if known.get().is_nan() {
+            known.set(self.measure(self.corners(tet)));
+        }
+        known.get()
     }
 
     /// The tets whose quality is below `bar`, in rising order. The first mesh's are looked at closely only where a rough look leaves a doubt.
@@ -190,7 +195,7 @@ impl Complex {
     pub fn spare(&mut self, qualities: Vec<f64>) {
         self.spared = qualities;
         debug_assert!(self.spared.is_sorted());
-        self.qualities.fill(UNMEASURED);
+        self.qualities.fill(Cell::new(UNMEASURED));
         self.forget();
     }
 

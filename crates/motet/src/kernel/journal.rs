@@ -89,7 +89,7 @@ impl Complex {
                 self.tets[i] = record.vertices;
                 self.links[i] = record.links;
                 self.regions[i] = record.region;
-                self.qualities[i] = record.quality;
+                self.qualities[i].set(record.quality);
                 self.is_new[i] = record.is_new;
             }
             Entry::Vertex(v, record) => {

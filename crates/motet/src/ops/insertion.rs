@@ -64,10 +64,11 @@ impl Insertion {
     ) -> bool {
         change.clear();
         self.rim.clear();
+        let mut is_open = true;
         for &tet in seed {
-            self.take(complex, tet, point, change);
+            is_open &= self.take(complex, tet, point, bar, change);
         }
-        loop {
+        while is_open {
             let worst = (0..self.rim.len()).min_by(|&i, &j| self.rim[i].2.total_cmp(&self.rim[j].2));
             let Some(worst) = worst else { return false };
             let (tet, facet, quality) = self.rim[worst];
@@ -78,15 +79,19 @@ impl Insertion {
             if change.cavity.len() >= LARGEST_CAVITY {
                 return false;
             }
-            self.take(complex, behind.tet(), point, change);
+            is_open = self.take(complex, behind.tet(), point, bar, change);
         }
+        false
     }
 
-    /// Puts a tet into the cavity: facets towards it go from the rim, its others come.
-    fn take(&mut self, complex: &Complex, tet: TetId, point: Point, change: &mut Change) {
+    /// Puts a tet into the cavity: facets towards it go from the rim, its others come. `false` where one of these is a wall, which stays whatever else comes, and not
+    /// better than `bar`: to grow on until it is the worst took half of the time of repairs at walls.
+    fn take(&mut self, complex: &Complex, tet: TetId, point: Point, bar: f64, change: &mut Change) -> bool {
+        let mut is_open = true;
         change.cavity.push(tet);
         for (facet, corners) in FACETS.into_iter().enumerate() {
-            if let Behind::Tet(half) = complex.behind(tet, facet) {
+            let behind = complex.behind(tet, facet);
+            if let Behind::Tet(half) = behind {
                 let known = self.rim.iter().position(|r| r.0 == half.tet() && r.1 == half.facet());
                 if let Some(known) = known {
                     self.rim.swap_remove(known);
@@ -94,8 +99,11 @@ impl Insertion {
                 }
             }
             let [a, b, c] = corners.map(|corner| complex.point(complex.vertices(tet)[corner]));
-            self.rim.push((tet, facet, complex.measure([a, c, b, point])));
+            let quality = complex.measure([a, c, b, point]);
+            is_open &= quality > bar || matches!(behind, Behind::Tet(_));
+            self.rim.push((tet, facet, quality));
         }
+        is_open
     }
 
     /// Whether a vertex of the cavity is on none of its outer facets.

@@ -25,9 +25,13 @@ impl Repair {
             return;
         }
         let vertices = self.complex.vertices(tet);
-        for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
+        let edges_at = vertices.map(|v| self.edges_at(v));
+        for [i, j] in EDGES {
+            let [a, b] = [vertices[i], vertices[j]];
             let length = distance(self.complex.point(a), self.complex.point(b));
-            let average = self.local_average_length([a, b]);
+            let [(n, sum), (m, other_sum)] = [edges_at[i], edges_at[j]];
+            // The edge itself is one of both.
+            let average = (sum + other_sum - length) / (n + m - 1) as f64;
             if length < SHORT * average {
                 self.collapse(tet, a, b);
                 self.collapse(tet, b, a);
@@ -37,18 +41,15 @@ impl Repair {
         }
     }
 
-    /// The mean length of the edges that have one of two vertices, each edge once.
-    fn local_average_length(&mut self, ends: [VertexId; 2]) -> f64 {
-        let mut edges: Vec<[VertexId; 2]> = Vec::new();
-        for end in ends {
-            self.star.gather(&self.complex, end);
-            let others = self.star.tets.iter().flat_map(|&t| self.complex.vertices(t));
-            edges.extend(others.filter(|&v| v != end).map(|v| [end.min(v), end.max(v)]));
-        }
-        edges.sort_unstable();
-        edges.dedup();
-        let length = |[a, b]: &[VertexId; 2]| distance(self.complex.point(*a), self.complex.point(*b));
-        edges.iter().map(length).sum::<f64>() / edges.len() as f64
+    /// How many edges a vertex has, and their length in all.
+    fn edges_at(&mut self, vertex: VertexId) -> (usize, f64) {
+        self.star.gather(&self.complex, vertex);
+        let mut others: Vec<VertexId> =
+            self.star.tets.iter().flat_map(|&t| self.complex.vertices(t)).filter(|&v| v != vertex).collect();
+        others.sort_unstable();
+        others.dedup();
+        let length = |v: &VertexId| distance(self.complex.point(vertex), self.complex.point(*v));
+        (others.len(), others.iter().map(length).sum())
     }
 
     /// Offers to split an edge of a tet in its middle, if it lies inside.
