@@ -4,6 +4,7 @@ mod csr;
 mod error;
 mod ids;
 mod lanewise;
+mod mixed;
 mod sets;
 mod threads;
 
@@ -12,6 +13,7 @@ pub use error::{Error, ErrorKind, Result};
 pub(crate) use ids::rising;
 pub use ids::{CellId, Id, TetId, VertexId};
 pub(crate) use lanewise::lanewise;
+pub(crate) use mixed::mixed;
 pub(crate) use sets::Sets;
 pub use threads::Threads;
 

@@ -7,7 +7,7 @@
 //! coordinates and equal keys are told apart by coordinates, so the order, and with it every tie,
 //! depends on the set of points only, not on how the caller numbered them.
 
-use crate::base::{Point, Threads};
+use crate::base::{Point, Threads, mixed};
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
 
 /// The first round has about this many points.
@@ -52,16 +52,10 @@ fn keys(points: &[Point], threads: &Threads, last_round: u32) -> Vec<Keyed> {
     })
 }
 
-/// A hash of the coordinates, equal for equal points (`-0.0 == 0.0`); the mixing of
-/// splitmix64 (Steele, Lea and Flood 2014) after each coordinate.
+/// A hash of the coordinates, equal for equal points (`-0.0 == 0.0`).
 #[inline]
 fn hash(p: Point) -> u64 {
-    p.iter().fold(0x9e37_79b9_7f4a_7c15, |h: u64, &x| {
-        let h = (h ^ (x + 0.0).to_bits()).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let h = (h ^ h >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let h = (h ^ h >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        h ^ h >> 31
-    })
+    p.iter().fold(0x9e37_79b9_7f4a_7c15, |h, &x| mixed(h ^ (x + 0.0).to_bits()))
 }
 
 /// Sorts by the key, equal keys staying in order; least digits first, ten bits a pass.

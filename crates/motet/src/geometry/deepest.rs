@@ -4,7 +4,7 @@
 //! optimum of those before it, and that is the same problem with one unknown less (Seidel 1991, *Small-dimensional linear programming and convex hulls made
 //! easy*). The time is linear in the number of half-spaces as a rule.
 
-use crate::base::Point;
+use crate::base::{Point, mixed};
 
 /// Unknowns of the program: coordinates, then the depth.
 const N: usize = 4;
@@ -70,11 +70,8 @@ pub(crate) fn deepest(half_spaces: impl Iterator<Item = (Point, f64)>) -> (Point
 
 /// An order that has nothing to do with the one that they come in, the same every time.
 fn shuffle(constraints: &mut [Constraint]) {
-    let mut state = 1u64;
     for i in (1..constraints.len()).rev() {
-        // The constants of Knuth's MMIX; the upper bits are the random ones.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        constraints.swap(i, (state >> 33) as usize % (i + 1));
+        constraints.swap(i, mixed(i as u64) as usize % (i + 1));
     }
 }
 

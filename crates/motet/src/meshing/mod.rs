@@ -2,7 +2,7 @@
 //!
 //! | step | file | how |
 //! |---|---|---|
-//! | surfaces | `surfaces`, `joint` | joined: equal points are one, triangles that surfaces share are one, meshes that end at a common edge are one surface |
+//! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one, meshes that end at a common edge are one surface |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
 //! | layers | [`layers`] | thin prisms on walls, where they are asked for; what follows fills the room that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
@@ -17,7 +17,6 @@ mod compact;
 mod fill;
 mod graded;
 mod interior;
-mod joint;
 pub mod layers;
 mod octree;
 mod shadow;

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::compact::{compact, named};
-use super::joint::joint;
 use crate::base::{Error, Point, Result, Threads, VertexId, rising};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
 use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
@@ -57,7 +56,7 @@ impl Surfaces {
 
     /// Makes one of surfaces that end at a common edge; a triangle that several of them have stays in the first.
     fn join(&mut self) {
-        let part_of = joint(&self.triangles, &self.surface_of, &self.roles);
+        let part_of = preflight::joint(&self.points, &self.triangles, &self.surface_of, &self.roles);
         if (0..).eq(part_of.iter().copied()) {
             return;
         }

@@ -85,7 +85,7 @@ impl Insertion {
     }
 
     /// Puts a tet into the cavity: facets towards it go from the rim, its others come. `false` where one of these is a wall, which stays whatever else comes, and not
-    /// better than `bar`: to grow on until it is the worst took a quarter of the time of repairs on surfaces of narrow triangles.
+    /// better than `bar`: to grow on until it is the worst took a fifth of the time of repairing a cube with a crease of needles.
     fn take(&mut self, complex: &Complex, tet: TetId, point: Point, bar: f64, change: &mut Change) -> bool {
         let mut is_open = true;
         change.cavity.push(tet);

@@ -146,14 +146,14 @@ fn foot_is_inside(tet: [Point; 4], vertex: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::mixed;
     use crate::geometry::quality::eas;
 
-    /// A number in [-1, 1) from a state (Steele, Lea and Flood 2014).
+    /// A number in [-1, 1) from a state.
     fn next(state: &mut u64) -> f64 {
+        let number = mixed(*state);
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (*state ^ *state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ z >> 31) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        (number >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     /// Degenerate tets made on purpose, types I to IV in turn, each corner moved by up to `noise` of the size.

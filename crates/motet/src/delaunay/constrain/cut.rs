@@ -7,6 +7,7 @@
 //! A facet between two tets that are cut may itself be whole, where it meets the plane in a vertex or an edge. It is forgotten, unless it is of the
 //! surface: then it stands in the hollow as a wall with two sides.
 
+use super::sides::Sides;
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{TetId, VertexId};
@@ -22,9 +23,7 @@ pub(super) struct Face {
 /// Working space.
 #[derive(Default)]
 pub(super) struct Cut {
-    /// On which side of the plane each vertex met lies, and in which round that was found.
-    sides: Vec<(u32, i8)>,
-    round: u32,
+    sides: Sides,
     /// The tets that are cut.
     pub(super) tets: Vec<TetId>,
     /// The faces around them in front of the plane, and behind it.
@@ -49,35 +48,29 @@ impl Cut {
         (edge, beyond): ([VertexId; 2], VertexId),
         is_wall: impl Fn([VertexId; 3]) -> bool,
     ) -> Result<(), Stuck> {
-        self.round += 1;
-        self.sides.resize(self.sides.len().max(sites.len()), (0, 0));
-        let first = self.first(tets, sites, corners, edge, beyond).ok_or(Stuck)?;
-        self.spread(tets, sites, corners, first)?;
+        self.sides.begin(corners);
+        self.sides.grow(sites);
+        let first = self.first(tets, sites, edge, beyond).ok_or(Stuck)?;
+        self.spread(tets, sites, first)?;
         self.shells.iter_mut().for_each(Vec::clear);
         self.walls.clear();
         self.vertices.iter_mut().for_each(Vec::clear);
         for i in 0..self.tets.len() {
             for v in tets.vertices(self.tets[i]) {
-                match self.side(sites, corners, v) {
+                match self.sides.of(sites, v) {
                     0 => {}
                     side => self.vertices[usize::from(side < 0)].push(v),
                 }
             }
             for half in Tets::facets(self.tets[i]) {
-                self.enclose(tets, sites, corners, half, &is_wall)?;
+                self.enclose(tets, sites, half, &is_wall)?;
             }
         }
         Ok(())
     }
 
     /// Collects the tets that are cut, from the first one on.
-    fn spread(
-        &mut self,
-        tets: &mut Tets,
-        sites: &Sites,
-        corners: [VertexId; 3],
-        first: TetId,
-    ) -> Result<(), Stuck> {
+    fn spread(&mut self, tets: &mut Tets, sites: &Sites, first: TetId) -> Result<(), Stuck> {
         tets.begin();
         tets.mark(first);
         self.tets.clear();
@@ -86,7 +79,7 @@ impl Cut {
         while let Some(&tet) = self.tets.get(next) {
             next += 1;
             for half in Tets::facets(tet) {
-                if self.sides(tets, sites, corners, half) == [true, true] {
+                if self.met(tets, sites, half) == [true, true] {
                     let outer = tets.across(half);
                     if outer.is_none() {
                         return Err(Stuck);
@@ -105,13 +98,12 @@ impl Cut {
         &mut self,
         tets: &Tets,
         sites: &Sites,
-        corners: [VertexId; 3],
         half: HalfFacet,
         is_wall: impl Fn([VertexId; 3]) -> bool,
     ) -> Result<(), Stuck> {
         let (vertices, outer) = (tets.inward(half), tets.across(half));
         let is_within = !outer.is_none() && tets.is_marked(outer.tet());
-        let shell = match self.sides(tets, sites, corners, half) {
+        let shell = match self.met(tets, sites, half) {
             [true, true] => return Ok(()),
             [false, false] => return Err(Stuck),
             [front, _] => usize::from(!front),
@@ -128,8 +120,8 @@ impl Cut {
     }
 
     /// Whether a facet has vertices in front of the plane, and behind it.
-    fn sides(&mut self, tets: &Tets, sites: &Sites, corners: [VertexId; 3], half: HalfFacet) -> [bool; 2] {
-        let sides = tets.inward(half).map(|v| self.side(sites, corners, v));
+    fn met(&self, tets: &Tets, sites: &Sites, half: HalfFacet) -> [bool; 2] {
+        let sides = tets.inward(half).map(|v| self.sides.of(sites, v));
         [sides.contains(&1), sides.contains(&-1)]
     }
 
@@ -138,34 +130,24 @@ impl Cut {
         &mut self,
         tets: &mut Tets,
         sites: &Sites,
-        corners: [VertexId; 3],
         [a, b]: [VertexId; 2],
         beyond: VertexId,
     ) -> Option<TetId> {
         let mut star = std::mem::take(&mut self.star);
         tets.around([a, b], &mut star);
-        let mut is_cut = |tet: &TetId| {
+        let is_cut = |tet: &TetId| {
             let others = tets.vertices(*tet).map(|v| if v == a || v == b { None } else { Some(v) });
             let mut others = others.into_iter().flatten();
             let (Some(p), Some(q)) = (others.next(), others.next()) else { return false };
-            if self.side(sites, corners, p) * self.side(sites, corners, q) >= 0 {
+            if self.sides.of(sites, p) * self.sides.of(sites, q) >= 0 {
                 return false;
             }
             // Between the half planes of p and q, which are less than half a turn apart.
             let turn = sites.orient3d([a, b, p, q]);
             sites.orient3d([a, b, p, beyond]) == turn && sites.orient3d([a, b, beyond, q]) == turn
         };
-        let first = star.iter().copied().find(&mut is_cut);
+        let first = star.iter().copied().find(is_cut);
         self.star = star;
         first
-    }
-
-    /// On which side of the plane a vertex lies.
-    fn side(&mut self, sites: &Sites, [a, b, c]: [VertexId; 3], v: VertexId) -> i8 {
-        let known = &mut self.sides[v.index()];
-        if known.0 != self.round {
-            *known = (self.round, sites.orient3d([a, b, c, v]));
-        }
-        known.1
     }
 }

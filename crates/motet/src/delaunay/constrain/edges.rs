@@ -24,7 +24,7 @@ const SPARE: usize = 12;
 /// A share of an edge with room for enough numbers.
 const ROOM: f64 = 1e-9;
 
-/// A share of an edge with room for an `f64`.
+/// A share of an edge with room for an `f64`; where there is, the point gets few digits, since signs cost more with more.
 const ROOM_FOR_ONE: f64 = 1e-13;
 
 /// Where facets cannot be told apart, a point so far beside them leaves a piece on which they are farther apart.

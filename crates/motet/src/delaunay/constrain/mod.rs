@@ -37,6 +37,7 @@ mod plane;
 mod recone;
 mod segments;
 mod share;
+mod sides;
 mod sites;
 mod split;
 mod swap;

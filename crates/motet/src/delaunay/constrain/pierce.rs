@@ -3,11 +3,10 @@
 //! A point where an edge pierces the triangle sees all tets around that edge. Put in, it takes the edge away and brings none that
 //! pierces. So there are as many steps at most as edges at first; then the triangle is made of facets, whichever they are.
 
-use std::cell::Cell;
-
 use hashbrown::HashSet;
 
 use super::plane::Plane;
+use super::sides::Sides;
 use super::sites::Sites;
 use super::split::{Kept, Split, faces_around, positive_part, round_between};
 use super::swap::{Swap, Wanted};
@@ -70,31 +69,6 @@ impl<K: Kept> Wanted for Whole<'_, K> {
     }
 }
 
-/// On which side of a plane each vertex lies.
-struct Sides {
-    /// They tell the plane and how it is turned.
-    corners: [VertexId; 3],
-    /// By vertex, where it has been asked for: among points on edges the same few signs are, ever again, and they are the dear ones.
-    known: Vec<Cell<Option<i8>>>,
-}
-
-impl Sides {
-    fn of(&self, sites: &Sites, v: VertexId) -> i8 {
-        let known = self.known.get(v.index());
-        known.and_then(Cell::get).unwrap_or_else(|| {
-            let [a, b, c] = self.corners;
-            let side = if self.corners.contains(&v) { 0 } else { sites.orient3d([a, b, c, v]) };
-            known.inspect(|known| known.set(Some(side)));
-            side
-        })
-    }
-
-    /// Makes room for vertices that have come.
-    fn grow(&mut self, sites: &Sites) {
-        self.known.resize(sites.len(), Cell::new(None));
-    }
-}
-
 /// Whether the line of an edge passes through a triangle.
 fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
     let turns = [[a, b], [b, c], [c, a]].map(|[p, q]| sites.orient3d([u, v, p, q]));
@@ -104,17 +78,19 @@ fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool
 impl Pierce {
     /// One that came as `triangles`, of which there is one at least, and is to be `parts`, turned as the first.
     pub(super) fn new(triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) -> Self {
-        let sides = |&[a, b, c]: &[VertexId; 3]| [([a, b], c), ([b, c], a), ([c, a], b)];
-        let edges: HashSet<[VertexId; 2]> = parts.iter().flat_map(sides).map(|(edge, _)| edge).collect();
+        let around = |&[a, b, c]: &[VertexId; 3]| [([a, b], c), ([b, c], a), ([c, a], b)];
+        let edges: HashSet<[VertexId; 2]> = parts.iter().flat_map(around).map(|(edge, _)| edge).collect();
         let is_outer = |(edge, _): &([VertexId; 2], VertexId)| !edges.contains(&[edge[1], edge[0]]);
-        let rim: Vec<_> = parts.iter().flat_map(sides).filter(is_outer).collect();
+        let rim: Vec<_> = parts.iter().flat_map(around).filter(is_outer).collect();
         let on_rim: HashSet<VertexId> = rim.iter().flat_map(|(edge, _)| *edge).collect();
         let mut points: Vec<VertexId> =
             parts.as_flattened().iter().copied().filter(|v| !on_rim.contains(v)).collect();
         points.sort_unstable();
         points.dedup();
+        let mut sides = Sides::default();
+        sides.begin(triangles[0].1);
         Self {
-            sides: Sides { corners: triangles[0].1, known: Vec::new() },
+            sides,
             triangles,
             parts: parts.to_vec(),
             rim,

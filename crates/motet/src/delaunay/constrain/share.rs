@@ -6,51 +6,41 @@ use std::cmp::Ordering;
 
 use crate::geometry::predicates::pair::Pair;
 
-/// A share of the way from the first end of a segment to its second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Share {
-    /// The nearest number.
-    high: f64,
-    /// What is left of it: at most half of the last place of `high`.
-    low: f64,
-}
+/// A share of the way from the first end of a segment to its second: the nearest `f64`, and what is left of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share(Pair);
 
 impl Share {
     pub(super) const START: Self = Self::of(0.0);
     pub(super) const END: Self = Self::of(1.0);
 
     pub(super) const fn of(share: f64) -> Self {
-        Self { high: share, low: 0.0 }
+        Self(Pair { high: share, low: 0.0 })
     }
 
     /// The nearest `f64`.
     pub(super) fn near(self) -> f64 {
-        self.high
+        self.0.high
     }
 
     /// Two numbers whose sum it is.
     pub(super) fn parts(self) -> [f64; 2] {
-        [self.high, self.low]
+        [self.0.high, self.0.low]
     }
 
     /// `self + step`, rounded to twice the digits.
     pub(super) fn plus(self, step: f64) -> Self {
-        let sum = self.pair().plus(Pair { high: step, low: 0.0 }).normalized();
-        Self { high: sum.high, low: sum.low }
+        Self(self.0.plus(Self::of(step).0).normalized())
     }
 
     /// `self - other`, rounded.
     pub(super) fn minus(self, other: Self) -> f64 {
-        self.pair().minus(other.pair()).value()
+        self.0.minus(other.0).value()
     }
 
     /// By size.
     pub(super) fn order(&self, other: &Self) -> Ordering {
-        self.high.total_cmp(&other.high).then(self.low.total_cmp(&other.low))
-    }
-
-    fn pair(self) -> Pair {
-        Pair { high: self.high, low: self.low }
+        self.0.high.total_cmp(&other.0.high).then(self.0.low.total_cmp(&other.0.low))
     }
 }
 
