@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{contact, convert, demo, info, meshing, moving, refine, remesh};
+use crate::verbs::{contact, convert, demo, implant, info, meshing, moving, refine, remesh};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -29,6 +29,7 @@ pub(crate) enum Verb {
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
     Refine(Box<refine::RefineArgs>),
+    Implant(Box<implant::ImplantArgs>),
     Contact(Box<contact::ContactArgs>),
     Demo(demo::DemoArgs),
 }

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
         Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),
+        Verb::Implant(args) => verbs::implant::run(&args, &call.common, &console),
         Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };

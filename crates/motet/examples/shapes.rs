@@ -1,12 +1,13 @@
-//! Motet's own vessels as closed surfaces, for other programs to fill.
+//! Motet's own vessels and devices as closed surfaces, for other programs to fill.
 //!
-//! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word).
+//! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word); and `loops.vtp`, a coil
+//! that lies in the sac of the aneurysm.
 
 use std::error::Error;
 use std::path::Path;
 
 use motet::io::{self, WriteOptions};
-use motet::mesh::shapes::{Aneurysm, Bifurcation};
+use motet::mesh::shapes::{Aneurysm, Bifurcation, Coil};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
@@ -16,9 +17,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("--around") => words.next().ok_or("--around takes a number")?.parse()?,
         Some(word) => return Err(format!("{word} is no word of this example").into()),
     };
+    let aneurysm = Aneurysm { around, ..Aneurysm::default() };
+    let coil = Coil { centre: [0.0; 3], radius: 0.8, pitch: 0.35, turns: 4.0, wire_radius: 0.075 };
+    let mut loops = coil.mesh(120, 12)?;
+    // Its axis along that of the sac.
+    loops.points.iter_mut().for_each(|p| *p = [p[0], aneurysm.sac_height + p[2], -p[1]]);
     let shapes = [
-        ("aneurysm.vtp", Aneurysm { around, ..Aneurysm::default() }.mesh()?),
+        ("aneurysm.vtp", aneurysm.mesh()?),
         ("bifurcation.vtp", Bifurcation { around, ..Bifurcation::default() }.mesh()?),
+        ("loops.vtp", loops),
     ];
     for (file, mesh) in shapes {
         io::write(Path::new(&folder).join(file), &mesh, &WriteOptions::default())?;

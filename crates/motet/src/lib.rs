@@ -16,6 +16,7 @@
 //! | [`motion`] | 7 | boundary displacement in, volume mesh out |
 //! | [`meshing`] | 7 | closed surfaces in, volume mesh out |
 //! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |
+//! | [`implant`] | 8 | devices put into a mesh, one conforming mesh out |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
 
@@ -23,6 +24,7 @@ pub mod base;
 pub mod contact;
 pub mod delaunay;
 pub mod geometry;
+pub mod implant;
 pub mod io;
 pub mod kernel;
 pub mod mesh;

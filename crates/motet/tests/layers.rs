@@ -21,6 +21,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("motion", 7),
     ("meshing", 7),
     ("contact", 7),
+    ("implant", 8),
 ];
 
 fn floor(module: &str) -> Option<u32> {

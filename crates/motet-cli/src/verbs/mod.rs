@@ -3,6 +3,7 @@
 pub(crate) mod contact;
 pub(crate) mod convert;
 pub(crate) mod demo;
+pub(crate) mod implant;
 pub(crate) mod info;
 pub(crate) mod meshing;
 pub(crate) mod moving;

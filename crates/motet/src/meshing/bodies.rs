@@ -36,7 +36,7 @@ pub struct Body {
 }
 
 /// The bodies of a mesh, by their numbers.
-pub(super) fn told(mesh: &Mesh) -> Vec<Body> {
+pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
     let Some(regions) = mesh.regions() else { return Vec::new() };
     let mut bodies: BTreeMap<i32, Body> = BTreeMap::new();
     for (cell, kind, vertices) in mesh.cells.iter() {

@@ -189,7 +189,7 @@ fn inside(
         None => Ok(Vec::new()),
         Some(Sizes::Uniform(size)) => interior::lattice(points, triangles, *size, threads),
         Some(Sizes::Graded(grading)) => {
-            graded::check(surfaces, &at_corners, grading)?;
+            graded::check(points, triangles, &at_corners, grading)?;
             let field = SizeField::new(points, triangles, at_corners, grading, threads);
             graded::lattice(points, triangles, &field, threads)
         }

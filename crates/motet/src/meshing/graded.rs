@@ -9,8 +9,7 @@ use super::interior::{AWAY, EDGE_OVER_SIDE};
 use super::octree::{Grid, Octree};
 use super::shadow::Shadow;
 use super::size_field::SizeField;
-use super::sizes::Grading;
-use super::surfaces::Surfaces;
+use super::sizes::{Grading, edge_lengths};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::{self, area};
 use crate::mesh::bounds;
@@ -23,10 +22,15 @@ const MOST: f64 = 5e7;
 
 /// # Errors
 /// When the sizes ask for too many points.
-pub(super) fn check(surfaces: &Surfaces, at_corners: &[[f64; 3]], grading: &Grading) -> Result<()> {
+pub(super) fn check(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    at_corners: &[[f64; 3]],
+    grading: &Grading,
+) -> Result<()> {
     let size = |at: &[f64; 3]| (at.iter().sum::<f64>() / 3.0).min(grading.largest.unwrap_or(f64::INFINITY));
-    let corners = |t: [VertexId; 3]| t.map(|v| surfaces.points[v.index()]);
-    let both = || surfaces.triangles.iter().zip(at_corners);
+    let corners = |t: [VertexId; 3]| t.map(|v| points[v.index()]);
+    let both = || triangles.iter().zip(at_corners);
     let expected: f64 = both().map(|(t, at)| area(corners(*t)) / (size(at) * size(at))).sum();
     if expected <= MOST {
         return Ok(());
@@ -76,4 +80,20 @@ fn first_side([low, high]: [Point; 2], field: &SizeField<'_>) -> f64 {
     }
     let side = field.median() / EDGE_OVER_SIDE;
     side * (longest / side).log2().ceil().max(0.0).exp2()
+}
+
+/// Points of a lattice in the room between triangles, which need not be closed: edges are as long as those of the triangles, and grow away from them.
+///
+/// # Errors
+/// When there would be too many.
+pub(crate) fn points_between(
+    points: &[Point],
+    triangles: &[[VertexId; 3]],
+    grading: &Grading,
+    threads: &Threads,
+) -> Result<Vec<Point>> {
+    let lengths = edge_lengths(points, triangles);
+    let at_corners: Vec<[f64; 3]> = triangles.iter().map(|t| t.map(|v| lengths[v.index()])).collect();
+    check(points, triangles, &at_corners, grading)?;
+    lattice(points, triangles, &SizeField::new(points, triangles, at_corners, grading, threads), threads)
 }

@@ -24,7 +24,9 @@ mod size_field;
 mod sizes;
 mod surfaces;
 
+pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
 pub use fill::{Filled, Options, Report, fill};
+pub(crate) use graded::points_between;
 pub use sizes::{Grading, MOST_GROWTH, Sizes, sizes_by};
 pub use surfaces::Surfaces;

@@ -1,7 +1,7 @@
 //! How long edges inside are to be: what a caller can ask for, held against what can be done.
 
 use super::surfaces::Surfaces;
-use crate::base::{Error, Result};
+use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh::{Field, Mesh, Surface, firsts_at_place};
 
@@ -50,7 +50,7 @@ impl Sizes {
     /// The sizes at the corners of each triangle, where they are not the same everywhere.
     pub(super) fn at_corners(&self, surfaces: &Surfaces) -> Vec<[f64; 3]> {
         let Self::Graded(grading) = self else { return Vec::new() };
-        let of_edges = || edge_lengths(surfaces);
+        let of_edges = || edge_lengths(&surfaces.points, &surfaces.triangles);
         let sizes = grading.at_points.as_ref().map_or_else(of_edges, Vec::clone);
         surfaces.triangles.iter().map(|t| t.map(|v| sizes[v.index()])).collect()
     }
@@ -78,11 +78,11 @@ impl Grading {
 }
 
 /// The mean length of the edges at each point; of inner edges each counts for both its triangles.
-fn edge_lengths(surfaces: &Surfaces) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); surfaces.points.len()];
-    for &[a, b, c] in &surfaces.triangles {
+pub(super) fn edge_lengths(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); points.len()];
+    for &[a, b, c] in triangles {
         for [a, b] in [[a, b], [b, c], [c, a]] {
-            let length = distance(surfaces.points[a.index()], surfaces.points[b.index()]);
+            let length = distance(points[a.index()], points[b.index()]);
             for end in [a, b] {
                 let (sum, n) = &mut sums[end.index()];
                 *sum += length;

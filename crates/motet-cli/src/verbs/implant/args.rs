@@ -1,0 +1,114 @@
+//! The words of `motet implant`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use motet::implant::{self, Options};
+use motet::remesh;
+
+use crate::verbs::convert::WritingArgs;
+use crate::verbs::remesh::{Carry, carry};
+use crate::words::positive;
+
+/// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
+///
+/// Tets of the host that lie in a device or near it are replaced. Every triangle of the device's surface is a facet of the new mesh, so what flows round
+/// it and what is in it share their vertices. Farther away everything stays as it came, to the bit. Regions, patches and every array go along.
+#[derive(Debug, Args)]
+#[command(override_usage = "motet implant HOST DEVICE... -o OUT [OPTIONS]")]
+#[command(after_help = "\
+A device is a closed surface, or a mesh of tets. It is a region of the new mesh and its surface a patch, both named after its file. One that has tets keeps
+them; a surface is filled. Devices may lie within each other and share triangles, but neither touch each other otherwise nor a wall of the host
+(its boundary, interfaces of its regions, its triangles).
+
+New tets have edges as long as those of the device beside it, and grow by --growth of the distance, up to those of the host. Distances of --carve and
+--reach are in lengths of the host's edges at the place.
+
+Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps on cells; whole numbers, names and directions are
+inherited. What lies in a device comes from the tets of the host that were there.
+
+Examples:
+  motet implant aneurysm.vtu coil.stl -o coiled.vtu
+  motet implant aneurysm.vtu coil.stl -o coiled.vtu --hollow        flow round the coil alone
+  motet implant vessel.vtu stent.vtu thrombus.stl -o out.vtu --growth 0.3
+  motet implant aneurysm.vtu coil.stl -o coiled.vtu --json | jq .report.devices
+
+Exit status 3: a device is no closed surface without fault, touches a wall, lies outside of the host or holds it; nothing is written. 4: a triangle of a device is
+there in pieces only, or a bad tet is left that no angle of a surface forces; the mesh is written, and it is told what is left and why.")]
+pub(crate) struct ImplantArgs {
+    /// The mesh file (or folder) of the host, of tets
+    #[arg(value_name = "HOST")]
+    pub(crate) host: PathBuf,
+    /// Files of devices, closed surfaces or tets
+    #[arg(value_name = "DEVICE", required = true)]
+    pub(crate) devices: Vec<PathBuf>,
+    /// Where the result goes, in any mesh format
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+
+    /// Leave the room in devices out of the mesh
+    #[arg(long, help_heading = "Devices")]
+    pub(crate) hollow: bool,
+    /// Fill devices with new tets, also those that have some
+    #[arg(long, conflicts_with = "hollow", help_heading = "Devices")]
+    pub(crate) fill: bool,
+
+    /// What of the host is refined before it is carved
+    #[arg(long, value_name = "WHAT", default_value = "walls", help_heading = "Room")]
+    adapt: Adapt,
+    /// How long edges of the host are to be beside the devices where it is refined [default: as those of the devices]
+    #[arg(long, value_name = "H", value_parser = positive, help_heading = "Room")]
+    size: Option<f64>,
+    /// How much edges grow per unit of distance from the devices, at most 0.7
+    #[arg(long, value_name = "G", default_value_t = 0.5, value_parser = positive, help_heading = "Room")]
+    growth: f64,
+    /// Replace what is nearer to a device than so many edges
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = positive, help_heading = "Room")]
+    carve: f64,
+    /// Keep what is farther from all devices than so many edges to the bit
+    #[arg(long, value_name = "N", default_value_t = 3.0, value_parser = positive, help_heading = "Room")]
+    reach: f64,
+    /// Repair tets below this EAS, within --reach
+    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = positive, help_heading = "Room")]
+    min_eas: f64,
+
+    /// What becomes of an array where the mesh changes. Repeatable
+    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
+    pub(crate) carry: Vec<(String, Carry)>,
+    /// Add the cell array `eas`
+    #[arg(long, help_heading = "Arrays")]
+    pub(crate) quality: bool,
+    /// Write where each point and cell came from, with weights, as one JSON object
+    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
+    pub(crate) history: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) writing: WritingArgs,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Adapt {
+    /// Nothing
+    None,
+    /// Walls nearer to a device than half of their edges, which cannot be carved
+    Walls,
+    /// All that is near, by --size and --growth: for fields that are to keep their values in parts of the tets that they lay on
+    All,
+}
+
+impl ImplantArgs {
+    pub(super) fn options(&self) -> Options {
+        Options {
+            size: self.size,
+            growth: self.growth,
+            adapt: match self.adapt {
+                Adapt::None => implant::Adapt::No,
+                Adapt::Walls => implant::Adapt::Walls,
+                Adapt::All => implant::Adapt::All,
+            },
+            carve: self.carve,
+            reach: self.reach,
+            improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! `motet implant`: devices put into a mesh, one conforming mesh out.
+
+mod args;
+mod report;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::time::Instant;
+
+use motet::geometry::quality::eas;
+use motet::implant::{Device, Implanted, Inside, implant};
+use motet::mesh::LabelNames;
+use motet::{Error, io};
+
+pub(crate) use args::ImplantArgs;
+
+use self::report::Report;
+use crate::args::Common;
+use crate::console::Console;
+use crate::exit::Outcome;
+use crate::outputs;
+use crate::table::seconds;
+use crate::verbs::remesh::rules;
+
+pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
+    let begin = Instant::now();
+    outputs::check_with_history(&args.output, &args.host, args.history.as_deref())?;
+    outputs::check(&args.output, args.devices.iter().map(AsRef::as_ref), "a device")?;
+    let threads = common.threads()?;
+    let bar = console.bar(2, "implanting");
+    let (host, notes) = io::read_noted(&args.host)?;
+    notes.iter().for_each(|what| console.warn(what));
+    let rules = rules(&args.carry, &host).map_err(|e| e.in_file(&args.host))?;
+    let devices = read(args, &host.label_names, console)?;
+    let read = begin.elapsed().as_secs_f64();
+    bar.inc(1);
+    let made = implant(&host, &devices, &args.options(), &rules, &threads);
+    let Implanted { mut mesh, history, report } = made.map_err(|e| in_its_file(e, args, &devices))?;
+    bar.inc(1);
+    if args.quality {
+        mesh.set_cell_field(mesh.tet_field("eas", eas));
+    }
+    let writing = Instant::now();
+    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
+    if let Some(file) = &args.history {
+        outputs::write_history(file, &history)?;
+    }
+    let write = writing.elapsed().as_secs_f64();
+    bar.finish_and_clear();
+    console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
+    lost.iter().for_each(|what| console.warn(what));
+    let is_complete = report.is_complete();
+    Report::new(args, report, [read, write, begin.elapsed().as_secs_f64()]).tell(console);
+    Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
+}
+
+/// The devices, each with a name of its own.
+fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Result<Vec<Device>> {
+    let mut names: BTreeSet<String> = taken.regions.values().chain(taken.patches.values()).cloned().collect();
+    let mut devices = Vec::new();
+    for file in &args.devices {
+        let (mesh, notes) = io::read_noted(file)?;
+        notes.iter().for_each(|what| console.warn(what));
+        let mut device = Device::new(mesh, unused(&stem(file), &names));
+        names.insert(device.name.clone());
+        if args.hollow {
+            device.inside = Inside::Hollow;
+        } else if args.fill {
+            device.inside = Inside::Filled;
+        }
+        devices.push(device);
+    }
+    Ok(devices)
+}
+
+/// The file's name without its ending.
+fn stem(file: &Path) -> String {
+    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+fn unused(name: &str, names: &BTreeSet<String>) -> String {
+    let numbered = (2u32..).map(|k| format!("{name}_{k}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(|name| !names.contains(name)).unwrap_or_default()
+}
+
+/// An error that names a device is one of its file, any other of the host's.
+fn in_its_file(error: Error, args: &ImplantArgs, devices: &[Device]) -> Error {
+    let named = devices.iter().position(|device| error.what().contains(&format!("`{}`", device.name)));
+    let file = named.map_or(&args.host, |k| &args.devices[k]);
+    error.in_file(file)
+}

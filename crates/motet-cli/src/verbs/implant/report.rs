@@ -1,0 +1,165 @@
+//! What implanting reports: to people a few lines, to programs an object.
+
+use std::path::PathBuf;
+
+use motet::base::Point;
+use motet::implant;
+use motet::remesh::{Left, Reason};
+use serde::Serialize;
+
+use super::args::ImplantArgs;
+use crate::console::Console;
+use crate::table::{Table, count, seconds, short};
+
+/// All that implanting came to.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    host: PathBuf,
+    devices: Vec<PathBuf>,
+    output: PathBuf,
+    /// Where the history went, if anywhere.
+    history: Option<PathBuf>,
+    /// Whether the mesh is valid, every triangle of the devices a facet, and no bad tet left but those that surfaces force.
+    complete: bool,
+    /// Whether the mesh conforms, and no tet is inverted.
+    valid: bool,
+    /// How far volumes are from what they should be, as a part; the largest.
+    volume_deviation: f64,
+    /// Bad tets that no angle of a surface forces.
+    unforced: usize,
+    report: implant::Report,
+    seconds: Seconds,
+}
+
+#[derive(Debug, Serialize)]
+struct Seconds {
+    read: f64,
+    write: f64,
+    total: f64,
+}
+
+/// How many of the bad tets that are left are told where nobody asks for all.
+const FIRST: usize = 10;
+
+impl Report {
+    pub(super) fn new(args: &ImplantArgs, report: implant::Report, [read, write, total]: [f64; 3]) -> Self {
+        Self {
+            host: args.host.clone(),
+            devices: args.devices.clone(),
+            output: args.output.clone(),
+            history: args.history.clone(),
+            complete: report.is_complete(),
+            valid: report.is_valid(),
+            volume_deviation: report.volume_deviation(),
+            unforced: report.n_unforced(),
+            report,
+            seconds: Seconds { read, write, total },
+        }
+    }
+
+    pub(super) fn tell(&self, console: &Console) {
+        console.report(self);
+        let report = &self.report;
+        if let Some(adapted) = report.adapted {
+            console.say(format_args!(
+                "refined {} times: {} tets of the host became {}",
+                adapted.generations,
+                count(adapted.tets_before),
+                count(adapted.tets_after)
+            ));
+        }
+        console.say(format_args!(
+            "{} tets carved; kept to the bit: {} of {}, {} %",
+            count(report.carved),
+            count(report.kept),
+            count(report.host_tets),
+            (report.kept_share * 1e4).floor() / 1e2
+        ));
+        console.say(self.device_table());
+        let worst = report.improved.after.worst;
+        console.say(format_args!(
+            "{} tets; {} bad ones near the devices were repaired, {} of those that came are left; worst EAS there {}",
+            count(report.tets),
+            count(report.improved.before.bad.saturating_sub(report.improved.after.bad)),
+            count(report.improved.left.len()),
+            worst.map_or("-".into(), |worst| short(worst.eas))
+        ));
+        console.say(format_args!(
+            "volume {}, expected {}; off by {:.0e} at most",
+            short(report.volume),
+            short(report.volume_expected),
+            self.volume_deviation
+        ));
+        for defect in &report.defects {
+            console.warn(format_args!("{}: {}", defect.kind.name(), count(defect.count)));
+        }
+        self.tell_left(console);
+        console.say(format_args!("wrote {}", self.output.display()));
+        if let Some(history) = &self.history {
+            console.say(format_args!("wrote {}", history.display()));
+        }
+        let implant::Seconds { devices, adapt, carve, fill, improve, join, check } = report.seconds;
+        let [devices, adapt, carve, fill, improve, join, check, total] =
+            [devices, adapt, carve, fill, improve, join, check, self.seconds.total].map(seconds);
+        console.say(format_args!(
+            "devices {devices}, refined {adapt}, carved {carve}, filled {fill}, repaired {improve}, joined {join}, checked {check}, all {total}"
+        ));
+    }
+
+    fn device_table(&self) -> Table {
+        let mut table =
+            Table::new(["device", "region", "patch", "triangles", "as they came", "encloses", "volume"]);
+        for device in &self.report.devices {
+            table.row([
+                device.name.clone(),
+                device.region.map_or("hollow".into(), |region| region.to_string()),
+                device.patch.to_string(),
+                count(device.triangles),
+                count(device.triangles_kept),
+                short(device.enclosed),
+                device.region.map_or("-".into(), |_| short(device.volume)),
+            ]);
+        }
+        table
+    }
+
+    fn tell_left(&self, console: &Console) {
+        if !self.report.host_left.is_empty() {
+            console.say(format_args!(
+                "{} bad tets of the host near the devices are left as they came",
+                count(self.report.host_left.len())
+            ));
+        }
+        let left = &self.report.improved.left;
+        if left.is_empty() {
+            return;
+        }
+        let n_forced = left.len() - self.unforced;
+        console.say(format_args!(
+            "{} of the bad tets that are left are forced by angles of surfaces, {} are not:",
+            count(n_forced),
+            count(self.unforced)
+        ));
+        let is_forced =
+            |left: &Left| matches!(left.reason, Reason::WallAngle { .. } | Reason::WallsMeet { .. });
+        let mut told: Vec<&Left> = left.iter().collect();
+        told.sort_by_key(|left| is_forced(left));
+        let n = if console.is_verbose() { told.len() } else { FIRST };
+        for left in told.iter().take(n) {
+            console.say(format_args!(
+                "  cell {} at {}, EAS {}: {}",
+                left.tet,
+                place(left.place),
+                short(left.eas),
+                left.reason
+            ));
+        }
+        if told.len() > n {
+            console.say(format_args!("  and {} more: -v and --json tell all", count(told.len() - n)));
+        }
+    }
+}
+
+fn place(p: Point) -> String {
+    p.map(short).join(", ")
+}

@@ -1,0 +1,115 @@
+//! `motet implant`: what it puts in, what it reports, what it refuses.
+
+mod common;
+
+use common::{Folder, stderr, stdout};
+use motet::Mesh;
+use motet::io::read;
+use motet::mesh::check::check;
+use motet::mesh::history::History;
+use motet::mesh::shapes::{Coil, ball, box_grid};
+use motet::mesh::{CellKind, Cells, Surface};
+use serde_json::Value;
+
+fn small_ball(radius: f64, x: f64) -> Mesh {
+    let mut mesh = ball(3, 2);
+    mesh.points.iter_mut().for_each(|p| *p = [x + radius * p[0], radius * p[1], radius * p[2]]);
+    mesh
+}
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.mesh("host.vtu", &box_grid([6; 3], [[-1.5; 3], [1.5; 3]]));
+    let coil = Coil { centre: [0.0; 3], radius: 0.6, pitch: 0.5, turns: 2.0, wire_radius: 0.12 };
+    folder.mesh("coil.stl", &coil.mesh(40, 8).unwrap());
+    folder.mesh("ball.vtu", &small_ball(0.5, 0.0));
+    folder
+}
+
+fn report(folder: &Folder, words: &[&str]) -> Value {
+    let call = folder.motet(words.iter().chain(&["--json"])).assert().success();
+    serde_json::from_str(&stdout(&call)).expect("one object")
+}
+
+#[test]
+fn a_coil_and_what_the_report_says_of_it() {
+    let folder = folder();
+    let words = ["implant", "host.vtu", "coil.stl", "-o", "out.vtu", "--quality", "--history", "h.json"];
+    let told = report(&folder, &words);
+    assert_eq!(
+        (&told["complete"], &told["valid"], &told["unforced"]),
+        (&true.into(), &true.into(), &0.into())
+    );
+    assert!(told["volume_deviation"].as_f64().unwrap() < 1e-9);
+    let device = &told["report"]["devices"][0];
+    assert_eq!(device["triangles"], device["triangles_kept"]);
+    assert_eq!((device["name"].as_str(), device["region"].as_i64()), (Some("coil"), Some(2)));
+    let mesh = read(folder.path("out.vtu")).unwrap();
+    assert!(check(&mesh).is_empty());
+    assert!(mesh.cell_field("eas").is_some());
+    assert_eq!(mesh.regions().unwrap().find("coil"), Some(2));
+    let patch = mesh.patches().unwrap();
+    let n = patch.ids.iter().filter(|id| Some(**id) == patch.find("coil")).count();
+    assert_eq!(n as u64, device["triangles"].as_u64().unwrap());
+    let history: History = serde_json::from_slice(&folder.read("h.json")).unwrap();
+    assert_eq!((history.vertices.len(), history.cells.len()), (mesh.points.len(), mesh.cells.len()));
+    // To people, and twice the same.
+    let call =
+        folder.motet(["implant", "host.vtu", "coil.stl", "-o", "again.vtu", "--quality"]).assert().code(0);
+    for what in ["tets carved; kept to the bit", "coil", "volume 27", "wrote again.vtu"] {
+        assert!(stdout(&call).contains(what), "{what}");
+    }
+    assert_eq!(folder.read("out.vtu"), folder.read("again.vtu"));
+}
+
+#[test]
+fn devices_keep_their_tets_are_filled_or_hollow() {
+    let folder = folder();
+    let regions = |words: &[&str]| {
+        let told = report(&folder, &[&["implant", "host.vtu", "ball.vtu", "-o", "out.vtu"], words].concat());
+        let mesh = read(folder.path("out.vtu")).unwrap();
+        let ids = mesh.regions().unwrap().ids;
+        (told["report"]["regions"].as_array().unwrap().len(), ids.iter().filter(|id| **id == 2).count())
+    };
+    let n_own = ball(3, 2).cells.tets().count();
+    assert_eq!(regions(&[]), (2, n_own));
+    let (n, n_new) = regions(&["--fill"]);
+    assert!(n == 2 && n_new != n_own);
+    assert_eq!(regions(&["--hollow"]), (1, 0));
+    folder.mesh("ball_2.vtu", &small_ball(0.3, 0.9));
+    let told = report(&folder, &["implant", "host.vtu", "ball.vtu", "ball_2.vtu", "-o", "out.vtu"]);
+    let names: Vec<_> =
+        told["report"]["devices"].as_array().unwrap().iter().map(|d| d["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["ball", "ball_2"]);
+}
+
+#[test]
+fn bad_input_ends_with_the_reason_and_nothing_written() {
+    let folder = folder();
+    folder.mesh("far.vtu", &small_ball(0.5, 9.0));
+    folder.mesh("wall.vtu", &small_ball(0.5, 1.2));
+    folder.mesh("large.vtu", &small_ball(9.0, 0.0));
+    let whole = Surface::boundary_of(&small_ball(0.5, 0.0));
+    let mut cells = Cells::new();
+    whole.triangles.iter().skip(1).for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    folder.mesh("open.stl", &Mesh::new(whole.points, cells));
+    let refused = |words: &[&str], code: i32, what: &[&str]| {
+        let call = folder.motet([&["implant"], words, &["-o", "out.vtu"]].concat()).assert().code(code);
+        for what in what {
+            assert!(stderr(&call).contains(what), "{what}: {}", stderr(&call));
+        }
+        assert!(!folder.path("out.vtu").exists());
+    };
+    refused(&["host.vtu", "far.vtu"], 3, &["far.vtu", "lies outside of the host"]);
+    refused(&["host.vtu", "wall.vtu"], 3, &["wall.vtu", "touches or cuts a wall", "at ("]);
+    refused(&["host.vtu", "large.vtu"], 3, &["large.vtu", "holds the whole host"]);
+    refused(&["host.vtu", "open.stl"], 3, &["open.stl", "the surface ends at the edge"]);
+    refused(&["host.vtu", "ball.vtu", "ball.vtu"], 3, &["ball"]);
+    refused(&["coil.stl", "ball.vtu"], 3, &["coil.stl", "no linear tetrahedra"]);
+    refused(&["host.vtu", "none.stl"], 3, &["none.stl"]);
+    refused(&["host.vtu"], 2, &["DEVICE"]);
+    refused(&["host.vtu", "ball.vtu", "--growth", "5"], 2, &["grow by 5"]);
+    refused(&["host.vtu", "ball.vtu", "--carve", "9"], 2, &["9"]);
+    refused(&["host.vtu", "ball.vtu", "--carry", "none=drop"], 2, &["none"]);
+    folder.motet(["implant", "host.vtu", "ball.vtu", "-o", "ball.vtu"]).assert().code(2);
+}

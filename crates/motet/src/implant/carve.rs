@@ -1,0 +1,156 @@
+//! Which tets of the host go, and what bounds the room that they leave.
+
+use super::devices::Devices;
+use super::options::Options;
+use crate::base::{Threads, VertexId};
+use crate::contact::inside;
+use crate::geometry::quality::eas;
+use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
+use crate::geometry::vector::distance;
+use crate::mesh::tet_facets::{NO_TET, for_each_tet_facet};
+use crate::mesh::{TetMesh, bounds};
+use crate::spatial::NearestTriangle;
+
+/// What becomes of a tet of the host.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Fate {
+    /// It stays to the bit.
+    Kept,
+    /// It stays, unless a bad tet that came needs its room.
+    Near,
+    /// It is replaced.
+    Gone,
+}
+
+/// A facet that new tets have to fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Face {
+    /// Turned outward, as the tet behind it sees it.
+    pub(super) vertices: [VertexId; 3],
+    /// The region behind it, where a tet goes.
+    pub(super) behind: i32,
+    /// The region in front of it; `None` where no tet goes.
+    pub(super) front: Option<i32>,
+}
+
+/// The host carved.
+pub(super) struct Carved {
+    pub(super) fates: Vec<Fate>,
+    /// Facets between tets that go and others; and those between two that go, where regions meet or a triangle lies.
+    pub(super) faces: Vec<Face>,
+}
+
+/// A tet with so many neighbours that go is no more than a tooth.
+const TOOTH: usize = 3;
+
+impl Carved {
+    /// `carve` is [`Options::carve`], or more.
+    pub(super) fn new(
+        host: &TetMesh,
+        devices: &Devices,
+        nearest: &NearestTriangle,
+        carve: f64,
+        options: &Options,
+        threads: &Threads,
+    ) -> Self {
+        let mut fates =
+            threads.map(host.tets.len(), |t| near(host, t, nearest, carve, options.reach.max(carve)));
+        let mut neighbors = vec![[NO_TET; 4]; host.tets.len()];
+        for_each_tet_facet(&host.tets, &[], |sharing| {
+            if let &[(x, i), (y, j)] = sharing.tets {
+                (neighbors[x.index()][i], neighbors[y.index()][j]) = (y.0, x.0);
+            }
+        });
+        take_inner(host, devices, &mut fates, threads);
+        take_teeth(&neighbors, &mut fates);
+        leave_bad(host, options.improve.limit(), &mut fates);
+        let faces = faces(host, &fates);
+        Self { fates, faces }
+    }
+
+    pub(super) fn gone(&self) -> impl Iterator<Item = usize> + '_ {
+        self.fates.iter().enumerate().filter(|(_, fate)| **fate == Fate::Gone).map(|(t, _)| t)
+    }
+}
+
+/// By the distance between the devices and the tet's sphere, as a multiple of its edges.
+fn near(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: f64) -> Fate {
+    let corners = host.tets[t].map(|v| host.points[v.index()]);
+    let centre = centroid(corners);
+    let radius = corners.iter().map(|&p| distance(p, centre)).fold(0.0, f64::max);
+    let size = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).sum::<f64>() / 6.0;
+    match nearest.closest_within(centre, radius + reach * size) {
+        None => Fate::Kept,
+        Some(found) if found.distance_squared.sqrt() > radius + carve * size => Fate::Near,
+        Some(_) => Fate::Gone,
+    }
+}
+
+/// Tets that no device is near lie on one side of all: those inside go.
+fn take_inner(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &Threads) {
+    let Some([low, high]) = bounds(&devices.points) else { return };
+    let is_in_box = |v: VertexId| {
+        let p = host.points[v.index()];
+        (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
+    };
+    let is_asked = |t: &usize| fates[*t] != Fate::Gone && host.tets[*t].iter().all(|&v| is_in_box(v));
+    let asked: Vec<usize> = (0..fates.len()).filter(is_asked).collect();
+    let firsts: Vec<VertexId> = asked.iter().map(|&t| host.tets[t][0]).collect();
+    let mut points = devices.points.clone();
+    let mut vertices: Vec<VertexId> = firsts.clone();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let queries: Vec<VertexId> = (0..vertices.len()).map(|i| VertexId::new(points.len() + i)).collect();
+    points.extend(vertices.iter().map(|v| host.points[v.index()]));
+    let is_inside = inside(&points, &queries, &[], &devices.triangles, &[], threads);
+    for (t, first) in asked.into_iter().zip(firsts) {
+        if vertices.binary_search(&first).is_ok_and(|i| is_inside[i]) {
+            fates[t] = Fate::Gone;
+        }
+    }
+}
+
+/// Tets that stick out into the room go as well, so that it has no narrow notches.
+fn take_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
+    let mut todo: Vec<usize> = (0..fates.len()).filter(|&t| fates[t] == Fate::Near).collect();
+    while let Some(t) = todo.pop() {
+        let around = neighbors[t].into_iter().filter(|&n| n != NO_TET);
+        let n_gone = around.clone().filter(|&n| fates[n as usize] == Fate::Gone).count();
+        if fates[t] == Fate::Near && n_gone >= TOOTH {
+            fates[t] = Fate::Gone;
+            todo.extend(around.map(|n| n as usize));
+        }
+    }
+}
+
+/// Bad tets of the host that need not go stay as they are: what made them bad is not here, and where they hang together they reach far. (Carving those at the room as
+/// well left 428 bad ones for 17 in a public aneurysm of which 43 of 100 tets are bad.)
+fn leave_bad(host: &TetMesh, limit: f64, fates: &mut [Fate]) {
+    let is_bad = |tet: &[VertexId; 4]| eas(tet.map(|v| host.points[v.index()])).abs() < limit;
+    for (fate, tet) in fates.iter_mut().zip(&host.tets) {
+        if *fate == Fate::Near && is_bad(tet) {
+            *fate = Fate::Kept;
+        }
+    }
+}
+
+fn faces(host: &TetMesh, fates: &[Fate]) -> Vec<Face> {
+    let mut faces = Vec::new();
+    for_each_tet_facet(&host.tets, &host.triangles, |sharing| {
+        let gone = sharing.tets.iter().filter(|(t, _)| fates[t.index()] == Fate::Gone);
+        let mut gone = gone.map(|&(t, i)| (t.index(), i));
+        let Some((t, i)) = gone.next() else { return };
+        let front = gone.next().map(|(other, _)| host.regions[other]);
+        let behind = host.regions[t];
+        if front == Some(behind) && sharing.triangles.is_empty() {
+            return;
+        }
+        let tet = host.tets[t];
+        let mut vertices = FACETS[i].map(|k| tet[k]);
+        if volume(tet.map(|v| host.points[v.index()])) < 0.0 {
+            vertices.swap(1, 2);
+        }
+        faces.push(Face { vertices, behind, front });
+    });
+    faces
+}

@@ -1,0 +1,174 @@
+//! All of it, step by step.
+
+use std::time::Instant;
+
+use super::adapt::adapt;
+use super::carve::{Carved, Fate};
+use super::devices::Devices;
+use super::gap::Gap;
+use super::join::{Joined, Pieces, join, volume_of};
+use super::names::Names;
+use super::options::{Device, Inside, Options};
+use super::place;
+use super::report::{DeviceReport, Report};
+use super::zone::Draft;
+use crate::base::{CellId, Error, Result, Threads};
+use crate::mesh::check::check;
+use crate::mesh::history::{History, Rules};
+use crate::mesh::{Mesh, TetPart};
+use crate::meshing;
+use crate::spatial::NearestTriangle;
+
+/// What came of putting devices into a host.
+#[derive(Clone, Debug)]
+pub struct Implanted {
+    /// Cells of the host that stayed, in the order that they had; then triangles of the devices, then tets that came, then tets that devices brought.
+    pub mesh: Mesh,
+    /// Where each vertex and cell came from; carries any array of the host, of any time level. What lies in a device comes from the host's tets there.
+    pub history: History,
+    /// What was done, and what the mesh is worth.
+    pub report: Report,
+}
+
+/// How often more of the host is carved, where a facet of what stays would have to be divided.
+const RETRIES: usize = 3;
+
+/// Then so many times as far.
+const FARTHER: f64 = 1.5;
+
+/// Puts devices into a mesh of tets: every triangle of theirs is a facet of the result, every tet of the host beyond [`Options::reach`] stays to the bit.
+/// Arrays are carried by `rules`.
+///
+/// # Errors
+/// When the host has no tets or the devices are no closed surfaces without fault; when a device touches a wall, lies outside or holds the host; when a number means
+/// nothing, or asks for too many points.
+pub fn implant(
+    host: &Mesh,
+    devices: &[Device],
+    options: &Options,
+    rules: &Rules,
+    threads: &Threads,
+) -> Result<Implanted> {
+    options.check()?;
+    if devices.is_empty() {
+        return Err(Error::options("no device to put in").remedy("give one"));
+    }
+    let mut watch = Instant::now();
+    let mut lap = || std::mem::replace(&mut watch, Instant::now()).elapsed().as_secs_f64();
+    let mut report = Report::default();
+    // Tells early what is no host.
+    TetPart::of(host)?;
+    let joined = Devices::join(devices, threads)?;
+    report.seconds.devices = lap();
+
+    let size = options.size.unwrap_or_else(|| joined.size());
+    let adapted = adapt(host, &joined, size, options, rules, threads)?;
+    let (host_now, before) = match &adapted {
+        Some((mesh, history, _)) => (mesh, Some(history)),
+        None => (host, None),
+    };
+    report.adapted = adapted.as_ref().map(|adapted| adapted.2);
+    report.seconds.adapt = lap();
+
+    let part = TetPart::of(host_now)?;
+    let (carved, gap) = room(&part, &joined, options, threads, &mut report, &mut lap)?;
+    report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Gone).count();
+
+    let mut draft = Draft::new(&part.mesh, &carved, &gap);
+    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve)?;
+    report.kept = draft.is_gone.iter().filter(|is_gone| !**is_gone).count();
+    report.host_tets = part.mesh.tets.len();
+    report.kept_share = report.kept as f64 / report.host_tets.max(1) as f64;
+    report.seconds.improve = lap();
+
+    let pieces = Pieces { host: host_now, part: &part, devices: &joined, gap: &gap, draft: &draft };
+    let (Joined { mesh, history, zone_to_cell, first_new }, names) = join(&pieces, rules, threads)?;
+    let history = before.map_or_else(|| history.clone(), |before| before.then(&history));
+    report.seconds.join = lap();
+
+    tell_cells(&mut report, &zone_to_cell, first_new);
+    certify(&mut report, host, devices, &joined, &gap, &mesh, &names);
+    report.seconds.check = lap();
+    if !report.is_valid() {
+        let told: Vec<String> =
+            report.defects.iter().map(|defect| format!("{} {}", defect.count, defect.kind.name())).collect();
+        return Err(Error::input(format!("what came of it is no mesh: {}", told.join(", "))).remedy(
+            "see with `motet info` whether the host is one; if it is, please tell the authors of motet",
+        ));
+    }
+    Ok(Implanted { mesh, history, report })
+}
+
+/// The host carved, as far as it has to be, and the room filled.
+fn room(
+    part: &TetPart,
+    devices: &Devices,
+    options: &Options,
+    threads: &Threads,
+    report: &mut Report,
+    lap: &mut impl FnMut() -> f64,
+) -> Result<(Carved, Gap)> {
+    let nearest = NearestTriangle::new(&devices.points, &devices.triangles, threads);
+    let mut carve = options.carve;
+    for _ in 0..=RETRIES {
+        let carved = Carved::new(&part.mesh, devices, &nearest, carve, options, threads);
+        place::check(&part.mesh, devices, &carved, threads)?;
+        report.seconds.carve += lap();
+        let gap = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
+        report.seconds.fill += lap();
+        if let Some(gap) = gap {
+            return Ok((carved, gap));
+        }
+        carve *= FARTHER;
+    }
+    Err(Error::input(
+        "the room between the host and the devices could not be filled without dividing facets that stay",
+    )
+    .remedy("carve farther, or refine the host there first"))
+}
+
+/// Puts ids of cells in place of those of tets of the zone, and parts what is left of the host from what came.
+fn tell_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
+    let cell = |tet: u32| zone_to_cell.get(tet as usize).map_or(tet, |cell| cell.0);
+    let improved = &mut report.improved;
+    improved.after.worst.iter_mut().for_each(|worst| worst.tet = cell(worst.tet));
+    improved.left.iter_mut().for_each(|left| left.tet = cell(left.tet));
+    (report.host_left, improved.left) =
+        std::mem::take(&mut improved.left).into_iter().partition(|left| left.tet < first_new.0);
+    // These were never a mesh that anybody saw.
+    improved.before.worst = None;
+}
+
+fn certify(
+    report: &mut Report,
+    host: &Mesh,
+    devices: &[Device],
+    joined: &Devices,
+    gap: &Gap,
+    mesh: &Mesh,
+    names: &Names,
+) {
+    report.regions = meshing::told(mesh);
+    report.tets = mesh.cells.tets().count();
+    let enclosed = joined.volumes(devices);
+    let mut parts = vec![0usize; joined.triangles.len()];
+    gap.triangles.iter().for_each(|(_, t)| parts[*t as usize] += 1);
+    for (k, device) in devices.iter().enumerate() {
+        let own = (0..joined.triangles.len()).filter(|t| joined.of_triangle.list(*t).contains(&(k as u32)));
+        let region = names.regions[k];
+        let body = region.and_then(|region| report.regions.iter().find(|body| body.region == region));
+        report.devices.push(DeviceReport {
+            name: device.name.clone(),
+            region,
+            patch: names.patches[k],
+            triangles: own.clone().count(),
+            triangles_kept: own.filter(|&t| parts[t] == 1).count(),
+            enclosed: enclosed[k],
+            volume: body.map_or(0.0, |body| body.volume),
+        });
+    }
+    let hollow = devices.iter().zip(&enclosed).filter(|(device, _)| device.inside == Inside::Hollow);
+    report.volume_expected = volume_of(host) - hollow.map(|(_, volume)| volume).sum::<f64>();
+    report.volume = volume_of(mesh);
+    report.defects = check(mesh);
+}

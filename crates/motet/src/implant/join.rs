@@ -1,0 +1,160 @@
+//! The host that is left and all that came as one mesh, with its labels and arrays.
+
+use std::collections::HashSet;
+
+use super::devices::Devices;
+use super::gap::Gap;
+use super::names::{Names, label};
+use super::origins::history;
+use super::zone::{Draft, Site};
+use crate::base::{CellId, Csr, Id, Result, Threads, VertexId, rising};
+use crate::geometry::tet::volume;
+use crate::mesh::history::{History, Rules, number_anew};
+use crate::mesh::{CellKind, Cells, Mesh, TetPart};
+
+/// The mesh, where it came from, and where its tets are.
+pub(super) struct Joined {
+    pub(super) mesh: Mesh,
+    pub(super) history: History,
+    /// Which cells the zone's tets are.
+    pub(super) zone_to_cell: Vec<CellId>,
+    /// The first cell that came.
+    pub(super) first_new: CellId,
+}
+
+/// All that is to be joined.
+#[derive(Clone, Copy)]
+pub(super) struct Pieces<'a> {
+    pub(super) host: &'a Mesh,
+    /// The tets and triangles of the host.
+    pub(super) part: &'a TetPart,
+    pub(super) devices: &'a Devices,
+    pub(super) gap: &'a Gap,
+    pub(super) draft: &'a Draft,
+}
+
+/// The cells of the result, and what each was.
+pub(super) struct Laid {
+    cells: Cells,
+    pub(super) to_old: Vec<CellId>,
+    /// For each tet of the host the cell that it is, if it stays.
+    host_to_cell: Vec<CellId>,
+    /// Where triangles of devices begin; then come tets that came, then those that devices brought.
+    pub(super) n_stay: usize,
+}
+
+/// # Errors
+/// When an array does not fit its rule.
+pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<(Joined, Names)> {
+    let Pieces { host, devices, gap, draft, .. } = *pieces;
+    let names = Names::new(host, devices);
+    let laid = Laid::new(pieces);
+    let numbers = Numbers::new(host, draft, &laid.cells);
+    let points = numbers.to_draft.iter().map(|v| draft.points[v.index()]).collect();
+    let mut mesh = Mesh::new(points, renumbered(&laid.cells, &numbers.to_new));
+    let history = history(pieces, &laid, &mesh, &numbers, threads)?;
+    history.transfer(host, &mut mesh, rules)?;
+    let vertex_to_old: Vec<u32> = history.vertices.kept().iter().map(|v| v.0).collect();
+    number_anew(&mut mesh, &vertex_to_old, &laid.to_old);
+    label(&mut mesh, pieces, &laid, &names);
+    let zone_to_cell = draft.of_zone.iter().map(|site| match *site {
+        Site::Host(t) => laid.host_to_cell[t],
+        Site::New(i) => CellId::new(laid.n_stay + gap.triangles.len() + i),
+    });
+    let zone_to_cell = zone_to_cell.collect();
+    Ok((Joined { mesh, history, zone_to_cell, first_new: CellId::new(laid.n_stay) }, names))
+}
+
+impl Laid {
+    /// All cells, over the vertices of the draft.
+    fn new(pieces: &Pieces) -> Self {
+        let Pieces { host, part, gap, draft, .. } = *pieces;
+        let mut is_gone = vec![false; host.cells.len()];
+        for (&cell, &gone) in part.tet_to_cell.iter().zip(&draft.is_gone) {
+            is_gone[cell.index()] = gone;
+        }
+        let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
+        for (&cell, triangle) in part.triangle_to_cell.iter().zip(&part.mesh.triangles) {
+            is_gone[cell.index()] = dropped.contains(&rising(*triangle));
+        }
+        let mut laid = Self { cells: Cells::new(), to_old: Vec::new(), host_to_cell: Vec::new(), n_stay: 0 };
+        let mut faces = host.cells.polyhedron_faces().iter();
+        for (cell, kind, vertices) in host.cells.iter() {
+            let of_polyhedron =
+                (kind == CellKind::POLYHEDRON).then(|| faces.next().cloned().unwrap_or_default());
+            if kind == CellKind::TETRA {
+                laid.host_to_cell.push(CellId::new(laid.cells.len()));
+            }
+            if is_gone[cell.index()] {
+                continue;
+            }
+            match of_polyhedron {
+                Some(faces) => laid.cells.push_polyhedron(vertices.iter().copied(), faces),
+                None => laid.cells.push(kind, vertices.iter().copied()),
+            }
+            laid.to_old.push(cell);
+        }
+        laid.n_stay = laid.cells.len();
+        gap.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
+        draft.tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, *tet));
+        gap.own_tets.iter().for_each(|(tet, _)| laid.cells.push(CellKind::TETRA, *tet));
+        laid.to_old.resize(laid.cells.len(), Id::NONE);
+        laid
+    }
+}
+
+/// Vertices of the result and of the draft.
+pub(super) struct Numbers {
+    /// For each vertex of the result the one of the host that it is to the bit, if any.
+    pub(super) kept: Vec<VertexId>,
+    /// The one of the draft that it is.
+    pub(super) to_draft: Vec<VertexId>,
+    /// And the way back.
+    to_new: Vec<VertexId>,
+}
+
+impl Numbers {
+    /// What nothing uses is left out, unless the host came with it so.
+    fn new(host: &Mesh, draft: &Draft, cells: &Cells) -> Self {
+        let mut is_wanted = vec![true; draft.points.len()];
+        is_wanted[host.points.len()..].fill(false);
+        used(&host.cells).for_each(|v| is_wanted[v.index()] = false);
+        used(cells).for_each(|v| is_wanted[v.index()] = true);
+        let (mut kept, mut to_draft) = (Vec::new(), Vec::new());
+        let mut to_new = vec![Id::NONE; draft.points.len()];
+        for v in (0..draft.points.len()).filter(|&v| is_wanted[v]) {
+            to_new[v] = VertexId::new(to_draft.len());
+            to_draft.push(VertexId::new(v));
+            let is_as_before = draft.is_moved.get(v).is_some_and(|is_moved| !is_moved);
+            kept.push(if is_as_before { VertexId::new(v) } else { Id::NONE });
+        }
+        Self { kept, to_draft, to_new }
+    }
+}
+
+/// Every vertex that cells name, faces of polyhedra included.
+fn used(cells: &Cells) -> impl Iterator<Item = VertexId> + '_ {
+    let of_faces = cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
+    cells.connectivity().items().iter().chain(of_faces).copied()
+}
+
+fn renumbered(cells: &Cells, to_new: &[VertexId]) -> Cells {
+    let mut renumbered = Cells::new();
+    let of = |v: &VertexId| to_new[v.index()];
+    let mut faces = cells.polyhedron_faces().iter();
+    for (_, kind, vertices) in cells.iter() {
+        if kind == CellKind::POLYHEDRON {
+            let mut moved = Csr::default();
+            faces.next().into_iter().flat_map(|f| f.iter()).for_each(|face| moved.push(face.iter().map(of)));
+            renumbered.push_polyhedron(vertices.iter().map(of), moved);
+        } else {
+            renumbered.push(kind, vertices.iter().map(of));
+        }
+    }
+    renumbered
+}
+
+/// The volume of all tets.
+pub(super) fn volume_of(mesh: &Mesh) -> f64 {
+    mesh.cells.tets().map(|(_, tet)| volume(tet.map(|v| mesh.points[v.index()])).abs()).sum()
+}

@@ -1,0 +1,32 @@
+//! Floor 8: devices put into a mesh, one conforming mesh out.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | devices | `devices` | their surfaces joined and held against all faults; the tets that they bring |
+//! | adapt | `adapt` | walls of the host near them refined, or all of it there, by [`crate::refine`] |
+//! | carve | `carve` | tets in the devices and near them go |
+//! | place | `place` | what lies where: outside of the host, on its wall |
+//! | gap | `gap` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which is in which device |
+//! | zone | `zone` | what came, and a ring of the host, repaired by [`crate::remesh`]; beyond it nothing is touched |
+//! | join | `join`, `origins`, `names` | one mesh again, arrays carried across, what came named |
+//! | certificate | `report` | conforming, volumes, triangles kept, what is left and why |
+//!
+//! The order is that of Moyle and Ventikos 2008 (*Local remeshing for large amplitude grid deformations*; the suite around it): adapt, locate, remove, conform. What they
+//! conform by moving the carved surface is filled here, so that the triangles of a device stay as they are, and fluid and solid share their vertices.
+
+mod adapt;
+mod carve;
+mod devices;
+mod gap;
+mod implanting;
+mod join;
+mod names;
+mod options;
+mod origins;
+mod place;
+mod report;
+mod zone;
+
+pub use implanting::{Implanted, implant};
+pub use options::{Adapt, Device, Inside, Options};
+pub use report::{Adapted, DeviceReport, Report, Seconds};

@@ -1,0 +1,104 @@
+//! What came gets its regions, patches and names.
+
+use std::collections::BTreeMap;
+
+use super::devices::Devices;
+use super::gap::Owner;
+use super::join::{Laid, Pieces};
+use super::options::Inside;
+use crate::mesh::{Field, Labels, Mesh};
+
+/// The labels of what came.
+pub(super) struct Names {
+    /// The arrays that hold regions and patches.
+    arrays: [String; 2],
+    /// The region of each device, if it is not hollow.
+    pub(super) regions: Vec<Option<i32>>,
+    /// The patch of each device.
+    pub(super) patches: Vec<i32>,
+    /// The region of tets of a host without regions.
+    host: Option<i32>,
+}
+
+impl Names {
+    pub(super) fn new(host: &Mesh, devices: &Devices) -> Self {
+        let [regions, patches] = [host.regions(), host.patches()];
+        let last = |labels: &Option<Labels>, names: &BTreeMap<i32, String>| {
+            let used = labels.as_ref().and_then(|labels| labels.ids.iter().max().copied()).unwrap_or(0);
+            used.max(names.keys().max().copied().unwrap_or(0)).max(0)
+        };
+        let array = |labels: &Option<Labels>, name: &str| {
+            labels.as_ref().map_or_else(|| name.to_owned(), |labels| labels.array.clone())
+        };
+        let mut next = last(&regions, &host.label_names.regions);
+        let own = regions.is_none().then(|| {
+            next += 1;
+            next
+        });
+        let of_devices = devices.insides.iter().map(|&inside| {
+            next += i32::from(inside != Inside::Hollow);
+            (inside != Inside::Hollow).then_some(next)
+        });
+        let of_devices = of_devices.collect();
+        let first = last(&patches, &host.label_names.patches) + 1;
+        Self {
+            arrays: [array(&regions, "region"), array(&patches, "patch")],
+            regions: of_devices,
+            patches: (first..).take(devices.names.len()).collect(),
+            host: own,
+        }
+    }
+
+    /// The region of a tet that came.
+    fn region(&self, owner: Owner) -> i32 {
+        match owner {
+            Owner::Host(region) => self.host.unwrap_or(region),
+            Owner::Device(k) => self.regions[k as usize].unwrap_or(0),
+            Owner::Taken => 0,
+        }
+    }
+}
+
+/// Gives what came its regions, patches and names.
+pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names) {
+    let Pieces { devices, gap, draft, .. } = *pieces;
+    let [of_tets, of_triangles] = &names.arrays;
+    let n = mesh.cells.len();
+    let read = |mesh: &Mesh, array: &str| -> Vec<i64> {
+        let known = mesh.cell_field(array).and_then(|field| field.values.to_i64());
+        known.unwrap_or_else(|| vec![0; n])
+    };
+    let (mut regions, mut patches) = (read(mesh, of_tets), read(mesh, of_triangles));
+    let is_one = of_tets == of_triangles;
+    if let Some(own) = names.host {
+        for (cell, _) in mesh.cells.tets() {
+            regions[cell.index()] = own.into();
+        }
+        mesh.label_names.regions.entry(own).or_insert_with(|| "host".to_owned());
+    }
+    let first = laid.n_stay;
+    for (i, (_, t)) in gap.triangles.iter().enumerate() {
+        let k = devices.of_triangle.list(*t as usize)[0] as usize;
+        (regions[first + i], patches[first + i]) = (0, names.patches[k].into());
+    }
+    let first = first + gap.triangles.len();
+    let own = gap.own_tets.iter().map(|(_, k)| Owner::Device(*k));
+    for (i, owner) in draft.owners.iter().copied().chain(own).enumerate() {
+        (regions[first + i], patches[first + i]) = (names.region(owner).into(), 0);
+    }
+    let as_i32 = |ids: Vec<i64>| -> Vec<i32> { ids.into_iter().map(|id| id as i32).collect() };
+    if is_one {
+        let both = regions.iter().zip(&patches).zip(mesh.cells.kinds());
+        let both = both.map(|((&r, &p), kind)| if kind.dim() == Some(2) { p } else { r }).collect();
+        mesh.set_cell_field(Field::scalars(of_tets, as_i32(both)));
+    } else {
+        mesh.set_cell_field(Field::scalars(of_tets, as_i32(regions)));
+        mesh.set_cell_field(Field::scalars(of_triangles, as_i32(patches)));
+    }
+    for (k, name) in devices.names.iter().enumerate() {
+        mesh.label_names.patches.insert(names.patches[k], name.clone());
+        if let Some(region) = names.regions[k] {
+            mesh.label_names.regions.insert(region, name.clone());
+        }
+    }
+}

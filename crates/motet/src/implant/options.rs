@@ -1,0 +1,105 @@
+//! What is put in, and how.
+
+use crate::base::{Error, Result};
+use crate::mesh::{CellKind, Mesh};
+use crate::meshing::MOST_GROWTH;
+use crate::remesh;
+
+/// A device: a closed surface, or a mesh of tets.
+#[derive(Clone, Debug)]
+pub struct Device {
+    /// Its surface cells; of a mesh with volume cells their boundary.
+    pub mesh: Mesh,
+    /// What its region and its patch are called.
+    pub name: String,
+    /// What becomes of the room in it.
+    pub inside: Inside,
+}
+
+/// What becomes of the room in a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inside {
+    /// The tets that it came with, as they are.
+    Own,
+    /// New tets, in a region of their own.
+    Filled,
+    /// Nothing: its surface bounds the mesh.
+    Hollow,
+}
+
+/// What of the host is refined towards devices before it is carved.
+///
+/// What is carved is filled anew, and new tets grow from the devices to the host by themselves. So as a rule there is nothing to refine but walls of the host: those
+/// stay, and tets between a device and a wall that is near, of facets far larger than the gap, would be bad.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Adapt {
+    /// Nothing.
+    No,
+    /// Walls (boundary, interfaces, labelled facets) that are nearer to a device than half of their edges.
+    #[default]
+    Walls,
+    /// All that is near, by [`Options::size`] and [`Options::growth`]: fields then keep their values in tets that are parts of those that they lay on.
+    All,
+}
+
+impl Device {
+    /// A device that keeps its tets, where it has some, and is filled where not.
+    pub fn new(mesh: Mesh, name: impl Into<String>) -> Self {
+        let has_tets = mesh.cells.kinds().contains(&CellKind::TETRA);
+        Self { mesh, name: name.into(), inside: if has_tets { Inside::Own } else { Inside::Filled } }
+    }
+}
+
+/// How devices are put in.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How long edges of the host are to be beside the devices, in its unit; `None`: as those of the devices. Default: `None`.
+    pub size: Option<f64>,
+    /// How much sizes grow per unit of distance from the devices, above 0 and at most [`MOST_GROWTH`]. Default: 0.5.
+    pub growth: f64,
+    /// What of the host is refined before it is carved. Default: [`Adapt::Walls`].
+    pub adapt: Adapt,
+    /// Tets of the host nearer to a device than so many times the length of their edges are replaced. Default: 1.
+    pub carve: f64,
+    /// Tets of the host farther from all devices than so many times the length of their edges stay to the bit. Default: 3.
+    pub reach: f64,
+    /// What is repaired in the end, within [`reach`](Self::reach). Default: tets of an EAS below 0.2.
+    pub improve: remesh::Options,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            size: None,
+            growth: 0.5,
+            adapt: Adapt::Walls,
+            carve: 1.0,
+            reach: 3.0,
+            improve: remesh::Options::default(),
+        }
+    }
+}
+
+impl Options {
+    /// # Errors
+    /// Names the first number that means nothing.
+    pub(super) fn check(&self) -> Result<()> {
+        let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
+        if let Some(size) = self.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
+            return refused(format!("a size of {size}, expected a length above 0"), "leave it out");
+        }
+        if !(self.growth > 0.0 && self.growth <= MOST_GROWTH) {
+            let what =
+                format!("sizes that grow by {}, expected more than 0 and at most {MOST_GROWTH}", self.growth);
+            return refused(what, "0.5 is the default");
+        }
+        if !(self.carve > 0.0 && self.carve <= self.reach && self.reach.is_finite()) {
+            let what = format!(
+                "tets within {} of their edges are to be replaced, and those beyond {} to stay",
+                self.carve, self.reach
+            );
+            return refused(what, "give numbers above 0, the second not below the first");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,112 @@
+//! Where everything of the result came from.
+
+use super::gap::Owner;
+use super::join::{Laid, Numbers, Pieces};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId};
+use crate::geometry::tet::{at, centroid, closest};
+use crate::geometry::vector::distance;
+use crate::mesh::Mesh;
+use crate::mesh::history::{History, Origins};
+use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
+use crate::spatial::{BoxTree, around};
+
+/// What came inherits from the host's tets where it lies, whatever their region; triangles of devices from the tets that went beside them.
+pub(super) fn history(
+    pieces: &Pieces,
+    laid: &Laid,
+    mesh: &Mesh,
+    numbers: &Numbers,
+    threads: &Threads,
+) -> Result<History> {
+    let Pieces { host, part, devices, gap, draft } = *pieces;
+    let gone: Vec<usize> = (0..draft.is_gone.len()).filter(|&t| draft.is_gone[t]).collect();
+    let removed: Vec<Labelled<4>> = gone
+        .iter()
+        .map(|&t| Labelled {
+            cell: part.tet_to_cell[t],
+            vertices: part.mesh.tets[t],
+            label: part.mesh.regions[t],
+        })
+        .collect();
+    let cell = |i: usize| CellId::new(laid.n_stay + i);
+    let n_triangles = gap.triangles.len();
+    let there = There::new(host, &removed);
+    let of_new = draft.owners.iter().map(|owner| match owner {
+        Owner::Host(region) => Some(*region),
+        _ => None,
+    });
+    let mut came = Vec::with_capacity(draft.tets.len() + gap.own_tets.len());
+    for (i, region) in of_new.chain(gap.own_tets.iter().map(|_| None)).enumerate() {
+        let cell = cell(n_triangles + i);
+        let &[a, b, c, d] = mesh.cells.vertices(cell) else { continue };
+        let vertices = [a, b, c, d];
+        let place = || centroid(vertices.map(|v| mesh.points[v.index()]));
+        came.push(Labelled { cell, vertices, label: region.unwrap_or_else(|| there.region_at(place())) });
+    }
+    // A facet of each tet that went stands for it, once a device.
+    let patches: Vec<i32> = (0..devices.names.len() as i32).collect();
+    let facets = patches.iter().flat_map(|&label| {
+        removed.iter().map(move |tet| {
+            let [a, b, c, _] = tet.vertices;
+            Labelled { cell: tet.cell, vertices: [a, b, c], label }
+        })
+    });
+    let facets: Vec<Labelled<3>> = facets.collect();
+    let mut triangles = Vec::with_capacity(n_triangles);
+    for (i, (_, t)) in gap.triangles.iter().enumerate() {
+        let &[a, b, c] = mesh.cells.vertices(cell(i)) else { continue };
+        let label = devices.of_triangle.list(*t as usize)[0] as i32;
+        triangles.push(Labelled { cell: cell(i), vertices: [a, b, c], label });
+    }
+    let changed: Vec<ChangedVertex> = (0..numbers.kept.len())
+        .filter(|&v| numbers.kept[v] == VertexId::NONE)
+        .map(|v| {
+            let was = Some(numbers.to_draft[v]).filter(|was| was.index() < host.points.len());
+            ChangedVertex { vertex: VertexId::new(v), was }
+        })
+        .collect();
+    let change = LocalChange {
+        old_points: &host.points,
+        new_points: &mesh.points,
+        removed_tets: &removed,
+        new_tets: &came,
+        removed_triangles: &facets,
+        new_triangles: &triangles,
+        changed_vertices: &changed,
+    };
+    let traced = trace(&change, threads)?;
+    Ok(History {
+        vertices: Origins::new(host.points.len(), numbers.kept.clone(), traced.vertices)?,
+        cells: Origins::new(host.cells.len(), laid.to_old.clone(), traced.cells)?,
+        ledger: traced.ledger,
+    })
+}
+
+/// The regions of tets that went, by place.
+struct There<'a> {
+    host: &'a Mesh,
+    removed: &'a [Labelled<4>],
+    /// None where there is one region alone.
+    tree: Option<BoxTree>,
+}
+
+impl<'a> There<'a> {
+    fn new(host: &'a Mesh, removed: &'a [Labelled<4>]) -> Self {
+        let is_one = removed.windows(2).all(|pair| pair[0].label == pair[1].label);
+        let bounds = |tet: &Labelled<4>| around(tet.vertices.map(|v| host.points[v.index()]));
+        let tree = (!is_one).then(|| BoxTree::new(&removed.iter().map(bounds).collect::<Vec<_>>()));
+        Self { host, removed, tree }
+    }
+
+    fn region_at(&self, place: Point) -> i32 {
+        let first = self.removed.first().map_or(0, |tet| tet.label);
+        let Some(tree) = &self.tree else { return first };
+        let measure = |i: u32| {
+            let corners = self.removed[i as usize].vertices.map(|v| self.host.points[v.index()]);
+            let weights = closest(corners, place);
+            let off = distance(at(corners, weights), place);
+            Some((off * off, ()))
+        };
+        tree.nearest(place, measure).map_or(first, |(_, i, ())| self.removed[i as usize].label)
+    }
+}

@@ -1,0 +1,118 @@
+//! The certificate: what was done, and what the mesh is worth.
+
+use serde::Serialize;
+
+use crate::mesh::check::Defect;
+use crate::meshing::Body;
+use crate::remesh::{self, Left, Reason};
+
+/// What refining the host came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Adapted {
+    /// How long edges were to be beside the devices.
+    pub size: f64,
+    /// How often tets were divided.
+    pub generations: u32,
+    /// Tets of the host as it came.
+    pub tets_before: usize,
+    /// Tets of the host that was carved.
+    pub tets_after: usize,
+}
+
+/// What became of a device.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct DeviceReport {
+    /// Its name.
+    pub name: String,
+    /// The region of the tets in it; `None` where it is hollow.
+    pub region: Option<i32>,
+    /// The patch of its surface.
+    pub patch: i32,
+    /// Triangles of its surface.
+    pub triangles: usize,
+    /// Of these, facets of the mesh as they came.
+    pub triangles_kept: usize,
+    /// What its surface encloses.
+    pub enclosed: f64,
+    /// The volume of its region, 0 where it is hollow.
+    pub volume: f64,
+}
+
+/// Seconds by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Joining and checking the devices.
+    pub devices: f64,
+    /// Refining the host.
+    pub adapt: f64,
+    /// Finding what goes.
+    pub carve: f64,
+    /// Filling the room.
+    pub fill: f64,
+    /// Repairing.
+    pub improve: f64,
+    /// Joining all, and carrying arrays.
+    pub join: f64,
+    /// Checking the mesh.
+    pub check: f64,
+}
+
+/// What was done, and what the mesh is worth.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Report {
+    /// `None` where nothing had to be refined.
+    pub adapted: Option<Adapted>,
+    /// Tets of the host, refined where it was.
+    pub host_tets: usize,
+    /// Of these, tets that were carved.
+    pub carved: usize,
+    /// Tets that stayed to the bit.
+    pub kept: usize,
+    /// The part of them.
+    pub kept_share: f64,
+    /// Tets of the mesh.
+    pub tets: usize,
+    /// The devices, in their order.
+    pub devices: Vec<DeviceReport>,
+    /// The regions of the mesh.
+    pub regions: Vec<Body>,
+    /// The host's volume, less what hollow devices enclose.
+    pub volume_expected: f64,
+    /// The volume of the mesh.
+    pub volume: f64,
+    /// How repairing went; its tets are cells of the mesh. Bad tets that are left are those that came.
+    pub improved: remesh::Report,
+    /// Bad tets of the host near the devices that are left as they came.
+    pub host_left: Vec<Left>,
+    /// What is wrong with the mesh: nothing, or this.
+    pub defects: Vec<Defect>,
+    /// Seconds by stage.
+    pub seconds: Seconds,
+}
+
+impl Report {
+    /// Whether the mesh conforms and its tets are positive.
+    pub fn is_valid(&self) -> bool {
+        crate::mesh::check::is_conforming(&self.defects) && self.improved.after.inverted == 0
+    }
+
+    /// Whether it is valid, every triangle of the devices is a facet, and no bad tet is left but those of the host and those that walls force.
+    pub fn is_complete(&self) -> bool {
+        let is_kept = |device: &DeviceReport| device.triangles_kept == device.triangles;
+        self.is_valid() && self.devices.iter().all(is_kept) && self.n_unforced() == 0
+    }
+
+    /// Bad tets among those that came where no angle of a wall forces one.
+    pub fn n_unforced(&self) -> usize {
+        let is_forced = |reason| matches!(reason, Reason::WallAngle { .. } | Reason::WallsMeet { .. });
+        self.improved.left.iter().filter(|left| !is_forced(left.reason)).count()
+    }
+
+    /// How far the volume of the mesh, and of each device's region, is from what it should be, as a part of it; the largest.
+    pub fn volume_deviation(&self) -> f64 {
+        let part = |is: f64, expected: f64| (is - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
+        let of_devices = self.devices.iter().filter(|device| device.region.is_some());
+        let of_devices = of_devices.map(|device| part(device.volume, device.enclosed));
+        of_devices.fold(part(self.volume, self.volume_expected), f64::max)
+    }
+}

@@ -1,0 +1,460 @@
+//! Devices in a mesh, held against what is promised: every triangle a facet, all fits, volumes, what stays stays to the bit.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use motet::base::{CellId, Point, Threads, VertexId};
+use motet::geometry::tet::{EDGES, FACETS, centroid, volume};
+use motet::geometry::triangle;
+use motet::geometry::vector::distance;
+use motet::implant::{Adapt, Device, Implanted, Inside, Options, implant};
+use motet::mesh::check::{check, is_conforming};
+use motet::mesh::history::{Origin, Rules, field_ledger};
+use motet::mesh::shapes::{Coil, Stent, ball, box_grid};
+use motet::mesh::{CellKind, Cells, Field, Mesh, Surface};
+
+fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Implanted> {
+    implant(host, devices, options, &Rules::default(), &Threads::single())
+}
+
+/// A box of edge 3 round the origin, of cells of edge 3 / n.
+fn room(n: usize) -> Mesh {
+    box_grid([n; 3], [[-1.5; 3], [1.5; 3]])
+}
+
+fn moved(mut mesh: Mesh, by: impl Fn(Point) -> Point) -> Mesh {
+    mesh.points.iter_mut().for_each(|p| *p = by(*p));
+    mesh
+}
+
+fn small_ball(radius: f64, at: Point) -> Mesh {
+    moved(ball(3, 2), |p| [0, 1, 2].map(|i| at[i] + radius * p[i]))
+}
+
+fn coil(at: Point) -> Mesh {
+    let coil = Coil { centre: at, radius: 0.6, pitch: 0.5, turns: 2.0, wire_radius: 0.12 };
+    coil.mesh(40, 8).unwrap()
+}
+
+/// The corners of a facet by their bits, in an order of their own.
+fn key<const N: usize>(mut corners: [Point; N]) -> [[u64; 3]; N] {
+    // -0.0 is 0.0.
+    let bits = |p: Point| p.map(|x| (x + 0.0).to_bits());
+    corners.sort_by_key(|p| bits(*p));
+    corners.map(bits)
+}
+
+fn tets(mesh: &Mesh) -> impl Iterator<Item = (CellId, [Point; 4])> + '_ {
+    mesh.cells.tets().map(|(cell, tet)| (cell, tet.map(|v| mesh.points[v.index()])))
+}
+
+fn surface(device: &Device) -> Surface {
+    let own = Surface::of(&device.mesh);
+    if device.inside == Inside::Own || own.triangles.is_empty() {
+        Surface::boundary_of(&device.mesh)
+    } else {
+        own
+    }
+}
+
+/// What is wrong with a result that is said to be valid.
+fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Vec<String> {
+    let mut faults = Vec::new();
+    let mesh = &made.mesh;
+    if mesh.validate().is_err() || !is_conforming(&check(mesh)) {
+        faults.push("does not conform".to_owned());
+    }
+    faults.extend(
+        tets(mesh)
+            .filter(|(_, tet)| volume(*tet) <= 0.0)
+            .map(|(cell, _)| format!("cell {cell} is not positive")),
+    );
+    let mut users: HashMap<[[u64; 3]; 3], usize> = HashMap::new();
+    for (_, tet) in tets(mesh) {
+        FACETS.iter().for_each(|f| *users.entry(key(f.map(|k| tet[k]))).or_default() += 1);
+    }
+    let of_host: HashSet<_> = {
+        let boundary = Surface::boundary_of(host);
+        (0..boundary.triangles.len()).map(|t| key(boundary.corners(t))).collect()
+    };
+    let mut of_devices: HashMap<[[u64; 3]; 3], bool> = HashMap::new();
+    for device in devices {
+        let surface = surface(device);
+        for t in 0..surface.triangles.len() {
+            let is_hollow = device.inside == Inside::Hollow;
+            of_devices.entry(key(surface.corners(t))).and_modify(|h| *h = false).or_insert(is_hollow);
+        }
+    }
+    for (facet, &is_hollow) in &of_devices {
+        let n = users.get(facet).copied().unwrap_or(0);
+        if n != if is_hollow { 1 } else { 2 } {
+            faults.push(format!("a triangle of a device is a facet of {n} tets"));
+        }
+    }
+    let is_open = |(facet, n): (&[[u64; 3]; 3], &usize)| {
+        *n == 1 && !of_devices.contains_key(facet) && !of_host.contains(facet)
+    };
+    // Refined walls have other facets.
+    if options.adapt == Adapt::No {
+        let n_open = users.iter().filter(|x| is_open(*x)).count();
+        if n_open > 0 {
+            faults.push(format!("{n_open} facets are open"));
+        }
+    }
+    let off = made.report.volume_deviation();
+    if off.is_nan() || off > 1e-9 {
+        faults.push(format!("volumes are off by {off}"));
+    }
+    faults.extend(touched_beyond(host, devices, options, made));
+    faults
+}
+
+/// Tets of the host farther from all devices than was to be touched, that are not there any more.
+fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Option<String> {
+    if options.adapt != Adapt::No {
+        return None;
+    }
+    let now: HashSet<_> = tets(&made.mesh).map(|(_, tet)| key(tet)).collect();
+    let surfaces: Vec<Surface> = devices.iter().map(surface).collect();
+    let off = |p: Point| {
+        let all = surfaces.iter().flat_map(|s| (0..s.triangles.len()).map(move |t| s.corners(t)));
+        all.map(|t| distance(p, triangle::at(t, triangle::closest(t, p)))).fold(f64::INFINITY, f64::min)
+    };
+    let gone = tets(host).filter(|(_, tet)| !now.contains(&key(*tet)));
+    let is_far = |(_, tet): &(CellId, [Point; 4])| {
+        let size = EDGES.iter().map(|&[i, j]| distance(tet[i], tet[j])).sum::<f64>() / 6.0;
+        let centre = centroid(*tet);
+        let radius = tet.iter().map(|&p| distance(p, centre)).fold(0.0, f64::max);
+        // Within a device the distance to its surface says nothing.
+        off(centre) > radius + options.reach * size && !devices.iter().any(|d| holds(&surface(d), centre))
+    };
+    let n = gone.filter(is_far).count();
+    (n > 0).then(|| format!("{n} tets far from all devices are not as they were"))
+}
+
+/// By the solid angles of the triangles (van Oosterom and Strackee 1983), which sum to 4 pi inside.
+fn holds(surface: &Surface, p: Point) -> bool {
+    let angle = |t: usize| {
+        let [a, b, c] = surface.corners(t).map(|q| [0, 1, 2].map(|i| q[i] - p[i]));
+        let dot = |u: Point, v: Point| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+        let n = |u: Point| dot(u, u).sqrt();
+        let triple = a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        let below = n(a) * n(b) * n(c) + dot(a, b) * n(c) + dot(b, c) * n(a) + dot(c, a) * n(b);
+        2.0 * triple.atan2(below)
+    };
+    (0..surface.triangles.len()).map(angle).sum::<f64>().abs() > std::f64::consts::TAU
+}
+
+fn sound(host: &Mesh, devices: &[Device], options: &Options) -> Implanted {
+    let made = put(host, devices, options).unwrap();
+    let faults = faults(host, devices, options, &made);
+    assert!(faults.is_empty(), "{} faults, {}", faults.len(), faults[0]);
+    assert!(made.report.is_valid());
+    made
+}
+
+fn no_adapt() -> Options {
+    Options { adapt: Adapt::No, ..Options::default() }
+}
+
+#[test]
+fn a_ball_in_a_box_keeps_its_tets_and_shares_its_vertices() {
+    let host = room(8);
+    let device = Device::new(small_ball(0.5, [0.1, 0.05, -0.1]), "ball");
+    assert_eq!(device.inside, Inside::Own);
+    let made = sound(&host, std::slice::from_ref(&device), &no_adapt());
+    assert!(made.report.is_complete());
+    let now: HashSet<_> = tets(&made.mesh).map(|(_, tet)| key(tet)).collect();
+    assert!(tets(&device.mesh).all(|(_, tet)| now.contains(&key(tet))));
+    let regions = made.mesh.regions().unwrap();
+    assert_eq!(regions.names.get(&2).map(String::as_str), Some("ball"));
+    assert_eq!(regions.ids.iter().filter(|id| **id == 2).count(), device.mesh.cells.tets().count());
+    let patches = made.mesh.patches().unwrap();
+    assert_eq!(patches.find("ball"), Some(7));
+    assert_eq!(patches.name(1), "xmin");
+}
+
+#[test]
+fn a_coil_is_filled_or_hollow() {
+    let host = room(8);
+    let mut device = Device::new(coil([0.0; 3]), "coil");
+    assert_eq!(device.inside, Inside::Filled);
+    let made = sound(&host, std::slice::from_ref(&device), &no_adapt());
+    assert!(made.report.is_complete(), "{} left", made.report.improved.left.len());
+    device.inside = Inside::Hollow;
+    let made = sound(&host, std::slice::from_ref(&device), &no_adapt());
+    assert!(made.report.devices[0].region.is_none());
+    assert!(made.mesh.regions().unwrap().ids.iter().all(|id| [0, 1].contains(id)));
+    assert!((made.report.volume - 27.0 + made.report.devices[0].enclosed).abs() < 1e-9);
+}
+
+#[test]
+fn devices_lie_side_by_side_within_each_other_and_share_facets() {
+    let host = room(8);
+    let beside = [
+        Device::new(small_ball(0.3, [-0.6, 0.0, 0.0]), "left"),
+        Device::new(small_ball(0.3, [0.6, 0.0, 0.0]), "right"),
+    ];
+    let made = sound(&host, &beside, &no_adapt());
+    assert_eq!(made.report.regions.len(), 3);
+    let mut nested =
+        [Device::new(small_ball(0.8, [0.0; 3]), "outer"), Device::new(small_ball(0.3, [0.0; 3]), "inner")];
+    nested.iter_mut().for_each(|device| device.inside = Inside::Filled);
+    let made = put(&host, &nested, &no_adapt()).unwrap();
+    let volumes: Vec<f64> = made.report.devices.iter().map(|device| device.volume).collect();
+    let enclosed: Vec<f64> = made.report.devices.iter().map(|device| device.enclosed).collect();
+    assert!((volumes[1] - enclosed[1]).abs() < 1e-12);
+    assert!((volumes[0] - enclosed[0] + enclosed[1]).abs() < 1e-12);
+    // Two cubes with a common side.
+    let cube =
+        |x: f64| Device::new(box_grid([2; 3], [[x, -0.3, -0.3], [x + 0.5, 0.3, 0.3]]), format!("cube {x}"));
+    let made = sound(&host, &[cube(-0.5), cube(0.0)], &no_adapt());
+    assert!(made.report.devices.iter().all(|device| (device.volume - 0.18).abs() < 1e-12));
+}
+
+/// The room in two halves, with or without a wall between them.
+fn halves() -> Mesh {
+    let mut host = room(8);
+    let is_right = |p: Point| p[0] > 0.0;
+    let ids: Vec<i32> = host
+        .cells
+        .iter()
+        .map(|(_, kind, v)| match (kind, v) {
+            (CellKind::TETRA, &[a, b, c, d]) => {
+                1 + i32::from(is_right(centroid([a, b, c, d].map(|v| host.points[v.index()]))))
+            }
+            _ => 0,
+        })
+        .collect();
+    host.set_cell_field(Field::scalars("region", ids));
+    host.label_names.regions = BTreeMap::from([(1, "blood".to_owned()), (2, "clot".to_owned())]);
+    host
+}
+
+#[test]
+fn regions_and_their_interface_stay() {
+    let host = halves();
+    let device = Device::new(small_ball(0.4, [-0.6, 0.0, 0.0]), "ball");
+    let made = sound(&host, &[device], &no_adapt());
+    let volumes: Vec<(Option<&str>, f64)> =
+        made.report.regions.iter().map(|body| (body.name.as_deref(), body.volume)).collect();
+    assert_eq!(volumes.len(), 3);
+    assert_eq!((volumes[0].0, volumes[1].0, volumes[2].0), (Some("blood"), Some("clot"), Some("ball")));
+    assert!((volumes[0].1 + volumes[2].1 - 13.5).abs() < 1e-11 && (volumes[1].1 - 13.5).abs() < 1e-11);
+    let through = Device::new(small_ball(0.4, [0.0; 3]), "ball");
+    let error = put(&host, &[through], &no_adapt()).unwrap_err();
+    assert!(error.what().contains("touches or cuts a wall") && error.place().is_some(), "{error}");
+}
+
+#[test]
+fn a_wall_that_is_near_is_refined() {
+    let host = room(4);
+    let device = Device::new(small_ball(0.3, [0.0, 0.0, 1.15]), "ball");
+    let plain = put(&host, std::slice::from_ref(&device), &no_adapt()).unwrap();
+    let made = sound(&host, std::slice::from_ref(&device), &Options::default());
+    assert!(made.report.adapted.is_some_and(|adapted| adapted.generations > 0));
+    let worst = |made: &Implanted| made.report.improved.after.worst.unwrap().eas;
+    assert!(made.report.is_complete() && worst(&made) > worst(&plain), "{} {}", worst(&made), worst(&plain));
+    let all = Options { adapt: Adapt::All, ..Options::default() };
+    let made = sound(&host, &[device], &all);
+    assert!(made.report.adapted.is_some_and(|adapted| adapted.tets_after > 2 * adapted.tets_before));
+}
+
+#[test]
+fn fields_go_along() {
+    let mut host = room(8);
+    let linear = |p: Point| 1.0 + 2.0 * p[0] - p[1] + 0.5 * p[2];
+    host.set_point_field(Field::scalars("p", host.points.iter().map(|p| linear(*p)).collect::<Vec<_>>()));
+    let ids: Vec<i64> = (0..host.cells.len() as i64).collect();
+    let means: Vec<f64> = host
+        .cells
+        .iter()
+        .map(|(_, _, v)| v.iter().map(|v| linear(host.points[v.index()])).sum::<f64>() / v.len() as f64)
+        .collect();
+    host.set_cell_field(Field::scalars("mean", means));
+    host.set_cell_field(Field::scalars("id", ids));
+    for options in [no_adapt(), Options { adapt: Adapt::All, ..Options::default() }] {
+        let made = put(&host, &[Device::new(small_ball(0.5, [0.0; 3]), "ball")], &options).unwrap();
+        let p = made.mesh.point_field("p").unwrap().values.to_f64().unwrap();
+        let off = p.iter().zip(&made.mesh.points).map(|(x, p)| (x - linear(*p)).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-13, "{off}");
+        let ledger = field_ledger(&host, &made.mesh, &Rules::default());
+        let of_mean = ledger.iter().find(|field| field.name == "mean").unwrap();
+        assert!(of_mean.range_after.unwrap()[0] >= of_mean.range_before.unwrap()[0]);
+        // The sum over all regions stays: what lies in the ball came from the box.
+        let integral = |mesh: &Mesh| -> f64 {
+            let mean = mesh.cell_field("mean").unwrap().values.to_f64().unwrap();
+            tets(mesh).map(|(cell, tet)| mean[cell.index()] * volume(tet)).sum()
+        };
+        let (before, after) = (integral(&host), integral(&made.mesh));
+        assert!((before - after).abs() < 1e-9 * before.abs().max(27.0), "{before} {after}");
+        // Kept is kept.
+        for (cell, origin) in (0u32..).map(CellId).zip(made.history.cells.iter()) {
+            if let (Origin::Kept(old), Adapt::No) = (origin, options.adapt) {
+                let now = made.mesh.cells.vertices(cell).iter().map(|v| made.mesh.points[v.index()]);
+                let was = host.cells.vertices(old).iter().map(|v| host.points[v.index()]);
+                assert!(now.eq(was));
+            }
+        }
+    }
+}
+
+#[test]
+fn threads_change_nothing() {
+    let host = room(8);
+    let devices = [Device::new(coil([0.0; 3]), "coil")];
+    let one = implant(&host, &devices, &Options::default(), &Rules::default(), &Threads::single()).unwrap();
+    let three = Threads::new(3).unwrap();
+    let more = implant(&host, &devices, &Options::default(), &Rules::default(), &three).unwrap();
+    assert_eq!(one.mesh, more.mesh);
+    assert_eq!(one.history, more.history);
+}
+
+#[test]
+fn what_cannot_be_put_in_is_refused_with_the_reason() {
+    let host = room(4);
+    let refused = |device: Mesh| put(&host, &[Device::new(device, "thing")], &no_adapt()).unwrap_err();
+    let told = |device: Mesh, what: &str| {
+        let error = refused(device);
+        assert!(error.what().contains(what) && error.remedy_text().is_some(), "{error}");
+    };
+    told(small_ball(0.4, [5.0, 0.0, 0.0]), "`thing` lies outside of the host");
+    told(small_ball(9.0, [0.0; 3]), "`thing` holds the whole host");
+    told(small_ball(0.4, [1.4, 0.0, 0.0]), "touches or cuts a wall");
+    // In the plane of the wall, and with a corner on it.
+    told(box_grid([1; 3], [[0.5, 0.0, 0.0], [1.5, 0.5, 0.5]]), "touches or cuts a wall");
+    told(moved(ball(2, 1), |p| [0.3 * p[0], 0.3 * p[1], 1.2 + 0.3 * p[2]]), "touches or cuts a wall");
+    let mut both = small_ball(0.3, [0.0; 3]);
+    let other = small_ball(0.3, [5.0, 0.0, 0.0]);
+    let first = both.points.len();
+    both.points.extend(&other.points);
+    for (_, kind, vertices) in other.cells.iter() {
+        both.cells.push(kind, vertices.iter().map(|v| VertexId::new(first + v.index())));
+    }
+    both.cell_data.clear();
+    told(both, "a part of the device `thing` lies outside");
+    let mut open = Surface::boundary_of(&small_ball(0.3, [0.0; 3]));
+    open.triangles.pop();
+    let open = Mesh::new(
+        open.points.clone(),
+        Cells::uniform(CellKind::TRIANGLE, open.triangles.as_flattened().to_vec()).unwrap(),
+    );
+    told(open, "the surface ends at the edge");
+    told(Mesh::default(), "`thing`");
+    let crossing =
+        [Device::new(small_ball(0.4, [0.0; 3]), "one"), Device::new(small_ball(0.4, [0.3, 0.0, 0.0]), "two")];
+    assert!(put(&host, &crossing, &no_adapt()).unwrap_err().what().contains("triangles meet"));
+    let twice = |inside: Inside| {
+        let mut device = Device::new(small_ball(0.4, [0.0; 3]), "one");
+        device.inside = inside;
+        put(&host, &[device.clone(), Device { name: "two".to_owned(), ..device }], &no_adapt()).unwrap_err()
+    };
+    assert!(twice(Inside::Own).what().contains("`one` keeps its tets"));
+    assert!(twice(Inside::Filled).what().contains("room of the device `one` is that of later ones"));
+    let surface = coil([0.0; 3]);
+    assert!(put(&surface, &[Device::new(small_ball(0.1, [0.0; 3]), "x")], &no_adapt()).is_err());
+    assert!(put(&host, &[], &no_adapt()).is_err());
+    let odd = [
+        Options { size: Some(-1.0), ..Options::default() },
+        Options { growth: 0.0, ..Options::default() },
+        Options { carve: 4.0, reach: 3.0, ..Options::default() },
+        Options { reach: f64::NAN, ..Options::default() },
+    ];
+    for options in odd {
+        assert!(put(&host, &[Device::new(small_ball(0.3, [0.0; 3]), "x")], &options).is_err());
+    }
+}
+
+/// Numbers in [0, 1) that look like chance (Marsaglia's xorshift).
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
+fn stent() -> Mesh {
+    let stent = Stent {
+        length: 2.0,
+        rings: 2,
+        crowns: 4,
+        strut_width: 0.12,
+        thickness: 0.1,
+        link_length: 0.4,
+        link_every: 2,
+        segments: 4,
+    };
+    stent.mesh(0.8).unwrap()
+}
+
+/// A device of one of five shapes, somewhere; every fourth on the lattice of the host.
+fn random_device(chance: &mut Chance) -> (String, Device) {
+    let kind = (chance.next() * 5.0) as usize;
+    let on_lattice = chance.next() < 0.25;
+    let at: Point = std::array::from_fn(|_| {
+        let x = chance.between(-1.3, 1.3);
+        if on_lattice { (x / 0.375).round() * 0.375 } else { x }
+    });
+    let size = if on_lattice { 0.375 } else { chance.between(0.1, 0.7) };
+    let place = |p: Point| [0, 1, 2].map(|i| at[i] + size * p[i]);
+    let (name, mesh) = match kind {
+        0 => ("ball", moved(ball(3, 2), place)),
+        1 => ("box", moved(box_grid([2; 3], [[-1.0; 3], [1.0; 3]]), place)),
+        2 => ("coil", moved(coil([0.0; 3]), place)),
+        3 => ("stent", moved(stent(), |p| place([p[0], p[1], p[2] - 1.0]))),
+        _ => {
+            let ring: Vec<Point> = (0..16)
+                .map(|i| f64::from(i) * std::f64::consts::TAU / 16.0)
+                .map(|a| place([a.cos(), a.sin(), 0.0]))
+                .collect();
+            let segments: Vec<[VertexId; 2]> =
+                (0..16).map(|i| [VertexId(i), VertexId((i + 1) % 16)]).collect();
+            ("torus", motet::mesh::shapes::wire(&ring, &segments, 0.3 * size, 8).unwrap())
+        }
+    };
+    let mut device = Device::new(mesh, name);
+    device.inside = match (device.inside, (chance.next() * 3.0) as usize) {
+        (_, 0) => Inside::Hollow,
+        (_, 1) => Inside::Filled,
+        (inside, _) => inside,
+    };
+    (format!("{name} at {at:?}, size {size}, {:?}", device.inside), device)
+}
+
+/// `MOTET_CASES=500` makes more of them.
+#[test]
+fn random_placements_give_a_sound_mesh_or_a_named_refusal() {
+    let n: usize = std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
+    let host = room(8);
+    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let (mut n_sound, mut reasons) = (0, BTreeMap::<String, usize>::new());
+    for _ in 0..n {
+        let (name, device) = random_device(&mut chance);
+        let options = no_adapt();
+        match put(&host, std::slice::from_ref(&device), &options) {
+            Ok(made) => {
+                let faults = faults(&host, std::slice::from_ref(&device), &options, &made);
+                assert!(faults.is_empty() && made.report.is_valid(), "{name}: {}", faults[0]);
+                n_sound += 1;
+            }
+            Err(error) => {
+                assert!(error.remedy_text().is_some() && error.place().is_some(), "{name}: {error}");
+                let is_known = ["touches or cuts a wall", "lies outside of the host"];
+                let reason = is_known.iter().find(|reason| error.what().contains(**reason));
+                *reasons.entry(reason.map_or(error.to_string(), |r| (*r).to_owned())).or_default() += 1;
+            }
+        }
+    }
+    println!("{n_sound} of {n} sound; refused: {reasons:?}");
+    assert!(reasons.keys().all(|reason| reason.len() < 40), "{reasons:?}");
+    assert!(3 * n_sound > n);
+}
