@@ -6,7 +6,7 @@ use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::tet::{EDGES, FACETS, centroid, volume};
 use motet::geometry::triangle;
 use motet::geometry::vector::distance;
-use motet::implant::{Adapt, Device, Implanted, Inside, Options, implant};
+use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, implant};
 use motet::mesh::check::{check, is_conforming};
 use motet::mesh::history::{Origin, Rules, field_ledger};
 use motet::mesh::shapes::{Coil, Stent, ball, box_grid};
@@ -364,6 +364,99 @@ fn what_cannot_be_put_in_is_refused_with_the_reason() {
     for options in odd {
         assert!(put(&host, &[Device::new(small_ball(0.3, [0.0; 3]), "x")], &options).is_err());
     }
+}
+
+fn conform(tolerance: Option<f64>) -> Options {
+    Options { interface: Interface::Conform { tolerance }, ..no_adapt() }
+}
+
+/// Both surfaces as one device, whether they meet or not.
+fn together(a: &Mesh, b: &Mesh) -> Mesh {
+    let mut points = Vec::new();
+    let mut cells = Cells::new();
+    for mesh in [a, b] {
+        let surface =
+            if mesh.cells.dim() == Some(3) { Surface::boundary_of(mesh) } else { Surface::of(mesh) };
+        let moved = |v: VertexId| VertexId::new(points.len() + v.index());
+        surface.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, t.map(moved)));
+        points.extend(surface.points);
+    }
+    Mesh::new(points, cells)
+}
+
+#[test]
+fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
+    let host = room(8);
+    // Turns that overlap; two balls, one partly in the other; a ball there twice; a ball with a hole.
+    let overlapping = Coil { centre: [0.0; 3], radius: 0.6, pitch: 0.2, turns: 2.5, wire_radius: 0.12 };
+    let lens = |r: f64, d: f64| std::f64::consts::PI * (4.0 * r + d) * (2.0 * r - d).powi(2) / 12.0;
+    let sphere = |r: f64| std::f64::consts::PI * 4.0 / 3.0 * r * r * r;
+    let one = moved(ball(8, 1), |p| [0, 1, 2].map(|i| 0.5 * p[i]));
+    let other = moved(one.clone(), |p| [p[0] + 0.6, p[1], p[2]]);
+    let holed = {
+        let whole = together(&one, &Mesh::default());
+        let kept = whole.cells.iter().skip(12).map(|(_, _, v)| v.to_vec()).collect::<Vec<_>>();
+        let mut cells = Cells::new();
+        kept.iter().for_each(|v| cells.push(CellKind::TRIANGLE, v.iter().copied()));
+        Mesh::new(whole.points, cells)
+    };
+    let both = 2.0 * sphere(0.5) - lens(0.5, 0.6);
+    let cases = [
+        ("coil", overlapping.mesh(40, 8).unwrap(), None),
+        ("balls", together(&one, &other), Some(both)),
+        ("twice", together(&one, &one), Some(sphere(0.5))),
+        ("holed", holed, Some(sphere(0.5))),
+    ];
+    for (name, mesh, volume) in cases {
+        let device = Device::new(mesh, name);
+        assert!(put(&host, std::slice::from_ref(&device), &no_adapt()).is_err(), "{name}");
+        let made = put(&host, &[device], &conform(None)).unwrap();
+        let told = &made.report.devices[0];
+        let fit = told.fit.unwrap();
+        assert!(made.report.is_valid() && check(&made.mesh).is_empty(), "{name}");
+        assert!(made.report.volume_deviation() < 1e-9, "{name}");
+        assert_eq!(made.report.n_unforced(), 0, "{name}");
+        assert!(fit.to_old <= fit.tolerance, "{name} {fit:?}");
+        // The hole is closed by a surface that the old one does not have.
+        assert!(name == "holed" || fit.is_reached(), "{name} {fit:?}");
+        if let Some(volume) = volume {
+            let off = (told.volume - volume).abs() / volume;
+            assert!(off < 0.05, "{name}: {} of {volume}", told.volume);
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
+    let host = room(8);
+    let device = Device::new(moved(ball(8, 1), |p| [0, 1, 2].map(|i| 0.5 * p[i])), "ball");
+    let made = |tolerance| put(&host, std::slice::from_ref(&device), &conform(Some(tolerance))).unwrap();
+    let [fine, coarse] = [0.004, 0.02].map(made);
+    for (made, tolerance) in [(&fine, 0.004), (&coarse, 0.02)] {
+        let fit = made.report.devices[0].fit.unwrap();
+        assert!(fit.is_reached() && fit.tolerance == tolerance, "{fit:?}");
+    }
+    assert!(fine.report.devices[0].triangles > coarse.report.devices[0].triangles);
+    let three = Threads::new(3).unwrap();
+    let options = conform(Some(0.02));
+    let again = implant(&host, std::slice::from_ref(&device), &options, &Rules::default(), &three).unwrap();
+    assert_eq!(again.mesh, coarse.mesh);
+    let mut inward = Surface::boundary_of(&device.mesh);
+    inward.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    let inward = Mesh::new(
+        inward.points.clone(),
+        Cells::uniform(CellKind::TRIANGLE, inward.triangles.as_flattened().to_vec()).unwrap(),
+    );
+    let refused =
+        |mesh: Mesh, options: &Options| put(&host, &[Device::new(mesh, "thing")], options).unwrap_err();
+    assert!(refused(inward, &conform(None)).what().contains("goes round nothing"));
+    assert!(refused(Mesh::default(), &conform(None)).what().contains("goes round nothing"));
+    assert!(refused(device.mesh.clone(), &conform(Some(1e-12))).what().contains("far too many cubes"));
+    assert!(refused(device.mesh.clone(), &conform(Some(-1.0))).what().contains("tolerance of -1"));
+    let mut odd = together(&device.mesh, &Mesh::default());
+    let first = odd.cells.vertices(CellId(0))[0];
+    odd.points[first.index()][1] = f64::NAN;
+    assert!(refused(odd, &conform(None)).what().contains("no number"));
 }
 
 /// Numbers in [0, 1) that look like chance (Marsaglia's xorshift).

@@ -121,7 +121,7 @@ impl Devices {
 }
 
 /// The boundary of a device that keeps its tets or has no surface cells, else its surface cells.
-fn surface(device: &Device) -> Surface {
+pub(super) fn surface(device: &Device) -> Surface {
     let surface = Surface::of(&device.mesh);
     if device.inside == Inside::Own || surface.triangles.is_empty() {
         return Surface::boundary_of(&device.mesh);

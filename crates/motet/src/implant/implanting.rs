@@ -4,13 +4,14 @@ use std::time::Instant;
 
 use super::adapt::adapt;
 use super::carve::{Carved, Fate};
-use super::devices::Devices;
+use super::devices::{Devices, surface};
 use super::gap::Gap;
 use super::join::{Joined, Pieces, join, volume_of};
 use super::names::Names;
-use super::options::{Device, Inside, Options};
+use super::options::{Device, Inside, Interface, Options};
 use super::place;
-use super::report::{DeviceReport, Report};
+use super::report::{DeviceReport, Fit, Report};
+use super::resurface::resurface;
 use super::zone::Draft;
 use crate::base::{CellId, Error, Result, Threads};
 use crate::mesh::check::check;
@@ -58,6 +59,7 @@ pub fn implant(
     let mut report = Report::default();
     // Tells early what is no host.
     TetPart::of(host)?;
+    let (devices, fits) = &with_surfaces(devices, options, threads)?;
     let joined = Devices::join(devices, threads)?;
     report.seconds.devices = lap();
 
@@ -88,6 +90,7 @@ pub fn implant(
 
     tell_cells(&mut report, &zone_to_cell, first_new);
     certify(&mut report, host, devices, &joined, &gap, &mesh, &names);
+    report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
         let told: Vec<String> =
@@ -97,6 +100,25 @@ pub fn implant(
         ));
     }
     Ok(Implanted { mesh, history, report })
+}
+
+/// The devices with the surfaces that they are put in with, and how those fit where they are new.
+fn with_surfaces(
+    devices: &[Device],
+    options: &Options,
+    threads: &Threads,
+) -> Result<(Vec<Device>, Vec<Option<Fit>>)> {
+    let Interface::Conform { tolerance } = options.interface else {
+        return Ok((devices.to_vec(), vec![None; devices.len()]));
+    };
+    let new = |device: &Device| {
+        let made = resurface(surface(device), &device.name, tolerance, options.size, threads)?;
+        let [to_old, from_old] = made.distances;
+        let inside = if device.inside == Inside::Hollow { Inside::Hollow } else { Inside::Filled };
+        let device = Device { mesh: made.mesh, name: device.name.clone(), inside };
+        Ok((device, Some(Fit { to_old, from_old, tolerance: made.tolerance })))
+    };
+    devices.iter().map(new).collect()
 }
 
 /// The host carved, as far as it has to be, and the room filled.
@@ -163,6 +185,7 @@ fn certify(
             patch: names.patches[k],
             triangles: own.clone().count(),
             triangles_kept: own.filter(|&t| parts[t] == 1).count(),
+            fit: None,
             enclosed: enclosed[k],
             volume: body.map_or(0.0, |body| body.volume),
         });

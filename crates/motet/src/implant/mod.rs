@@ -2,6 +2,7 @@
 //!
 //! | step | file | how |
 //! |---|---|---|
+//! | surfaces | `resurface` | new ones for devices whose own cross themselves or are bad, where that is asked |
 //! | devices | `devices` | their surfaces joined and held against all faults; the tets that they bring |
 //! | adapt | `adapt` | walls of the host near them refined, or all of it there, by [`crate::refine`] |
 //! | carve | `carve` | tets in the devices and near them go |
@@ -25,8 +26,9 @@ mod options;
 mod origins;
 mod place;
 mod report;
+mod resurface;
 mod zone;
 
 pub use implanting::{Implanted, implant};
-pub use options::{Adapt, Device, Inside, Options};
-pub use report::{Adapted, DeviceReport, Report, Seconds};
+pub use options::{Adapt, Device, Inside, Interface, Options};
+pub use report::{Adapted, DeviceReport, Fit, Report, Seconds};

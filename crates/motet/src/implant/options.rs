@@ -50,10 +50,27 @@ impl Device {
     }
 }
 
+/// What the surface of a device becomes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Interface {
+    /// Each of its triangles is a facet of the result. It has to be closed, and must not cross itself.
+    #[default]
+    Match,
+    /// A new surface near it: for devices that touch or cross themselves, have open ends or triangles twice, or are made of bad triangles. They are filled or hollow.
+    Conform {
+        /// How far the new surface may be from the old one, and the old one from it; `None`: a fifth of the radius of a round wire as thick as the device.
+        /// Where that is not reached the nearest one is taken, and the report says so.
+        tolerance: Option<f64>,
+    },
+}
+
 /// How devices are put in.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// How long edges of the host are to be beside the devices, in its unit; `None`: as those of the devices. Default: `None`.
+    /// What surfaces of devices become. Default: [`Interface::Match`].
+    pub interface: Interface,
+    /// How long edges are to be beside the devices where the host is refined, and those of new surfaces, in its unit; `None`: of the host as those of the devices, of new
+    /// surfaces as their tolerance asks. Default: `None`.
     pub size: Option<f64>,
     /// How much sizes grow per unit of distance from the devices, above 0 and at most [`MOST_GROWTH`]. Default: 0.5.
     pub growth: f64,
@@ -70,6 +87,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
+            interface: Interface::Match,
             size: None,
             growth: 0.5,
             adapt: Adapt::Walls,
@@ -87,6 +105,11 @@ impl Options {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if let Some(size) = self.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
             return refused(format!("a size of {size}, expected a length above 0"), "leave it out");
+        }
+        if let Interface::Conform { tolerance: Some(tolerance) } = self.interface
+            && !(tolerance > 0.0 && tolerance.is_finite())
+        {
+            return refused(format!("a tolerance of {tolerance}, expected a length above 0"), "leave it out");
         }
         if !(self.growth > 0.0 && self.growth <= MOST_GROWTH) {
             let what =

@@ -19,6 +19,24 @@ pub struct Adapted {
     pub tets_after: usize,
 }
 
+/// How a new surface fits the one that a device came with.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Fit {
+    /// The largest distance of the new one from the old one; at corners, middles of edges and of triangles.
+    pub to_old: f64,
+    /// The largest distance of the old one, where it bounds the device, from the new one; at middles of edges and of triangles.
+    pub from_old: f64,
+    /// How far they were to be apart at most.
+    pub tolerance: f64,
+}
+
+impl Fit {
+    /// Whether both are within the tolerance.
+    pub fn is_reached(&self) -> bool {
+        self.to_old.max(self.from_old) <= self.tolerance
+    }
+}
+
 /// What became of a device.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct DeviceReport {
@@ -32,6 +50,8 @@ pub struct DeviceReport {
     pub triangles: usize,
     /// Of these, facets of the mesh as they came.
     pub triangles_kept: usize,
+    /// How its new surface fits, where it got one. Triangles and enclosed volume are those of the new one.
+    pub fit: Option<Fit>,
     /// What its surface encloses.
     pub enclosed: f64,
     /// The volume of its region, 0 where it is hollow.
@@ -96,9 +116,11 @@ impl Report {
         crate::mesh::check::is_conforming(&self.defects) && self.improved.after.inverted == 0
     }
 
-    /// Whether it is valid, every triangle of the devices is a facet, and no bad tet is left but those of the host and those that walls force.
+    /// Whether it is valid, every triangle of the devices is a facet, new surfaces are near enough, and no bad tet is left but those of the host and those that walls force.
     pub fn is_complete(&self) -> bool {
-        let is_kept = |device: &DeviceReport| device.triangles_kept == device.triangles;
+        let is_kept = |device: &DeviceReport| {
+            device.triangles_kept == device.triangles && device.fit.is_none_or(|fit| fit.is_reached())
+        };
         self.is_valid() && self.devices.iter().all(is_kept) && self.n_unforced() == 0
     }
 

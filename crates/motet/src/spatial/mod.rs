@@ -6,8 +6,10 @@ mod locate;
 mod nearest;
 pub(crate) mod runs;
 pub mod trace;
+mod winding;
 
 pub(crate) use boxes::around;
 pub use boxes::{Bounds, BoxTree};
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};
+pub use winding::WindingNumber;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use motet::Error;
 use motet::implant::{self, Options};
 use motet::remesh;
 
@@ -53,10 +54,19 @@ pub(crate) struct ImplantArgs {
     #[arg(long, conflicts_with = "hollow", help_heading = "Devices")]
     pub(crate) fill: bool,
 
+    /// What the surface of a device becomes
+    #[arg(long, value_name = "HOW", default_value = "match", help_heading = "Devices")]
+    interface: Interface,
+    /// How far a new surface may be from the old one, with --interface conform [default: a fifth of the radius
+    /// of a wire as thick as the device]
+    #[arg(long, value_name = "D", value_parser = positive, help_heading = "Devices")]
+    tolerance: Option<f64>,
+
     /// What of the host is refined before it is carved
     #[arg(long, value_name = "WHAT", default_value = "walls", help_heading = "Room")]
     adapt: Adapt,
-    /// How long edges of the host are to be beside the devices where it is refined [default: as those of the devices]
+    /// How long edges of the host are to be beside the devices where it is refined, and those of new surfaces [default:
+    /// as those of the devices, and as --tolerance asks]
     #[arg(long, value_name = "H", value_parser = positive, help_heading = "Room")]
     size: Option<f64>,
     /// How much edges grow per unit of distance from the devices, at most 0.7
@@ -87,6 +97,14 @@ pub(crate) struct ImplantArgs {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Interface {
+    /// Each of its triangles is a facet of the mesh
+    Match,
+    /// A new surface is made near it, within --tolerance: for devices that touch or cross themselves, have open ends or bad triangles
+    Conform,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Adapt {
     /// Nothing
     None,
@@ -97,8 +115,19 @@ enum Adapt {
 }
 
 impl ImplantArgs {
-    pub(super) fn options(&self) -> Options {
-        Options {
+    /// # Errors
+    /// When words contradict each other.
+    pub(super) fn options(&self) -> motet::Result<Options> {
+        let interface = match (self.interface, self.tolerance) {
+            (Interface::Match, None) => implant::Interface::Match,
+            (Interface::Conform, tolerance) => implant::Interface::Conform { tolerance },
+            (Interface::Match, Some(_)) => {
+                let what = "--tolerance says how far a new surface may be, and triangles are to be kept";
+                return Err(Error::options(what).remedy("add --interface conform"));
+            }
+        };
+        Ok(Options {
+            interface,
             size: self.size,
             growth: self.growth,
             adapt: match self.adapt {
@@ -109,6 +138,6 @@ impl ImplantArgs {
             carve: self.carve,
             reach: self.reach,
             improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
-        }
+        })
     }
 }

@@ -26,6 +26,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let begin = Instant::now();
     outputs::check_with_history(&args.output, &args.host, args.history.as_deref())?;
     outputs::check(&args.output, args.devices.iter().map(AsRef::as_ref), "a device")?;
+    let options = args.options()?;
     let threads = common.threads()?;
     let bar = console.bar(2, "implanting");
     let (host, notes) = io::read_noted(&args.host)?;
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let devices = read(args, &host.label_names, console)?;
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
-    let made = implant(&host, &devices, &args.options(), &rules, &threads);
+    let made = implant(&host, &devices, &options, &rules, &threads);
     let Implanted { mut mesh, history, report } = made.map_err(|e| in_its_file(e, args, &devices))?;
     bar.inc(1);
     if args.quality {

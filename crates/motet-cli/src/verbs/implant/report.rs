@@ -76,6 +76,17 @@ impl Report {
             (report.kept_share * 1e4).floor() / 1e2
         ));
         console.say(self.device_table());
+        for device in &report.devices {
+            let Some(fit) = device.fit else { continue };
+            console.say(format_args!(
+                "{}: new surface within {} of the old one, the old one within {} of it; {} was asked{}",
+                device.name,
+                short(fit.to_old),
+                short(fit.from_old),
+                short(fit.tolerance),
+                if fit.is_reached() { "" } else { " and not reached" }
+            ));
+        }
         let worst = report.improved.after.worst;
         console.say(format_args!(
             "{} tets; {} bad ones near the devices were repaired, {} of those that came are left; worst EAS there {}",

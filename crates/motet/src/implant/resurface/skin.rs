@@ -1,0 +1,224 @@
+//! The surface between what is inside and what is outside, cut out of a lattice of tets.
+
+use super::cubes::Lattice;
+use crate::base::{Id, Point, Threads, VertexId, rising};
+use crate::geometry::tet::{EDGES, FACETS, volume};
+use crate::geometry::vector::{add, distance, scale, sub};
+
+/// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones. With these no angle of the tets comes out worse
+/// than 10.8 degrees (Labelle and Shewchuk 2007, table 2).
+const NEAR: [f64; 2] = [0.412, 0.25];
+
+/// Cuts are looked for in so many steps.
+const STEPS: usize = 3;
+
+/// Triangles that face outward.
+pub(super) struct Skin {
+    pub(super) points: Vec<Point>,
+    pub(super) triangles: Vec<[VertexId; 3]>,
+}
+
+/// An edge that the surface cuts: its ends, the inner one first.
+#[derive(Clone, Copy)]
+struct Cut {
+    ends: [VertexId; 2],
+    place: Point,
+}
+
+impl Skin {
+    /// `values` are below 0 inside, and so is what `at` says of any place.
+    pub(super) fn new(
+        mut lattice: Lattice,
+        mut values: Vec<f64>,
+        at: impl Fn(Point) -> f64 + Sync + Send,
+        threads: &Threads,
+    ) -> Self {
+        let cuts = cuts(&lattice, &values, &at, threads);
+        warp(&mut lattice, &mut values, &cuts);
+        let left: Vec<Cut> =
+            cuts.into_iter().filter(|cut| cut.ends.iter().all(|v| values[v.index()] != 0.0)).collect();
+        let places: Vec<Point> = left.iter().map(|cut| cut.place).collect();
+        let mut cutter = Cutter {
+            values: &values,
+            lattice: &lattice,
+            edges: left.iter().map(|cut| key(cut.ends)).collect(),
+            triangles: Vec::new(),
+            closing: Vec::new(),
+        };
+        for tet in &lattice.tets {
+            cutter.cut(*tet);
+        }
+        let (mut triangles, closing) = (cutter.triangles, cutter.closing);
+        triangles.extend(single(closing));
+        compact(&lattice.points, &places, triangles)
+    }
+}
+
+fn key([u, v]: [VertexId; 2]) -> [VertexId; 2] {
+    [u.min(v), u.max(v)]
+}
+
+/// All edges that the surface cuts, by their ends, rising.
+fn cuts(
+    lattice: &Lattice,
+    values: &[f64],
+    at: &(impl Fn(Point) -> f64 + Sync + Send),
+    threads: &Threads,
+) -> Vec<Cut> {
+    let mut edges: Vec<[VertexId; 2]> = Vec::new();
+    for tet in &lattice.tets {
+        let signs = tet.map(|v| values[v.index()] < 0.0);
+        if signs == [signs[0]; 4] {
+            continue;
+        }
+        let is_cut = |[i, j]: &&[usize; 2]| signs[*i] != signs[*j];
+        edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| key([tet[i], tet[j]])));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let places = threads.map(edges.len(), |i| cut_place(lattice, values, edges[i], at));
+    edges.into_iter().zip(places).map(|(ends, place)| Cut { ends, place }).collect()
+}
+
+/// Where the surface cuts an edge, by the rule of false position with halved weights (Illinois).
+fn cut_place(lattice: &Lattice, values: &[f64], ends: [VertexId; 2], at: &impl Fn(Point) -> f64) -> Point {
+    let [a, b] = ends.map(|v| lattice.points[v.index()]);
+    let [mut low, mut high] = [0.0, 1.0];
+    let [mut at_low, mut at_high] = ends.map(|v| values[v.index()]);
+    let place = |share: f64| add(a, scale(sub(b, a), share));
+    let mut share = 0.5;
+    for _ in 0..STEPS {
+        share = (low + (high - low) * at_low / (at_low - at_high)).clamp(0.01, 0.99);
+        let found = at(place(share));
+        if (found < 0.0) == (at_low < 0.0) {
+            (low, at_low, at_high) = (share, found, 0.5 * at_high);
+        } else {
+            (high, at_high, at_low) = (share, found, 0.5 * at_low);
+        }
+        if found == 0.0 {
+            break;
+        }
+    }
+    place(share)
+}
+
+/// Moves vertices onto the nearest of the cuts that are too near to them.
+fn warp(lattice: &mut Lattice, values: &mut [f64], cuts: &[Cut]) {
+    let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); values.len()];
+    for cut in cuts {
+        let [a, b] = cut.ends.map(|v| lattice.points[v.index()]);
+        let is_long = lattice.is_middle[cut.ends[0].index()] == lattice.is_middle[cut.ends[1].index()];
+        let length = distance(a, b);
+        for (end, p) in cut.ends.into_iter().zip([a, b]) {
+            let share = distance(p, cut.place) / length;
+            // As a part of what is too near, so that long and short edges compare.
+            let part = share / NEAR[usize::from(is_long)];
+            if part < nearest[end.index()].0 {
+                nearest[end.index()] = (part, cut.place);
+            }
+        }
+    }
+    for ((near, value), point) in nearest.into_iter().zip(values).zip(&mut lattice.points) {
+        if near.0 < 1.0 {
+            (*value, *point) = (0.0, near.1);
+        }
+    }
+}
+
+/// Cuts tets one by one. A corner of the skin is a vertex of the lattice, or a cut by its number behind those.
+struct Cutter<'a> {
+    values: &'a [f64],
+    lattice: &'a Lattice,
+    edges: Vec<[VertexId; 2]>,
+    triangles: Vec<[VertexId; 3]>,
+    /// Facets of tets inside whose corners are all on the surface: there twice they are not of it.
+    closing: Vec<[VertexId; 3]>,
+}
+
+impl Cutter<'_> {
+    fn sign(&self, v: VertexId) -> i8 {
+        let value = self.values[v.index()];
+        i8::from(value > 0.0) - i8::from(value < 0.0)
+    }
+
+    fn corner(&self, u: VertexId, v: VertexId) -> VertexId {
+        let i = self.edges.binary_search(&key([u, v])).unwrap_or_default();
+        VertexId::new(self.lattice.points.len() + i)
+    }
+
+    fn cut(&mut self, tet: [VertexId; 4]) {
+        let signs = tet.map(|v| self.sign(v));
+        let of = |sign: i8| (0..4).filter(move |&k| signs[k] == sign);
+        let (inner, outer, on) = (of(-1).count(), of(1).count(), of(0).count());
+        if outer == 0 {
+            if let (1, 3, Some(k)) = (inner, on, of(-1).next()) {
+                self.closing.push(FACETS[k].map(|i| tet[i]));
+            }
+            return;
+        }
+        if inner == 0 {
+            return;
+        }
+        // Corners in turn round the cut, as the inner vertices see them.
+        let ring: Vec<VertexId> = match (inner, outer) {
+            (2, 2) => {
+                let (i, o): (Vec<usize>, Vec<usize>) = (of(-1).collect(), of(1).collect());
+                [[i[0], o[0]], [i[0], o[1]], [i[1], o[1]], [i[1], o[0]]]
+                    .map(|[u, v]| self.corner(tet[u], tet[v]))
+                    .to_vec()
+            }
+            _ => {
+                let cuts = of(-1).flat_map(|i| of(1).map(move |o| [i, o]));
+                let cuts = cuts.map(|[i, o]| self.corner(tet[i], tet[o]));
+                cuts.chain(of(0).map(|k| tet[k])).collect()
+            }
+        };
+        let is_turned = self.is_turned(tet, &ring);
+        for k in 1..ring.len() - 1 {
+            let triangle = [ring[0], ring[k], ring[k + 1]];
+            self.triangles.push(if is_turned { [triangle[0], triangle[2], triangle[1]] } else { triangle });
+        }
+    }
+
+    /// Whether a ring of corners runs clockwise seen from an outer vertex. Told by the order of the tet's vertices, not by places.
+    fn is_turned(&self, tet: [VertexId; 4], ring: &[VertexId]) -> bool {
+        // Middles of the edges stand for the cuts: where exactly these are does not matter.
+        const UNIT: [Point; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let n = self.lattice.points.len();
+        let at = |v: VertexId| match v.index().checked_sub(n) {
+            None => UNIT[tet.iter().position(|u| *u == v).unwrap_or(0)],
+            Some(i) => {
+                let ends = self.edges[i].map(|end| UNIT[tet.iter().position(|u| *u == end).unwrap_or(0)]);
+                scale(add(ends[0], ends[1]), 0.5)
+            }
+        };
+        let inner = (0..4).find(|&k| self.sign(tet[k]) < 0).unwrap_or(0);
+        volume([at(ring[0]), at(ring[1]), at(ring[2]), UNIT[inner]]) > 0.0
+    }
+}
+
+/// Facets that are there once.
+fn single(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
+    let mut keyed: Vec<([VertexId; 3], [VertexId; 3])> =
+        facets.into_iter().map(|facet| (rising(facet), facet)).collect();
+    keyed.sort_unstable();
+    let single: Vec<[VertexId; 3]> =
+        keyed.chunk_by(|x, y| x.0 == y.0).filter(|same| same.len() == 1).map(|same| same[0].1).collect();
+    single.into_iter()
+}
+
+/// Corners numbered as they come.
+fn compact(vertices: &[Point], cuts: &[Point], mut triangles: Vec<[VertexId; 3]>) -> Skin {
+    let mut new: Vec<VertexId> = vec![Id::NONE; vertices.len() + cuts.len()];
+    let mut points = Vec::new();
+    for v in triangles.as_flattened_mut() {
+        let place = &mut new[v.index()];
+        if *place == VertexId::NONE {
+            *place = VertexId::new(points.len());
+            points
+                .push(v.index().checked_sub(vertices.len()).map_or_else(|| vertices[v.index()], |i| cuts[i]));
+        }
+        *v = *place;
+    }
+    Skin { points, triangles }
+}
