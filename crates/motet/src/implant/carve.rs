@@ -7,7 +7,7 @@ use crate::contact::inside;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
 use crate::geometry::vector::distance;
-use crate::mesh::tet_facets::{NO_TET, for_each_tet_facet};
+use crate::mesh::tet_facets::{NO_TET, for_each_tet_facet, tet_neighbors};
 use crate::mesh::{TetMesh, bounds};
 use crate::spatial::NearestTriangle;
 
@@ -55,14 +55,8 @@ impl Carved {
     ) -> Self {
         let mut fates =
             threads.map(host.tets.len(), |t| near(host, t, nearest, carve, options.reach.max(carve)));
-        let mut neighbors = vec![[NO_TET; 4]; host.tets.len()];
-        for_each_tet_facet(&host.tets, &[], |sharing| {
-            if let &[(x, i), (y, j)] = sharing.tets {
-                (neighbors[x.index()][i], neighbors[y.index()][j]) = (y.0, x.0);
-            }
-        });
         take_inner(host, devices, &mut fates, threads);
-        take_teeth(&neighbors, &mut fates);
+        take_teeth(&tet_neighbors(&host.tets), &mut fates);
         leave_bad(host, options.improve.limit(), &mut fates);
         let faces = faces(host, &fates);
         Self { fates, faces }
@@ -145,12 +139,14 @@ fn faces(host: &TetMesh, fates: &[Fate]) -> Vec<Face> {
         if front == Some(behind) && sharing.triangles.is_empty() {
             return;
         }
-        let tet = host.tets[t];
-        let mut vertices = FACETS[i].map(|k| tet[k]);
-        if volume(tet.map(|v| host.points[v.index()])) < 0.0 {
-            vertices.swap(1, 2);
-        }
-        faces.push(Face { vertices, behind, front });
+        faces.push(Face { vertices: outward(host, t, i), behind, front });
     });
     faces
+}
+
+/// Facet `i` of a tet, whichever way that is numbered, turned outward.
+pub(super) fn outward(host: &TetMesh, t: usize, i: usize) -> [VertexId; 3] {
+    let tet = host.tets[t];
+    let [a, b, c] = FACETS[i].map(|k| tet[k]);
+    if volume(tet.map(|v| host.points[v.index()])) < 0.0 { [a, c, b] } else { [a, b, c] }
 }

@@ -113,10 +113,9 @@ fn with_surfaces(
     };
     let new = |device: &Device| {
         let made = resurface(surface(device), &device.name, tolerance, options.size, threads)?;
-        let [to_old, from_old] = made.distances;
         let inside = if device.inside == Inside::Hollow { Inside::Hollow } else { Inside::Filled };
         let device = Device { mesh: made.mesh, name: device.name.clone(), inside };
-        Ok((device, Some(Fit { to_old, from_old, tolerance: made.tolerance })))
+        Ok((device, Some(made.fit)))
     };
     devices.iter().map(new).collect()
 }

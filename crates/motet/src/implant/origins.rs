@@ -18,7 +18,7 @@ pub(super) fn history(
     numbers: &Numbers,
     threads: &Threads,
 ) -> Result<History> {
-    let Pieces { host, part, devices, gap, draft } = *pieces;
+    let Pieces { host, part, gap, draft, .. } = *pieces;
     let gone: Vec<usize> = (0..draft.is_gone.len()).filter(|&t| draft.is_gone[t]).collect();
     let removed: Vec<Labelled<4>> = gone
         .iter()
@@ -43,21 +43,17 @@ pub(super) fn history(
         let place = || centroid(vertices.map(|v| mesh.points[v.index()]));
         came.push(Labelled { cell, vertices, label: region.unwrap_or_else(|| there.region_at(place())) });
     }
-    // A facet of each tet that went stands for it, once a device.
-    let patches: Vec<i32> = (0..devices.names.len() as i32).collect();
-    let facets = patches.iter().flat_map(|&label| {
-        removed.iter().map(move |tet| {
-            let [a, b, c, _] = tet.vertices;
-            Labelled { cell: tet.cell, vertices: [a, b, c], label }
-        })
+    // Triangles of devices come from the tets that went: a facet of each stands for it.
+    let facet = |tet: &Labelled<4>| {
+        let [a, b, c, _] = tet.vertices;
+        Labelled { cell: tet.cell, vertices: [a, b, c], label: 0 }
+    };
+    let facets: Vec<Labelled<3>> = removed.iter().map(facet).collect();
+    let triangles = (0..n_triangles).filter_map(|i| match *mesh.cells.vertices(cell(i)) {
+        [a, b, c] => Some(Labelled { cell: cell(i), vertices: [a, b, c], label: 0 }),
+        _ => None,
     });
-    let facets: Vec<Labelled<3>> = facets.collect();
-    let mut triangles = Vec::with_capacity(n_triangles);
-    for (i, (_, t)) in gap.triangles.iter().enumerate() {
-        let &[a, b, c] = mesh.cells.vertices(cell(i)) else { continue };
-        let label = devices.of_triangle.list(*t as usize)[0] as i32;
-        triangles.push(Labelled { cell: cell(i), vertices: [a, b, c], label });
-    }
+    let triangles: Vec<Labelled<3>> = triangles.collect();
     let changed: Vec<ChangedVertex> = (0..numbers.kept.len())
         .filter(|&v| numbers.kept[v] == VertexId::NONE)
         .map(|v| {

@@ -1,10 +1,9 @@
 //! Where devices lie in the host: what stops them from being put in.
 
-use super::carve::Carved;
+use super::carve::{Carved, outward};
 use super::devices::Devices;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::contact::inside;
-use crate::geometry::tet::{FACETS, volume};
 use crate::geometry::triangle;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -50,12 +49,7 @@ fn check_inside(
     let mut boundary = Vec::new();
     for_each_tet_facet(&host.tets, &[], |sharing| {
         if let &[(t, i)] = sharing.tets {
-            let tet = host.tets[t.index()];
-            let mut facet = FACETS[i].map(|k| in_host(tet[k]));
-            if volume(tet.map(|v| host.points[v.index()])) < 0.0 {
-                facet.swap(1, 2);
-            }
-            boundary.push(facet);
+            boundary.push(outward(host, t.index(), i).map(&in_host));
         }
     });
     let mut vertices = devices.triangles.as_flattened().to_vec();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::mesh::check::Defect;
 use crate::meshing::Body;
-use crate::remesh::{self, Left, Reason};
+use crate::remesh::{self, Left};
 
 /// What refining the host came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -126,8 +126,7 @@ impl Report {
 
     /// Bad tets among those that came where no angle of a wall forces one.
     pub fn n_unforced(&self) -> usize {
-        let is_forced = |reason| matches!(reason, Reason::WallAngle { .. } | Reason::WallsMeet { .. });
-        self.improved.left.iter().filter(|left| !is_forced(left.reason)).count()
+        self.improved.left.iter().filter(|left| !left.reason.is_forced()).count()
     }
 
     /// How far the volume of the mesh, and of each device's region, is from what it should be, as a part of it; the largest.

@@ -9,7 +9,7 @@ use crate::mesh::bounds;
 use crate::spatial::NearestTriangle;
 
 /// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
-pub(super) const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
+pub(crate) const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
 
 /// How near to the surface points may be, over the length of edges. An even tet on a facet has its apex at 0.82.
 pub(super) const AWAY: f64 = 0.6;

@@ -28,5 +28,6 @@ pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
 pub use fill::{Filled, Options, Report, fill};
 pub(crate) use graded::points_between;
+pub(crate) use interior::EDGE_OVER_SIDE;
 pub use sizes::{Grading, MOST_GROWTH, Sizes, sizes_by};
 pub use surfaces::Surfaces;

@@ -51,6 +51,13 @@ pub enum Reason {
     NothingHelps,
 }
 
+impl Reason {
+    /// Whether an angle of walls allows no better tet there.
+    pub fn is_forced(&self) -> bool {
+        matches!(self, Self::WallAngle { .. } | Self::WallsMeet { .. })
+    }
+}
+
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

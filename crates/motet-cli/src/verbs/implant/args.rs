@@ -8,7 +8,7 @@ use motet::implant::{self, Options};
 use motet::remesh;
 
 use crate::verbs::convert::WritingArgs;
-use crate::verbs::remesh::{Carry, carry};
+use crate::verbs::remesh::{Carry, carry, eas};
 use crate::words::positive;
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
@@ -79,7 +79,7 @@ pub(crate) struct ImplantArgs {
     #[arg(long, value_name = "N", default_value_t = 3.0, value_parser = positive, help_heading = "Room")]
     reach: f64,
     /// Repair tets below this EAS, within --reach
-    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = positive, help_heading = "Room")]
+    #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Room")]
     min_eas: f64,
 
     /// What becomes of an array where the mesh changes. Repeatable

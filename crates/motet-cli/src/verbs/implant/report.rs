@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use motet::base::Point;
 use motet::implant;
-use motet::remesh::{Left, Reason};
+use motet::remesh::Left;
 use serde::Serialize;
 
 use super::args::ImplantArgs;
@@ -151,10 +151,8 @@ impl Report {
             count(n_forced),
             count(self.unforced)
         ));
-        let is_forced =
-            |left: &Left| matches!(left.reason, Reason::WallAngle { .. } | Reason::WallsMeet { .. });
         let mut told: Vec<&Left> = left.iter().collect();
-        told.sort_by_key(|left| is_forced(left));
+        told.sort_by_key(|left| left.reason.is_forced());
         let n = if console.is_verbose() { told.len() } else { FIRST };
         for left in told.iter().take(n) {
             console.say(format_args!(

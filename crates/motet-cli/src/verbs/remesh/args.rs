@@ -219,7 +219,7 @@ pub(crate) fn rules(carry: &[(String, Carry)], mesh: &Mesh) -> motet::Result<Rul
     Ok(rules)
 }
 
-fn eas(text: &str) -> Result<f64, String> {
+pub(crate) fn eas(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(eas) if 0.0 < eas && eas < 1.0 => Ok(eas),
         _ => Err("an EAS between 0 (flat) and 1 (regular) is expected, such as 0.2".into()),

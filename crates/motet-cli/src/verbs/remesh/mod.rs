@@ -5,12 +5,12 @@ mod report;
 
 use std::time::Instant;
 
-use motet::geometry::quality::eas;
+use motet::geometry::quality;
 use motet::io;
 use motet::mesh::history::field_ledger;
 use motet::remesh::{MeshOutcome, remesh_mesh};
 
-pub(crate) use args::{Carry, RemeshArgs, carry, rules};
+pub(crate) use args::{Carry, RemeshArgs, carry, eas, rules};
 
 use self::report::Report;
 use crate::args::Common;
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let fields = field_ledger(&old, &mesh, &rules);
     let on_fields = begin_fields.elapsed().as_secs_f64();
     if args.quality {
-        mesh.set_cell_field(mesh.tet_field("eas", eas));
+        mesh.set_cell_field(mesh.tet_field("eas", quality::eas));
     }
     let writing = Instant::now();
     let lost = io::write(&args.output, &mesh, &args.writing.options())?;

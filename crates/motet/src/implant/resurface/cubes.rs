@@ -4,9 +4,7 @@ use crate::base::{Point, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, norm, sub};
 use crate::mesh::{Surface, bounds};
-
-/// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
-const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
+use crate::meshing::EDGE_OVER_SIDE;
 
 type Cube = [i32; 3];
 
@@ -27,8 +25,8 @@ pub(super) struct Cubes {
 pub(super) struct Lattice {
     pub(super) points: Vec<Point>,
     pub(super) tets: Vec<[VertexId; 4]>,
-    /// Whether a vertex is the middle of a cube.
-    pub(super) is_middle: Vec<bool>,
+    /// How many vertices are corners of cubes; behind them come middles.
+    pub(super) n_corners: usize,
 }
 
 impl Cubes {
@@ -106,8 +104,7 @@ impl Cubes {
                 tets.extend((0..4).map(|k| [middles[0], ring[k], ring[(k + 1) % 4], middles[1]]));
             }
         }
-        let is_middle = (0..points.len()).map(|v| v >= corners.len()).collect();
-        Lattice { points, tets, is_middle }
+        Lattice { points, tets, n_corners: corners.len() }
     }
 }
 

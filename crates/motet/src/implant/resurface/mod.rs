@@ -10,6 +10,7 @@
 mod cubes;
 mod skin;
 
+use super::report::Fit;
 use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::triangle::{area, area_vector, centroid};
 use crate::geometry::vector::{add, cross, distance, dot, is_finite, norm, scale, sub};
@@ -35,10 +36,7 @@ const TRIES: usize = 5;
 #[derive(Debug)]
 pub(super) struct Resurfaced {
     pub(super) mesh: Mesh,
-    /// How far it is from the old one at most, and the old one, where it bounds the device, from it.
-    pub(super) distances: [f64; 2],
-    /// How far it was to be.
-    pub(super) tolerance: f64,
+    pub(super) fit: Fit,
 }
 
 /// The surface as it came, ready for questions.
@@ -69,8 +67,8 @@ pub(super) fn resurface(
     let mut best: Option<Resurfaced> = None;
     for _ in 0..TRIES {
         let made = old.resurfaced(edge, tolerance, name, threads)?;
-        let farthest = |made: &Resurfaced| made.distances[0].max(made.distances[1]);
-        let is_near = farthest(&made) <= tolerance;
+        let farthest = |made: &Resurfaced| made.fit.to_old.max(made.fit.from_old);
+        let is_near = made.fit.is_reached();
         if best.as_ref().is_none_or(|best| farthest(&made) < farthest(best)) {
             best = Some(made);
         }
@@ -131,10 +129,14 @@ impl Old {
         let lattice = cubes.lattice();
         let values = threads.map(lattice.points.len(), |v| self.signed(lattice.points[v]));
         let skin = Skin::new(lattice, values, |p| self.signed(p), threads);
-        let distances = [self.off_old(&skin, threads), self.off_new(&skin, edge, threads)];
+        let fit = Fit {
+            to_old: self.off_old(&skin, threads),
+            from_old: self.off_new(&skin, edge, threads),
+            tolerance,
+        };
         let mut cells = Cells::new();
         skin.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
-        Ok(Resurfaced { mesh: Mesh::new(skin.points, cells), distances, tolerance })
+        Ok(Resurfaced { mesh: Mesh::new(skin.points, cells), fit })
     }
 
     /// The largest distance of the new surface from the old one, at corners, middles of edges and of triangles.

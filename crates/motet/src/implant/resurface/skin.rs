@@ -5,8 +5,7 @@ use crate::base::{Id, Point, Threads, VertexId, rising};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
 
-/// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones. With these no angle of the tets comes out worse
-/// than 10.8 degrees (Labelle and Shewchuk 2007, table 2).
+/// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones (after Labelle and Shewchuk 2007).
 const NEAR: [f64; 2] = [0.412, 0.25];
 
 /// Cuts are looked for in so many steps.
@@ -18,7 +17,7 @@ pub(super) struct Skin {
     pub(super) triangles: Vec<[VertexId; 3]>,
 }
 
-/// An edge that the surface cuts: its ends, the inner one first.
+/// An edge that the surface cuts: its ends, rising, and where.
 #[derive(Clone, Copy)]
 struct Cut {
     ends: [VertexId; 2],
@@ -37,11 +36,10 @@ impl Skin {
         warp(&mut lattice, &mut values, &cuts);
         let left: Vec<Cut> =
             cuts.into_iter().filter(|cut| cut.ends.iter().all(|v| values[v.index()] != 0.0)).collect();
-        let places: Vec<Point> = left.iter().map(|cut| cut.place).collect();
         let mut cutter = Cutter {
             values: &values,
             lattice: &lattice,
-            edges: left.iter().map(|cut| key(cut.ends)).collect(),
+            cuts: &left,
             triangles: Vec::new(),
             closing: Vec::new(),
         };
@@ -50,12 +48,8 @@ impl Skin {
         }
         let (mut triangles, closing) = (cutter.triangles, cutter.closing);
         triangles.extend(single(closing));
-        compact(&lattice.points, &places, triangles)
+        compact(&lattice.points, &left, triangles)
     }
-}
-
-fn key([u, v]: [VertexId; 2]) -> [VertexId; 2] {
-    [u.min(v), u.max(v)]
 }
 
 /// All edges that the surface cuts, by their ends, rising.
@@ -72,7 +66,7 @@ fn cuts(
             continue;
         }
         let is_cut = |[i, j]: &&[usize; 2]| signs[*i] != signs[*j];
-        edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| key([tet[i], tet[j]])));
+        edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| rising([tet[i], tet[j]])));
     }
     edges.sort_unstable();
     edges.dedup();
@@ -107,7 +101,8 @@ fn warp(lattice: &mut Lattice, values: &mut [f64], cuts: &[Cut]) {
     let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); values.len()];
     for cut in cuts {
         let [a, b] = cut.ends.map(|v| lattice.points[v.index()]);
-        let is_long = lattice.is_middle[cut.ends[0].index()] == lattice.is_middle[cut.ends[1].index()];
+        let is_middle = cut.ends.map(|v| v.index() >= lattice.n_corners);
+        let is_long = is_middle[0] == is_middle[1];
         let length = distance(a, b);
         for (end, p) in cut.ends.into_iter().zip([a, b]) {
             let share = distance(p, cut.place) / length;
@@ -129,7 +124,7 @@ fn warp(lattice: &mut Lattice, values: &mut [f64], cuts: &[Cut]) {
 struct Cutter<'a> {
     values: &'a [f64],
     lattice: &'a Lattice,
-    edges: Vec<[VertexId; 2]>,
+    cuts: &'a [Cut],
     triangles: Vec<[VertexId; 3]>,
     /// Facets of tets inside whose corners are all on the surface: there twice they are not of it.
     closing: Vec<[VertexId; 3]>,
@@ -142,7 +137,7 @@ impl Cutter<'_> {
     }
 
     fn corner(&self, u: VertexId, v: VertexId) -> VertexId {
-        let i = self.edges.binary_search(&key([u, v])).unwrap_or_default();
+        let i = self.cuts.binary_search_by_key(&rising([u, v]), |cut| cut.ends).unwrap_or_default();
         VertexId::new(self.lattice.points.len() + i)
     }
 
@@ -188,7 +183,7 @@ impl Cutter<'_> {
         let at = |v: VertexId| match v.index().checked_sub(n) {
             None => UNIT[tet.iter().position(|u| *u == v).unwrap_or(0)],
             Some(i) => {
-                let ends = self.edges[i].map(|end| UNIT[tet.iter().position(|u| *u == end).unwrap_or(0)]);
+                let ends = self.cuts[i].ends.map(|end| UNIT[tet.iter().position(|u| *u == end).unwrap_or(0)]);
                 scale(add(ends[0], ends[1]), 0.5)
             }
         };
@@ -208,15 +203,16 @@ fn single(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
 }
 
 /// Corners numbered as they come.
-fn compact(vertices: &[Point], cuts: &[Point], mut triangles: Vec<[VertexId; 3]>) -> Skin {
+fn compact(vertices: &[Point], cuts: &[Cut], mut triangles: Vec<[VertexId; 3]>) -> Skin {
     let mut new: Vec<VertexId> = vec![Id::NONE; vertices.len() + cuts.len()];
     let mut points = Vec::new();
     for v in triangles.as_flattened_mut() {
         let place = &mut new[v.index()];
         if *place == VertexId::NONE {
             *place = VertexId::new(points.len());
-            points
-                .push(v.index().checked_sub(vertices.len()).map_or_else(|| vertices[v.index()], |i| cuts[i]));
+            points.push(
+                v.index().checked_sub(vertices.len()).map_or_else(|| vertices[v.index()], |i| cuts[i].place),
+            );
         }
         *v = *place;
     }
