@@ -14,6 +14,14 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// One number from 0 on.
+pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
+    match number(text) {
+        Ok(x) if x >= 0.0 => Ok(x),
+        _ => Err("a number from 0 on is expected".into()),
+    }
+}
+
 /// Numbers with commas, semicolons or space between.
 pub(crate) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let words = text.split([',', ';', ' ', '\n', '\t']).filter(|word| !word.is_empty());
@@ -35,6 +43,7 @@ mod tests {
         assert_eq!(numbers("1, -2.5;3e-2\n4"), Ok(vec![1.0, -2.5, 0.03, 4.0]));
         assert_eq!(named("a=b=0.5", "NAME=X"), Ok(("a=b", "0.5")));
         assert_eq!(positive("0.5"), Ok(0.5));
+        assert_eq!((not_negative("0"), not_negative("-1").is_err()), (Ok(0.0), true));
     }
 
     #[test]

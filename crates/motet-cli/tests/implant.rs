@@ -84,6 +84,29 @@ fn devices_keep_their_tets_are_filled_or_hollow() {
 }
 
 #[test]
+fn a_device_through_a_wall_is_cut_off_or_kept() {
+    let folder = folder();
+    folder.mesh("wall.vtu", &small_ball(0.5, 1.2));
+    let words = ["implant", "host.vtu", "wall.vtu", "-o", "out.vtu", "--fill", "--stray", "0.01"];
+    let told = report(&folder, &words);
+    let device = &told["report"]["devices"][0];
+    let n = |key: &str| device[key].as_u64().unwrap();
+    assert_eq!(n("triangles"), n("triangles_kept") + n("triangles_at_walls") + n("triangles_outside"));
+    assert!(n("triangles_at_walls") > 0 && told["report"]["volume"].as_f64().unwrap() < 27.01);
+    let mesh = read(folder.path("out.vtu")).unwrap();
+    assert!(check(&mesh).is_empty());
+    assert_eq!(
+        mesh.patches().unwrap().find("wall-contact"),
+        device["contact_patch"].as_i64().map(|id| id as i32)
+    );
+    let told = report(&folder, &[&words[..], &["--outside", "keep"]].concat());
+    assert!(told["report"]["volume"].as_f64().unwrap() > 27.01);
+    assert!(told["report"]["devices"][0]["contact_patch"].is_null());
+    let call = folder.motet(words).assert().code(0);
+    assert!(stdout(&call).contains("wall: meets walls of the host"), "{}", stdout(&call));
+}
+
+#[test]
 fn bad_input_ends_with_the_reason_and_nothing_written() {
     let folder = folder();
     folder.mesh("far.vtu", &small_ball(0.5, 9.0));
@@ -101,7 +124,7 @@ fn bad_input_ends_with_the_reason_and_nothing_written() {
         assert!(!folder.path("out.vtu").exists());
     };
     refused(&["host.vtu", "far.vtu"], 3, &["far.vtu", "lies outside of the host"]);
-    refused(&["host.vtu", "wall.vtu"], 3, &["wall.vtu", "touches or cuts a wall", "at ("]);
+    refused(&["host.vtu", "wall.vtu"], 3, &["wall.vtu", "`wall` keeps its tets", "at ("]);
     refused(&["host.vtu", "large.vtu"], 3, &["large.vtu", "holds the whole host"]);
     refused(&["host.vtu", "open.stl"], 3, &["open.stl", "the surface ends at the edge"]);
     refused(&["host.vtu", "ball.vtu", "ball.vtu"], 3, &["ball"]);
@@ -111,5 +134,6 @@ fn bad_input_ends_with_the_reason_and_nothing_written() {
     refused(&["host.vtu", "ball.vtu", "--growth", "5"], 2, &["grow by 5"]);
     refused(&["host.vtu", "ball.vtu", "--carve", "9"], 2, &["9"]);
     refused(&["host.vtu", "ball.vtu", "--carry", "none=drop"], 2, &["none"]);
+    refused(&["host.vtu", "ball.vtu", "--stray=-1"], 2, &["a number from 0 on is expected"]);
     folder.motet(["implant", "host.vtu", "ball.vtu", "-o", "ball.vtu"]).assert().code(2);
 }

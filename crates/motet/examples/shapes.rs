@@ -1,13 +1,13 @@
 //! Motet's own vessels and devices as closed surfaces, for other programs to fill.
 //!
 //! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word); and `loops.vtp`, a coil
-//! that lies in the sac of the aneurysm.
+//! that lies in the sac of the aneurysm; and `stent.vtp`, a stent in its vessel, across the neck, pressed into the wall by a twentieth of the radius.
 
 use std::error::Error;
 use std::path::Path;
 
 use motet::io::{self, WriteOptions};
-use motet::mesh::shapes::{Aneurysm, Bifurcation, Coil};
+use motet::mesh::shapes::{Aneurysm, Bifurcation, CenterLine, Coil, Stent};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
@@ -22,10 +22,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut loops = coil.mesh(120, 12)?;
     // Its axis along that of the sac.
     loops.points.iter_mut().for_each(|p| *p = [p[0], aneurysm.sac_height + p[2], -p[1]]);
+    // The axis of the vessel is a part of a circle, its middle in the origin.
+    let bend = aneurysm.length / aneurysm.bend_deg.to_radians();
+    let on_axis = |i: i32| {
+        let angle = aneurysm.bend_deg.to_radians() * (f64::from(i) / 200.0 - 0.5) * 0.6;
+        [bend * angle.sin(), bend * (angle.cos() - 1.0), 0.0]
+    };
+    let axis = CenterLine::new(&(0..=200).map(on_axis).collect::<Vec<_>>())?;
+    let lattice =
+        Stent { length: axis.length(), crowns: 6, strut_width: 0.12, link_length: 0.2, ..Stent::default() };
+    let mut stent = lattice.mesh(1.05 * aneurysm.radius)?;
+    stent.points = axis.bent(&stent.points);
     let shapes = [
         ("aneurysm.vtp", aneurysm.mesh()?),
         ("bifurcation.vtp", Bifurcation { around, ..Bifurcation::default() }.mesh()?),
         ("loops.vtp", loops),
+        ("stent.vtp", stent),
     ];
     for (file, mesh) in shapes {
         io::write(Path::new(&folder).join(file), &mesh, &WriteOptions::default())?;

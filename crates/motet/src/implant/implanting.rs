@@ -1,19 +1,20 @@
 //! All of it, step by step.
 
+use std::collections::HashSet;
 use std::time::Instant;
 
 use super::adapt::adapt;
 use super::carve::{Carved, Fate};
 use super::devices::{Devices, surface};
+use super::frame::Lies;
 use super::gap::Gap;
 use super::join::{Joined, Pieces, join, volume_of};
 use super::names::Names;
-use super::options::{Device, Inside, Interface, Options};
-use super::place;
+use super::options::{Device, Inside, Interface, Options, Outside};
 use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
 use super::zone::Draft;
-use crate::base::{CellId, Error, Result, Threads};
+use crate::base::{CellId, Error, Result, Threads, VertexId, rising};
 use crate::mesh::check::check;
 use crate::mesh::history::{History, Rules};
 use crate::mesh::{Mesh, TetPart};
@@ -36,6 +37,9 @@ const RETRIES: usize = 3;
 
 /// Then so many times as far.
 const FARTHER: f64 = 1.5;
+
+/// How far surfaces may stray where devices meet walls, as a part of the device's edges.
+const STRAY: f64 = 0.05;
 
 /// Puts devices into a mesh of tets: every triangle of theirs is a facet of the result, every tet of the host beyond [`Options::reach`] stays to the bit.
 /// Arrays are carried by `rules`.
@@ -77,7 +81,8 @@ pub fn implant(
     report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Gone).count();
 
     let mut draft = Draft::new(&part.mesh, &carved, &gap);
-    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve)?;
+    let stray = options.stray.unwrap_or_else(|| STRAY * joined.size());
+    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray)?;
     report.kept = draft.is_gone.iter().filter(|is_gone| !**is_gone).count();
     report.host_tets = part.mesh.tets.len();
     report.kept_share = report.kept as f64 / report.host_tets.max(1) as f64;
@@ -89,7 +94,8 @@ pub fn implant(
     report.seconds.join = lap();
 
     tell_cells(&mut report, &zone_to_cell, first_new);
-    certify(&mut report, host, devices, &joined, &gap, &mesh, &names);
+    report.regions = meshing::told(&mesh);
+    certify(&mut report, host, (devices, &joined), (&gap, &draft), (&mesh, &names), options.outside);
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
@@ -133,7 +139,6 @@ fn room(
     let mut carve = options.carve;
     for _ in 0..=RETRIES {
         let carved = Carved::new(&part.mesh, devices, &nearest, carve, options, threads);
-        place::check(&part.mesh, devices, &carved, threads)?;
         report.seconds.carve += lap();
         let gap = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
         report.seconds.fill += lap();
@@ -163,34 +168,42 @@ fn tell_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
 fn certify(
     report: &mut Report,
     host: &Mesh,
-    devices: &[Device],
-    joined: &Devices,
-    gap: &Gap,
-    mesh: &Mesh,
-    names: &Names,
+    (devices, joined): (&[Device], &Devices),
+    (gap, draft): (&Gap, &Draft),
+    (mesh, names): (&Mesh, &Names),
+    outside: Outside,
 ) {
-    report.regions = meshing::told(mesh);
     report.tets = mesh.cells.tets().count();
-    let enclosed = joined.volumes(devices);
-    let mut parts = vec![0usize; joined.triangles.len()];
-    gap.triangles.iter().for_each(|(_, t)| parts[*t as usize] += 1);
+    let whole = joined.volumes(devices);
+    let is_there: HashSet<[VertexId; 3]> = draft.triangles.iter().map(|(t, _)| rising(*t)).collect();
+    let is_kept = |t: usize| is_there.contains(&rising(joined.triangles[t].map(|v| gap.names[v.index()])));
+    report.volume_expected = volume_of(host);
     for (k, device) in devices.iter().enumerate() {
         let own = (0..joined.triangles.len()).filter(|t| joined.of_triangle.list(*t).contains(&(k as u32)));
         let region = names.regions[k];
         let body = region.and_then(|region| report.regions.iter().find(|body| body.region == region));
+        let inside = if gap.sites.is_through[k] { gap.sites.volumes[k] } else { whole[k] };
+        let n_at =
+            |lies: Lies| own.clone().filter(|&t| gap.sites.of_triangle[t] == lies && !is_kept(t)).count();
+        match (device.inside, outside) {
+            (Inside::Hollow, _) => report.volume_expected -= inside,
+            (_, Outside::Keep) => report.volume_expected += whole[k] - inside,
+            (_, Outside::Cut) => {}
+        }
         report.devices.push(DeviceReport {
             name: device.name.clone(),
             region,
             patch: names.patches[k],
             triangles: own.clone().count(),
-            triangles_kept: own.filter(|&t| parts[t] == 1).count(),
+            triangles_kept: own.clone().filter(|&t| is_kept(t)).count(),
+            triangles_at_walls: n_at(Lies::AtWall),
+            triangles_outside: n_at(Lies::Outside),
+            contact_patch: names.contacts[k],
             fit: None,
-            enclosed: enclosed[k],
+            enclosed: if outside == Outside::Cut { inside } else { whole[k] },
             volume: body.map_or(0.0, |body| body.volume),
         });
     }
-    let hollow = devices.iter().zip(&enclosed).filter(|(device, _)| device.inside == Inside::Hollow);
-    report.volume_expected = volume_of(host) - hollow.map(|(_, volume)| volume).sum::<f64>();
     report.volume = volume_of(mesh);
     report.defects = check(mesh);
 }

@@ -46,8 +46,8 @@ pub(super) struct Laid {
 /// # Errors
 /// When an array does not fit its rule.
 pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<(Joined, Names)> {
-    let Pieces { host, devices, gap, draft, .. } = *pieces;
-    let names = Names::new(host, devices);
+    let Pieces { host, devices, draft, .. } = *pieces;
+    let names = Names::new(host, devices, &draft.triangles);
     let laid = Laid::new(pieces);
     let numbers = Numbers::new(host, draft, &laid.cells);
     let points = numbers.to_draft.iter().map(|v| draft.points[v.index()]).collect();
@@ -59,7 +59,7 @@ pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<
     label(&mut mesh, pieces, &laid, &names);
     let zone_to_cell = draft.of_zone.iter().map(|site| match *site {
         Site::Host(t) => laid.host_to_cell[t],
-        Site::New(i) => CellId::new(laid.n_stay + gap.triangles.len() + i),
+        Site::New(i) => CellId::new(laid.n_stay + draft.triangles.len() + i),
     });
     let zone_to_cell = zone_to_cell.collect();
     Ok((Joined { mesh, history, zone_to_cell, first_new: CellId::new(laid.n_stay) }, names))
@@ -95,7 +95,7 @@ impl Laid {
             laid.to_old.push(cell);
         }
         laid.n_stay = laid.cells.len();
-        gap.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
+        draft.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
         draft.tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, *tet));
         gap.own_tets.iter().for_each(|(tet, _)| laid.cells.push(CellKind::TETRA, *tet));
         laid.to_old.resize(laid.cells.len(), Id::NONE);

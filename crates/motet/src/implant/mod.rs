@@ -17,7 +17,9 @@
 
 mod adapt;
 mod carve;
+mod cut;
 mod devices;
+mod frame;
 mod gap;
 mod implanting;
 mod join;
@@ -30,5 +32,5 @@ mod resurface;
 mod zone;
 
 pub use implanting::{Implanted, implant};
-pub use options::{Adapt, Device, Inside, Interface, Options};
+pub use options::{Adapt, Device, Inside, Interface, Options, Outside};
 pub use report::{Adapted, DeviceReport, Fit, Report, Seconds};

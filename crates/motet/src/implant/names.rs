@@ -1,12 +1,16 @@
 //! What came gets its regions, patches and names.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::devices::Devices;
-use super::gap::Owner;
+use super::gap::{Owner, Patch};
 use super::join::{Laid, Pieces};
 use super::options::Inside;
+use crate::base::VertexId;
 use crate::mesh::{Field, Labels, Mesh};
+
+/// What the patch of a contact is called, behind the name of the device.
+const CONTACT: &str = "-contact";
 
 /// The labels of what came.
 pub(super) struct Names {
@@ -16,12 +20,14 @@ pub(super) struct Names {
     pub(super) regions: Vec<Option<i32>>,
     /// The patch of each device.
     pub(super) patches: Vec<i32>,
+    /// The patch of what each device has in common with walls, where it has something.
+    pub(super) contacts: Vec<Option<i32>>,
     /// The region of tets of a host without regions.
     host: Option<i32>,
 }
 
 impl Names {
-    pub(super) fn new(host: &Mesh, devices: &Devices) -> Self {
+    pub(super) fn new(host: &Mesh, devices: &Devices, came: &[([VertexId; 3], Patch)]) -> Self {
         let [regions, patches] = [host.regions(), host.patches()];
         let last = |labels: &Option<Labels>, names: &BTreeMap<i32, String>| {
             let used = labels.as_ref().and_then(|labels| labels.ids.iter().max().copied()).unwrap_or(0);
@@ -41,11 +47,29 @@ impl Names {
         });
         let of_devices = of_devices.collect();
         let first = last(&patches, &host.label_names.patches) + 1;
+        let n = devices.names.len();
+        let mut contacts = vec![None; n];
+        let met: BTreeSet<Patch> = came.iter().map(|(_, patch)| *patch).collect();
+        let met = met.iter().filter_map(|patch| match patch {
+            Patch::Contact(k) => Some(*k as usize),
+            _ => None,
+        });
+        met.zip(first + n as i32..).for_each(|(k, patch)| contacts[k] = Some(patch));
         Self {
             arrays: [array(&regions, "region"), array(&patches, "patch")],
             regions: of_devices,
-            patches: (first..).take(devices.names.len()).collect(),
+            patches: (first..).take(n).collect(),
+            contacts,
             host: own,
+        }
+    }
+
+    /// The patch of a triangle that came; `None` where it is the one that it was a part of.
+    fn patch(&self, patch: Patch) -> Option<i32> {
+        match patch {
+            Patch::Device(k) => Some(self.patches[k as usize]),
+            Patch::Contact(k) => self.contacts[k as usize],
+            Patch::Host(_) | Patch::Bare => None,
         }
     }
 
@@ -77,11 +101,12 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names
         mesh.label_names.regions.entry(own).or_insert_with(|| "host".to_owned());
     }
     let first = laid.n_stay;
-    for (i, (_, t)) in gap.triangles.iter().enumerate() {
-        let k = devices.of_triangle.list(*t as usize)[0] as usize;
-        (regions[first + i], patches[first + i]) = (0, names.patches[k].into());
+    for (i, (_, patch)) in draft.triangles.iter().enumerate() {
+        if let Some(patch) = names.patch(*patch) {
+            (regions[first + i], patches[first + i]) = (0, patch.into());
+        }
     }
-    let first = first + gap.triangles.len();
+    let first = first + draft.triangles.len();
     let own = gap.own_tets.iter().map(|(_, k)| Owner::Device(*k));
     for (i, owner) in draft.owners.iter().copied().chain(own).enumerate() {
         (regions[first + i], patches[first + i]) = (names.region(owner).into(), 0);
@@ -97,6 +122,9 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names
     }
     for (k, name) in devices.names.iter().enumerate() {
         mesh.label_names.patches.insert(names.patches[k], name.clone());
+        if let Some(patch) = names.contacts[k] {
+            mesh.label_names.patches.insert(patch, format!("{name}{CONTACT}"));
+        }
         if let Some(region) = names.regions[k] {
             mesh.label_names.regions.insert(region, name.clone());
         }

@@ -42,6 +42,16 @@ pub enum Adapt {
     All,
 }
 
+/// What becomes of what lies outside of the host, where a device goes through its boundary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Outside {
+    /// It is cut off; the wall bounds the device there.
+    #[default]
+    Cut,
+    /// It is kept; the wall ends at the device.
+    Keep,
+}
+
 impl Device {
     /// A device that keeps its tets, where it has some, and is filled where not.
     pub fn new(mesh: Mesh, name: impl Into<String>) -> Self {
@@ -69,6 +79,11 @@ pub enum Interface {
 pub struct Options {
     /// What surfaces of devices become. Default: [`Interface::Match`].
     pub interface: Interface,
+    /// What becomes of what lies outside of the host. Default: [`Outside::Cut`].
+    pub outside: Outside,
+    /// How far surfaces may stray where devices meet walls, so that no narrow triangles stay there; `None`: a twentieth of the device's edges. 0: not at all.
+    /// Default: `None`.
+    pub stray: Option<f64>,
     /// How long edges are to be beside the devices where the host is refined, and those of new surfaces, in its unit; `None`: of the host as those of the devices, of new
     /// surfaces as their tolerance asks. Default: `None`.
     pub size: Option<f64>,
@@ -88,6 +103,8 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             interface: Interface::Match,
+            outside: Outside::Cut,
+            stray: None,
             size: None,
             growth: 0.5,
             adapt: Adapt::Walls,
@@ -105,6 +122,12 @@ impl Options {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if let Some(size) = self.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
             return refused(format!("a size of {size}, expected a length above 0"), "leave it out");
+        }
+        if let Some(stray) = self.stray.filter(|stray| !(*stray >= 0.0 && stray.is_finite())) {
+            return refused(
+                format!("surfaces that may stray by {stray}, expected a length from 0"),
+                "leave it out",
+            );
         }
         if let Interface::Conform { tolerance: Some(tolerance) } = self.interface
             && !(tolerance > 0.0 && tolerance.is_finite())

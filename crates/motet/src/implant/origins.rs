@@ -1,14 +1,19 @@
 //! Where everything of the result came from.
 
-use super::gap::Owner;
+use std::collections::HashSet;
+
+use super::gap::{Owner, Patch};
 use super::join::{Laid, Numbers, Pieces};
-use crate::base::{CellId, Id, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::{at, centroid, closest};
 use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
 use crate::mesh::history::{History, Origins};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
 use crate::spatial::{BoxTree, around};
+
+/// Marks triangles that come from tets.
+const OF_TETS: i32 = i32::MIN;
 
 /// What came inherits from the host's tets where it lies, whatever their region; triangles of devices from the tets that went beside them.
 pub(super) fn history(
@@ -29,7 +34,7 @@ pub(super) fn history(
         })
         .collect();
     let cell = |i: usize| CellId::new(laid.n_stay + i);
-    let n_triangles = gap.triangles.len();
+    let n_triangles = draft.triangles.len();
     let there = There::new(host, &removed);
     let of_new = draft.owners.iter().map(|owner| match owner {
         Owner::Host(region) => Some(*region),
@@ -43,15 +48,26 @@ pub(super) fn history(
         let place = || centroid(vertices.map(|v| mesh.points[v.index()]));
         came.push(Labelled { cell, vertices, label: region.unwrap_or_else(|| there.region_at(place())) });
     }
-    // Triangles of devices come from the tets that went: a facet of each stands for it.
+    // Triangles of devices come from the tets that went: a facet of each stands for it. Those of the host come from what they were a part of.
     let facet = |tet: &Labelled<4>| {
         let [a, b, c, _] = tet.vertices;
-        Labelled { cell: tet.cell, vertices: [a, b, c], label: 0 }
+        Labelled { cell: tet.cell, vertices: [a, b, c], label: OF_TETS }
     };
-    let facets: Vec<Labelled<3>> = removed.iter().map(facet).collect();
-    let triangles = (0..n_triangles).filter_map(|i| match *mesh.cells.vertices(cell(i)) {
-        [a, b, c] => Some(Labelled { cell: cell(i), vertices: [a, b, c], label: 0 }),
-        _ => None,
+    let mut facets: Vec<Labelled<3>> = removed.iter().map(facet).collect();
+    let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
+    for ((&cell, &vertices), &label) in
+        part.triangle_to_cell.iter().zip(&part.mesh.triangles).zip(&part.mesh.patches)
+    {
+        if dropped.contains(&rising(vertices)) {
+            facets.push(Labelled { cell, vertices, label });
+        }
+    }
+    let triangles = draft.triangles.iter().enumerate().filter_map(|(i, (_, patch))| {
+        let label = if let Patch::Host(patch) = patch { *patch } else { OF_TETS };
+        match *mesh.cells.vertices(cell(i)) {
+            [a, b, c] => Some(Labelled { cell: cell(i), vertices: [a, b, c], label }),
+            _ => None,
+        }
     });
     let triangles: Vec<Labelled<3>> = triangles.collect();
     let changed: Vec<ChangedVertex> = (0..numbers.kept.len())

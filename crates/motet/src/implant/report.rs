@@ -50,9 +50,15 @@ pub struct DeviceReport {
     pub triangles: usize,
     /// Of these, facets of the mesh as they came.
     pub triangles_kept: usize,
+    /// Of the others, triangles where it meets a wall of the host.
+    pub triangles_at_walls: usize,
+    /// And triangles that were cut off with what lies outside.
+    pub triangles_outside: usize,
+    /// The patch of what it and walls of the host have in common, where that is an area.
+    pub contact_patch: Option<i32>,
     /// How its new surface fits, where it got one. Triangles and enclosed volume are those of the new one.
     pub fit: Option<Fit>,
-    /// What its surface encloses.
+    /// What its surface encloses; where a part outside of the host was cut off, of that within.
     pub enclosed: f64,
     /// The volume of its region, 0 where it is hollow.
     pub volume: f64,
@@ -96,7 +102,7 @@ pub struct Report {
     pub devices: Vec<DeviceReport>,
     /// The regions of the mesh.
     pub regions: Vec<Body>,
-    /// The host's volume, less what hollow devices enclose.
+    /// The host's volume, less what hollow devices enclose of it, and with what is kept of devices outside of it.
     pub volume_expected: f64,
     /// The volume of the mesh.
     pub volume: f64,
@@ -119,7 +125,8 @@ impl Report {
     /// Whether it is valid, every triangle of the devices is a facet, new surfaces are near enough, and no bad tet is left but those of the host and those that walls force.
     pub fn is_complete(&self) -> bool {
         let is_kept = |device: &DeviceReport| {
-            device.triangles_kept == device.triangles && device.fit.is_none_or(|fit| fit.is_reached())
+            let n_at = device.triangles_at_walls + device.triangles_outside;
+            device.triangles_kept + n_at == device.triangles && device.fit.is_none_or(|fit| fit.is_reached())
         };
         self.is_valid() && self.devices.iter().all(is_kept) && self.n_unforced() == 0
     }

@@ -1,8 +1,11 @@
 //! What came and a ring of the host around it, repaired.
 
+use std::collections::{BTreeSet, HashSet};
+
 use super::carve::{Carved, Fate};
-use super::gap::{Gap, Owner};
-use crate::base::{Id, Point, Result, VertexId};
+use super::gap::{Gap, Owner, Patch};
+use crate::base::{Id, Point, Result, VertexId, rising};
+use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::remesh::{self, Options, SurfaceRule, remesh};
@@ -17,6 +20,8 @@ pub(super) struct Draft {
     pub(super) is_gone: Vec<bool>,
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) owners: Vec<Owner>,
+    /// Triangles that came.
+    pub(super) triangles: Vec<([VertexId; 3], Patch)>,
     /// For each tet of the zone that was repaired where it is now.
     pub(super) of_zone: Vec<Site>,
 }
@@ -38,11 +43,13 @@ impl Draft {
             is_gone: carved.fates.iter().map(|&fate| fate == Fate::Gone).collect(),
             tets: gap.tets.clone(),
             owners: gap.owners.clone(),
+            triangles: Vec::new(),
             of_zone: Vec::new(),
         }
     }
 
-    /// Repairs bad tets among those that came and those of the host near them.
+    /// Repairs bad tets among those that came and those of the host near them. Walls stay as they are, but where devices meet them: there they may
+    /// stray as far as is said.
     ///
     /// # Errors
     /// When the tets are no mesh.
@@ -52,6 +59,7 @@ impl Draft {
         carved: &Carved,
         gap: &Gap,
         options: &Options,
+        stray: f64,
     ) -> Result<remesh::Report> {
         let near: Vec<usize> = (0..host.tets.len()).filter(|&t| carved.fates[t] == Fate::Near).collect();
         let regions: Vec<Owner> = regions(&self.owners, host, &near);
@@ -62,8 +70,15 @@ impl Draft {
         }
         let of_region: Vec<i32> = near.iter().map(|&t| number(&Owner::Host(host.regions[t]))).collect();
         near.iter().zip(of_region).for_each(|(&t, region)| zone.push(host.tets[t], region, &self.points));
-        zone.hold(host, gap);
-        let options = Options { surface: SurfaceRule::Keep, sizes: None, ..options.clone() };
+        let patches = zone.hold(host, gap, &mut self.triangles);
+        let surface = match gap.loose.is_empty() {
+            true => SurfaceRule::Keep,
+            false => {
+                zone.hold_walls(&gap.loose);
+                SurfaceRule::Adapt { distance: Some(stray) }
+            }
+        };
+        let options = Options { surface, sizes: None, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options)?;
         let (extract, n_came) = (outcome.extract, self.tets.len());
         let mut to_result = Vec::with_capacity(extract.mesh.points.len());
@@ -79,6 +94,10 @@ impl Draft {
             if let Some(is_moved) = self.is_moved.get_mut(of.index()) {
                 *is_moved = true;
             }
+        }
+        for (triangle, &patch) in extract.mesh.triangles.iter().zip(&extract.mesh.patches) {
+            let came = patches.get(patch as usize).filter(|patch| **patch != Patch::Bare);
+            self.triangles.extend(came.map(|patch| (triangle.map(|v| to_result[v.index()]), *patch)));
         }
         near.iter().for_each(|&t| self.is_gone[t] = true);
         (self.tets, self.owners) = (Vec::new(), Vec::new());
@@ -137,21 +156,70 @@ impl Zone {
         self.mesh.regions.push(region);
     }
 
-    /// Holds triangles of the host and of devices, and what other cells of the host hold.
-    fn hold(&mut self, host: &TetMesh, gap: &Gap) {
+    /// Holds triangles of the host and those that came, and what other cells of the host hold. Tells what each number of a patch is, from those of the
+    /// host on, and which triangles lie elsewhere.
+    fn hold(&mut self, host: &TetMesh, gap: &Gap, elsewhere: &mut Vec<([VertexId; 3], Patch)>) -> Vec<Patch> {
+        let patches: BTreeSet<Patch> = gap.triangles.iter().map(|(_, patch)| *patch).collect();
+        let patches: Vec<Patch> = patches.into_iter().collect();
+        let of_host = i32::try_from(patches.len()).unwrap_or(i32::MAX);
+        let number = |patch: &Patch| patches.binary_search(patch).map_or(of_host, |i| i as i32);
+        let dropped: HashSet<[VertexId; 3]> = gap.dropped.iter().map(|face| rising(face.vertices)).collect();
         let of = |v: VertexId| Some(self.of_result[v.index()]).filter(|v| *v != VertexId::NONE);
-        let triangles = host.triangles.iter().copied().chain(gap.triangles.iter().map(|(t, _)| *t));
-        let known = triangles.filter_map(|[a, b, c]| Some([of(a)?, of(b)?, of(c)?]));
-        let known: Vec<[VertexId; 3]> = known.collect();
-        let mut facets = Vec::new();
-        for_each_tet_facet(&self.mesh.tets, &known, |sharing| {
-            if !sharing.tets.is_empty() {
-                facets.extend(sharing.triangles.first().map(|&t| known[t as usize]));
+        let staying = host.triangles.iter().filter(|t| !dropped.contains(&rising(**t)));
+        let all = staying.map(|t| (*t, of_host, None));
+        let all = all.chain(gap.triangles.iter().map(|came| (came.0, number(&came.1), Some(*came))));
+        let mut known = Vec::new();
+        for ([a, b, c], patch, came) in all {
+            match (of(a), of(b), of(c)) {
+                (Some(a), Some(b), Some(c)) => known.push(([a, b, c], patch, came)),
+                _ => elsewhere.extend(came),
+            }
+        }
+        let triangles: Vec<[VertexId; 3]> = known.iter().map(|x| x.0).collect();
+        let (mut facets, mut numbers) = (Vec::new(), Vec::new());
+        for_each_tet_facet(&self.mesh.tets, &triangles, |sharing| {
+            let Some(&t) = sharing.triangles.first() else { return };
+            let (triangle, patch, came) = known[t as usize];
+            if sharing.tets.is_empty() {
+                elsewhere.extend(came);
+            } else {
+                facets.push(triangle);
+                numbers.push(patch);
             }
         });
         let edges = host.fixed_edges.iter().filter_map(|&[a, b]| Some([of(a)?, of(b)?])).collect();
         let vertices = host.fixed_vertices.iter().filter_map(|&v| of(v)).collect();
-        self.mesh.patches = vec![0; facets.len()];
-        (self.mesh.triangles, self.mesh.fixed_edges, self.mesh.fixed_vertices) = (facets, edges, vertices);
+        (self.mesh.triangles, self.mesh.patches) = (facets, numbers);
+        (self.mesh.fixed_edges, self.mesh.fixed_vertices) = (edges, vertices);
+        patches
+    }
+
+    /// Fixes walls with no corner that is loose, and the other vertices of walls.
+    fn hold_walls(&mut self, loose: &BTreeSet<VertexId>) {
+        let (mut edges, mut vertices) = (Vec::new(), Vec::new());
+        let is_loose = |v: VertexId| loose.contains(&self.to_result[v.index()]);
+        let Self { mesh: TetMesh { tets, triangles, regions, .. }, .. } = self;
+        for_each_tet_facet(tets, triangles, |sharing| {
+            let is_wall = match *sharing.tets {
+                [] => false,
+                [(t, _), (u, _)] => !sharing.triangles.is_empty() || regions[t.index()] != regions[u.index()],
+                _ => true,
+            };
+            if !is_wall {
+                return;
+            }
+            let (t, i) = sharing.tets[0];
+            let [a, b, c] = FACETS[i].map(|k| tets[t.index()][k]);
+            vertices.extend([a, b, c].into_iter().filter(|v| !is_loose(*v)));
+            if ![a, b, c].into_iter().any(is_loose) {
+                edges.extend([[a, b], [b, c], [c, a]].map(rising));
+            }
+        });
+        self.mesh.fixed_edges.extend(edges);
+        self.mesh.fixed_vertices.extend(vertices);
+        self.mesh.fixed_edges.sort_unstable();
+        self.mesh.fixed_edges.dedup();
+        self.mesh.fixed_vertices.sort_unstable();
+        self.mesh.fixed_vertices.dedup();
     }
 }

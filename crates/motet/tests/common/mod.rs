@@ -4,6 +4,7 @@
 
 pub(crate) mod adapting;
 pub(crate) mod criteria;
+pub(crate) mod devices;
 pub(crate) mod filled;
 pub(crate) mod hard;
 pub(crate) mod kept;

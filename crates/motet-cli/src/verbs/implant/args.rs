@@ -9,7 +9,7 @@ use motet::remesh;
 
 use crate::verbs::convert::WritingArgs;
 use crate::verbs::remesh::{Carry, carry, eas};
-use crate::words::positive;
+use crate::words::{not_negative, positive};
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
 ///
@@ -19,8 +19,11 @@ use crate::words::positive;
 #[command(override_usage = "motet implant HOST DEVICE... -o OUT [OPTIONS]")]
 #[command(after_help = "\
 A device is a closed surface, or a mesh of tets. It is a region of the new mesh and its surface a patch, both named after its file. One that has tets keeps
-them; a surface is filled. Devices may lie within each other and share triangles, but neither touch each other otherwise nor a wall of the host
-(its boundary, interfaces of its regions, its triangles).
+them; a surface is filled. Devices may lie within each other and share triangles, but not touch each other otherwise.
+
+A device may touch walls of the host (its boundary, interfaces of its regions) and go through them: both are divided where they meet. What lies outside is
+cut off or kept (--outside); areas that both have in common are a patch of their own, `NAME-contact`. Interfaces end at the device. A device that keeps its
+tets cannot be divided: fill it.
 
 New tets have edges as long as those of the device beside it, and grow by --growth of the distance, up to those of the host. Distances of --carve and
 --reach are in lengths of the host's edges at the place.
@@ -34,7 +37,7 @@ Examples:
   motet implant vessel.vtu stent.vtu thrombus.stl -o out.vtu --growth 0.3
   motet implant aneurysm.vtu coil.stl -o coiled.vtu --json | jq .report.devices
 
-Exit status 3: a device is no closed surface without fault, touches a wall, lies outside of the host or holds it; nothing is written. 4: a triangle of a device is
+Exit status 3: a device is no closed surface without fault, keeps its tets and meets a wall, lies outside of the host or holds it; nothing is written. 4: a triangle of a device is
 there in pieces only, or a bad tet is left that no angle of a surface forces; the mesh is written, and it is told what is left and why.")]
 pub(crate) struct ImplantArgs {
     /// The mesh file (or folder) of the host, of tets
@@ -61,6 +64,14 @@ pub(crate) struct ImplantArgs {
     /// of a wire as thick as the device]
     #[arg(long, value_name = "D", value_parser = positive, help_heading = "Devices")]
     tolerance: Option<f64>,
+
+    /// What becomes of what lies outside of the host, where a device goes through its boundary
+    #[arg(long, value_name = "WHAT", default_value = "cut", help_heading = "Devices")]
+    outside: Outside,
+    /// How far surfaces may stray where a device meets a wall, so that no narrow triangles stay there; 0: not at all [default: a twentieth
+    /// of the device's edges]
+    #[arg(long, value_name = "D", value_parser = not_negative, help_heading = "Devices")]
+    stray: Option<f64>,
 
     /// What of the host is refined before it is carved
     #[arg(long, value_name = "WHAT", default_value = "walls", help_heading = "Room")]
@@ -105,6 +116,14 @@ enum Interface {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Outside {
+    /// It is cut off, and the wall bounds the device there
+    Cut,
+    /// It is kept, and the wall ends at the device
+    Keep,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Adapt {
     /// Nothing
     None,
@@ -128,6 +147,11 @@ impl ImplantArgs {
         };
         Ok(Options {
             interface,
+            outside: match self.outside {
+                Outside::Cut => implant::Outside::Cut,
+                Outside::Keep => implant::Outside::Keep,
+            },
+            stray: self.stray,
             size: self.size,
             growth: self.growth,
             adapt: match self.adapt {

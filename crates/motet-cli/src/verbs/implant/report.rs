@@ -87,6 +87,19 @@ impl Report {
                 if fit.is_reached() { "" } else { " and not reached" }
             ));
         }
+        for device in &report.devices {
+            if device.triangles_at_walls + device.triangles_outside > 0 {
+                let contact = device.contact_patch.map_or(String::new(), |patch| {
+                    format!("; what it has in common with walls is patch {patch}, {}-contact", device.name)
+                });
+                console.say(format_args!(
+                    "{}: meets walls of the host: {} triangles are divided there or have changed, {} lay outside and were cut off{contact}",
+                    device.name,
+                    count(device.triangles_at_walls),
+                    count(device.triangles_outside)
+                ));
+            }
+        }
         let worst = report.improved.after.worst;
         console.say(format_args!(
             "{} tets; {} bad ones near the devices were repaired, {} of those that came are left; worst EAS there {}",

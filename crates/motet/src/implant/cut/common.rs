@@ -1,0 +1,218 @@
+//! What two triangles have in common: points, and how those hang together.
+
+use crate::base::{Point, VertexId};
+use crate::geometry::segment;
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
+
+/// What a point is, so that every pair of triangles that has it gives it the same name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) enum Name {
+    /// A vertex of either surface.
+    Vertex(VertexId),
+    /// Where an edge of the first crosses one of the second; smaller vertices first.
+    Edges([VertexId; 2], [VertexId; 2]),
+    /// Where an edge of one goes through a triangle of the other: 0 of the first, 1 of the second, and its number.
+    Through([VertexId; 2], u8, u32),
+}
+
+/// Where a point lies on a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum On {
+    Corner(usize),
+    /// From this corner to the next.
+    Edge(usize),
+    Inside,
+}
+
+/// A point that two triangles have in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared {
+    pub(super) name: Name,
+    pub(super) at: Point,
+    /// Where it lies on the first, and on the second.
+    pub(super) on: [On; 2],
+}
+
+/// All that two triangles have in common.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Common {
+    pub(super) points: Vec<Shared>,
+    /// Which of the points an edge joins.
+    pub(super) segments: Vec<[usize; 2]>,
+    /// Whether they lie in one plane, and may have an area in common.
+    pub(super) is_flat: bool,
+}
+
+/// A triangle of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    /// 0 of the first surface, 1 of the second.
+    pub(super) surface: u8,
+    pub(super) number: u32,
+    pub(super) vertices: [VertexId; 3],
+    pub(super) corners: [Point; 3],
+}
+
+impl Side {
+    fn edge(&self, k: usize) -> ([VertexId; 2], [Point; 2]) {
+        let [i, j] = [k, (k + 1) % 3];
+        let [i, j] = if self.vertices[i] < self.vertices[j] { [i, j] } else { [j, i] };
+        ([self.vertices[i], self.vertices[j]], [self.corners[i], self.corners[j]])
+    }
+
+    /// How far in front of its plane points lie; 0 where that is no more than `near`.
+    fn offsets(&self, of: &Side, near: f64) -> Option<[f64; 3]> {
+        let normal = area_vector(self.corners);
+        let length = norm(normal);
+        let offset = |k: usize| {
+            if self.vertices.contains(&of.vertices[k]) {
+                return 0.0;
+            }
+            let offset = dot(normal, sub(of.corners[k], self.corners[0])) / length;
+            if offset.abs() <= near { 0.0 } else { offset }
+        };
+        (length > 0.0).then(|| [offset(0), offset(1), offset(2)])
+    }
+
+    /// Where a point of its plane lies on it.
+    fn locate(&self, p: Point, near: f64) -> Option<On> {
+        if let Some(k) = (0..3).find(|&k| distance(self.corners[k], p) <= near) {
+            return Some(On::Corner(k));
+        }
+        let to_edge = |k: usize| {
+            let [a, b] = [self.corners[k], self.corners[(k + 1) % 3]];
+            distance(add(a, scale(sub(b, a), segment::closest([a, b], p))), p)
+        };
+        if let Some(k) = (0..3).find(|&k| to_edge(k) <= near) {
+            return Some(On::Edge(k));
+        }
+        let normal = area_vector(self.corners);
+        let is_within = |k: usize| {
+            let [a, b] = [self.corners[k], self.corners[(k + 1) % 3]];
+            dot(normal, cross(sub(b, a), sub(p, a))) > 0.0
+        };
+        (0..3).all(is_within).then_some(On::Inside)
+    }
+}
+
+impl Common {
+    /// What is nearer than `near` is one place.
+    pub(super) fn of(a: &Side, b: &Side, near: f64) -> Option<Self> {
+        let (of_a, of_b) = (b.offsets(a, near)?, a.offsets(b, near)?);
+        if [of_a, of_b].iter().any(|o| o.iter().all(|x| *x > 0.0) || o.iter().all(|x| *x < 0.0)) {
+            return None;
+        }
+        let mut common = Self::default();
+        common.add_vertices(a, b, of_a, near);
+        common.add_vertices(b, a, of_b, near);
+        common.add_passages(a, b, of_a, near);
+        common.add_passages(b, a, of_b, near);
+        common.is_flat = of_a.iter().chain(&of_b).all(|x| *x == 0.0);
+        if common.is_flat {
+            common.add_crossings(a, b, near);
+            common.join_along_edges(a, b);
+        } else {
+            common.join_in_line();
+        }
+        (!common.points.is_empty()).then_some(common)
+    }
+
+    fn add(&mut self, first: u8, name: Name, at: Point, on: [On; 2]) {
+        let on = if first == 0 { on } else { [on[1], on[0]] };
+        if !self.points.iter().any(|known| known.name == name) {
+            self.points.push(Shared { name, at, on });
+        }
+    }
+
+    /// Vertices of `a` that lie on `b`.
+    fn add_vertices(&mut self, a: &Side, b: &Side, of_a: [f64; 3], near: f64) {
+        for k in (0..3).filter(|&k| of_a[k] == 0.0) {
+            let on = match b.vertices.iter().position(|v| *v == a.vertices[k]) {
+                Some(corner) => Some(On::Corner(corner)),
+                None => b.locate(a.corners[k], near),
+            };
+            if let Some(on) = on {
+                self.add(a.surface, Name::Vertex(a.vertices[k]), a.corners[k], [On::Corner(k), on]);
+            }
+        }
+    }
+
+    /// Edges of `a` that go through the plane of `b`, within `b`.
+    fn add_passages(&mut self, a: &Side, b: &Side, of_a: [f64; 3], near: f64) {
+        for k in 0..3 {
+            let (of_k, of_next) = (of_a[k], of_a[(k + 1) % 3]);
+            if of_k * of_next >= 0.0 {
+                continue;
+            }
+            let (edge, [p, q]) = a.edge(k);
+            let [from, to] = if edge[0] == a.vertices[k] { [of_k, of_next] } else { [of_next, of_k] };
+            let at = add(p, scale(sub(q, p), from / (from - to)));
+            let Some(on) = b.locate(at, near) else { continue };
+            let (name, at) = match on {
+                On::Corner(corner) => (Name::Vertex(b.vertices[corner]), b.corners[corner]),
+                On::Edge(other) => (edges(a, edge, b.edge(other).0), at),
+                On::Inside => (Name::Through(edge, b.surface, b.number), at),
+            };
+            self.add(a.surface, name, at, [On::Edge(k), on]);
+        }
+    }
+
+    /// Where edges cross within one plane.
+    fn add_crossings(&mut self, a: &Side, b: &Side, near: f64) {
+        let normal = area_vector(a.corners);
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            let ((of_a, [p, q]), (of_b, [r, s])) = (a.edge(i), b.edge(j));
+            if of_a.iter().any(|v| of_b.contains(v)) {
+                continue;
+            }
+            let side = |from: Point, to: Point, x: Point| {
+                let along = sub(to, from);
+                let off = dot(normal, cross(along, sub(x, from))) / (norm(normal) * norm(along));
+                if off.abs() <= near { 0.0 } else { off }
+            };
+            let (of_r, of_s) = (side(p, q, r), side(p, q, s));
+            let (of_p, of_q) = (side(r, s, p), side(r, s, q));
+            if of_r * of_s < 0.0 && of_p * of_q < 0.0 {
+                let at = add(p, scale(sub(q, p), of_p / (of_p - of_q)));
+                self.add(a.surface, edges(a, of_a, of_b), at, [On::Edge(i), On::Edge(j)]);
+            }
+        }
+    }
+
+    /// Points of triangles that cross lie in line.
+    fn join_in_line(&mut self) {
+        let far = |from: usize| {
+            let off = |i: &usize| distance(self.points[from].at, self.points[*i].at);
+            (0..self.points.len()).max_by(|i, j| off(i).total_cmp(&off(j)))
+        };
+        let Some(first) = far(0).and_then(far) else { return };
+        let mut order: Vec<usize> = (0..self.points.len()).collect();
+        let off = |i: usize| distance(self.points[first].at, self.points[i].at);
+        order.sort_by(|&i, &j| off(i).total_cmp(&off(j)));
+        self.segments = order.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    }
+
+    /// In one plane, what they have in common is bounded by parts of edges.
+    fn join_along_edges(&mut self, a: &Side, b: &Side) {
+        for (side, k) in [0, 1].into_iter().flat_map(|side| (0..3).map(move |k| (side, k))) {
+            let of = if usize::from(a.surface) == side { a } else { b };
+            let start = of.corners[k];
+            let is_there = |on: On| match on {
+                On::Corner(c) => c == k || c == (k + 1) % 3,
+                On::Edge(e) => e == k,
+                On::Inside => false,
+            };
+            let mut along: Vec<usize> =
+                (0..self.points.len()).filter(|&i| is_there(self.points[i].on[side])).collect();
+            let off = |i: usize| distance(start, self.points[i].at);
+            along.sort_by(|&i, &j| off(i).total_cmp(&off(j)));
+            self.segments.extend(along.windows(2).map(|pair| [pair[0], pair[1]]));
+        }
+    }
+}
+
+/// The name of a crossing of an edge of `a` with one of the other surface.
+fn edges(a: &Side, of_a: [VertexId; 2], other: [VertexId; 2]) -> Name {
+    if a.surface == 0 { Name::Edges(of_a, other) } else { Name::Edges(other, of_a) }
+}

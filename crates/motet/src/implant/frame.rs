@@ -1,0 +1,370 @@
+//! All that new tets have to fit: triangles of the devices and faces of the room, divided where they meet.
+//!
+//! Where a device goes through a wall, what lies outside of the host is cut off, or kept. A wall within a device bounds the device's tets then, or is no more. An
+//! interface of regions within a device always goes: the device takes the room of both.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use super::carve::{Carved, Face, Fate, outward};
+use super::cut::Cut;
+use super::devices::Devices;
+use super::options::{Inside, Outside};
+use super::place::{check_inside, told};
+use crate::base::{Error, Point, Result, Sets, Threads, VertexId, rising};
+use crate::contact::inside;
+use crate::geometry::triangle::{area, centroid};
+use crate::geometry::vector::{cross, dot, sub};
+use crate::mesh::TetMesh;
+use crate::mesh::tet_facets::for_each_tet_facet;
+
+/// A triangle that tets have to fit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wall {
+    /// Vertices of the result: those of the host, then of devices, then those that came.
+    pub(super) vertices: [VertexId; 3],
+    /// The triangle of the devices that it is, or is a part of.
+    pub(super) device: Option<u32>,
+    /// The face of the room that it is, or is a part of.
+    pub(super) face: Option<u32>,
+    /// The device in which it lies.
+    pub(super) within: Option<u32>,
+    /// Whether it has to stay as it is: no corner of it is one where a device meets a wall.
+    pub(super) is_fixed: bool,
+}
+
+/// Where a triangle of the devices lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Lies {
+    /// Inside the host.
+    Inside,
+    /// At a wall: it does not have to stay as it is.
+    AtWall,
+    /// Outside of the host.
+    Outside,
+}
+
+/// How devices lie to walls.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sites {
+    /// Of each triangle.
+    pub(super) of_triangle: Vec<Lies>,
+    /// For each device whether it meets a wall or lies outside in part.
+    pub(super) is_through: Vec<bool>,
+    /// The volume of each device within the host.
+    pub(super) volumes: Vec<f64>,
+}
+
+/// Everything over one list of points.
+#[derive(Debug, Default)]
+pub(super) struct Frame {
+    /// The points that walls use, and the vertex of the result that each is.
+    pub(super) points: Vec<Point>,
+    pub(super) to_result: Vec<VertexId>,
+    /// The walls by these points.
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) walls: Vec<Wall>,
+    /// The points that came where surfaces were divided.
+    pub(super) came: Vec<Point>,
+    /// Vertices of walls that may move or go, since they lie where a device meets a wall.
+    pub(super) loose: BTreeSet<VertexId>,
+    /// Faces that are not there any more, or not as they were.
+    pub(super) dropped: Vec<Face>,
+    pub(super) sites: Sites,
+    /// What vertices of devices are called now.
+    pub(super) names: Vec<VertexId>,
+}
+
+/// The pieces of the devices' triangles, or of the faces, and how they lie to the other surface.
+struct Sorted {
+    /// With the triangle that each is, or is a part of.
+    pieces: Vec<([VertexId; 3], u32)>,
+    /// Parts that hang together without crossing the other surface, by a number.
+    parts: Vec<usize>,
+    /// A place in each part.
+    places: Vec<Point>,
+}
+
+impl Frame {
+    /// # Errors
+    /// When a device lies outside of the host or holds it, when one that keeps its tets meets a wall, and when surfaces come too close to each other.
+    pub(super) fn new(
+        host: &TetMesh,
+        devices: &Devices,
+        carved: &Carved,
+        outside: Outside,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let n_host = host.points.len();
+        let points: Vec<Point> = host.points.iter().chain(&devices.points).copied().collect();
+        let in_result = |t: &[VertexId; 3]| t.map(|v| VertexId::new(n_host + v.index()));
+        let of_devices: Vec<[VertexId; 3]> = devices.triangles.iter().map(in_result).collect();
+        let faces: Vec<[VertexId; 3]> = carved.faces.iter().map(|face| face.vertices).collect();
+        let cut = Cut::new(&points, [&of_devices, &faces], threads)?;
+        let on_both = on_both(&cut);
+        let sorted = [0, 1].map(|s| Sorted::new(&cut, s, &on_both));
+        let mut frame = Self {
+            came: cut.points[points.len()..].to_vec(),
+            names: cut.names[n_host..].to_vec(),
+            ..Self::default()
+        };
+        frame.loosen(host, devices, carved, &cut, &on_both);
+        let mut walls = frame.of_devices(host, devices, carved, (&cut, &sorted), outside, threads)?;
+        let within: Vec<Vec<bool>> = (0..devices.names.len() as u32)
+            .map(|k| {
+                let is_of = |t: &usize| devices.of_triangle.list(*t).contains(&k);
+                let own: Vec<_> = (0..of_devices.len()).filter(is_of).map(|t| of_devices[t]).collect();
+                sorted[1].ask(&cut, &own, threads)
+            })
+            .collect();
+        frame.add_faces(devices, carved, (&cut, &sorted[1]), &within, outside, &mut walls);
+        frame.check_others(host, carved, &cut, &walls)?;
+        frame.take(&cut, walls);
+        Ok(frame)
+    }
+
+    /// Finds the vertices where devices meet walls, but those that anything holds that stays.
+    fn loosen(
+        &mut self,
+        host: &TetMesh,
+        devices: &Devices,
+        carved: &Carved,
+        cut: &Cut,
+        on_both: &BTreeSet<[VertexId; 2]>,
+    ) {
+        self.loose.extend(on_both.iter().flatten());
+        for s in 0..2 {
+            let same = cut.pieces[s].chunk_by(|x, y| x.1 == y.1).filter(|pieces| pieces.len() > 1);
+            self.loose.extend(same.flatten().flat_map(|(t, _)| t));
+        }
+        if self.loose.is_empty() {
+            return;
+        }
+        let staying = host.tets.iter().zip(&carved.fates).filter(|(_, fate)| **fate != Fate::Gone);
+        let own = devices.own_tets.iter().flat_map(|(tet, _)| tet.map(|v| self.names[v.index()]));
+        let held: Vec<VertexId> = staying.flat_map(|(tet, _)| *tet).chain(own).collect();
+        let held = held.iter().chain(&host.fixed_vertices).chain(host.fixed_edges.as_flattened());
+        held.for_each(|v| {
+            self.loose.remove(v);
+        });
+    }
+
+    fn is_fixed(&self, triangle: [VertexId; 3]) -> bool {
+        !triangle.iter().any(|v| self.loose.contains(v))
+    }
+
+    /// The pieces of devices that bound something.
+    fn of_devices(
+        &mut self,
+        host: &TetMesh,
+        devices: &Devices,
+        carved: &Carved,
+        (cut, [sorted, faces]): (&Cut, &[Sorted; 2]),
+        outside: Outside,
+        threads: &Threads,
+    ) -> Result<Vec<Wall>> {
+        let is_in = sorted.ask(cut, &boundary(host), threads);
+        let twins: HashMap<[VertexId; 3], ([VertexId; 3], u32)> =
+            faces.pieces.iter().map(|piece| (rising(piece.0), *piece)).collect();
+        let n = devices.names.len();
+        let (mut has_inside, mut walls) = (vec![false; n], Vec::new());
+        self.sites.volumes = vec![0.0; n];
+        let mut sites = vec![None; devices.triangles.len()];
+        for (&(vertices, t), &part) in sorted.pieces.iter().zip(&sorted.parts) {
+            let twin = twins.get(&rising(vertices));
+            // On the boundary a device lies inside where it faces as the wall does.
+            let is_inside = match twin {
+                Some(&(face, f)) => {
+                    carved.faces[f as usize].front.is_some() || is_turned_alike(vertices, face)
+                }
+                None => is_in[part],
+            };
+            let is_fixed = self.is_fixed(vertices);
+            let site = match is_fixed {
+                false => Lies::AtWall,
+                true if twin.is_some() || is_in[part] => Lies::Inside,
+                true => Lies::Outside,
+            };
+            let known = sites[t as usize].replace(site);
+            if known.is_some_and(|known| known != site) {
+                sites[t as usize] = Some(Lies::AtWall);
+            }
+            for &k in devices.of_triangle.list(t as usize).iter().filter(|_| is_inside) {
+                has_inside[k as usize] = true;
+                self.sites.volumes[k as usize] += cone(cut, vertices);
+            }
+            if twin.is_some() || is_in[part] || outside == Outside::Keep {
+                walls.push(Wall {
+                    vertices,
+                    device: Some(t),
+                    face: twin.map(|x| x.1),
+                    within: None,
+                    is_fixed,
+                });
+            }
+        }
+        check_inside(host, devices, &has_inside, threads)?;
+        self.sites.of_triangle = sites.into_iter().map(|site| site.unwrap_or(Lies::Inside)).collect();
+        self.sites.is_through = vec![false; n];
+        for (t, (of, &site)) in devices.of_triangle.iter().zip(&self.sites.of_triangle).enumerate() {
+            for &k in of.iter().filter(|_| site != Lies::Inside) {
+                self.sites.is_through[k as usize] = true;
+                if devices.insides[k as usize] == Inside::Own {
+                    return Err(no_own(devices, k, t, site));
+                }
+            }
+        }
+        Ok(walls)
+    }
+
+    /// The pieces of faces that bound something, and are no pieces of devices.
+    fn add_faces(
+        &mut self,
+        devices: &Devices,
+        carved: &Carved,
+        (cut, sorted): (&Cut, &Sorted),
+        within: &[Vec<bool>],
+        outside: Outside,
+        walls: &mut Vec<Wall>,
+    ) {
+        let with_device: HashSet<[VertexId; 3]> =
+            walls.iter().filter(|wall| wall.face.is_some()).map(|wall| rising(wall.vertices)).collect();
+        let mut is_dropped = vec![false; carved.faces.len()];
+        for (&(vertices, f), &part) in sorted.pieces.iter().zip(&sorted.parts) {
+            if with_device.contains(&rising(vertices)) {
+                is_dropped[f as usize] = true;
+                continue;
+            }
+            let is_boundary = carved.faces[f as usize].front.is_none();
+            let holders: Vec<usize> = (0..within.len()).filter(|&k| within[k][part]).collect();
+            if is_boundary {
+                holders.iter().for_each(|&k| self.sites.volumes[k] += cone(cut, vertices));
+            }
+            let is_fixed = self.is_fixed(vertices);
+            is_dropped[f as usize] |= !is_fixed || !holders.is_empty();
+            let bounds =
+                |k: usize| is_boundary && outside == Outside::Cut && devices.insides[k] != Inside::Hollow;
+            if holders.last().is_none_or(|&k| bounds(k)) {
+                let within = holders.last().map(|&k| k as u32);
+                walls.push(Wall { vertices, device: None, face: Some(f), within, is_fixed });
+            }
+        }
+        self.dropped = (0..is_dropped.len()).filter(|&f| is_dropped[f]).map(|f| carved.faces[f]).collect();
+    }
+
+    /// Cells of other kinds stay as they are: neither their faces nor their edges can be divided, or go.
+    fn check_others(&self, host: &TetMesh, carved: &Carved, cut: &Cut, walls: &[Wall]) -> Result<()> {
+        let vertices: HashSet<VertexId> = host.fixed_vertices.iter().copied().collect();
+        let edges: HashSet<[VertexId; 2]> = host.fixed_edges.iter().map(|edge| rising(*edge)).collect();
+        if vertices.is_empty() && edges.is_empty() {
+            return Ok(());
+        }
+        let of_faces = || walls.iter().filter(|wall| wall.face.is_some()).map(|wall| wall.vertices);
+        let whole: HashSet<[VertexId; 3]> = of_faces().map(rising).collect();
+        let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(rising);
+        let known: HashSet<[VertexId; 2]> = of_faces().flat_map(sides).collect();
+        let is_lost = |face: &&Face| {
+            let is_held = face.front.is_none() && face.vertices.iter().all(|v| vertices.contains(v));
+            is_held && !whole.contains(&rising(face.vertices))
+                || sides(face.vertices).iter().any(|edge| edges.contains(edge) && !known.contains(edge))
+        };
+        let Some(lost) = carved.faces.iter().find(is_lost) else { return Ok(()) };
+        Err(Error::input(
+            "a device meets a wall where cells of other kinds than tets are, which cannot be divided",
+        )
+        .at(format!("triangle at {}", told(centroid(lost.vertices.map(|v| cut.points[v.index()])))))
+        .remedy("move the device, or leave those cells out of the host"))
+    }
+
+    fn take(&mut self, cut: &Cut, walls: Vec<Wall>) {
+        let mut to_frame: HashMap<VertexId, VertexId> = HashMap::new();
+        for wall in &walls {
+            let triangle = wall.vertices.map(|v| {
+                *to_frame.entry(v).or_insert_with(|| {
+                    self.points.push(cut.points[v.index()]);
+                    self.to_result.push(v);
+                    VertexId::new(self.points.len() - 1)
+                })
+            });
+            self.triangles.push(triangle);
+        }
+        self.walls = walls;
+    }
+}
+
+/// Tets that a device keeps cannot be divided.
+fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
+    let is_met = site == Lies::AtWall;
+    let why = if is_met { "a wall of the host meets them" } else { "a part of it lies outside of the host" };
+    Error::input(format!("the device `{}` keeps its tets, and {why}", devices.names[k as usize]))
+        .at(format!("triangle of the device at {}", told(centroid(devices.corners(t)))))
+        .remedy("let it be filled, or hollow: then it is cut where it meets the wall")
+}
+
+/// The volume between a triangle and one place for all, by its sign.
+fn cone(cut: &Cut, triangle: [VertexId; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| sub(cut.points[v.index()], cut.points[0]));
+    dot(cross(a, b), c) / 6.0
+}
+
+/// Whether two triangles of the same vertices are turned the same way.
+fn is_turned_alike(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+    (0..3).any(|k| [a[k], a[(k + 1) % 3], a[(k + 2) % 3]] == b)
+}
+
+/// The boundary of the host, outward.
+fn boundary(host: &TetMesh) -> Vec<[VertexId; 3]> {
+    let mut boundary = Vec::new();
+    for_each_tet_facet(&host.tets, &[], |sharing| {
+        if let &[(t, i)] = sharing.tets {
+            boundary.push(outward(host, t.index(), i));
+        }
+    });
+    boundary
+}
+
+/// The edges of pieces of both surfaces.
+fn on_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
+    let edges = |s: usize| {
+        let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
+        vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
+    };
+    // Of the devices, those whose ends are both of the other surface as well.
+    let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
+    let asked: BTreeSet<[VertexId; 2]> =
+        edges(0).filter(|edge| edge.iter().all(|v| of_faces.contains(v))).collect();
+    if asked.is_empty() { asked } else { edges(1).filter(|edge| asked.contains(edge)).collect() }
+}
+
+impl Sorted {
+    fn new(cut: &Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
+        let pieces = cut.pieces[s].clone();
+        let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
+        let mut sets = Sets::new(pieces.len());
+        for (i, &([a, b, c], _)) in (0u32..).zip(&pieces) {
+            for edge in [[a, b], [b, c], [c, a]].map(rising).iter().filter(|edge| !on_both.contains(*edge)) {
+                sets.join(*first_at.entry(*edge).or_insert(i), i);
+            }
+        }
+        let mut largest: BTreeMap<u32, (f64, Point)> = BTreeMap::new();
+        let roots: Vec<u32> = (0..pieces.len() as u32).map(|i| sets.root(i)).collect();
+        for (root, (t, _)) in roots.iter().zip(&pieces) {
+            let corners = t.map(|v| cut.points[v.index()]);
+            let known = largest.entry(*root).or_default();
+            if area(corners) > known.0 {
+                *known = (area(corners), centroid(corners));
+            }
+        }
+        let order: HashMap<u32, usize> = largest.keys().copied().zip(0..).collect();
+        let parts = roots.iter().map(|root| order[root]).collect();
+        Self { pieces, parts, places: largest.into_values().map(|(_, place)| place).collect() }
+    }
+
+    /// Which parts lie in a closed surface.
+    fn ask(&self, cut: &Cut, surface: &[[VertexId; 3]], threads: &Threads) -> Vec<bool> {
+        let mut points = cut.points.clone();
+        let first = points.len();
+        points.extend(&self.places);
+        let queries: Vec<VertexId> = (first..points.len()).map(VertexId::new).collect();
+        inside(&points, &queries, &[], surface, &[], threads)
+    }
+}
