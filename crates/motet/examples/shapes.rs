@@ -1,13 +1,14 @@
 //! Motet's own vessels and devices as closed surfaces, for other programs to fill.
 //!
 //! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word); and `loops.vtp`, a coil
-//! that lies in the sac of the aneurysm; and `stent.vtp`, a stent in its vessel, across the neck, pressed into the wall by a twentieth of the radius.
+//! that lies in the sac of the aneurysm; and `stent.vtp`, a stent in its vessel, across the neck, pressed into the wall by a twentieth of the radius;
+//! `box.vtu` and `ball.vtu`, both of tets, the one in the middle of the other.
 
 use std::error::Error;
 use std::path::Path;
 
 use motet::io::{self, WriteOptions};
-use motet::mesh::shapes::{Aneurysm, Bifurcation, CenterLine, Coil, Stent};
+use motet::mesh::shapes::{Aneurysm, Bifurcation, CenterLine, Coil, Stent, ball, box_grid};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
@@ -38,6 +39,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("bifurcation.vtp", Bifurcation { around, ..Bifurcation::default() }.mesh()?),
         ("loops.vtp", loops),
         ("stent.vtp", stent),
+        ("box.vtu", box_grid([12; 3], [[-2.5; 3], [2.5; 3]])),
+        ("ball.vtu", ball(6, 4)),
     ];
     for (file, mesh) in shapes {
         io::write(Path::new(&folder).join(file), &mesh, &WriteOptions::default())?;
