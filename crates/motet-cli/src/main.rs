@@ -3,9 +3,10 @@
 //! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
 //! here: how the call is read (`args`, `words`), how the user is spoken to (`console`,
 //! `table`), how failures become exit statuses (`exit`), what outputs are refused
-//! (`outputs`).
+//! (`outputs`), what becomes of arrays (`arrays`).
 
 mod args;
+mod arrays;
 mod console;
 mod exit;
 mod outputs;

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use motet::mesh::history::History;
 use motet::{Error, ErrorKind, Result, io};
 
 /// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names. A series is many files: its folder
@@ -40,10 +39,4 @@ pub(crate) fn check_with_history(output: &Path, mesh: &Path, history: Option<&Pa
             .in_file(history)
             .remedy("make the folder first")),
     }
-}
-
-/// Writes a history as one JSON object.
-pub(crate) fn write_history(file: &Path, history: &History) -> Result<()> {
-    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
-    io::replace(file, &json)
 }

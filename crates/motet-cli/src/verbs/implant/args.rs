@@ -7,8 +7,9 @@ use motet::Error;
 use motet::implant::{self, Options};
 use motet::remesh;
 
+use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
-use crate::verbs::remesh::{Carry, carry, eas};
+use crate::verbs::remesh::eas;
 use crate::words::{not_negative, positive};
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
@@ -93,16 +94,8 @@ pub(crate) struct ImplantArgs {
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Room")]
     min_eas: f64,
 
-    /// What becomes of an array where the mesh changes. Repeatable
-    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
-    pub(crate) carry: Vec<(String, Carry)>,
-    /// Add the cell array `eas`
-    #[arg(long, help_heading = "Arrays")]
-    pub(crate) quality: bool,
-    /// Write where each point and cell came from, with weights, as one JSON object
-    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
-    pub(crate) history: Option<PathBuf>,
-
+    #[command(flatten)]
+    pub(crate) arrays: ArrayArgs,
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
 }

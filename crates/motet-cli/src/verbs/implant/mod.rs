@@ -7,7 +7,6 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::time::Instant;
 
-use motet::geometry::quality::eas;
 use motet::implant::{Device, Implanted, Inside, implant};
 use motet::mesh::LabelNames;
 use motet::{Error, io};
@@ -16,37 +15,30 @@ pub(crate) use args::ImplantArgs;
 
 use self::report::Report;
 use crate::args::Common;
+use crate::arrays::Written;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
 use crate::table::seconds;
-use crate::verbs::remesh::rules;
 
 pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    outputs::check_with_history(&args.output, &args.host, args.history.as_deref())?;
+    outputs::check_with_history(&args.output, &args.host, args.arrays.history.as_deref())?;
     outputs::check(&args.output, args.devices.iter().map(AsRef::as_ref), "a device")?;
     let options = args.options()?;
     let threads = common.threads()?;
     let bar = console.bar(2, "implanting");
     let (host, notes) = io::read_noted(&args.host)?;
     notes.iter().for_each(|what| console.warn(what));
-    let rules = rules(&args.carry, &host).map_err(|e| e.in_file(&args.host))?;
+    let rules = args.arrays.rules(&host).map_err(|e| e.in_file(&args.host))?;
     let devices = read(args, &host.label_names, console)?;
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
     let made = implant(&host, &devices, &options, &rules, &threads);
     let Implanted { mut mesh, history, report } = made.map_err(|e| in_its_file(e, args, &devices))?;
     bar.inc(1);
-    if args.quality {
-        mesh.set_cell_field(mesh.tet_field("eas", eas));
-    }
-    let writing = Instant::now();
-    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
-    if let Some(file) = &args.history {
-        outputs::write_history(file, &history)?;
-    }
-    let write = writing.elapsed().as_secs_f64();
+    let Written { lost, seconds: write } =
+        args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
     bar.finish_and_clear();
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));

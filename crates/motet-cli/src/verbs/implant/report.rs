@@ -47,7 +47,7 @@ impl Report {
             host: args.host.clone(),
             devices: args.devices.clone(),
             output: args.output.clone(),
-            history: args.history.clone(),
+            history: args.arrays.history.clone(),
             complete: report.is_complete(),
             valid: report.is_valid(),
             volume_deviation: report.volume_deviation(),

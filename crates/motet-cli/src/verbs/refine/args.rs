@@ -6,8 +6,8 @@ use clap::{ArgGroup, Args};
 use motet::refine::{Condition, Criterion, HessianSizes, Limits};
 
 use super::words::{self, Near, NearSize};
+use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
-use crate::verbs::remesh::{Carry, carry};
 use crate::words::positive;
 
 /// Divide tets where it matters, many generations deep, without loss of shape; and take it back
@@ -130,16 +130,8 @@ pub(crate) struct RefineArgs {
     #[arg(long, value_name = "FILE", help_heading = "Boundary")]
     pub(crate) surface: Option<PathBuf>,
 
-    /// What becomes of an array where the mesh changes. Repeatable
-    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
-    pub(crate) carry: Vec<(String, Carry)>,
-    /// Add the cell array `eas`
-    #[arg(long, help_heading = "Arrays")]
-    pub(crate) quality: bool,
-    /// Write where each point and cell came from, with weights, as one JSON object
-    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
-    pub(crate) history: Option<PathBuf>,
-
+    #[command(flatten)]
+    pub(crate) arrays: ArrayArgs,
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
 }

@@ -8,7 +8,6 @@ mod work;
 
 use std::time::Instant;
 
-use motet::geometry::quality::eas;
 use motet::mesh::history::History;
 use motet::refine::{MeshRefinement, Options, fix_sizes};
 use motet::{Error, io};
@@ -18,32 +17,33 @@ pub(crate) use args::RefineArgs;
 use self::report::Report;
 use self::work::Work;
 use crate::args::Common;
+use crate::arrays::Written;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
 use crate::table::seconds;
-use crate::verbs::remesh::rules;
 
 pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    outputs::check_with_history(&args.output, &args.mesh, args.history.as_deref())?;
+    outputs::check_with_history(&args.output, &args.mesh, args.arrays.history.as_deref())?;
     let threads = common.threads()?;
     let mut criteria = criteria::criteria(args, &threads)?;
     let surface = args.surface.as_deref().map(|file| criteria::target(file, &threads)).transpose()?;
     let (old, notes) = io::read_noted(&args.mesh)?;
-    let rules = rules(&args.carry, &old).map_err(|e| e.in_file(&args.mesh))?;
+    let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let mut given = if args.forget { MeshRefinement::forget(&old) } else { old };
     let sizes = fix_sizes(&mut criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
     let refinement =
         MeshRefinement::new(&given, Options::default(), &threads).map_err(|e| hint(e).in_file(&args.mesh))?;
     let read = begin.elapsed().as_secs_f64();
 
+    let identity = || History::identity(given.points.len(), given.cells.len());
     let mut work = Work {
         args,
         refinement,
         surface,
         rules: &rules,
-        history: args.history.as_ref().map(|_| History::identity(given.points.len(), given.cells.len())),
+        history: args.arrays.history.is_some().then(identity),
         report: Report::new(args),
         threads: &threads,
     };
@@ -55,15 +55,8 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let Work { refinement, history, mut report, .. } = work;
     let mut mesh = refinement.with_memory(&threads);
     mesh.point_data.retain(|field| !sizes.contains(&field.name));
-    if args.quality {
-        mesh.set_cell_field(mesh.tet_field("eas", eas));
-    }
-    let writing = Instant::now();
-    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
-    if let (Some(file), Some(history)) = (&args.history, &history) {
-        outputs::write_history(file, history)?;
-    }
-    let write = writing.elapsed().as_secs_f64();
+    let Written { lost, seconds: write } =
+        args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing)?;
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));

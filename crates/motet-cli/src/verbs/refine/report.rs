@@ -111,7 +111,7 @@ impl Report {
         Self {
             mesh: args.mesh.clone(),
             output: args.output.clone(),
-            history: args.history.clone(),
+            history: args.arrays.history.clone(),
             complete: true,
             steps: Vec::new(),
             first_tets: 0,

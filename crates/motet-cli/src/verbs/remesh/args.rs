@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use motet::Error;
 use motet::Mesh;
-use motet::mesh::history::{Rule, Rules};
 use motet::remesh::{self, Options, Sizes, SurfaceRule};
 
+use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
@@ -78,16 +78,8 @@ pub(crate) struct RemeshArgs {
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Repair")]
     rounds: u32,
 
-    /// What becomes of an array where the mesh changes. Repeatable
-    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry, help_heading = "Arrays")]
-    pub(crate) carry: Vec<(String, Carry)>,
-    /// Add the cell array `eas`
-    #[arg(long, help_heading = "Arrays")]
-    pub(crate) quality: bool,
-    /// Write where each point and cell came from, with weights, as one JSON object
-    #[arg(long, value_name = "FILE.json", help_heading = "Arrays")]
-    pub(crate) history: Option<PathBuf>,
-
+    #[command(flatten)]
+    pub(crate) arrays: ArrayArgs,
     #[command(flatten)]
     pub(crate) writing: WritingArgs,
 }
@@ -124,15 +116,6 @@ enum Asked {
     Length(f64),
     /// A point array.
     Array(String),
-}
-
-/// What becomes of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Carry {
-    /// On points interpolated, on cells averaged by volume.
-    Mean,
-    Inherit,
-    Drop,
 }
 
 impl RemeshArgs {
@@ -186,37 +169,6 @@ impl RemeshArgs {
                 .remedy("give --sizes an array of one component")),
         }
     }
-
-    /// The rules for the arrays of `mesh`.
-    pub(crate) fn rules(&self, mesh: &Mesh) -> motet::Result<Rules> {
-        rules(&self.carry, mesh)
-    }
-}
-
-/// The rules that `--carry` gives for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
-pub(crate) fn rules(carry: &[(String, Carry)], mesh: &Mesh) -> motet::Result<Rules> {
-    let mut rules = Rules::default();
-    for (name, carry) in carry {
-        let rule = |mean| match carry {
-            Carry::Mean => mean,
-            Carry::Inherit => Rule::Inherit,
-            Carry::Drop => Rule::Drop,
-        };
-        let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
-        if on_points {
-            rules.points.insert(name.clone(), rule(Rule::Interpolate));
-        }
-        if on_cells {
-            rules.cells.insert(name.clone(), rule(Rule::Conserve));
-        }
-        if !on_points && !on_cells {
-            let fields = mesh.point_data.iter().chain(&mesh.cell_data);
-            let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
-            return Err(Error::options(format!("--carry: the mesh has no array {name}"))
-                .remedy(format!("its arrays: {}", known.join(", "))));
-        }
-    }
-    Ok(rules)
 }
 
 pub(crate) fn eas(text: &str) -> Result<f64, String> {
@@ -241,18 +193,6 @@ fn sizes(text: &str) -> Result<Asked, String> {
     }
 }
 
-/// `ARRAY=mean|inherit|drop`
-pub(crate) fn carry(text: &str) -> Result<(String, Carry), String> {
-    let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
-    let carry = match rule {
-        "mean" => Carry::Mean,
-        "inherit" => Carry::Inherit,
-        "drop" => Carry::Drop,
-        _ => return Err("ARRAY=mean, ARRAY=inherit or ARRAY=drop is expected".into()),
-    };
-    Ok((name.to_owned(), carry))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -263,7 +203,6 @@ mod tests {
         assert_eq!(degrees("14.1"), Ok(14.1));
         assert_eq!(sizes("0.3"), Ok(Asked::Length(0.3)));
         assert_eq!(sizes("h"), Ok(Asked::Array("h".to_owned())));
-        assert_eq!(carry("a=b=drop"), Ok(("a=b".to_owned(), Carry::Drop)));
     }
 
     #[test]
@@ -273,6 +212,5 @@ mod tests {
         }
         assert!(["0", "-0.3", "nan", "inf"].into_iter().all(|text| sizes(text).is_err()));
         assert!(degrees("70.6").is_err() && degrees("0").is_err());
-        assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
     }
 }

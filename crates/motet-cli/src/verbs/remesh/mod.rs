@@ -5,15 +5,15 @@ mod report;
 
 use std::time::Instant;
 
-use motet::geometry::quality;
 use motet::io;
 use motet::mesh::history::field_ledger;
 use motet::remesh::{MeshOutcome, remesh_mesh};
 
-pub(crate) use args::{Carry, RemeshArgs, carry, eas, rules};
+pub(crate) use args::{RemeshArgs, eas};
 
 use self::report::Report;
 use crate::args::Common;
+use crate::arrays::Written;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
@@ -22,13 +22,13 @@ use crate::table::seconds;
 pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
     let mut options = args.options()?;
-    outputs::check_with_history(&args.output, &args.mesh, args.history.as_deref())?;
+    outputs::check_with_history(&args.output, &args.mesh, args.arrays.history.as_deref())?;
     let threads = common.threads()?;
     let bar = console.bar(3, "remeshing");
     let (old, notes) = io::read_noted(&args.mesh)?;
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
-    let rules = args.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
+    let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
     bar.inc(1);
@@ -36,15 +36,8 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let begin_fields = Instant::now();
     let fields = field_ledger(&old, &mesh, &rules);
     let on_fields = begin_fields.elapsed().as_secs_f64();
-    if args.quality {
-        mesh.set_cell_field(mesh.tet_field("eas", quality::eas));
-    }
-    let writing = Instant::now();
-    let lost = io::write(&args.output, &mesh, &args.writing.options())?;
-    if let Some(file) = &args.history {
-        outputs::write_history(file, &history)?;
-    }
-    let write = writing.elapsed().as_secs_f64();
+    let Written { lost, seconds: write } =
+        args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
     bar.finish_and_clear();
 
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));

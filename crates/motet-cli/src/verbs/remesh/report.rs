@@ -117,7 +117,7 @@ impl Report {
         Self {
             mesh: args.mesh.clone(),
             output: args.output.clone(),
-            history: args.history.clone(),
+            history: args.arrays.history.clone(),
             complete: report.is_complete(),
             min_eas: report.min_eas,
             before: State::of(old, &report.before),

@@ -1,0 +1,122 @@
+//! What becomes of arrays in verbs that change a mesh, and the quality and the history that they write with it.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use motet::geometry::quality::eas;
+use motet::mesh::history::{History, Rule, Rules};
+use motet::{Error, Mesh, Result, io};
+
+use crate::verbs::convert::WritingArgs;
+
+/// What becomes of arrays, and what is to come with the mesh.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Arrays")]
+pub(crate) struct ArrayArgs {
+    /// What becomes of an array where the mesh changes. Repeatable
+    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry)]
+    carry: Vec<(String, Carry)>,
+    /// Add the cell array `eas`
+    #[arg(long)]
+    quality: bool,
+    /// Write where each point and cell came from, with weights, as one JSON object
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) history: Option<PathBuf>,
+}
+
+/// What becomes of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Carry {
+    /// On points interpolated, on cells averaged by volume.
+    Mean,
+    Inherit,
+    Drop,
+}
+
+/// What writing came to.
+pub(crate) struct Written {
+    /// What the format cannot hold, a sentence each.
+    pub(crate) lost: Vec<String>,
+    pub(crate) seconds: f64,
+}
+
+impl ArrayArgs {
+    /// The rules that `--carry` gives for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
+    pub(crate) fn rules(&self, mesh: &Mesh) -> Result<Rules> {
+        let mut rules = Rules::default();
+        for (name, carry) in &self.carry {
+            let rule = |mean| match carry {
+                Carry::Mean => mean,
+                Carry::Inherit => Rule::Inherit,
+                Carry::Drop => Rule::Drop,
+            };
+            let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
+            if on_points {
+                rules.points.insert(name.clone(), rule(Rule::Interpolate));
+            }
+            if on_cells {
+                rules.cells.insert(name.clone(), rule(Rule::Conserve));
+            }
+            if !on_points && !on_cells {
+                let fields = mesh.point_data.iter().chain(&mesh.cell_data);
+                let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
+                return Err(Error::options(format!("--carry: the mesh has no array {name}"))
+                    .remedy(format!("its arrays: {}", known.join(", "))));
+            }
+        }
+        Ok(rules)
+    }
+
+    /// Writes the mesh, with the quality of its tets if that is asked for, and its history if that is.
+    pub(crate) fn write(
+        &self,
+        mesh: &mut Mesh,
+        history: Option<&History>,
+        output: &Path,
+        writing: &WritingArgs,
+    ) -> Result<Written> {
+        if self.quality {
+            mesh.set_cell_field(mesh.tet_field("eas", eas));
+        }
+        let begin = Instant::now();
+        let lost = io::write(output, mesh, &writing.options())?;
+        if let (Some(file), Some(history)) = (&self.history, history) {
+            write_history(file, history)?;
+        }
+        Ok(Written { lost, seconds: begin.elapsed().as_secs_f64() })
+    }
+}
+
+/// Writes a history as one JSON object.
+fn write_history(file: &Path, history: &History) -> Result<()> {
+    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
+    io::replace(file, &json)
+}
+
+/// `ARRAY=mean|inherit|drop`
+fn carry(text: &str) -> Result<(String, Carry), String> {
+    let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
+    let carry = match rule {
+        "mean" => Carry::Mean,
+        "inherit" => Carry::Inherit,
+        "drop" => Carry::Drop,
+        _ => return Err("ARRAY=mean, ARRAY=inherit or ARRAY=drop is expected".into()),
+    };
+    Ok((name.to_owned(), carry))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_parted_from_rules_at_the_last_equals_sign() {
+        assert_eq!(carry("a=b=drop"), Ok(("a=b".to_owned(), Carry::Drop)));
+    }
+
+    #[test]
+    fn what_is_no_rule_is_told() {
+        assert!(carry("u").is_err() && carry("=drop").is_err() && carry("u=keep").is_err());
+    }
+}
