@@ -2,6 +2,7 @@
 
 mod common;
 
+use common::chance::Chance;
 use common::{Folder, stderr, stdout};
 use motet::Mesh;
 use motet::base::{CellId, Id, Point, VertexId};
@@ -13,18 +14,6 @@ use motet::mesh::shapes::{box_grid, quadratic};
 use motet::mesh::{CellKind, Field};
 use serde_json::Value;
 
-/// Numbers in [-1, 1) that look like chance (Marsaglia's xorshift).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
 fn linear(p: Point) -> f64 {
     2.0 * p[0] - 3.0 * p[1] + 0.5 * p[2] + 1.0
 }
@@ -34,7 +23,7 @@ fn shaken(shake: f64) -> Mesh {
     let mut mesh = box_grid([5; 3], [[0.0; 3], [1.0; 3]]);
     let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
     for point in mesh.points.iter_mut().filter(|p| p.iter().all(|&x| x > 0.0 && x < 1.0)) {
-        *point = point.map(|x| x + shake / 5.0 * chance.next());
+        *point = point.map(|x| x + shake / 5.0 * chance.between(-1.0, 1.0));
     }
     let (n_points, n_cells) = (mesh.points.len(), mesh.cells.len());
     mesh.set_point_field(Field::scalars(
@@ -226,7 +215,7 @@ fn the_report_tells_how_well_arrays_were_carried() {
     let mut chance = Chance(0x1234_5678_9abc_def1);
     mesh.set_cell_field(Field::scalars(
         "pressure",
-        (0..mesh.cells.len()).map(|_| chance.next()).collect::<Vec<_>>(),
+        (0..mesh.cells.len()).map(|_| chance.between(-1.0, 1.0)).collect::<Vec<_>>(),
     ));
     folder.mesh("shaken.vtu", &mesh);
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--json", "--quality"];
@@ -352,8 +341,9 @@ fn a_surface_that_adapts_lets_more_be_repaired() {
     // Within the sides, too.
     for point in &mut mesh.points {
         let n_free = point.iter().filter(|&&x| x > 0.0 && x < 1.0).count();
-        *point =
-            point.map(|x| x + if n_free >= 2 && x > 0.0 && x < 1.0 { 0.08 * chance.next() } else { 0.0 });
+        *point = point.map(|x| {
+            x + if n_free >= 2 && x > 0.0 && x < 1.0 { 0.08 * chance.between(-1.0, 1.0) } else { 0.0 }
+        });
     }
     folder.mesh("sides.vtu", &mesh);
     let left = |more: &[&str]| {

@@ -1,7 +1,10 @@
 //! Fields across changes of a mesh: what is linear stays so, integrals stay, constants stay, what was kept stays to the bit.
 
+mod common;
+
 use std::collections::BTreeMap;
 
+use common::chance::Chance;
 use motet::base::{CellId, Id, Point, Threads, VertexId};
 use motet::delaunay::Triangulation;
 use motet::geometry::tet;
@@ -9,22 +12,6 @@ use motet::mesh::history::{History, Ledger, Origin, Origins, Rows, Rule, Rules};
 use motet::mesh::{CellKind, Cells, Field, Mesh, Values};
 use motet::spatial::trace::between;
 use proptest::prelude::*;
-
-/// Numbers in [0, 1) that look like chance (Marsaglia's xorshift).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self) -> Point {
-        [self.next(), self.next(), self.next()]
-    }
-}
 
 fn single() -> Threads {
     Threads::single()

@@ -4,8 +4,8 @@ mod common;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use common::devices::{coil, key, moved, room, small_ball, tets};
-
+use common::chance::Chance;
+use common::devices::{coil, key, moved, random_device, room, small_ball, tets};
 use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::tet::{EDGES, FACETS, centroid, volume};
 use motet::geometry::triangle;
@@ -425,4 +425,25 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     let first = odd.cells.vertices(CellId(0))[0];
     odd.points[first.index()][1] = f64::NAN;
     assert!(refused(odd, &conform(None)).what().contains("no number"));
+}
+
+/// `MOTET_CASES=500` makes more of them. Those that meet walls have their own test.
+#[test]
+fn random_placements_away_from_walls_are_sound() {
+    let n: usize = std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
+    let host = room(8);
+    let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
+    let mut n_sound = 0;
+    for _ in 0..n {
+        let (name, device) = random_device(&mut chance);
+        let options = no_adapt();
+        let Ok(made) = put(&host, std::slice::from_ref(&device), &options) else { continue };
+        if made.report.devices[0].triangles_kept == made.report.devices[0].triangles && made.report.devices[0].contact_patch.is_none() {
+            let faults = faults(&host, std::slice::from_ref(&device), &options, &made);
+            assert!(faults.is_empty() && made.report.is_valid(), "{name}: {}", faults[0]);
+            n_sound += 1;
+        }
+    }
+    println!("{n_sound} of {n} sound and away from walls");
+    assert!(3 * n_sound > n);
 }

@@ -4,7 +4,8 @@ mod common;
 
 use std::collections::{BTreeMap, HashMap};
 
-use common::devices::{Chance, coil, key, moved, random_device, room, small_ball, stent, tets};
+use common::chance::Chance;
+use common::devices::{coil, key, moved, random_device, room, small_ball, stent, tets};
 use motet::base::{Point, Threads, VertexId};
 use motet::delaunay::{EdgePoints, constrain};
 use motet::geometry::overlap::Solid;

@@ -1,7 +1,10 @@
 //! Remeshing of whole meshes: what stays stays to the bit, labels and arrays go along.
 
+mod common;
+
 use std::collections::BTreeMap;
 
+use common::chance::Chance;
 use motet::Mesh;
 use motet::base::{CellId, Csr, Id, Point, Threads, VertexId};
 use motet::geometry::quality::eas;
@@ -13,18 +16,6 @@ use motet::mesh::history::{On, Origin, Rule, Rules, field_ledger};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Values};
 use motet::remesh::{Goal, MeshOutcome, Options, SurfaceRule, remesh_mesh};
-
-/// Numbers in [-1, 1) that look like chance (Marsaglia's xorshift).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 const N: usize = 6;
 const VELOCITY: [[f64; 4]; 3] = [[1.0, 2.0, -3.0, 0.5], [0.1, -0.7, 4.0, -2.0], [3.0, 0.0, 0.2, 1.0]];
@@ -51,7 +42,7 @@ fn shaken_box(shake: f64, on_sides: bool) -> Mesh {
         let in_side = is_free.iter().filter(|free| **free).count() == 2;
         let moves = (is_free == [true; 3] || in_side && on_sides) && point[0] != 0.5;
         for (x, free) in point.iter_mut().zip(is_free) {
-            let by = shake / N as f64 * chance.next();
+            let by = shake / N as f64 * chance.between(-1.0, 1.0);
             *x += if moves && free { by } else { 0.0 };
         }
     }
@@ -66,7 +57,10 @@ fn shaken_box(shake: f64, on_sides: bool) -> Mesh {
     mesh.set_point_field(Field::scalars("constant", vec![0.1f32; mesh.points.len()]));
     mesh.set_point_field(Field::scalars("GlobalNodeID", (1..=mesh.points.len() as i64).collect::<Vec<_>>()));
     mesh.set_cell_field(Field::scalars("constant", vec![0.1; n_cells]));
-    mesh.set_cell_field(Field::scalars("pressure", (0..n_cells).map(|_| chance.next()).collect::<Vec<_>>()));
+    mesh.set_cell_field(Field::scalars(
+        "pressure",
+        (0..n_cells).map(|_| chance.between(-1.0, 1.0)).collect::<Vec<_>>(),
+    ));
     mesh.set_cell_field(Field::scalars("number", (0..n_cells as u16).collect::<Vec<_>>()));
     mesh.set_cell_field(Field::scalars("GlobalElementID", (1..=n_cells as i32).collect::<Vec<_>>()));
     mesh

@@ -1,5 +1,6 @@
 //! Hosts and devices for what puts one into the other.
 
+use super::chance::Chance;
 use motet::base::{CellId, Point, VertexId};
 use motet::implant::{Device, Inside};
 use motet::mesh::Mesh;
@@ -34,22 +35,6 @@ pub(crate) fn key<const N: usize>(mut corners: [Point; N]) -> [[u64; 3]; N] {
 
 pub(crate) fn tets(mesh: &Mesh) -> impl Iterator<Item = (CellId, [Point; 4])> + '_ {
     mesh.cells.tets().map(|(cell, tet)| (cell, tet.map(|v| mesh.points[v.index()])))
-}
-
-/// Numbers in [0, 1) that look like chance (Marsaglia's xorshift).
-pub(crate) struct Chance(pub(crate) u64);
-
-impl Chance {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
 }
 
 pub(crate) fn stent() -> Mesh {
