@@ -3,10 +3,11 @@
 mod common;
 
 use common::Numbers;
+use common::solid_angle::holds;
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{inside, is_closed};
 use motet::geometry::distance::{segment_triangle, triangle_triangle};
-use motet::geometry::vector::{add, cross, dot, norm, scale, sub};
+use motet::geometry::vector::{add, scale};
 use motet::mesh::Surface;
 use motet::mesh::shapes::{TubeOptions, ball, box_grid, tube};
 use motet::preflight::{crossings, own_crossings};
@@ -24,17 +25,6 @@ fn append(mesh: &motet::Mesh, points: &mut Vec<Point>, place: impl Fn(Point) -> 
 
 fn corners(points: &[Point], t: [VertexId; 3]) -> [Point; 3] {
     t.map(|v| points[v.index()])
-}
-
-/// How often a closed surface winds round `q`, by solid angles (Van Oosterom and Strackee 1983, *The solid angle of a plane triangle*).
-fn winding(points: &[Point], triangles: &[[VertexId; 3]], q: Point) -> f64 {
-    let angle = |t: &[VertexId; 3]| {
-        let [a, b, c] = corners(points, *t).map(|p| sub(p, q));
-        let (x, y, z) = (norm(a), norm(b), norm(c));
-        let below = x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y;
-        2.0 * dot(a, cross(b, c)).atan2(below)
-    };
-    triangles.iter().map(angle).sum::<f64>() / (4.0 * std::f64::consts::PI)
 }
 
 /// A torus around z of radii 1 and `r`, `n` by `m` squares of two triangles.
@@ -201,10 +191,9 @@ fn random_points_are_inside_where_solid_angles_say_so() {
         .chain([[f64::NAN; 3], [1e300; 3]])
         .collect();
     let found = lone(&mut points, &asked, &all);
-    let by_angle = |q: &Point| winding(&points, &all, *q);
     let mut n = [0; 2];
     for (q, found) in asked.iter().zip(found) {
-        let expected = by_angle(q).round().abs() > 0.5;
+        let expected = holds(&points, &all, *q);
         assert_eq!(found, expected, "{q:?}");
         n[usize::from(found)] += 1;
     }
@@ -228,7 +217,7 @@ fn crossing_surfaces_say_the_same_with_and_without_their_parts() {
         assert!(of_parts.contains(&true) && of_parts[1800..].contains(&false));
         assert!(!of_parts[..1800].contains(&true), "vertices of b are on it");
         for v in (1800..points.len()).step_by(7) {
-            assert_eq!(of_parts[v], winding(&points, &b, points[v]).abs() > 0.5);
+            assert_eq!(of_parts[v], holds(&points, &b, points[v]));
         }
         let threads = Threads::new(3).unwrap();
         assert_eq!(crossings(&points, &a, &b, &threads), crossed);

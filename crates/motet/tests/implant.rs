@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use common::chance::Chance;
 use common::devices::{coil, key, moved, random_device, room, small_ball, tets};
+use common::solid_angle::holds;
 use motet::base::{CellId, Point, Threads, VertexId};
 use motet::geometry::tet::{EDGES, FACETS, centroid, volume};
 use motet::geometry::triangle;
@@ -98,25 +99,11 @@ fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Imp
         let centre = centroid(*tet);
         let radius = tet.iter().map(|&p| distance(p, centre)).fold(0.0, f64::max);
         // Within a device the distance to its surface says nothing.
-        off(centre) > radius + options.reach * size && !devices.iter().any(|d| holds(&surface(d), centre))
+        let is_within = || surfaces.iter().any(|s| holds(&s.points, &s.triangles, centre));
+        off(centre) > radius + options.reach * size && !is_within()
     };
     let n = gone.filter(is_far).count();
     (n > 0).then(|| format!("{n} tets far from all devices are not as they were"))
-}
-
-/// By the solid angles of the triangles (van Oosterom and Strackee 1983), which sum to 4 pi inside.
-fn holds(surface: &Surface, p: Point) -> bool {
-    let angle = |t: usize| {
-        let [a, b, c] = surface.corners(t).map(|q| [0, 1, 2].map(|i| q[i] - p[i]));
-        let dot = |u: Point, v: Point| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
-        let n = |u: Point| dot(u, u).sqrt();
-        let triple = a[0] * (b[1] * c[2] - b[2] * c[1])
-            + a[1] * (b[2] * c[0] - b[0] * c[2])
-            + a[2] * (b[0] * c[1] - b[1] * c[0]);
-        let below = n(a) * n(b) * n(c) + dot(a, b) * n(c) + dot(b, c) * n(a) + dot(c, a) * n(b);
-        2.0 * triple.atan2(below)
-    };
-    (0..surface.triangles.len()).map(angle).sum::<f64>().abs() > std::f64::consts::TAU
 }
 
 fn sound(host: &Mesh, devices: &[Device], options: &Options) -> Implanted {

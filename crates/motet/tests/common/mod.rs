@@ -10,6 +10,7 @@ pub(crate) mod filled;
 pub(crate) mod hard;
 pub(crate) mod kept;
 pub(crate) mod refined;
+pub(crate) mod solid_angle;
 
 use std::path::PathBuf;
 

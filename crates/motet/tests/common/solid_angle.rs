@@ -1,0 +1,16 @@
+//! What a closed surface holds, from nothing but the definition.
+
+use motet::base::{Point, VertexId};
+use motet::geometry::vector::{cross, dot, norm, sub};
+
+/// Whether a closed surface goes round `q`, either way: by the solid angles of its triangles, which sum to 4 pi a turn (Van Oosterom and Strackee 1983,
+/// *The solid angle of a plane triangle*).
+pub(crate) fn holds(points: &[Point], triangles: &[[VertexId; 3]], q: Point) -> bool {
+    let angle = |t: &[VertexId; 3]| {
+        let [a, b, c] = t.map(|v| sub(points[v.index()], q));
+        let (x, y, z) = (norm(a), norm(b), norm(c));
+        let below = x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y;
+        2.0 * dot(a, cross(b, c)).atan2(below)
+    };
+    triangles.iter().map(angle).sum::<f64>().abs() > std::f64::consts::TAU
+}
