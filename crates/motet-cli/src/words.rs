@@ -1,4 +1,6 @@
-//! Words that several verbs know: numbers, lists of them, and what stands before an equals sign.
+//! Words that several verbs know: numbers, lists of them, what stands before an equals sign, and names of files.
+
+use std::path::Path;
 
 /// One number.
 pub(crate) fn number(word: &str) -> Result<f64, String> {
@@ -34,6 +36,11 @@ pub(crate) fn named<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a st
     parts.ok_or_else(|| format!("{example} is expected"))
 }
 
+/// The file's name without its ending.
+pub(crate) fn stem(file: &Path) -> Option<String> {
+    file.file_stem().map(|stem| stem.to_string_lossy().into_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,6 +51,7 @@ mod tests {
         assert_eq!(named("a=b=0.5", "NAME=X"), Ok(("a=b", "0.5")));
         assert_eq!(positive("0.5"), Ok(0.5));
         assert_eq!((not_negative("0"), not_negative("-1").is_err()), (Ok(0.0), true));
+        assert_eq!(stem(Path::new("a.b/c.d.stl")), Some("c.d".to_owned()));
     }
 
     #[test]

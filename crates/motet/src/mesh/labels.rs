@@ -46,6 +46,12 @@ impl Labels {
     }
 }
 
+/// A name that nothing has yet: `name`, or with a number from 2 on behind it.
+pub fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
+    let numbered = (2u32..).map(|k| format!("{name}_{k}"));
+    std::iter::once(name.to_owned()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_default()
+}
+
 /// Arrays in which the ecosystem keeps labels of volume cells, first choice first.
 const REGION_ARRAYS: &[&str] = &[
     "region",

@@ -29,7 +29,7 @@ pub use cells::Cells;
 pub use coincident::firsts_at_place;
 pub use exchange::{Mesh, bounds};
 pub use field::{Field, Values};
-pub use labels::{LabelNames, Labels};
+pub use labels::{LabelNames, Labels, unused_name};
 pub use summary::{
     BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
     Summary,

@@ -10,7 +10,7 @@ use crate::delaunay::Constrained;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, holds, volume};
 use crate::geometry::vector::is_finite;
-use crate::mesh::{CellKind, Mesh, bounds};
+use crate::mesh::{CellKind, Mesh, bounds, unused_name};
 use crate::preflight::Role;
 
 /// A place in a body, and the name that the body is to have.
@@ -78,7 +78,7 @@ pub(super) fn arrange(
     let by_surface = Holders::find(tets, surfaces, triangles).names(surfaces, &order);
     for (body, name) in by_surface {
         if !names.contains_key(&body) && !holes.contains(&body) {
-            let unused = unused(&name, &names);
+            let unused = unused_name(&name, |name| names.values().any(|other| other == name));
             names.insert(body, unused);
         }
     }
@@ -89,13 +89,6 @@ pub(super) fn arrange(
     }
     renumber(tets, &new);
     Ok(names.into_iter().filter_map(|(body, name)| Some((*new.get(&body)?, name))).collect())
-}
-
-/// A name that no body has.
-fn unused(name: &str, names: &BTreeMap<u32, String>) -> String {
-    let is_free = |name: &String| names.values().all(|other| other != name);
-    let numbered = (2u32..).map(|k| format!("{name}_{k}"));
-    std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
 }
 
 fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {

@@ -10,6 +10,7 @@ use motet::{Error, Mesh, Result, io};
 
 use super::args::ContactArgs;
 use crate::console::Console;
+use crate::words::stem;
 
 /// The bodies of one frame.
 #[derive(Debug, PartialEq)]
@@ -144,10 +145,7 @@ impl Frame {
             self.sources.push(Source { file: file.to_owned(), first_point: shift.index(), cells });
         };
         if patches.is_empty() {
-            let name = given
-                .file_stem()
-                .map_or_else(|| "surface".into(), |stem| stem.to_string_lossy().into_owned());
-            add(name, &|_| true);
+            add(stem(given).unwrap_or_else(|| "surface".into()), &|_| true);
         }
         let labels = mesh.patches();
         for word in patches {

@@ -4,11 +4,10 @@ mod args;
 mod report;
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::time::Instant;
 
 use motet::implant::{Device, Implanted, Inside, implant};
-use motet::mesh::LabelNames;
+use motet::mesh::{LabelNames, unused_name};
 use motet::{Error, io};
 
 pub(crate) use args::ImplantArgs;
@@ -20,6 +19,7 @@ use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
 use crate::table::seconds;
+use crate::words::stem;
 
 pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
@@ -54,7 +54,8 @@ fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Res
     for file in &args.devices {
         let (mesh, notes) = io::read_noted(file)?;
         notes.iter().for_each(|what| console.warn(what));
-        let mut device = Device::new(mesh, unused(&stem(file), &names));
+        let name = unused_name(&stem(file).unwrap_or_default(), |name| names.contains(name));
+        let mut device = Device::new(mesh, name);
         names.insert(device.name.clone());
         if args.hollow {
             device.inside = Inside::Hollow;
@@ -64,16 +65,6 @@ fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Res
         devices.push(device);
     }
     Ok(devices)
-}
-
-/// The file's name without its ending.
-fn stem(file: &Path) -> String {
-    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
-}
-
-fn unused(name: &str, names: &BTreeSet<String>) -> String {
-    let numbered = (2u32..).map(|k| format!("{name}_{k}"));
-    std::iter::once(name.to_owned()).chain(numbered).find(|name| !names.contains(name)).unwrap_or_default()
 }
 
 /// An error that names a device is one of its file, any other of the host's.

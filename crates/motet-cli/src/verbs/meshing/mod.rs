@@ -5,7 +5,7 @@ mod layer_words;
 mod report;
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use motet::meshing::{Surfaces, fill, sizes_by};
@@ -20,6 +20,7 @@ use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
 use crate::table::seconds;
+use crate::words::stem;
 
 pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
@@ -87,17 +88,12 @@ fn read(args: &MeshArgs, console: &Console) -> motet::Result<(Surfaces, Option<V
         if let Some(array) = &args.size_array {
             sizes.push(sizes_by(&mesh, array).map_err(|e| e.in_file(file))?);
         }
-        meshes.push((mesh, role, name(file)));
+        meshes.push((mesh, role, stem(file).unwrap_or_default()));
     }
     let meshes: Vec<_> = meshes.iter().map(|(mesh, role, name)| (mesh, *role, name.as_str())).collect();
     let surfaces = Surfaces::new(&meshes)?;
     let sizes = args.size_array.as_ref().map(|_| surfaces.sizes(&sizes));
     Ok((surfaces, sizes))
-}
-
-/// The file's name without its ending.
-fn name(file: &Path) -> String {
-    file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Says all that is wrong; the error is the first of it.
