@@ -6,6 +6,7 @@ use crate::geometry::tet::volume;
 use crate::geometry::triangle::area;
 use crate::geometry::vector::{cross, dot};
 use crate::mesh::{Surface, TetPart, firsts_at_place};
+use crate::meshing::{compact, named};
 use crate::preflight::{Role, preflight, renamed};
 
 /// Devices over one list of points; what several of them share is there once.
@@ -78,17 +79,11 @@ impl Devices {
 
     /// Leaves out points that nothing uses.
     fn compact(&mut self) {
-        let used = self.triangles.as_flattened().iter().chain(self.own_tets.iter().flat_map(|(tet, _)| tet));
-        let mut new = vec![None; self.points.len()];
-        used.for_each(|v| new[v.index()] = Some(VertexId(0)));
-        let mut points = Vec::new();
-        for (place, point) in new.iter_mut().zip(&self.points).filter(|(place, _)| place.is_some()) {
-            *place = Some(VertexId::new(points.len()));
-            points.push(*point);
-        }
-        let of = |v: &mut VertexId| *v = new[v.index()].unwrap_or(*v);
-        self.triangles.as_flattened_mut().iter_mut().for_each(of);
-        self.own_tets.iter_mut().for_each(|(tet, _)| tet.iter_mut().for_each(of));
+        let of_tets = self.own_tets.iter().flat_map(|(tet, _)| tet);
+        let is_used = named(self.points.len(), self.triangles.as_flattened().iter().chain(of_tets));
+        let (points, old_to_new) = compact(&self.points, &is_used);
+        self.triangles = renamed(&self.triangles, &old_to_new);
+        self.own_tets.iter_mut().for_each(|(tet, _)| *tet = tet.map(|v| old_to_new[v.index()]));
         self.points = points;
     }
 

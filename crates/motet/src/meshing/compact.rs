@@ -3,14 +3,14 @@
 use crate::base::{Point, VertexId};
 
 /// Which of `n` vertices are named.
-pub(super) fn named<'a>(n: usize, vertices: impl Iterator<Item = &'a VertexId>) -> Vec<bool> {
+pub(crate) fn named<'a>(n: usize, vertices: impl Iterator<Item = &'a VertexId>) -> Vec<bool> {
     let mut is_named = vec![false; n];
     vertices.for_each(|v| is_named[v.index()] = true);
     is_named
 }
 
 /// The points that are used, and the new number of each; anything for the others.
-pub(super) fn compact(points: &[Point], is_used: &[bool]) -> (Vec<Point>, Vec<VertexId>) {
+pub(crate) fn compact(points: &[Point], is_used: &[bool]) -> (Vec<Point>, Vec<VertexId>) {
     let mut old_to_new = vec![VertexId(0); points.len()];
     let mut kept = Vec::new();
     for (v, &point) in points.iter().enumerate().filter(|(v, _)| is_used[*v]) {

@@ -26,6 +26,7 @@ mod surfaces;
 
 pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
+pub(crate) use compact::{compact, named};
 pub use fill::{Filled, Options, Report, fill};
 pub(crate) use graded::points_between;
 pub(crate) use interior::EDGE_OVER_SIDE;
