@@ -4,7 +4,6 @@ use super::options::{Device, Inside};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::volume;
 use crate::geometry::triangle::area;
-use crate::geometry::vector::{cross, dot};
 use crate::mesh::{Surface, TetPart, firsts_at_place};
 use crate::meshing::{compact, named};
 use crate::preflight::{Role, preflight, renamed};
@@ -99,19 +98,9 @@ impl Devices {
         (areas.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0) * 4.0 / 3f64.sqrt()).sqrt()
     }
 
-    /// What each device encloses, by the divergence theorem.
+    /// What each device encloses.
     pub(super) fn volumes(&self, devices: &[Device]) -> Vec<f64> {
-        let volume = |device: &Device| {
-            let surface = surface(device);
-            let origin = surface.triangles.first().map_or([0.0; 3], |t| surface.points[t[0].index()]);
-            let from = |p: Point| [0, 1, 2].map(|i| p[i] - origin[i]);
-            let part = |t: usize| {
-                let [a, b, c] = surface.corners(t).map(from);
-                dot(cross(a, b), c)
-            };
-            ((0..surface.triangles.len()).map(part).sum::<f64>() / 6.0).abs()
-        };
-        devices.iter().map(volume).collect()
+        devices.iter().map(|device| surface(device).enclosed_volume().abs()).collect()
     }
 }
 

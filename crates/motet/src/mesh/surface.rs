@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::base::{CellId, Point, VertexId};
 use crate::mesh::triangulate::triangulate;
-use crate::mesh::{Boundary, CellKind, Labels, Mesh};
+use crate::mesh::{Boundary, CellKind, Labels, Mesh, cone_volume};
 
 /// Triangles over the points of a mesh. Vertices keep the ids they have there.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,10 +64,36 @@ impl Surface {
         self.triangles[triangle].map(|v| self.points[v.index()])
     }
 
+    /// The signed volume that the triangles enclose, positive where they face outward; of those that are not closed, that between them and their
+    /// first corner.
+    pub fn enclosed_volume(&self) -> f64 {
+        let Some(origin) = self.triangles.first().map(|t| self.points[t[0].index()]) else { return 0.0 };
+        self.triangles.iter().map(|t| cone_volume(t.iter().copied(), &self.points, origin)).sum()
+    }
+
     /// Every vertex of the triangles once, in rising order.
     pub fn vertices(&self) -> Vec<VertexId> {
         let mut seen = vec![false; self.points.len()];
         self.triangles.as_flattened().iter().for_each(|v| seen[v.index()] = true);
         (0..seen.len()).filter(|&v| seen[v]).map(VertexId::new).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::cell_volumes;
+    use crate::mesh::shapes::{ball, box_grid};
+
+    #[test]
+    fn a_boundary_encloses_what_the_cells_fill() {
+        for mesh in [ball(3, 2), box_grid([2, 3, 4], [[5.0; 3], [6.0, 8.0, 10.0]])] {
+            let filled: f64 = cell_volumes(&mesh.cells, &mesh.points).iter().sum();
+            let mut surface = Surface::boundary_of(&mesh);
+            assert!((surface.enclosed_volume() - filled).abs() < 1e-12 * filled);
+            surface.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+            assert!((surface.enclosed_volume() + filled).abs() < 1e-12 * filled);
+        }
+        assert_eq!(Surface::default().enclosed_volume().to_bits(), 0);
     }
 }

@@ -13,7 +13,7 @@ mod skin;
 use super::report::Fit;
 use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::triangle::{area, area_vector, centroid};
-use crate::geometry::vector::{add, cross, distance, dot, is_finite, norm, scale, sub};
+use crate::geometry::vector::{add, distance, is_finite, norm, scale};
 use crate::mesh::{CellKind, Cells, Mesh, Surface};
 use crate::spatial::{NearestTriangle, WindingNumber};
 use cubes::Cubes;
@@ -94,14 +94,8 @@ impl Old {
                 .at(format!("point {v}"))
                 .remedy("give the point a place, or remove it with its triangles"));
         }
-        let corners = || (0..surface.triangles.len()).map(|t| surface.corners(t));
-        let origin = corners().next().map_or([0.0; 3], |t| t[0]);
-        let part = |t: [Point; 3]| {
-            let [a, b, c] = t.map(|p| sub(p, origin));
-            dot(cross(a, b), c) / 6.0
-        };
-        let volume = corners().map(part).sum::<f64>();
-        let whole = corners().map(area).sum::<f64>();
+        let volume = surface.enclosed_volume();
+        let whole = (0..surface.triangles.len()).map(|t| area(surface.corners(t))).sum::<f64>();
         if volume <= 0.0 || whole <= 0.0 {
             return Err(nothing(name));
         }
