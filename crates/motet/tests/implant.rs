@@ -425,7 +425,9 @@ fn random_placements_away_from_walls_are_sound() {
         let (name, device) = random_device(&mut chance);
         let options = no_adapt();
         let Ok(made) = put(&host, std::slice::from_ref(&device), &options) else { continue };
-        if made.report.devices[0].triangles_kept == made.report.devices[0].triangles && made.report.devices[0].contact_patch.is_none() {
+        if made.report.devices[0].triangles_kept == made.report.devices[0].triangles
+            && made.report.devices[0].contact_patch.is_none()
+        {
             let faults = faults(&host, std::slice::from_ref(&device), &options, &made);
             assert!(faults.is_empty() && made.report.is_valid(), "{name}: {}", faults[0]);
             n_sound += 1;
