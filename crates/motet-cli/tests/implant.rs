@@ -4,11 +4,12 @@ mod common;
 
 use common::{Folder, stderr, stdout};
 use motet::Mesh;
+use motet::base::Point;
 use motet::io::read;
 use motet::mesh::check::check;
 use motet::mesh::history::History;
-use motet::mesh::shapes::{Coil, ball, box_grid};
-use motet::mesh::{CellKind, Cells, Surface};
+use motet::mesh::shapes::{Aneurysm, Coil, ball, box_grid};
+use motet::mesh::{CellKind, Cells, Field, Surface};
 use serde_json::Value;
 
 fn small_ball(radius: f64, x: f64) -> Mesh {
@@ -104,6 +105,97 @@ fn a_device_through_a_wall_is_cut_off_or_kept() {
     assert!(told["report"]["devices"][0]["contact_patch"].is_null());
     let call = folder.motet(words).assert().code(0);
     assert!(stdout(&call).contains("wall: meets walls of the host"), "{}", stdout(&call));
+}
+
+#[test]
+fn arrays_begin_in_devices_with_what_is_given() {
+    let folder = folder();
+    let mut host = read(folder.path("host.vtu")).unwrap();
+    host.set_point_field(Field::vectors("u", &vec![[1.0, 2.0, 3.0]; host.points.len()]));
+    host.set_cell_field(Field::scalars("c", vec![5i32; host.cells.len()]));
+    folder.mesh("with.vtu", &host);
+    report(
+        &folder,
+        &["implant", "with.vtu", "ball.vtu", "-o", "out.vtu", "--value", "u=0,0.5,0", "--value", "c=7"],
+    );
+    let mesh = read(folder.path("out.vtu")).unwrap();
+    let (u, c) = (mesh.point_field("u").unwrap().to_vectors().unwrap(), mesh.cell_field("c").unwrap());
+    for (p, u) in mesh.points.iter().zip(&u) {
+        // The surface is the host's as well.
+        let is_within =
+            p.iter().map(|x| x * x).sum::<f64>().sqrt() < 0.49 && p.iter().any(|x| x.abs() < 0.49);
+        let expected = if is_within && *u != [1.0, 2.0, 3.0] { [0.0, 0.5, 0.0] } else { [1.0, 2.0, 3.0] };
+        assert_eq!(*u, expected);
+    }
+    assert_eq!(u.iter().filter(|u| **u == [0.0, 0.5, 0.0]).count(), n_inside(&small_ball(0.5, 0.0)));
+    let ids = mesh.regions().unwrap().ids;
+    for (cell, _) in mesh.cells.tets() {
+        let expected = if ids[cell.index()] == 2 { 7.0 } else { 5.0 };
+        assert_eq!(c.values.get_f64(cell.index()), Some(expected));
+    }
+    let refused = |value: &str, what: &str| {
+        let words = ["implant", "with.vtu", "ball.vtu", "-o", "no.vtu", "--value", value];
+        assert!(stderr(&folder.motet(words).assert().code(2)).contains(what), "{value}");
+    };
+    refused("x=1", "no array of that name");
+    refused("u=1", "1 numbers for 3 components");
+    refused("c=0.5", "none of its values");
+    refused("region=3", "holds the regions");
+    refused("c=a", "no finite number");
+}
+
+/// Points of a mesh that are not on its boundary.
+fn n_inside(mesh: &Mesh) -> usize {
+    mesh.points.len() - Surface::boundary_of(mesh).vertices().len()
+}
+
+#[test]
+fn an_implanted_mesh_moves_with_its_wall_and_is_repaired() {
+    let folder = folder();
+    let aneurysm = Aneurysm { around: 24, ..Aneurysm::default() };
+    folder.mesh("aneurysm.vtp", &aneurysm.mesh().unwrap());
+    folder.motet(["mesh", "aneurysm.vtp", "-o", "lumen.vtu", "--size", "0.3"]).assert().success();
+    let coil = Coil { centre: [0.0; 3], radius: 0.7, pitch: 0.4, turns: 3.0, wire_radius: 0.1 };
+    let mut loops = coil.mesh(40, 8).unwrap();
+    loops.points.iter_mut().for_each(|p| *p = [p[0], aneurysm.sac_height + p[2], -p[1]]);
+    folder.mesh("loops.stl", &loops);
+    folder.motet(["implant", "lumen.vtu", "loops.stl", "-o", "coiled.vtu"]).assert().success();
+    // The wall swells by a twentieth between its ends, which stay; the coil stays as well.
+    let mut mesh = read(folder.path("coiled.vtu")).unwrap();
+    let end = mesh.points.iter().map(|p| p[0].abs()).fold(0.0, f64::max);
+    let swell = |p: &Point| {
+        let share = 0.05 * (1.0 - (p[0] / end).powi(2)).max(0.0);
+        [0.0, share * p[1], share * p[2]]
+    };
+    mesh.set_point_field(Field::vectors("d", &mesh.points.iter().map(swell).collect::<Vec<_>>()));
+    folder.mesh("swollen.vtu", &mesh);
+    let patch = mesh.patches().unwrap().find("loops").unwrap().to_string();
+    folder
+        .motet([
+            "move",
+            "swollen.vtu",
+            "-o",
+            "moved.vtu",
+            "--displacement",
+            "d",
+            "--steps",
+            "4",
+            "--fixed",
+            &patch,
+        ])
+        .assert()
+        .success();
+    let call = folder.motet(["remesh", "moved.vtu", "-o", "good.vtu", "--json"]).assert().success();
+    let told: Value = serde_json::from_str(&stdout(&call)).unwrap();
+    let repaired = &told["after"];
+    assert_eq!((&repaired["bad"], &repaired["inverted"]), (&0.into(), &0.into()), "{told}");
+    assert!(told["before"]["bad"].as_u64() > Some(0), "nothing to repair");
+    let good = read(folder.path("good.vtu")).unwrap();
+    assert!(check(&good).is_empty());
+    let key = |p: &Point| p.map(|x| (x + 0.0).to_bits());
+    let points: std::collections::HashSet<_> = good.points.iter().map(key).collect();
+    let surface = Surface::of(&read(folder.path("loops.stl")).unwrap());
+    assert!(surface.points.iter().all(|p| points.contains(&key(p))));
 }
 
 #[test]

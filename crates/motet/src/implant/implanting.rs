@@ -13,6 +13,7 @@ use super::names::Names;
 use super::options::{Device, Inside, Interface, Options, Outside};
 use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
+use super::starts;
 use super::zone::Draft;
 use crate::base::{CellId, Error, Result, Threads, VertexId, rising};
 use crate::mesh::check::check;
@@ -63,6 +64,7 @@ pub fn implant(
     let mut report = Report::default();
     // Tells early what is no host.
     TetPart::of(host)?;
+    starts::check(host, &options.starts)?;
     let (devices, fits) = &with_surfaces(devices, options, threads)?;
     let joined = Devices::join(devices, threads)?;
     report.seconds.devices = lap();
@@ -89,7 +91,8 @@ pub fn implant(
     report.seconds.improve = lap();
 
     let pieces = Pieces { host: host_now, part: &part, devices: &joined, gap: &gap, draft: &draft };
-    let (Joined { mesh, history, zone_to_cell, first_new }, names) = join(&pieces, rules, threads)?;
+    let (Joined { mut mesh, history, zone_to_cell, first_new }, names) = join(&pieces, rules, threads)?;
+    starts::set(&mut mesh, &draft, gap.own_tets.len(), &options.starts);
     let history = before.map_or_else(|| history.clone(), |before| before.then(&history));
     report.seconds.join = lap();
 

@@ -6,10 +6,11 @@
 //! | devices | `devices` | their surfaces joined and held against all faults; the tets that they bring |
 //! | adapt | `adapt` | walls of the host near them refined, or all of it there, by [`crate::refine`] |
 //! | carve | `carve` | tets in the devices and near them go |
-//! | place | `place` | what lies where: outside of the host, on its wall |
+//! | place | `place` | what lies outside of the host |
+//! | divide | `frame`, `cut` | walls and devices divided where they meet; what bounds something |
 //! | gap | `gap` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which is in which device |
 //! | zone | `zone` | what came, and a ring of the host, repaired by [`crate::remesh`]; beyond it nothing is touched |
-//! | join | `join`, `origins`, `names` | one mesh again, arrays carried across, what came named |
+//! | join | `join`, `origins`, `names`, `starts` | one mesh again, arrays carried across, what came named |
 //! | certificate | `report` | conforming, volumes, triangles kept, what is left and why |
 //!
 //! The order is that of Moyle and Ventikos 2008 (*Local remeshing for large amplitude grid deformations*; the suite around it): adapt, locate, remove, conform. What they
@@ -29,6 +30,7 @@ mod origins;
 mod place;
 mod report;
 mod resurface;
+mod starts;
 mod zone;
 
 pub use implanting::{Implanted, implant};

@@ -1,5 +1,7 @@
 //! What is put in, and how.
 
+use std::collections::BTreeMap;
+
 use crate::base::{Error, Result};
 use crate::mesh::{CellKind, Mesh};
 use crate::meshing::MOST_GROWTH;
@@ -95,6 +97,9 @@ pub struct Options {
     pub carve: f64,
     /// Tets of the host farther from all devices than so many times the length of their edges stay to the bit. Default: 3.
     pub reach: f64,
+    /// What arrays of the host begin with in devices, by name, a number for each component; at points that no cell of the host has. Others, and where
+    /// nothing is given: what the host had there. Default: none.
+    pub starts: BTreeMap<String, Vec<f64>>,
     /// What is repaired in the end, within [`reach`](Self::reach). Default: tets of an EAS below 0.2.
     pub improve: remesh::Options,
 }
@@ -110,6 +115,7 @@ impl Default for Options {
             adapt: Adapt::Walls,
             carve: 1.0,
             reach: 3.0,
+            starts: BTreeMap::new(),
             improve: remesh::Options::default(),
         }
     }

@@ -74,6 +74,41 @@ impl Values {
         })
     }
 
+    /// Puts a number in place of value `i`. False, and nothing is done, for texts and where the type cannot hold it.
+    ///
+    /// Panics when there is no such value.
+    pub fn set_f64(&mut self, i: usize, x: f64) -> bool {
+        macro_rules! whole {
+            ($v:expr, $t:ty) => {{
+                // What saturates comes back as another number, and one past the last is no whole number of the type.
+                let fits = (x as $t) as f64 == x && x < <$t>::MAX as f64 + 1.0;
+                if fits {
+                    $v[i] = x as $t;
+                }
+                fits
+            }};
+        }
+        match self {
+            Self::I8(v) => whole!(v, i8),
+            Self::U8(v) => whole!(v, u8),
+            Self::I16(v) => whole!(v, i16),
+            Self::U16(v) => whole!(v, u16),
+            Self::I32(v) => whole!(v, i32),
+            Self::U32(v) => whole!(v, u32),
+            Self::I64(v) => whole!(v, i64),
+            Self::U64(v) => whole!(v, u64),
+            Self::F32(v) => {
+                v[i] = x as f32;
+                true
+            }
+            Self::F64(v) => {
+                v[i] = x;
+                true
+            }
+            Self::Text(_) => false,
+        }
+    }
+
     /// All values as double precision; `None` for texts.
     pub fn to_f64(&self) -> Option<Vec<f64>> {
         (0..self.len()).map(|i| self.get_f64(i)).collect()

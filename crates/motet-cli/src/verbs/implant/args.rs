@@ -10,7 +10,7 @@ use motet::remesh;
 use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
 use crate::verbs::remesh::eas;
-use crate::words::{not_negative, positive};
+use crate::words::{named, not_negative, numbers, positive};
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
 ///
@@ -94,6 +94,11 @@ pub(crate) struct ImplantArgs {
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Room")]
     min_eas: f64,
 
+    /// What an array of the host begins with in the devices, a number for each component; without the word what the host had there.
+    /// Repeatable
+    #[arg(long, value_name = "ARRAY=X[,Y,Z]", value_parser = start, help_heading = "Arrays")]
+    value: Vec<(String, Vec<f64>)>,
+
     #[command(flatten)]
     pub(crate) arrays: ArrayArgs,
     #[command(flatten)]
@@ -126,6 +131,12 @@ enum Adapt {
     All,
 }
 
+/// `ARRAY=X[,Y,Z]`
+fn start(text: &str) -> Result<(String, Vec<f64>), String> {
+    let (name, value) = named(text, "ARRAY=X[,Y,Z]")?;
+    Ok((name.to_owned(), numbers(value)?))
+}
+
 impl ImplantArgs {
     /// # Errors
     /// When words contradict each other.
@@ -154,6 +165,7 @@ impl ImplantArgs {
             },
             carve: self.carve,
             reach: self.reach,
+            starts: self.value.iter().cloned().collect(),
             improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
         })
     }
