@@ -44,7 +44,7 @@ fn a_coil_and_what_the_report_says_of_it() {
     assert!(told["volume_deviation"].as_f64().unwrap() < 1e-9);
     let device = &told["report"]["devices"][0];
     assert_eq!(device["triangles"], device["triangles_kept"]);
-    assert_eq!((device["name"].as_str(), device["region"].as_i64()), (Some("coil"), Some(2)));
+    assert_eq!((device["name"].as_str(), device["regions"][0].as_i64()), (Some("coil"), Some(2)));
     let mesh = read(folder.path("out.vtu")).unwrap();
     assert!(check(&mesh).is_empty());
     assert!(mesh.cell_field("eas").is_some());

@@ -136,6 +136,29 @@ fn a_ball_in_a_box_keeps_its_tets_and_shares_its_vertices() {
 }
 
 #[test]
+fn the_regions_of_a_device_stay_apart() {
+    let mut mesh = small_ball(0.5, [0.1, 0.05, -0.1]);
+    let is_core = |tet: &[Point; 4]| distance(centroid(*tet), [0.1, 0.05, -0.1]) < 0.25;
+    let mut ids = vec![0; mesh.cells.len()];
+    tets(&mesh).for_each(|(cell, tet)| ids[cell.index()] = if is_core(&tet) { 4 } else { 9 });
+    mesh.set_cell_field(Field::scalars("region", ids));
+    mesh.label_names.regions = BTreeMap::from([(4, "core".to_owned())]);
+    let of = |id: i32| -> f64 {
+        let ids = mesh.regions().unwrap().ids;
+        tets(&mesh).filter(|(cell, _)| ids[cell.index()] == id).map(|(_, tet)| volume(tet)).sum()
+    };
+    let expected = [of(4), of(9)];
+    let made = sound(&room(8), &[Device::new(mesh, "ball")], &no_adapt());
+    assert_eq!(made.report.devices[0].regions, [2, 3]);
+    let regions = made.mesh.regions().unwrap();
+    assert_eq!((regions.name(2), regions.name(3)), ("ball-core".to_owned(), "ball-9".to_owned()));
+    for (id, expected) in [2, 3].into_iter().zip(expected) {
+        let body = made.report.regions.iter().find(|body| body.region == id).unwrap();
+        assert!(expected > 0.0 && (body.volume - expected).abs() < 1e-14);
+    }
+}
+
+#[test]
 fn a_coil_is_filled_or_hollow() {
     let host = room(8);
     let mut device = Device::new(coil([0.0; 3]), "coil");
@@ -144,7 +167,7 @@ fn a_coil_is_filled_or_hollow() {
     assert!(made.report.is_complete(), "{} left", made.report.improved.left.len());
     device.inside = Inside::Hollow;
     let made = sound(&host, std::slice::from_ref(&device), &no_adapt());
-    assert!(made.report.devices[0].region.is_none());
+    assert!(made.report.devices[0].regions.is_empty());
     assert!(made.mesh.regions().unwrap().ids.iter().all(|id| [0, 1].contains(id)));
     assert!((made.report.volume - 27.0 + made.report.devices[0].enclosed).abs() < 1e-9);
 }

@@ -4,7 +4,7 @@ use super::options::{Device, Inside};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::volume;
 use crate::geometry::triangle::area;
-use crate::mesh::{Surface, TetPart, firsts_at_place};
+use crate::mesh::{Surface, TetMesh, TetPart, firsts_at_place};
 use crate::meshing::{compact, named};
 use crate::preflight::{Role, preflight, renamed};
 
@@ -15,10 +15,21 @@ pub(super) struct Devices {
     pub(super) triangles: Vec<[VertexId; 3]>,
     /// The devices that each triangle is of, rising.
     pub(super) of_triangle: Csr<u32>,
-    /// The tets that devices keep, positively oriented, and the device of each.
-    pub(super) own_tets: Vec<([VertexId; 4], u32)>,
+    /// The tets that devices keep.
+    pub(super) own_tets: Vec<OwnTet>,
     pub(super) insides: Vec<Inside>,
     pub(super) names: Vec<String>,
+    /// What the regions of each device are called: as the device, or of several each with its own name behind.
+    pub(super) region_names: Vec<Vec<String>>,
+}
+
+/// A tet that a device keeps, positively oriented.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OwnTet {
+    pub(super) vertices: [VertexId; 4],
+    pub(super) device: u32,
+    /// Its region, by the place in [`Devices::region_names`].
+    pub(super) region: u32,
 }
 
 impl Devices {
@@ -26,12 +37,20 @@ impl Devices {
     /// When a device has no surface, or none that encloses something without fault; when one is to keep tets and has none, or other cells as well.
     pub(super) fn join(devices: &[Device], threads: &Threads) -> Result<Self> {
         let (mut points, mut triangles, mut of) = (Vec::new(), Vec::new(), Vec::new());
-        let mut own_tets = Vec::new();
+        let (mut own_tets, mut region_names) = (Vec::new(), Vec::new());
         for (device, number) in devices.iter().zip(0u32..) {
             let first = points.len();
             let moved = |v: VertexId| VertexId::new(first + v.index());
             if device.inside == Inside::Own {
-                own_tets.extend(tets(device)?.into_iter().map(|tet| (tet.map(moved), number)));
+                let part = tets(device)?;
+                let (ids, names) = regions(device, &part);
+                for (tet, region) in part.tets.iter().zip(&part.regions) {
+                    let region = ids.binary_search(region).unwrap_or_default() as u32;
+                    own_tets.push(OwnTet { vertices: tet.map(moved), device: number, region });
+                }
+                region_names.push(names);
+            } else {
+                region_names.push(vec![device.name.clone()]);
             }
             let surface = surface(device);
             triangles.extend(surface.triangles.iter().map(|t| t.map(moved)));
@@ -41,13 +60,10 @@ impl Devices {
         let kept = firsts_at_place(&points);
         let triangles = renamed(&triangles, &kept);
         check(devices, &points, &triangles, &of, threads)?;
-        let mut own_tets: Vec<_> = own_tets
-            .into_iter()
-            .map(|(tet, of): (_, u32)| (tet.map(|v: VertexId| kept[v.index()]), of))
-            .collect();
-        for (tet, _) in &mut own_tets {
-            if volume(tet.map(|v| points[v.index()])) < 0.0 {
-                tet.swap(2, 3);
+        for OwnTet { vertices, .. } in &mut own_tets {
+            *vertices = vertices.map(|v| kept[v.index()]);
+            if volume(vertices.map(|v| points[v.index()])) < 0.0 {
+                vertices.swap(2, 3);
             }
         }
         let mut joined = Self {
@@ -57,6 +73,7 @@ impl Devices {
             own_tets,
             insides: devices.iter().map(|device| device.inside).collect(),
             names: devices.iter().map(|device| device.name.clone()).collect(),
+            region_names,
         };
         joined.share(&triangles, &of);
         joined.compact();
@@ -78,11 +95,11 @@ impl Devices {
 
     /// Leaves out points that nothing uses.
     fn compact(&mut self) {
-        let of_tets = self.own_tets.iter().flat_map(|(tet, _)| tet);
+        let of_tets = self.own_tets.iter().flat_map(|tet| &tet.vertices);
         let is_used = named(self.points.len(), self.triangles.as_flattened().iter().chain(of_tets));
         let (points, old_to_new) = compact(&self.points, &is_used);
         self.triangles = renamed(&self.triangles, &old_to_new);
-        self.own_tets.iter_mut().for_each(|(tet, _)| *tet = tet.map(|v| old_to_new[v.index()]));
+        self.own_tets.iter_mut().for_each(|tet| tet.vertices = tet.vertices.map(|v| old_to_new[v.index()]));
         self.points = points;
     }
 
@@ -113,7 +130,21 @@ pub(super) fn surface(device: &Device) -> Surface {
     surface
 }
 
-fn tets(device: &Device) -> Result<Vec<[VertexId; 4]>> {
+/// The regions of a device, rising, and what each is called in the result.
+fn regions(device: &Device, part: &TetMesh) -> (Vec<i32>, Vec<String>) {
+    let mut ids = part.regions.clone();
+    ids.sort_unstable();
+    ids.dedup();
+    let labels = device.mesh.regions();
+    let name = |id: &i32| match &labels {
+        Some(labels) if ids.len() > 1 => format!("{}-{}", device.name, labels.name(*id)),
+        _ => device.name.clone(),
+    };
+    let names = ids.iter().map(name).collect();
+    (ids, names)
+}
+
+fn tets(device: &Device) -> Result<TetMesh> {
     let part = TetPart::of(&device.mesh).map_err(|e| {
         Error::input(format!("the device `{}` is to keep its tets, and has none", device.name))
             .at(e.what().to_owned())
@@ -122,7 +153,7 @@ fn tets(device: &Device) -> Result<Vec<[VertexId; 4]>> {
     let kinds = device.mesh.cells.kinds().iter();
     let n_solid = kinds.filter(|kind| kind.dim() == Some(3)).count();
     if n_solid == part.mesh.tets.len() {
-        return Ok(part.mesh.tets);
+        return Ok(part.mesh);
     }
     let what = format!(
         "the device `{}` has {} volume cells that are no linear tets",

@@ -140,7 +140,7 @@ impl Frame {
             return;
         }
         let staying = host.tets.iter().zip(&carved.fates).filter(|(_, fate)| **fate != Fate::Gone);
-        let own = devices.own_tets.iter().flat_map(|(tet, _)| tet.map(|v| self.names[v.index()]));
+        let own = devices.own_tets.iter().flat_map(|tet| tet.vertices.map(|v| self.names[v.index()]));
         let held: Vec<VertexId> = staying.flat_map(|(tet, _)| *tet).chain(own).collect();
         let held = held.iter().chain(&host.fixed_vertices).chain(host.fixed_edges.as_flattened());
         held.for_each(|v| {

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap, VecDeque};
 
 use super::carve::{Carved, Face};
-use super::devices::Devices;
+use super::devices::{Devices, OwnTet};
 use super::frame::{Frame, Sites};
 use super::options::{Inside, Options, Outside};
 use super::place::check_left;
@@ -48,8 +48,8 @@ pub(super) struct Gap {
     pub(super) owners: Vec<Owner>,
     /// Triangles that came.
     pub(super) triangles: Vec<([VertexId; 3], Patch)>,
-    /// Tets that devices came with, and the device of each.
-    pub(super) own_tets: Vec<([VertexId; 4], u32)>,
+    /// Tets that devices came with.
+    pub(super) own_tets: Vec<OwnTet>,
     /// Faces of the room that are not there any more, or not as they were.
     pub(super) dropped: Vec<Face>,
     /// Vertices of walls that may move or go, since they lie where a device meets a wall.
@@ -90,8 +90,8 @@ impl Gap {
         check_left(devices, is_left || carved.gone().count() < host.tets.len())?;
         let mut gap = Self { points: devices.points.clone(), ..Self::default() };
         gap.points.extend(&frame.came);
-        let own_tets = devices.own_tets.iter().map(|(tet, of)| (tet.map(|v| frame.names[v.index()]), *of));
-        gap.own_tets = own_tets.collect();
+        gap.own_tets.clone_from(&devices.own_tets);
+        gap.own_tets.iter_mut().for_each(|tet| tet.vertices = tet.vertices.map(|v| frame.names[v.index()]));
         gap.take(&owners, host, devices, carved, &frame, &filled);
         (gap.dropped, gap.sites, gap.loose) = (frame.dropped, frame.sites, frame.loose);
         gap.names = frame.names;

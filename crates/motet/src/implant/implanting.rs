@@ -183,8 +183,9 @@ fn certify(
     report.volume_expected = volume_of(host);
     for (k, device) in devices.iter().enumerate() {
         let own = (0..joined.triangles.len()).filter(|t| joined.of_triangle.list(*t).contains(&(k as u32)));
-        let region = names.regions[k];
-        let body = region.and_then(|region| report.regions.iter().find(|body| body.region == region));
+        let regions = names.regions[k].clone();
+        let bodies = report.regions.iter().filter(|body| regions.contains(&body.region));
+        let volume = bodies.map(|body| body.volume).sum();
         let inside = if gap.sites.is_through[k] { gap.sites.volumes[k] } else { whole[k] };
         let n_at =
             |lies: Lies| own.clone().filter(|&t| gap.sites.of_triangle[t] == lies && !is_kept(t)).count();
@@ -195,7 +196,7 @@ fn certify(
         }
         report.devices.push(DeviceReport {
             name: device.name.clone(),
-            region,
+            regions,
             patch: names.patches[k],
             triangles: own.clone().count(),
             triangles_kept: own.clone().filter(|&t| is_kept(t)).count(),
@@ -204,7 +205,7 @@ fn certify(
             contact_patch: names.contacts[k],
             fit: None,
             enclosed: if outside == Outside::Cut { inside } else { whole[k] },
-            volume: body.map_or(0.0, |body| body.volume),
+            volume,
         });
     }
     report.volume = volume_of(mesh);

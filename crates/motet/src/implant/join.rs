@@ -97,7 +97,7 @@ impl Laid {
         laid.n_stay = laid.cells.len();
         draft.triangles.iter().for_each(|(t, _)| laid.cells.push(CellKind::TRIANGLE, *t));
         draft.tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, *tet));
-        gap.own_tets.iter().for_each(|(tet, _)| laid.cells.push(CellKind::TETRA, *tet));
+        gap.own_tets.iter().for_each(|tet| laid.cells.push(CellKind::TETRA, tet.vertices));
         laid.to_old.resize(laid.cells.len(), Id::NONE);
         laid
     }

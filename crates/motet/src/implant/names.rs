@@ -16,8 +16,8 @@ const CONTACT: &str = "-contact";
 pub(super) struct Names {
     /// The arrays that hold regions and patches.
     arrays: [String; 2],
-    /// The region of each device, if it is not hollow.
-    pub(super) regions: Vec<Option<i32>>,
+    /// The regions of each device; none of those that are hollow.
+    pub(super) regions: Vec<Vec<i32>>,
     /// The patch of each device.
     pub(super) patches: Vec<i32>,
     /// The patch of what each device has in common with walls, where it has something.
@@ -41,11 +41,12 @@ impl Names {
             next += 1;
             next
         });
-        let of_devices = devices.insides.iter().map(|&inside| {
-            next += i32::from(inside != Inside::Hollow);
-            (inside != Inside::Hollow).then_some(next)
-        });
-        let of_devices = of_devices.collect();
+        let mut of_devices = Vec::new();
+        for (inside, names) in devices.insides.iter().zip(&devices.region_names) {
+            let n = if *inside == Inside::Hollow { 0 } else { names.len() as i32 };
+            of_devices.push((next + 1..=next + n).collect());
+            next += n;
+        }
         let first = last(&patches, &host.label_names.patches) + 1;
         let n = devices.names.len();
         let mut contacts = vec![None; n];
@@ -77,7 +78,7 @@ impl Names {
     fn region(&self, owner: Owner) -> i32 {
         match owner {
             Owner::Host(region) => self.host.unwrap_or(region),
-            Owner::Device(k) => self.regions[k as usize].unwrap_or(0),
+            Owner::Device(k) => self.regions[k as usize].first().copied().unwrap_or(0),
             Owner::Taken => 0,
         }
     }
@@ -107,9 +108,9 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names
         }
     }
     let first = first + draft.triangles.len();
-    let own = gap.own_tets.iter().map(|(_, k)| Owner::Device(*k));
-    for (i, owner) in draft.owners.iter().copied().chain(own).enumerate() {
-        (regions[first + i], patches[first + i]) = (names.region(owner).into(), 0);
+    let own = gap.own_tets.iter().map(|tet| names.regions[tet.device as usize][tet.region as usize]);
+    for (i, region) in draft.owners.iter().map(|owner| names.region(*owner)).chain(own).enumerate() {
+        (regions[first + i], patches[first + i]) = (region.into(), 0);
     }
     let as_i32 = |ids: Vec<i64>| -> Vec<i32> { ids.into_iter().map(|id| id as i32).collect() };
     if is_one {
@@ -125,8 +126,7 @@ pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names
         if let Some(patch) = names.contacts[k] {
             mesh.label_names.patches.insert(patch, format!("{name}{CONTACT}"));
         }
-        if let Some(region) = names.regions[k] {
-            mesh.label_names.regions.insert(region, name.clone());
-        }
+        let regions = names.regions[k].iter().copied().zip(devices.region_names[k].iter().cloned());
+        mesh.label_names.regions.extend(regions);
     }
 }

@@ -42,8 +42,8 @@ impl Fit {
 pub struct DeviceReport {
     /// Its name.
     pub name: String,
-    /// The region of the tets in it; `None` where it is hollow.
-    pub region: Option<i32>,
+    /// The regions of the tets in it: one, or those that its own tets came with; none where it is hollow.
+    pub regions: Vec<i32>,
     /// The patch of its surface.
     pub patch: i32,
     /// Triangles of its surface.
@@ -60,7 +60,7 @@ pub struct DeviceReport {
     pub fit: Option<Fit>,
     /// What its surface encloses; where a part outside of the host was cut off, of that within.
     pub enclosed: f64,
-    /// The volume of its region, 0 where it is hollow.
+    /// The volume of its regions, 0 where it is hollow.
     pub volume: f64,
 }
 
@@ -139,7 +139,7 @@ impl Report {
     /// How far the volume of the mesh, and of each device's region, is from what it should be, as a part of it; the largest.
     pub fn volume_deviation(&self) -> f64 {
         let part = |is: f64, expected: f64| (is - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
-        let of_devices = self.devices.iter().filter(|device| device.region.is_some());
+        let of_devices = self.devices.iter().filter(|device| !device.regions.is_empty());
         let of_devices = of_devices.map(|device| part(device.volume, device.enclosed));
         of_devices.fold(part(self.volume, self.volume_expected), f64::max)
     }

@@ -136,12 +136,12 @@ impl Report {
         for device in &self.report.devices {
             table.row([
                 device.name.clone(),
-                device.region.map_or("hollow".into(), |region| region.to_string()),
+                if device.regions.is_empty() { "hollow".into() } else { listed(&device.regions) },
                 device.patch.to_string(),
                 count(device.triangles),
                 count(device.triangles_kept),
                 short(device.enclosed),
-                device.region.map_or("-".into(), |_| short(device.volume)),
+                if device.regions.is_empty() { "-".into() } else { short(device.volume) },
             ]);
         }
         table
@@ -180,6 +180,10 @@ impl Report {
             console.say(format_args!("  and {} more: -v and --json tell all", count(told.len() - n)));
         }
     }
+}
+
+fn listed(ids: &[i32]) -> String {
+    ids.iter().map(i32::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn place(p: Point) -> String {
