@@ -3,19 +3,18 @@
 //! Where a device goes through a wall, what lies outside of the host is cut off, or kept. A wall within a device bounds the device's tets then, or is no more. An
 //! interface of regions within a device always goes: the device takes the room of both.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::carve::{Carved, Face, Fate, outward};
 use super::cut::Cut;
 use super::devices::Devices;
 use super::options::{Inside, Outside};
+use super::parts::{Parts, edges_of_both};
 use super::place::{check_inside, told};
-use crate::base::{Error, Point, Result, Sets, Threads, VertexId, rising};
-use crate::contact::inside;
-use crate::geometry::triangle::{area, centroid};
-use crate::geometry::vector::{cross, dot, sub};
-use crate::mesh::TetMesh;
+use crate::base::{Error, Point, Result, Threads, VertexId, rising};
+use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
+use crate::mesh::{TetMesh, cone_volume};
 
 /// A triangle that tets have to fit.
 #[derive(Clone, Copy, Debug)]
@@ -74,16 +73,6 @@ pub(super) struct Frame {
     pub(super) names: Vec<VertexId>,
 }
 
-/// The pieces of the devices' triangles, or of the faces, and how they lie to the other surface.
-struct Sorted {
-    /// With the triangle that each is, or is a part of.
-    pieces: Vec<([VertexId; 3], u32)>,
-    /// Parts that hang together without crossing the other surface, by a number.
-    parts: Vec<usize>,
-    /// A place in each part.
-    places: Vec<Point>,
-}
-
 impl Frame {
     /// # Errors
     /// When a device lies outside of the host or holds it, when one that keeps its tets meets a wall, and when surfaces come too close to each other.
@@ -100,8 +89,8 @@ impl Frame {
         let of_devices: Vec<[VertexId; 3]> = devices.triangles.iter().map(in_result).collect();
         let faces: Vec<[VertexId; 3]> = carved.faces.iter().map(|face| face.vertices).collect();
         let cut = Cut::new(&points, [&of_devices, &faces], threads)?;
-        let on_both = on_both(&cut);
-        let sorted = [0, 1].map(|s| Sorted::new(&cut, s, &on_both));
+        let on_both = edges_of_both(&cut);
+        let sorted = [0, 1].map(|s| Parts::new(&cut, s, &on_both));
         let mut frame = Self {
             came: cut.points[points.len()..].to_vec(),
             names: cut.names[n_host..].to_vec(),
@@ -158,7 +147,7 @@ impl Frame {
         host: &TetMesh,
         devices: &Devices,
         carved: &Carved,
-        (cut, [sorted, faces]): (&Cut, &[Sorted; 2]),
+        (cut, [sorted, faces]): (&Cut, &[Parts; 2]),
         outside: Outside,
         threads: &Threads,
     ) -> Result<Vec<Wall>> {
@@ -221,7 +210,7 @@ impl Frame {
         &mut self,
         devices: &Devices,
         carved: &Carved,
-        (cut, sorted): (&Cut, &Sorted),
+        (cut, sorted): (&Cut, &Parts),
         within: &[Vec<bool>],
         outside: Outside,
         walls: &mut Vec<Wall>,
@@ -302,8 +291,7 @@ fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
 
 /// The volume between a triangle and one place for all, by its sign.
 fn cone(cut: &Cut, triangle: [VertexId; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|v| sub(cut.points[v.index()], cut.points[0]));
-    dot(cross(a, b), c) / 6.0
+    cone_volume(triangle.into_iter(), &cut.points, cut.points[0])
 }
 
 /// Whether two triangles of the same vertices are turned the same way.
@@ -320,51 +308,4 @@ fn boundary(host: &TetMesh) -> Vec<[VertexId; 3]> {
         }
     });
     boundary
-}
-
-/// The edges of pieces of both surfaces.
-fn on_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
-    let edges = |s: usize| {
-        let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
-        vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
-    };
-    // Of the devices, those whose ends are both of the other surface as well.
-    let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
-    let asked: BTreeSet<[VertexId; 2]> =
-        edges(0).filter(|edge| edge.iter().all(|v| of_faces.contains(v))).collect();
-    if asked.is_empty() { asked } else { edges(1).filter(|edge| asked.contains(edge)).collect() }
-}
-
-impl Sorted {
-    fn new(cut: &Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
-        let pieces = cut.pieces[s].clone();
-        let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
-        let mut sets = Sets::new(pieces.len());
-        for (i, &([a, b, c], _)) in (0u32..).zip(&pieces) {
-            for edge in [[a, b], [b, c], [c, a]].map(rising).iter().filter(|edge| !on_both.contains(*edge)) {
-                sets.join(*first_at.entry(*edge).or_insert(i), i);
-            }
-        }
-        let mut largest: BTreeMap<u32, (f64, Point)> = BTreeMap::new();
-        let roots: Vec<u32> = (0..pieces.len() as u32).map(|i| sets.root(i)).collect();
-        for (root, (t, _)) in roots.iter().zip(&pieces) {
-            let corners = t.map(|v| cut.points[v.index()]);
-            let known = largest.entry(*root).or_default();
-            if area(corners) > known.0 {
-                *known = (area(corners), centroid(corners));
-            }
-        }
-        let order: HashMap<u32, usize> = largest.keys().copied().zip(0..).collect();
-        let parts = roots.iter().map(|root| order[root]).collect();
-        Self { pieces, parts, places: largest.into_values().map(|(_, place)| place).collect() }
-    }
-
-    /// Which parts lie in a closed surface.
-    fn ask(&self, cut: &Cut, surface: &[[VertexId; 3]], threads: &Threads) -> Vec<bool> {
-        let mut points = cut.points.clone();
-        let first = points.len();
-        points.extend(&self.places);
-        let queries: Vec<VertexId> = (first..points.len()).map(VertexId::new).collect();
-        inside(&points, &queries, &[], surface, &[], threads)
-    }
 }

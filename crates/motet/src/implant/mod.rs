@@ -7,8 +7,8 @@
 //! | adapt | `adapt` | walls of the host near them refined, or all of it there, by [`crate::refine`] |
 //! | carve | `carve` | tets in the devices and near them go |
 //! | place | `place` | what lies outside of the host |
-//! | divide | `frame`, `cut` | walls and devices divided where they meet; what bounds something |
-//! | gap | `gap` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which is in which device |
+//! | divide | `frame`, `cut`, `parts` | walls and devices divided where they meet; what bounds something |
+//! | gap | `gap`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which is in which device |
 //! | zone | `zone` | what came, and a ring of the host, repaired by [`crate::remesh`]; beyond it nothing is touched |
 //! | join | `join`, `origins`, `names`, `starts` | one mesh again, arrays carried across, what came named |
 //! | certificate | `report` | conforming, volumes, triangles kept, what is left and why |
@@ -17,6 +17,7 @@
 //! conform by moving the carved surface is filled here, so that the triangles of a device stay as they are, and fluid and solid share their vertices.
 
 mod adapt;
+mod bodies;
 mod carve;
 mod cut;
 mod devices;
@@ -24,9 +25,11 @@ mod frame;
 mod gap;
 mod implanting;
 mod join;
+mod lattice;
 mod names;
 mod options;
 mod origins;
+mod parts;
 mod place;
 mod report;
 mod resurface;

@@ -1,0 +1,65 @@
+//! Parts of divided surfaces that hang together without crossing the other one: each lies on one side of it as a whole.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::cut::Cut;
+use crate::base::{Point, Sets, Threads, VertexId, rising};
+use crate::contact::inside;
+use crate::geometry::triangle::{area, centroid};
+
+/// The pieces of the devices' triangles, or of the faces, and how they lie to the other surface.
+pub(super) struct Parts {
+    /// With the triangle that each is, or is a part of.
+    pub(super) pieces: Vec<([VertexId; 3], u32)>,
+    /// Parts that hang together without crossing the other surface, by a number.
+    pub(super) parts: Vec<usize>,
+    /// A place in each part.
+    places: Vec<Point>,
+}
+
+/// The edges of pieces of both surfaces.
+pub(super) fn edges_of_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
+    let edges = |s: usize| {
+        let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
+        vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
+    };
+    // Of the devices, those whose ends are both of the other surface as well.
+    let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
+    let asked: BTreeSet<[VertexId; 2]> =
+        edges(0).filter(|edge| edge.iter().all(|v| of_faces.contains(v))).collect();
+    if asked.is_empty() { asked } else { edges(1).filter(|edge| asked.contains(edge)).collect() }
+}
+
+impl Parts {
+    pub(super) fn new(cut: &Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
+        let pieces = cut.pieces[s].clone();
+        let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
+        let mut sets = Sets::new(pieces.len());
+        for (i, &([a, b, c], _)) in (0u32..).zip(&pieces) {
+            for edge in [[a, b], [b, c], [c, a]].map(rising).iter().filter(|edge| !on_both.contains(*edge)) {
+                sets.join(*first_at.entry(*edge).or_insert(i), i);
+            }
+        }
+        let mut largest: BTreeMap<u32, (f64, Point)> = BTreeMap::new();
+        let roots: Vec<u32> = (0..pieces.len() as u32).map(|i| sets.root(i)).collect();
+        for (root, (t, _)) in roots.iter().zip(&pieces) {
+            let corners = t.map(|v| cut.points[v.index()]);
+            let known = largest.entry(*root).or_default();
+            if area(corners) > known.0 {
+                *known = (area(corners), centroid(corners));
+            }
+        }
+        let order: HashMap<u32, usize> = largest.keys().copied().zip(0..).collect();
+        let parts = roots.iter().map(|root| order[root]).collect();
+        Self { pieces, parts, places: largest.into_values().map(|(_, place)| place).collect() }
+    }
+
+    /// Which parts lie in a closed surface.
+    pub(super) fn ask(&self, cut: &Cut, surface: &[[VertexId; 3]], threads: &Threads) -> Vec<bool> {
+        let mut points = cut.points.clone();
+        let first = points.len();
+        points.extend(&self.places);
+        let queries: Vec<VertexId> = (first..points.len()).map(VertexId::new).collect();
+        inside(&points, &queries, &[], surface, &[], threads)
+    }
+}
