@@ -429,7 +429,10 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
         |mesh: Mesh, options: &Options| put(&host, &[Device::new(mesh, "thing")], options).unwrap_err();
     assert!(refused(inward, &conform(None)).what().contains("goes round nothing"));
     assert!(refused(Mesh::default(), &conform(None)).what().contains("goes round nothing"));
-    assert!(refused(device.mesh.clone(), &conform(Some(1e-12))).what().contains("far too many cubes"));
+    // Before any work, with what can be had.
+    let too_fine = refused(device.mesh.clone(), &conform(Some(1e-6)));
+    assert!(too_fine.what().contains("far too many cubes"));
+    assert!(too_fine.remedy_text().unwrap().contains("a tolerance of 2"), "{too_fine}");
     assert!(refused(device.mesh.clone(), &conform(Some(-1.0))).what().contains("tolerance of -1"));
     let mut odd = together(&device.mesh, &Mesh::default());
     let first = odd.cells.vertices(CellId(0))[0];

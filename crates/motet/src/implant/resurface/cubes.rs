@@ -1,15 +1,24 @@
 //! Cubes near a surface, and the tets of the body-centred lattice among them.
 
 use crate::base::{Point, VertexId};
-use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{dot, norm, sub};
+use crate::geometry::triangle::{area, area_vector};
+use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
 use crate::mesh::{Surface, bounds};
 use crate::meshing::EDGE_OVER_SIDE;
 
 type Cube = [i32; 3];
 
-/// More cubes than this, those of neighbours counted twice, are too many.
-const MOST: f64 = 2e9;
+/// More sides of cubes than this on the surface are too many: of each come about 12 triangles, and of 100,000 a few hundred MB of lattice.
+const MOST_SQUARES: f64 = 1e5;
+
+/// Triangles are looked at in more pieces than this only where they are needles without end.
+const MOST_PIECES: f64 = 2e7;
+
+/// The longest edge of a piece, in sides of cubes.
+const LONGEST: f64 = 2.0;
+
+/// What a piece goes through, and the neighbours of that, have their middles so near its plane, in sides: half a diagonal of a cube and a side.
+const REACH: f64 = 1.87;
 
 /// So many cubes are kept before those that are there twice go.
 const FIRST: usize = 1 << 20;
@@ -29,50 +38,65 @@ pub(super) struct Lattice {
     pub(super) n_corners: usize,
 }
 
+/// The shortest edges that a lattice near the surface may have.
+pub(super) fn shortest_edge(surface: &Surface) -> f64 {
+    let triangles = || (0..surface.triangles.len()).map(|t| surface.corners(t));
+    let squares = triangles().map(area).sum::<f64>() / MOST_SQUARES;
+    let pieces =
+        triangles().map(|t| distance(t[0], t[1]).max(distance(t[1], t[2]))).sum::<f64>() / MOST_PIECES;
+    EDGE_OVER_SIDE * squares.sqrt().max(pieces)
+}
+
 impl Cubes {
-    /// Those that triangles come near, by a side at least; `None` where that would be far too many.
-    pub(super) fn near(surface: &Surface, edge: f64) -> Option<Self> {
+    /// Those that triangles go through, their neighbours, and some more.
+    pub(super) fn near(surface: &Surface, edge: f64) -> Self {
         let side = edge / EDGE_OVER_SIDE;
         let corners: Vec<Point> =
             surface.triangles.as_flattened().iter().map(|v| surface.points[v.index()]).collect();
         // A place that no coordinate of a surface is likely to have a whole number of sides from.
         let low = bounds(&corners).unwrap_or_default()[0].map(|x| x - 0.618_033_988_749 * side);
-        let ranges = |t: usize| -> [[f64; 2]; 3] {
-            let corners = surface.corners(t);
-            std::array::from_fn(|axis| {
-                let x = corners.map(|p| (p[axis] - low[axis]) / side);
-                [(x[0].min(x[1]).min(x[2]) - 1.0).floor(), (x[0].max(x[1]).max(x[2]) + 1.0).floor()]
-            })
-        };
-        let expected = |t: usize| ranges(t).iter().map(|[from, to]| to - from + 1.0).product::<f64>();
-        if (0..surface.triangles.len()).map(expected).sum::<f64>() > MOST {
-            return None;
-        }
-        let mut cubes: Vec<Cube> = Vec::new();
+        let mut near = Self { low, side, cubes: Vec::new() };
         let mut full = FIRST;
-        for t in 0..surface.triangles.len() {
-            let corners = surface.corners(t);
-            let normal = area_vector(corners);
-            let reach = 3.0 * side * norm(normal);
-            let [along_x, along_y, along_z] = ranges(t).map(|[from, to]| from as i32..=to as i32);
-            for i in along_x {
-                for j in along_y.clone() {
-                    for k in along_z.clone() {
-                        let middle = place([i, j, k], low, side, 0.5);
-                        if dot(normal, sub(middle, corners[0])).abs() <= reach {
-                            cubes.push([i, j, k]);
-                        }
+        for corners in corners.as_chunks().0 {
+            near.add_triangle(*corners);
+            // Neighbours have most of their cubes in common.
+            if near.cubes.len() > full {
+                sort_once(&mut near.cubes);
+                full = FIRST.max(2 * near.cubes.len());
+            }
+        }
+        sort_once(&mut near.cubes);
+        near
+    }
+
+    /// Those near a triangle, which is halved until its box is hardly larger than what is near it.
+    fn add_triangle(&mut self, corners: [Point; 3]) {
+        let lengths = [0, 1, 2].map(|k| distance(corners[k], corners[(k + 1) % 3]));
+        let longest = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
+        if lengths[longest] > LONGEST * self.side {
+            let [a, b, c] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+            let middle = scale(add(a, b), 0.5);
+            self.add_triangle([a, middle, c]);
+            self.add_triangle([middle, b, c]);
+            return;
+        }
+        let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| {
+            let x = corners.map(|p| (p[axis] - self.low[axis]) / self.side);
+            let [from, to] = [x[0].min(x[1]).min(x[2]) - 1.0, x[0].max(x[1]).max(x[2]) + 1.0];
+            from.floor() as i32..=to.floor() as i32
+        });
+        let normal = area_vector(corners);
+        let reach = REACH * self.side * norm(normal);
+        for i in along_x {
+            for j in along_y.clone() {
+                for k in along_z.clone() {
+                    let middle = place([i, j, k], self.low, self.side, 0.5);
+                    if dot(normal, sub(middle, corners[0])).abs() <= reach {
+                        self.cubes.push([i, j, k]);
                     }
                 }
             }
-            // Neighbours have most of their cubes in common.
-            if cubes.len() > full {
-                sort_once(&mut cubes);
-                full = FIRST.max(2 * cubes.len());
-            }
         }
-        sort_once(&mut cubes);
-        Some(Self { low, side, cubes })
     }
 
     /// Four tets on each side that two cubes share: between their middles and an edge of the side.

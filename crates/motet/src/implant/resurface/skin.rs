@@ -1,15 +1,14 @@
 //! The surface between what is inside and what is outside, cut out of a lattice of tets.
 
 use super::cubes::Lattice;
+use super::old::Old;
 use crate::base::{Id, Point, Threads, VertexId, rising};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
+use crate::spatial::runs::in_runs;
 
 /// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones (after Labelle and Shewchuk 2007).
 const NEAR: [f64; 2] = [0.412, 0.25];
-
-/// Cuts are looked for in so many steps.
-const STEPS: usize = 3;
 
 /// Triangles that face outward.
 pub(super) struct Skin {
@@ -25,19 +24,15 @@ struct Cut {
 }
 
 impl Skin {
-    /// `values` are below 0 inside, and so is what `at` says of any place.
-    pub(super) fn new(
-        mut lattice: Lattice,
-        mut values: Vec<f64>,
-        at: impl Fn(Point) -> f64 + Sync + Send,
-        threads: &Threads,
-    ) -> Self {
-        let cuts = cuts(&lattice, &values, &at, threads);
-        warp(&mut lattice, &mut values, &cuts);
+    pub(super) fn new(mut lattice: Lattice, old: &Old, threads: &Threads) -> Self {
+        let windings = old.windings(&lattice, threads);
+        let mut signs: Vec<i8> = windings.iter().map(|&w| if old.is_inside(w) { -1 } else { 1 }).collect();
+        let cuts = cuts(&lattice, &signs, &windings, old, threads);
+        warp(&mut lattice, &mut signs, &cuts);
         let left: Vec<Cut> =
-            cuts.into_iter().filter(|cut| cut.ends.iter().all(|v| values[v.index()] != 0.0)).collect();
+            cuts.into_iter().filter(|cut| cut.ends.iter().all(|v| signs[v.index()] != 0)).collect();
         let mut cutter = Cutter {
-            values: &values,
+            signs: &signs,
             lattice: &lattice,
             cuts: &left,
             triangles: Vec::new(),
@@ -53,52 +48,33 @@ impl Skin {
 }
 
 /// All edges that the surface cuts, by their ends, rising.
-fn cuts(
-    lattice: &Lattice,
-    values: &[f64],
-    at: &(impl Fn(Point) -> f64 + Sync + Send),
-    threads: &Threads,
-) -> Vec<Cut> {
+fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &Threads) -> Vec<Cut> {
     let mut edges: Vec<[VertexId; 2]> = Vec::new();
     for tet in &lattice.tets {
-        let signs = tet.map(|v| values[v.index()] < 0.0);
-        if signs == [signs[0]; 4] {
+        let of_tet = tet.map(|v| signs[v.index()]);
+        if of_tet == [of_tet[0]; 4] {
             continue;
         }
-        let is_cut = |[i, j]: &&[usize; 2]| signs[*i] != signs[*j];
+        let is_cut = |[i, j]: &&[usize; 2]| of_tet[*i] != of_tet[*j];
         edges.extend(EDGES.iter().filter(is_cut).map(|&[i, j]| rising([tet[i], tet[j]])));
     }
     edges.sort_unstable();
     edges.dedup();
-    let places = threads.map(edges.len(), |i| cut_place(lattice, values, edges[i], at));
-    edges.into_iter().zip(places).map(|(ends, place)| Cut { ends, place }).collect()
-}
-
-/// Where the surface cuts an edge, by the rule of false position with halved weights (Illinois).
-fn cut_place(lattice: &Lattice, values: &[f64], ends: [VertexId; 2], at: &impl Fn(Point) -> f64) -> Point {
-    let [a, b] = ends.map(|v| lattice.points[v.index()]);
-    let [mut low, mut high] = [0.0, 1.0];
-    let [mut at_low, mut at_high] = ends.map(|v| values[v.index()]);
-    let place = |share: f64| add(a, scale(sub(b, a), share));
-    let mut share = 0.5;
-    for _ in 0..STEPS {
-        share = (low + (high - low) * at_low / (at_low - at_high)).clamp(0.01, 0.99);
-        let found = at(place(share));
-        if (found < 0.0) == (at_low < 0.0) {
-            (low, at_low, at_high) = (share, found, 0.5 * at_high);
-        } else {
-            (high, at_high, at_low) = (share, found, 0.5 * at_low);
+    let cut = |near: &mut Vec<u32>, ends: [VertexId; 2]| {
+        let [mut u, mut v] = ends.map(VertexId::index);
+        if signs[u] > 0 {
+            (u, v) = (v, u);
         }
-        if found == 0.0 {
-            break;
-        }
-    }
-    place(share)
+        let [from, to] = [u, v].map(|v| lattice.points[v]);
+        let share = old.end([from, to], [u, v].map(|v| windings[v]), near);
+        Cut { ends, place: add(from, scale(sub(to, from), share)) }
+    };
+    in_runs(edges.len(), threads, |near, run| run.map(|i| cut(near, edges[i])).collect())
 }
 
 /// Moves vertices onto the nearest of the cuts that are too near to them.
-fn warp(lattice: &mut Lattice, values: &mut [f64], cuts: &[Cut]) {
-    let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); values.len()];
+fn warp(lattice: &mut Lattice, signs: &mut [i8], cuts: &[Cut]) {
+    let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); signs.len()];
     for cut in cuts {
         let [a, b] = cut.ends.map(|v| lattice.points[v.index()]);
         let is_middle = cut.ends.map(|v| v.index() >= lattice.n_corners);
@@ -113,16 +89,17 @@ fn warp(lattice: &mut Lattice, values: &mut [f64], cuts: &[Cut]) {
             }
         }
     }
-    for ((near, value), point) in nearest.into_iter().zip(values).zip(&mut lattice.points) {
+    for ((near, sign), point) in nearest.into_iter().zip(signs).zip(&mut lattice.points) {
         if near.0 < 1.0 {
-            (*value, *point) = (0.0, near.1);
+            (*sign, *point) = (0, near.1);
         }
     }
 }
 
 /// Cuts tets one by one. A corner of the skin is a vertex of the lattice, or a cut by its number behind those.
 struct Cutter<'a> {
-    values: &'a [f64],
+    /// -1 inside, 0 on the surface, 1 outside.
+    signs: &'a [i8],
     lattice: &'a Lattice,
     cuts: &'a [Cut],
     triangles: Vec<[VertexId; 3]>,
@@ -132,8 +109,7 @@ struct Cutter<'a> {
 
 impl Cutter<'_> {
     fn sign(&self, v: VertexId) -> i8 {
-        let value = self.values[v.index()];
-        i8::from(value > 0.0) - i8::from(value < 0.0)
+        self.signs[v.index()]
     }
 
     fn corner(&self, u: VertexId, v: VertexId) -> VertexId {

@@ -1,0 +1,66 @@
+//! How far the new surface and the old one are apart.
+
+use super::old::Old;
+use super::skin::Skin;
+use crate::base::{Point, Threads, VertexId, rising};
+use crate::geometry::triangle::{area_vector, centroid};
+use crate::geometry::vector::{add, norm, scale};
+use crate::implant::report::Fit;
+use crate::spatial::{Closest, NearestTriangle};
+
+/// How far before a triangle what it bounds is looked for, in edges of the lattice.
+const BEFORE: f64 = 0.1;
+
+impl Old {
+    pub(super) fn fit(&self, skin: &Skin, edge: f64, tolerance: f64, threads: &Threads) -> Fit {
+        Fit { to_old: self.off_old(skin, threads), from_old: self.off_new(skin, edge, threads), tolerance }
+    }
+
+    /// The largest distance of the new surface from the old one, at corners, middles of edges and of triangles.
+    fn off_old(&self, skin: &Skin, threads: &Threads) -> f64 {
+        let at = |v: VertexId| skin.points[v.index()];
+        let mut places = skin.points.clone();
+        places.extend(edges(&skin.triangles).into_iter().map(|[u, v]| scale(add(at(u), at(v)), 0.5)));
+        places.extend(skin.triangles.iter().map(|t| centroid(t.map(at))));
+        let found = self.nearest.closest_all(&places, None, threads);
+        found.into_iter().map(far).fold(0.0, f64::max)
+    }
+
+    /// The largest distance of the old surface from the new one, at middles of triangles and of their edges; where it lies in the device, such as where turns of a wire
+    /// overlap, it does not bound it, and does not count.
+    fn off_new(&self, skin: &Skin, edge: f64, threads: &Threads) -> f64 {
+        let of_triangle = |t: usize| {
+            let [a, b, c] = self.surface.corners(t);
+            let middles = [[a, b], [b, c], [c, a]].map(|[p, q]| scale(add(p, q), 0.5));
+            [middles[0], middles[1], middles[2], centroid([a, b, c])].map(|p| (p, t))
+        };
+        let places: Vec<(Point, usize)> = (0..self.surface.triangles.len()).flat_map(of_triangle).collect();
+        let tree = NearestTriangle::new(&skin.points, &skin.triangles, threads);
+        let only: Vec<Point> = places.iter().map(|place| place.0).collect();
+        let found = tree.closest_all(&only, None, threads);
+        let mut far: Vec<(f64, Point, usize)> =
+            found.into_iter().zip(places).map(|(found, (p, t))| (far(found), p, t)).collect();
+        // Winding numbers are dear: from the farthest on, the first that counts is the answer.
+        far.sort_unstable_by(|x, y| y.0.total_cmp(&x.0));
+        let counts = |&&(_, p, t): &&(f64, Point, usize)| {
+            let normal = area_vector(self.surface.corners(t));
+            let length = norm(normal);
+            let before = add(p, scale(normal, BEFORE * edge / length));
+            length > 0.0 && !self.is_inside(self.winding(before))
+        };
+        far.iter().find(counts).map_or(0.0, |farthest| farthest.0)
+    }
+}
+
+fn far(found: Option<Closest>) -> f64 {
+    found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt())
+}
+
+/// The ends of every edge once, rising.
+fn edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
+    let mut edges: Vec<_> =
+        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]].map(rising)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}

@@ -1,0 +1,150 @@
+//! The surface that a device came with: how often it goes round places, and where it cuts edges.
+
+use super::cubes::Lattice;
+use crate::base::{Error, Point, Result, Sets, Threads};
+use crate::contact::is_closed;
+use crate::geometry::distance::segment_triangle::meet;
+use crate::geometry::tet::{EDGES, volume};
+use crate::geometry::triangle::area;
+use crate::geometry::vector::{cross, distance, dot, is_finite, sub};
+use crate::mesh::{Surface, firsts_at_place};
+use crate::preflight::renamed;
+use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, around};
+
+/// A point is inside from this winding number on.
+const INSIDE: f64 = 0.5;
+
+/// Balls count as overlapping when they do by more than this part of them, so that rounding joins none.
+const OVERLAP: f64 = 1e-9;
+
+/// A surface, and what finds its triangles.
+pub(super) struct Old {
+    pub(super) surface: Surface,
+    pub(super) nearest: NearestTriangle,
+    winding: WindingNumber,
+    boxes: BoxTree,
+    /// Whether it goes round each place a whole number of times.
+    is_closed: bool,
+    /// That of a round wire with as much volume for its area.
+    pub(super) radius: f64,
+}
+
+pub(super) fn nothing(name: &str) -> Error {
+    Error::input(format!("the device `{name}` goes round nothing"))
+        .at("its surface")
+        .remedy("turn it outward, and close it as far as that matters")
+}
+
+impl Old {
+    /// # Errors
+    /// When the surface goes round nothing or has corners that are not finite.
+    pub(super) fn new(mut surface: Surface, name: &str, threads: &Threads) -> Result<Self> {
+        let off = surface.vertices().into_iter().find(|v| !is_finite(surface.points[v.index()]));
+        if let Some(v) = off {
+            return Err(Error::input(format!("the device `{name}` has a coordinate that is no number"))
+                .at(format!("point {v}"))
+                .remedy("give the point a place, or remove it with its triangles"));
+        }
+        surface.triangles = renamed(&surface.triangles, &firsts_at_place(&surface.points));
+        let corners = || (0..surface.triangles.len()).map(|t| surface.corners(t));
+        let origin = corners().next().map_or([0.0; 3], |t| t[0]);
+        let part = |t: [Point; 3]| {
+            let [a, b, c] = t.map(|p| sub(p, origin));
+            dot(cross(a, b), c) / 6.0
+        };
+        let volume = corners().map(part).sum::<f64>();
+        let whole = corners().map(area).sum::<f64>();
+        if volume <= 0.0 || whole <= 0.0 {
+            return Err(nothing(name));
+        }
+        Ok(Self {
+            nearest: NearestTriangle::new(&surface.points, &surface.triangles, threads),
+            winding: WindingNumber::new(&surface.points, &surface.triangles),
+            boxes: BoxTree::new(&corners().map(around).collect::<Vec<_>>()),
+            is_closed: is_closed(&surface.triangles),
+            radius: 2.0 * volume / whole,
+            surface,
+        })
+    }
+
+    /// How often the surface goes round a place.
+    pub(super) fn winding(&self, p: Point) -> f64 {
+        let winding = self.winding.at(p);
+        if self.is_closed { winding.round() } else { winding }
+    }
+
+    /// A closed surface holds what it goes round at all, whichever way.
+    pub(super) fn is_inside(&self, winding: f64) -> bool {
+        (if self.is_closed { winding.abs() } else { winding }) > INSIDE
+    }
+
+    /// The winding number at each vertex.
+    ///
+    /// That of a closed surface changes only across triangles. No triangle is in the ball round a vertex that reaches to the nearest one; so where the balls of two ends of an edge
+    /// overlap, both have one number. Only one vertex of each part that hangs together so is asked: of the lattice for the public coil 1 in 20.
+    pub(super) fn windings(&self, lattice: &Lattice, threads: &Threads) -> Vec<f64> {
+        let n = lattice.points.len();
+        if !self.is_closed {
+            return threads.map(n, |v| self.winding(lattice.points[v]));
+        }
+        let found = self.nearest.closest_all(&lattice.points, None, threads);
+        let radius = |v: usize| found[v].map_or(0.0, |found| found.distance_squared.sqrt());
+        let radii: Vec<f64> = (0..n).map(radius).collect();
+        let mut sets = Sets::new(n);
+        for tet in &lattice.tets {
+            for [u, v] in EDGES.map(|edge| edge.map(|k| tet[k].index())) {
+                let length = distance(lattice.points[u], lattice.points[v]);
+                if radii[u] + radii[v] > length * (1.0 + OVERLAP) {
+                    sets.join(u as u32, v as u32);
+                }
+            }
+        }
+        let roots: Vec<usize> = (0..n as u32).map(|v| sets.root(v) as usize).collect();
+        let asked: Vec<usize> = (0..n).filter(|&v| roots[v] == v).collect();
+        let answers = threads.map(asked.len(), |i| self.winding(lattice.points[asked[i]]));
+        let mut windings = vec![0.0; n];
+        asked.iter().zip(answers).for_each(|(&v, winding)| windings[v] = winding);
+        (0..n).for_each(|v| windings[v] = windings[roots[v]]);
+        windings
+    }
+
+    /// Where on the way from a place inside to one outside the surface ends: as a part of the way, from the winding numbers of both.
+    ///
+    /// The number falls by one where the way leaves through a triangle and rises by one where it enters; what is left of the difference, near open ends, is spread evenly.
+    /// Several triangles that meet where the way goes through count more than once: it ends there all the same.
+    pub(super) fn end(&self, way: [Point; 2], [from, to]: [f64; 2], near: &mut Vec<u32>) -> f64 {
+        self.boxes.touching(around(way), near);
+        let mut passed: Vec<(f64, f64)> = Vec::new();
+        for &t in near.iter() {
+            let [a, b, c] = self.surface.corners(t as usize);
+            // Positive behind the triangle.
+            let [before, after] = way.map(|p| volume([a, c, b, p]));
+            if before != after && meet(way, [a, b, c]) {
+                let share = (before / (before - after)).clamp(0.0, 1.0);
+                passed.push((share, if before > after { -1.0 } else { 1.0 }));
+            }
+        }
+        passed.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.total_cmp(&y.1)));
+        let slope = to - from - passed.iter().map(|(_, change)| change).sum::<f64>();
+        let mut sum = from;
+        let mut last = 0.0;
+        for (share, change) in passed.into_iter().chain([(1.0, 0.0)]) {
+            let (here, there) = (sum + slope * last, sum + slope * share);
+            if !self.is_inside(there) {
+                return last + (share - last) * crossed(here, there);
+            }
+            sum += change;
+            if !self.is_inside(sum + slope * share) {
+                return share;
+            }
+            last = share;
+        }
+        last
+    }
+}
+
+/// Where between two numbers, one of a place inside and one of a place outside, is the limit; as a part of the way.
+fn crossed(inside: f64, outside: f64) -> f64 {
+    let limit = INSIDE.copysign(inside);
+    ((inside - limit) / (inside - outside)).clamp(0.0, 1.0)
+}
