@@ -404,6 +404,55 @@ fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
     }
 }
 
+/// The same surface, facing the other way.
+fn turned(mesh: &Mesh) -> Mesh {
+    let mut surface = together(mesh, &Mesh::default());
+    let turned: Vec<VertexId> = surface.cells.iter().flat_map(|(_, _, v)| [v[0], v[2], v[1]]).collect();
+    surface.cells = Cells::uniform(CellKind::TRIANGLE, turned).unwrap();
+    surface
+}
+
+#[test]
+fn parts_are_taken_as_they_are_meant_whichever_way_they_face() {
+    let host = room(8);
+    let volume = |mesh: Mesh| {
+        let made = put(&host, &[Device::new(mesh, "thing")], &conform(Some(0.03))).unwrap();
+        assert!(made.report.is_complete());
+        made.report.devices[0].volume
+    };
+    let at = |radius: f64, x: f64| moved(ball(5, 1), |p| [x + radius * p[0], radius * p[1], radius * p[2]]);
+    let [one, other, within] = [at(0.5, 0.0), at(0.4, 0.6), at(0.3, 0.0)];
+    let mixed = turned(&together(&one, &Mesh::default()));
+    let [of_one, of_within] = [&one, &within].map(|mesh| volume(mesh.clone()));
+    let of_both = volume(together(&one, &other));
+    let is_near = |mesh: &Mesh, expected: f64| {
+        let volume = volume(mesh.clone());
+        assert!((volume - expected).abs() < 1e-3 * expected, "{volume}, expected {expected}");
+    };
+    is_near(&mixed, of_one);
+    is_near(&together(&mixed, &other), of_both);
+    is_near(&together(&mixed, &turned(&other)), of_both);
+    // A cavity faces the other way than what it lies in, and two that face one way are one room.
+    let shell = together(&one, &turned(&within));
+    for shell in [&shell, &turned(&shell)] {
+        is_near(shell, of_one - of_within);
+    }
+    let filled = together(&one, &within);
+    for filled in [&filled, &turned(&filled)] {
+        is_near(filled, of_one);
+    }
+    // One triangle of many turned, and an open ball.
+    let mut odd = together(&one, &Mesh::default());
+    let first: Vec<VertexId> = odd.cells.vertices(CellId(0)).to_vec();
+    let all: Vec<VertexId> = odd.cells.iter().flat_map(|(_, _, v)| v.to_vec()).collect();
+    let tail = &all[3..];
+    let one_turned = [&[first[0], first[2], first[1]][..], tail].concat();
+    odd.cells = Cells::uniform(CellKind::TRIANGLE, one_turned).unwrap();
+    is_near(&odd, of_one);
+    odd.cells = Cells::uniform(CellKind::TRIANGLE, tail.to_vec()).unwrap();
+    is_near(&turned(&odd), of_one);
+}
+
 #[test]
 fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     let host = room(8);
@@ -419,15 +468,8 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     let options = conform(Some(0.02));
     let again = implant(&host, std::slice::from_ref(&device), &options, &Rules::default(), &three).unwrap();
     assert_eq!(again.mesh, coarse.mesh);
-    let mut inward = Surface::boundary_of(&device.mesh);
-    inward.triangles.iter_mut().for_each(|t| t.swap(0, 1));
-    let inward = Mesh::new(
-        inward.points.clone(),
-        Cells::uniform(CellKind::TRIANGLE, inward.triangles.as_flattened().to_vec()).unwrap(),
-    );
     let refused =
         |mesh: Mesh, options: &Options| put(&host, &[Device::new(mesh, "thing")], options).unwrap_err();
-    assert!(refused(inward, &conform(None)).what().contains("goes round nothing"));
     assert!(refused(Mesh::default(), &conform(None)).what().contains("goes round nothing"));
     // Before any work, with what can be had.
     let too_fine = refused(device.mesh.clone(), &conform(Some(1e-6)));

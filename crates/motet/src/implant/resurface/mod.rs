@@ -2,12 +2,14 @@
 //!
 //! | step | file | how |
 //! |---|---|---|
+//! | faces | `facing` | parts that face inward turn outward, but cavities |
 //! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their middles and corners |
 //! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or triangles twice; of a closed one they change only across triangles |
 //! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it cuts are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
 //! | distance | `fit` | both ways; where it is too far the lattice is made finer |
 
 mod cubes;
+mod facing;
 mod fit;
 mod old;
 mod skin;

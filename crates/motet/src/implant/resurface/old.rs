@@ -1,12 +1,13 @@
 //! The surface that a device came with: how often it goes round places, and where it cuts edges.
 
 use super::cubes::Lattice;
+use super::facing::{face, volume};
 use crate::base::{Error, Point, Result, Sets, Threads};
 use crate::contact::is_closed;
 use crate::geometry::distance::segment_triangle::meet;
-use crate::geometry::tet::{EDGES, volume};
+use crate::geometry::tet::{self, EDGES};
 use crate::geometry::triangle::area;
-use crate::geometry::vector::{cross, distance, dot, is_finite, sub};
+use crate::geometry::vector::{distance, is_finite};
 use crate::mesh::{Surface, firsts_at_place};
 use crate::preflight::renamed;
 use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, around};
@@ -32,7 +33,7 @@ pub(super) struct Old {
 pub(super) fn nothing(name: &str) -> Error {
     Error::input(format!("the device `{name}` goes round nothing"))
         .at("its surface")
-        .remedy("turn it outward, and close it as far as that matters")
+        .remedy("close it as far as that matters")
 }
 
 impl Old {
@@ -46,21 +47,16 @@ impl Old {
                 .remedy("give the point a place, or remove it with its triangles"));
         }
         surface.triangles = renamed(&surface.triangles, &firsts_at_place(&surface.points));
-        let corners = || (0..surface.triangles.len()).map(|t| surface.corners(t));
-        let origin = corners().next().map_or([0.0; 3], |t| t[0]);
-        let part = |t: [Point; 3]| {
-            let [a, b, c] = t.map(|p| sub(p, origin));
-            dot(cross(a, b), c) / 6.0
-        };
-        let volume = corners().map(part).sum::<f64>();
-        let whole = corners().map(area).sum::<f64>();
+        face(&mut surface, threads)?;
+        let corners: Vec<[Point; 3]> = (0..surface.triangles.len()).map(|t| surface.corners(t)).collect();
+        let (volume, whole) = (volume(&corners), corners.iter().map(|t| area(*t)).sum::<f64>());
         if volume <= 0.0 || whole <= 0.0 {
             return Err(nothing(name));
         }
         Ok(Self {
             nearest: NearestTriangle::new(&surface.points, &surface.triangles, threads),
             winding: WindingNumber::new(&surface.points, &surface.triangles),
-            boxes: BoxTree::new(&corners().map(around).collect::<Vec<_>>()),
+            boxes: BoxTree::new(&corners.into_iter().map(around).collect::<Vec<_>>()),
             is_closed: is_closed(&surface.triangles),
             radius: 2.0 * volume / whole,
             surface,
@@ -118,7 +114,7 @@ impl Old {
         for &t in near.iter() {
             let [a, b, c] = self.surface.corners(t as usize);
             // Positive behind the triangle.
-            let [before, after] = way.map(|p| volume([a, c, b, p]));
+            let [before, after] = way.map(|p| tet::volume([a, c, b, p]));
             if before != after && meet(way, [a, b, c]) {
                 let share = (before / (before - after)).clamp(0.0, 1.0);
                 passed.push((share, if before > after { -1.0 } else { 1.0 }));

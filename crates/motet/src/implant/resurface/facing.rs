@@ -1,0 +1,119 @@
+//! Which way a surface is meant to face: outward as a whole, cavities inward, neighbours alike.
+
+use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising};
+use crate::contact::is_closed;
+use crate::geometry::triangle::{area, centroid};
+use crate::geometry::vector::{add, cross, dot, scale, sub};
+use crate::mesh::Surface;
+use crate::preflight::{Repairs, Role, repair};
+use crate::spatial::{Bounds, WindingNumber, around};
+
+/// A vertex is inside a part from this winding number on.
+const INSIDE: f64 = 0.5;
+
+/// Triangles that hang together at edges of two, and go round some room without an opening.
+struct Part {
+    triangles: Vec<usize>,
+    corners: Vec<[VertexId; 3]>,
+    bounds: Bounds,
+    volume: f64,
+    /// Whether it came facing inward.
+    came_inward: bool,
+}
+
+/// Turns triangles to where they are meant to face. What is closed faces outward, but a cavity: what lies wholly in another part and came facing the other way than that did.
+/// Open parts face as they came, or all the other way where they go round less than nothing together; for a single one of them, such as the inner wall of a tube, nobody could tell.
+pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
+    let came = surface.triangles.clone();
+    let orient = Repairs { orient: true, ..Repairs::default() };
+    let of = vec![0; came.len()];
+    let turned = repair(&surface.points, &came, &of, &[Role::Boundary], &orient, threads)?;
+    for (triangle, old) in turned.triangles.iter().zip(&turned.new_to_old) {
+        if let Some(old) = old {
+            surface.triangles[*old as usize] = *triangle;
+        }
+    }
+    let (mut closed, open) = parts(surface, &came);
+    closed.sort_by(|p, q| q.volume.total_cmp(&p.volume));
+    let mut faces_inward: Vec<bool> = Vec::new();
+    for (k, part) in closed.iter().enumerate() {
+        // The smallest one that holds it.
+        let holder = (0..k).rev().find(|&holder| holds(&closed[holder], part, &surface.points));
+        let differs = |holder: usize| closed[holder].came_inward != part.came_inward;
+        faces_inward.push(holder.is_some_and(|holder| faces_inward[holder] != differs(holder)));
+    }
+    let inward = closed.iter().zip(&faces_inward).filter(|(_, inward)| **inward);
+    let mut to_turn: Vec<usize> = inward.flat_map(|(part, _)| part.triangles.iter().copied()).collect();
+    let around_open = volume(&open.iter().map(|&t| surface.corners(t)).collect::<Vec<_>>());
+    if around_open < 0.0 {
+        to_turn.extend(open);
+    }
+    to_turn.into_iter().for_each(|t| surface.triangles[t].swap(1, 2));
+    Ok(())
+}
+
+/// The closed parts, and all triangles that are of none.
+fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
+    let n = surface.triangles.len();
+    let mut sides: Vec<([VertexId; 2], u32)> = (0..)
+        .zip(&surface.triangles)
+        .flat_map(|(t, &[a, b, c])| [[a, b], [b, c], [c, a]].map(|side| (rising(side), t)))
+        .collect();
+    sides.sort_unstable();
+    let mut sets = Sets::new(n);
+    for same in sides.chunk_by(|x, y| x.0 == y.0) {
+        if let [x, y] = same {
+            sets.join(x.1, y.1);
+        }
+    }
+    let roots: Vec<usize> = (0..n as u32).map(|t| sets.root(t) as usize).collect();
+    let members = Csr::from_pairs(n, || roots.iter().copied().zip(0..));
+    let (mut closed, mut open) = (Vec::new(), Vec::new());
+    for triangles in members.iter().filter(|list| !list.is_empty()) {
+        let corners: Vec<[VertexId; 3]> = triangles.iter().map(|&t: &usize| surface.triangles[t]).collect();
+        if !is_closed(&corners) {
+            open.extend_from_slice(triangles);
+            continue;
+        }
+        let n_turned = triangles.iter().filter(|&&t| is_turned(came[t], surface.triangles[t])).count();
+        let places: Vec<[Point; 3]> = triangles.iter().map(|&t| surface.corners(t)).collect();
+        closed.push(Part {
+            triangles: triangles.to_vec(),
+            corners,
+            bounds: around(places.as_flattened().iter().copied()),
+            volume: volume(&places),
+            came_inward: 2 * n_turned > triangles.len(),
+        });
+    }
+    (closed, open)
+}
+
+fn is_turned(before: [VertexId; 3], now: [VertexId; 3]) -> bool {
+    let [a, b, c] = before;
+    ![[a, b, c], [b, c, a], [c, a, b]].contains(&now)
+}
+
+/// Whether a part lies wholly within another.
+fn holds(holder: &Part, part: &Part, points: &[Point]) -> bool {
+    let ([low, high], [from, to]) = (holder.bounds, part.bounds);
+    if !(0..3).all(|k| low[k] <= from[k] && to[k] <= high[k]) {
+        return false;
+    }
+    let winding = WindingNumber::new(points, &holder.corners);
+    part.corners.as_flattened().iter().all(|v| winding.at(points[v.index()]) > INSIDE)
+}
+
+/// What triangles go round, seen from the middle of their area: so an open surface goes round what it would if it were closed by a cone from there.
+pub(super) fn volume(triangles: &[[Point; 3]]) -> f64 {
+    let whole: f64 = triangles.iter().map(|t| area(*t)).sum();
+    if whole <= 0.0 {
+        return 0.0;
+    }
+    let sum = triangles.iter().map(|t| scale(centroid(*t), area(*t))).fold([0.0; 3], add);
+    let middle = scale(sum, 1.0 / whole);
+    let part = |t: &[Point; 3]| {
+        let [a, b, c] = t.map(|p| sub(p, middle));
+        dot(cross(a, b), c) / 6.0
+    };
+    triangles.iter().map(part).sum()
+}
