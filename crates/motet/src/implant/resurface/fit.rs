@@ -8,12 +8,16 @@ use crate::geometry::vector::{add, norm, scale};
 use crate::implant::report::Fit;
 use crate::spatial::{Closest, NearestTriangle};
 
-/// How far before a triangle what it bounds is looked for, in edges of the lattice.
-const BEFORE: f64 = 0.1;
+/// How far before a triangle what it bounds is looked for, in distances that are asked.
+const BEFORE: f64 = 0.25;
 
 impl Old {
-    pub(super) fn fit(&self, skin: &Skin, edge: f64, tolerance: f64, threads: &Threads) -> Fit {
-        Fit { to_old: self.off_old(skin, threads), from_old: self.off_new(skin, edge, threads), tolerance }
+    pub(super) fn fit(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Fit {
+        Fit {
+            to_old: self.off_old(skin, threads),
+            from_old: self.off_new(skin, tolerance, threads),
+            tolerance,
+        }
     }
 
     /// The largest distance of the new surface from the old one, at corners, middles of edges and of triangles.
@@ -28,7 +32,7 @@ impl Old {
 
     /// The largest distance of the old surface from the new one, at middles of triangles and of their edges; where it lies in the device, such as where turns of a wire
     /// overlap, it does not bound it, and does not count.
-    fn off_new(&self, skin: &Skin, edge: f64, threads: &Threads) -> f64 {
+    fn off_new(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> f64 {
         let of_triangle = |t: usize| {
             let [a, b, c] = self.surface.corners(t);
             let middles = [[a, b], [b, c], [c, a]].map(|[p, q]| scale(add(p, q), 0.5));
@@ -45,7 +49,7 @@ impl Old {
         let counts = |&&(_, p, t): &&(f64, Point, usize)| {
             let normal = area_vector(self.surface.corners(t));
             let length = norm(normal);
-            let before = add(p, scale(normal, BEFORE * edge / length));
+            let before = add(p, scale(normal, BEFORE * tolerance / length));
             length > 0.0 && !self.is_inside(self.winding(before))
         };
         far.iter().find(counts).map_or(0.0, |farthest| farthest.0)

@@ -6,12 +6,15 @@
 //! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their middles and corners |
 //! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or triangles twice; of a closed one they change only across triangles |
 //! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it cuts are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
+//! | even | `even`, `sheet` | narrow triangles made wider: edges turned, ends joined, vertices moved along the old surface |
 //! | distance | `fit` | both ways; where it is too far the lattice is made finer |
 
 mod cubes;
+mod even;
 mod facing;
 mod fit;
 mod old;
+mod sheet;
 mod skin;
 
 use super::report::Fit;
@@ -67,29 +70,32 @@ pub(super) fn resurface(
             format!("give a tolerance of {least:.2e} at least, or a size of {shortest:.2e} at least");
         return Err(Error::input(what).at("its surface").remedy(remedy));
     }
-    let mut best: Option<Resurfaced> = None;
+    let mut best: Option<(Skin, Fit)> = None;
     for _ in 0..TRIES {
-        let made = old.resurfaced(edge, tolerance, threads);
-        let farthest = |made: &Resurfaced| made.fit.to_old.max(made.fit.from_old);
-        let is_near = made.fit.is_reached();
-        if best.as_ref().is_none_or(|best| farthest(&made) < farthest(best)) {
-            best = Some(made);
+        let lattice = Cubes::near(&old.surface, edge).lattice();
+        let skin = Skin::new(lattice, &old, threads);
+        let fit = old.fit(&skin, tolerance, threads);
+        if best.as_ref().is_none_or(|(_, best)| farthest(&fit) < farthest(best)) {
+            best = Some((skin, fit));
         }
         edge *= FINER;
-        if is_near || edge < shortest {
+        if fit.is_reached() || edge < shortest {
             break;
         }
     }
-    best.filter(|best| !best.mesh.cells.is_empty()).ok_or_else(|| nothing(name))
+    let (mut skin, mut fit) =
+        best.filter(|(skin, _)| !skin.triangles.is_empty()).ok_or_else(|| nothing(name))?;
+    if let Some(evened) = old.evened(&skin, tolerance, threads) {
+        let now = old.fit(&evened, tolerance, threads);
+        if now.is_reached() || farthest(&now) <= farthest(&fit) {
+            (skin, fit) = (evened, now);
+        }
+    }
+    let mut cells = Cells::new();
+    skin.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    Ok(Resurfaced { mesh: Mesh::new(skin.points, cells), fit })
 }
 
-impl Old {
-    fn resurfaced(&self, edge: f64, tolerance: f64, threads: &Threads) -> Resurfaced {
-        let lattice = Cubes::near(&self.surface, edge).lattice();
-        let skin = Skin::new(lattice, self, threads);
-        let fit = self.fit(&skin, edge, tolerance, threads);
-        let mut cells = Cells::new();
-        skin.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
-        Resurfaced { mesh: Mesh::new(skin.points, cells), fit }
-    }
+fn farthest(fit: &Fit) -> f64 {
+    fit.to_old.max(fit.from_old)
 }

@@ -43,7 +43,24 @@ impl Skin {
         }
         let (mut triangles, closing) = (cutter.triangles, cutter.closing);
         triangles.extend(single(closing));
-        compact(&lattice.points, &left, triangles)
+        let mut points = lattice.points;
+        points.extend(left.iter().map(|cut| cut.place));
+        Self::compact(&points, triangles)
+    }
+
+    /// Corners numbered as they come.
+    pub(super) fn compact(all: &[Point], mut triangles: Vec<[VertexId; 3]>) -> Self {
+        let mut new: Vec<VertexId> = vec![Id::NONE; all.len()];
+        let mut points = Vec::new();
+        for v in triangles.as_flattened_mut() {
+            let place = &mut new[v.index()];
+            if *place == Id::NONE {
+                *place = VertexId::new(points.len());
+                points.push(all[v.index()]);
+            }
+            *v = *place;
+        }
+        Self { points, triangles }
     }
 }
 
@@ -176,21 +193,4 @@ fn single(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
     let single: Vec<[VertexId; 3]> =
         keyed.chunk_by(|x, y| x.0 == y.0).filter(|same| same.len() == 1).map(|same| same[0].1).collect();
     single.into_iter()
-}
-
-/// Corners numbered as they come.
-fn compact(vertices: &[Point], cuts: &[Cut], mut triangles: Vec<[VertexId; 3]>) -> Skin {
-    let mut new: Vec<VertexId> = vec![Id::NONE; vertices.len() + cuts.len()];
-    let mut points = Vec::new();
-    for v in triangles.as_flattened_mut() {
-        let place = &mut new[v.index()];
-        if *place == VertexId::NONE {
-            *place = VertexId::new(points.len());
-            points.push(
-                v.index().checked_sub(vertices.len()).map_or_else(|| vertices[v.index()], |i| cuts[i].place),
-            );
-        }
-        *v = *place;
-    }
-    Skin { points, triangles }
 }

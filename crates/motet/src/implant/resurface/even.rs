@@ -1,0 +1,158 @@
+//! Narrow triangles of the new surface made wider, as far as that leaves it near the old one and free of crossings.
+//!
+//! Of what could be done about a triangle (one of its edges turned, its ends made one, a vertex moved among its neighbours and back onto the old surface) the best is done, as long as any helps.
+
+use super::old::Old;
+use super::sheet::{Change, Sheet, sharpest};
+use super::skin::Skin;
+use crate::base::{Id, Point, Threads, VertexId};
+use crate::geometry::triangle::centroid;
+use crate::geometry::vector::{add, scale, sub};
+use crate::preflight::crossings;
+
+/// The cosine of the smallest angle that is left alone, 30 degrees.
+const WIDE: f64 = 0.866_025_403_784_438_6;
+
+/// How much less the largest cosine has to become, so that nothing goes on for next to nothing.
+const GAIN: f64 = 1e-3;
+
+/// How often all narrow triangles are gone through.
+const ROUNDS: usize = 4;
+
+/// How often all is done anew where triangles cross, without the vertices there.
+const RETRIES: usize = 4;
+
+/// How far on the way to the middle of its neighbours a vertex may go.
+const STEPS: [f64; 2] = [1.0, 0.5];
+
+/// How much of the distance that is asked changes may use.
+const SHARE: f64 = 0.8;
+
+impl Old {
+    /// The surface with wider triangles, within `tolerance` of the old one where it was.
+    pub(super) fn evened(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Option<Skin> {
+        let mut is_held = vec![false; skin.points.len()];
+        for _ in 0..RETRIES {
+            let mut work = Evening { old: self, sheet: Sheet::new(skin), is_held: &is_held, tolerance };
+            work.run();
+            let Sheet { points, triangles, .. } = work.sheet;
+            let changed = changed(skin, &points, &triangles);
+            let left: Vec<[VertexId; 3]> = triangles.iter().copied().filter(is_left).collect();
+            let new: Vec<[VertexId; 3]> = changed.iter().map(|&t| triangles[t]).collect();
+            let met = crossings(&points, &new, &left, threads);
+            let mut is_free = true;
+            for [i, j] in
+                met.into_iter().map(|[i, j]| [new[i as usize], left[j as usize]]).filter(|[s, t]| s != t)
+            {
+                is_free = false;
+                [i, j].as_flattened().iter().for_each(|v| is_held[v.index()] = true);
+            }
+            if is_free {
+                return Some(Skin::compact(&points, left));
+            }
+        }
+        None
+    }
+}
+
+fn is_left(triangle: &[VertexId; 3]) -> bool {
+    triangle[0] != VertexId::NONE
+}
+
+/// The triangles that are not as they were.
+fn changed(before: &Skin, points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<usize> {
+    let is_same = |t: usize| {
+        triangles[t] == before.triangles[t]
+            && triangles[t].iter().all(|v| points[v.index()] == before.points[v.index()])
+    };
+    (0..triangles.len()).filter(|&t| is_left(&triangles[t]) && !is_same(t)).collect()
+}
+
+struct Evening<'a> {
+    old: &'a Old,
+    sheet: Sheet,
+    /// Vertices of which no triangle may change.
+    is_held: &'a [bool],
+    tolerance: f64,
+}
+
+impl Evening<'_> {
+    fn run(&mut self) {
+        for _ in 0..ROUNDS {
+            let all = 0..self.sheet.triangles.len() as u32;
+            let mut narrow: Vec<(f64, u32)> = all
+                .filter(|&t| self.sheet.is_there(t))
+                .map(|t| (sharpest(self.sheet.corners(t)), t))
+                .filter(|(cosine, _)| *cosine > WIDE)
+                .collect();
+            narrow.sort_unstable_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+            let n = narrow.into_iter().filter(|&(_, t)| self.widen(t)).count();
+            if n == 0 {
+                return;
+            }
+        }
+    }
+
+    /// Whether something helped.
+    fn widen(&mut self, t: u32) -> bool {
+        if !self.sheet.is_there(t) || sharpest(self.sheet.corners(t)) <= WIDE {
+            return false;
+        }
+        let mut changes: Vec<(f64, Change)> = Vec::new();
+        for change in self.changes(t) {
+            let before = change.gone.iter().map(|&t| sharpest(self.sheet.corners(t))).fold(-1.0, f64::max);
+            let after = self.sheet.corners_after(&change).map(sharpest).fold(-1.0, f64::max);
+            if after < before - GAIN {
+                changes.push((after, change));
+            }
+        }
+        changes.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let best = changes.into_iter().map(|(_, change)| change).find(|change| self.is_allowed(change));
+        best.map(|change| self.sheet.commit(change)).is_some()
+    }
+
+    fn changes(&self, t: u32) -> Vec<Change> {
+        let corners = self.sheet.triangles[t as usize];
+        let at = |v: VertexId| self.sheet.points[v.index()];
+        let mut changes = Vec::new();
+        for k in 0..3 {
+            let [u, v] = [corners[k], corners[(k + 1) % 3]];
+            changes.extend(self.sheet.turned(u, v));
+            let ends = [u, v].map(|v| self.sheet.points[v.index()]);
+            let middle = self.on_old(scale(add(ends[0], ends[1]), 0.5));
+            let places = [(v, u, Some(ends[0])), (u, v, Some(ends[1])), (u, v, middle)];
+            changes.extend(
+                places.into_iter().filter_map(|(gone, kept, place)| self.sheet.joined(gone, kept, place?)),
+            );
+            let to = sub(self.sheet.middle(u), ends[0]);
+            let places = STEPS.map(|step| self.on_old(add(ends[0], scale(to, step))));
+            changes.extend(places.into_iter().flatten().map(|place| self.sheet.moved(u, place)));
+        }
+        changes
+    }
+
+    fn on_old(&self, p: Point) -> Option<Point> {
+        self.old.nearest.closest_within(p, self.tolerance).map(|found| found.point)
+    }
+
+    /// Whether nothing held changes, no triangle turns away, and all that comes is near the old surface: what closes a hole is not, and stays as it is.
+    fn is_allowed(&self, change: &Change) -> bool {
+        let of = |t: &u32| self.sheet.triangles[*t as usize];
+        if change.gone.iter().flat_map(of).any(|v| self.is_held[v.index()])
+            || !self.sheet.keeps_facing(change)
+        {
+            return false;
+        }
+        let is_near = |reach: f64| {
+            let places = self.sheet.corners_after(change).flat_map(places);
+            places.into_iter().all(|p| self.old.nearest.closest_within(p, reach).is_some())
+        };
+        is_near(SHARE * self.tolerance)
+    }
+}
+
+/// Where a triangle's distance from the old surface is measured: corners, middles of edges, middle.
+pub(super) fn places([a, b, c]: [Point; 3]) -> [Point; 7] {
+    let half = |p: Point, q: Point| scale(add(p, q), 0.5);
+    [a, b, c, half(a, b), half(b, c), half(c, a), centroid([a, b, c])]
+}

@@ -1,0 +1,165 @@
+//! Triangles that can be changed: an edge turned, two vertices made one, a vertex moved.
+
+use super::skin::Skin;
+use crate::base::{Id, Point, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
+
+/// The cosine of how far two triangles may bend at an edge that is turned: 30 degrees.
+const FLAT: f64 = 0.866;
+
+/// The cosine of how far a triangle may turn in a change, 25 degrees.
+const TURN: f64 = 0.906;
+
+/// Triangles over points, and which are at each vertex.
+pub(super) struct Sheet {
+    pub(super) points: Vec<Point>,
+    /// Those that went name no vertex.
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    at_vertex: Vec<Vec<u32>>,
+}
+
+/// Triangles that go, those that come into their places, and where a vertex is then.
+pub(super) struct Change {
+    pub(super) gone: Vec<u32>,
+    pub(super) come: Vec<[VertexId; 3]>,
+    pub(super) moved: Option<(VertexId, Point)>,
+    /// The unit normals that those that come have to keep, as far as [`TURN`] lets them.
+    normals: Vec<Point>,
+}
+
+impl Sheet {
+    pub(super) fn new(skin: &Skin) -> Self {
+        let mut at_vertex = vec![Vec::new(); skin.points.len()];
+        for (t, triangle) in (0..).zip(&skin.triangles) {
+            triangle.iter().for_each(|v| at_vertex[v.index()].push(t));
+        }
+        Self { points: skin.points.clone(), triangles: skin.triangles.clone(), at_vertex }
+    }
+
+    pub(super) fn is_there(&self, t: u32) -> bool {
+        self.triangles[t as usize][0] != VertexId::NONE
+    }
+
+    pub(super) fn corners(&self, t: u32) -> [Point; 3] {
+        self.triangles[t as usize].map(|v| self.points[v.index()])
+    }
+
+    /// The corners of those that come.
+    pub(super) fn corners_after<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = [Point; 3]> + 'a {
+        let at = |v: VertexId| match change.moved {
+            Some((moved, place)) if moved == v => place,
+            _ => self.points[v.index()],
+        };
+        change.come.iter().map(move |t| t.map(at))
+    }
+
+    fn normal(&self, t: u32) -> Point {
+        unit(area_vector(self.corners(t))).unwrap_or_default()
+    }
+
+    /// The other ends of a vertex's edges, rising.
+    fn neighbors(&self, v: VertexId) -> Vec<VertexId> {
+        let of = self.at_vertex[v.index()].iter().flat_map(|&t| self.triangles[t as usize]);
+        let mut neighbors: Vec<VertexId> = of.filter(|&u| u != v).collect();
+        neighbors.sort_unstable();
+        neighbors.dedup();
+        neighbors
+    }
+
+    /// The triangles of an edge.
+    fn at_edge(&self, u: VertexId, v: VertexId) -> Vec<u32> {
+        let at = &self.at_vertex[u.index()];
+        at.iter().copied().filter(|&t| self.triangles[t as usize].contains(&v)).collect()
+    }
+
+    /// The middle of a vertex's neighbours.
+    pub(super) fn middle(&self, v: VertexId) -> Point {
+        let neighbors = self.neighbors(v);
+        let sum = neighbors.iter().fold([0.0; 3], |sum, u| add(sum, self.points[u.index()]));
+        scale(sum, 1.0 / neighbors.len().max(1) as f64)
+    }
+
+    /// Two triangles over the other diagonal.
+    pub(super) fn turned(&self, u: VertexId, v: VertexId) -> Option<Change> {
+        let gone = self.at_edge(u, v);
+        let &[s, t] = gone.as_slice() else { return None };
+        let normals = [s, t].map(|t| self.normal(t));
+        let [c, d] = [s, t].map(|t| self.triangles[t as usize].into_iter().find(|w| *w != u && *w != v));
+        let (c, d) = (c?, d?);
+        let is_there = c == d || !self.at_edge(c, d).is_empty();
+        if is_there || dot(normals[0], normals[1]) < FLAT {
+            return None;
+        }
+        // The edge runs from u to v in one of the two.
+        let runs = |t: u32| {
+            let [i, j, k] = self.triangles[t as usize];
+            [[i, j], [j, k], [k, i]].contains(&[u, v])
+        };
+        let (c, d) = if runs(s) { (c, d) } else { (d, c) };
+        let mean = unit(add(normals[0], normals[1]))?;
+        Some(Change { gone, come: vec![[c, u, d], [d, v, c]], moved: None, normals: vec![mean; 2] })
+    }
+
+    /// The end of an edge that goes becomes the one that stays, which moves.
+    pub(super) fn joined(&self, gone: VertexId, kept: VertexId, place: Point) -> Option<Change> {
+        let [a, b] = [gone, kept].map(|v| self.neighbors(v));
+        let common = a.iter().filter(|v| b.binary_search(v).is_ok()).count();
+        // More common neighbours than triangles between would be folded onto each other (Dey, Edelsbrunner, Guha and Nekhayev 1999).
+        if common != 2 || self.at_edge(gone, kept).len() != 2 || a.len().min(b.len()) < 4 {
+            return None;
+        }
+        let of_gone = self.at_vertex[gone.index()].iter();
+        let mut change = self.over(of_gone.chain(&self.at_vertex[kept.index()]).copied(), kept, place);
+        change.come.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
+        let normals = std::mem::take(&mut change.normals);
+        let is_double = |t: &[VertexId; 3]| t.iter().filter(|v| **v == kept).count() == 2;
+        let come = std::mem::take(&mut change.come).into_iter().zip(normals);
+        (change.come, change.normals) = come.filter(|(t, _)| !is_double(t)).unzip();
+        Some(change)
+    }
+
+    /// A vertex elsewhere.
+    pub(super) fn moved(&self, v: VertexId, place: Point) -> Change {
+        self.over(self.at_vertex[v.index()].iter().copied(), v, place)
+    }
+
+    fn over(&self, triangles: impl Iterator<Item = u32>, v: VertexId, place: Point) -> Change {
+        let mut gone: Vec<u32> = triangles.collect();
+        gone.sort_unstable();
+        gone.dedup();
+        let come = gone.iter().map(|&t| self.triangles[t as usize]).collect();
+        let normals = gone.iter().map(|&t| self.normal(t)).collect();
+        Change { gone, come, moved: Some((v, place)), normals }
+    }
+
+    /// Whether no triangle turns away.
+    pub(super) fn keeps_facing(&self, change: &Change) -> bool {
+        let normals = self.corners_after(change).map(area_vector).zip(&change.normals);
+        normals.into_iter().all(|(now, before)| dot(now, *before) > TURN * norm(now))
+    }
+
+    pub(super) fn commit(&mut self, change: Change) {
+        for &t in &change.gone {
+            let triangle = std::mem::replace(&mut self.triangles[t as usize], [Id::NONE; 3]);
+            triangle.iter().for_each(|v| self.at_vertex[v.index()].retain(|other| *other != t));
+        }
+        for (&t, triangle) in change.gone.iter().zip(&change.come) {
+            self.triangles[t as usize] = *triangle;
+            triangle.iter().for_each(|v| self.at_vertex[v.index()].push(t));
+        }
+        if let Some((v, place)) = change.moved {
+            self.points[v.index()] = place;
+        }
+    }
+}
+
+/// The cosine of the smallest angle of a triangle; 1 where an edge has no length.
+pub(super) fn sharpest(corners: [Point; 3]) -> f64 {
+    let cosine = |k: usize| {
+        let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));
+        let lengths = norm(a) * norm(b);
+        if lengths > 0.0 { dot(a, b) / lengths } else { 1.0 }
+    };
+    cosine(0).max(cosine(1)).max(cosine(2))
+}
