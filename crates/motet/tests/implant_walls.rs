@@ -12,10 +12,10 @@ use motet::geometry::overlap::Solid;
 use motet::geometry::tet::{FACETS, volume};
 use motet::geometry::triangle;
 use motet::geometry::vector::distance;
-use motet::implant::{Adapt, Device, Implanted, Inside, Options, Outside, implant};
+use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside, implant};
 use motet::mesh::check::{check, is_conforming};
 use motet::mesh::history::Rules;
-use motet::mesh::shapes::{ball, box_grid};
+use motet::mesh::shapes::{Coil, ball, box_grid};
 use motet::mesh::{CellKind, Field, Mesh, Surface};
 
 fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Implanted> {
@@ -279,6 +279,26 @@ fn walls_that_may_stray_leave_no_bad_tets() {
     assert!(one.mesh == more.mesh && one.history == more.history);
     let stent = filled(moved(stent(), |p| [0.5 * p[0], 0.5 * p[1], 0.7 + 0.5 * p[2]]), "stent");
     sound(&host, &stent, &strict());
+}
+
+#[test]
+fn a_device_that_crosses_itself_goes_through_a_wall_with_a_new_surface() {
+    let host = box_grid([8; 3], [LOW, HIGH]);
+    let overlapping =
+        Coil { centre: [0.1, 0.05, 1.35], radius: 0.6, pitch: 0.2, turns: 2.5, wire_radius: 0.12 };
+    let device = filled(overlapping.mesh(40, 8).unwrap(), "coil");
+    let interface = Interface::Conform { tolerance: Some(0.04) };
+    let options = Options { interface, ..Options::default() };
+    for outside in [Outside::Cut, Outside::Keep] {
+        let made =
+            put(&host, std::slice::from_ref(&device), &Options { outside, ..options.clone() }).unwrap();
+        let told = &made.report.devices[0];
+        assert!(made.report.is_valid() && made.report.volume_deviation() < 1e-3);
+        assert!(told.fit.unwrap().is_reached() && told.triangles_at_walls > 0);
+        let all: f64 = tets(&made.mesh).map(|(_, tet)| volume(tet)).sum();
+        assert_eq!(outside == Outside::Keep, all > 27.01);
+        assert_eq!(outside == Outside::Cut, told.triangles_outside > 0 && told.contact_patch.is_some());
+    }
 }
 
 #[test]

@@ -87,19 +87,7 @@ impl Report {
                 if fit.is_reached() { "" } else { " and not reached" }
             ));
         }
-        for device in &report.devices {
-            if device.triangles_at_walls + device.triangles_outside > 0 {
-                let contact = device.contact_patch.map_or(String::new(), |patch| {
-                    format!("; what it has in common with walls is patch {patch}, {}-contact", device.name)
-                });
-                console.say(format_args!(
-                    "{}: meets walls of the host: {} triangles are divided there or have changed, {} lay outside and were cut off{contact}",
-                    device.name,
-                    count(device.triangles_at_walls),
-                    count(device.triangles_outside)
-                ));
-            }
-        }
+        report.devices.iter().filter_map(at_walls).for_each(|told| console.say(told));
         let worst = report.improved.after.worst;
         console.say(format_args!(
             "{} tets; {} bad ones near the devices were repaired, {} of those that came are left; worst EAS there {}",
@@ -180,6 +168,26 @@ impl Report {
             console.say(format_args!("  and {} more: -v and --json tell all", count(told.len() - n)));
         }
     }
+}
+
+/// What a device has to do with walls of the host.
+fn at_walls(device: &implant::DeviceReport) -> Option<String> {
+    let (at, outside) = (device.triangles_at_walls, device.triangles_outside);
+    if at + outside == 0 && device.contact_patch.is_none() {
+        return None;
+    }
+    let mut told = format!(
+        "{}: meets walls of the host: {} triangles are divided there or have changed",
+        device.name,
+        count(at)
+    );
+    if outside > 0 {
+        told += &format!(", {} lay outside and were cut off", count(outside));
+    }
+    if let Some(patch) = device.contact_patch {
+        told += &format!("; what both have in common is patch {patch}, {}-contact", device.name);
+    }
+    Some(told)
 }
 
 fn listed(ids: &[i32]) -> String {
