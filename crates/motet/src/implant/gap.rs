@@ -11,7 +11,7 @@ use super::options::{Inside, Options};
 use super::place::check_left;
 use crate::base::{Point, Result, Threads, VertexId, rising};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, firsts_at_place};
 
 /// What a body of new tets belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,14 +112,21 @@ impl Gap {
             Owner::Taken => false,
         };
         let mut to_result = frame.to_result.clone();
-        for point in &filled.points[frame.points.len()..] {
+        // A point on an edge may have been rounded onto its end: then it is that.
+        let firsts = firsts_at_place(&filled.points);
+        for (v, point) in filled.points.iter().enumerate().skip(frame.points.len()) {
+            if firsts[v].index() < v {
+                to_result.push(to_result[firsts[v].index()]);
+                continue;
+            }
             to_result.push(VertexId::new(host.points.len() + self.points.len()));
             self.points.push(*point);
         }
         for (tet, &body) in filled.tets.iter().zip(&filled.bodies) {
             let owner = owners[body as usize];
-            if is_wanted(owner) {
-                self.tets.push(tet.map(|v| to_result[v.index()]));
+            let tet = tet.map(|v| to_result[v.index()]);
+            if is_wanted(owner) && are_distinct(tet) {
+                self.tets.push(tet);
                 self.owners.push(owner);
             }
         }
@@ -144,8 +151,13 @@ impl Gap {
             let mut sides = filled.triangle_to_bodies[t].iter().flatten();
             if sides.any(|&body| is_solid(owners[body as usize])) {
                 let parts = filled.triangle_to_facets.list(t).iter();
-                self.triangles.extend(parts.map(|part| (part.map(|v| to_result[v.index()]), patch)));
+                let parts = parts.map(|part| part.map(|v| to_result[v.index()]));
+                self.triangles.extend(parts.filter(|part| are_distinct(*part)).map(|part| (part, patch)));
             }
         }
     }
+}
+
+fn are_distinct<const N: usize>(vertices: [VertexId; N]) -> bool {
+    (1..N).all(|i| !vertices[..i].contains(&vertices[i]))
 }

@@ -113,7 +113,6 @@ impl Evening<'_> {
 
     fn changes(&self, t: u32) -> Vec<Change> {
         let corners = self.sheet.triangles[t as usize];
-        let at = |v: VertexId| self.sheet.points[v.index()];
         let mut changes = Vec::new();
         for k in 0..3 {
             let [u, v] = [corners[k], corners[(k + 1) % 3]];
@@ -152,7 +151,7 @@ impl Evening<'_> {
 }
 
 /// Where a triangle's distance from the old surface is measured: corners, middles of edges, middle.
-pub(super) fn places([a, b, c]: [Point; 3]) -> [Point; 7] {
+fn places([a, b, c]: [Point; 3]) -> [Point; 7] {
     let half = |p: Point, q: Point| scale(add(p, q), 0.5);
     [a, b, c, half(a, b), half(b, c), half(c, a), centroid([a, b, c])]
 }

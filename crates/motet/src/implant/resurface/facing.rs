@@ -3,8 +3,8 @@
 use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising};
 use crate::contact::is_closed;
 use crate::geometry::triangle::{area, centroid};
-use crate::geometry::vector::{add, cross, dot, scale, sub};
-use crate::mesh::Surface;
+use crate::geometry::vector::{add, scale};
+use crate::mesh::{Surface, cone_volume};
 use crate::preflight::{Repairs, Role, repair};
 use crate::spatial::{Bounds, WindingNumber, around};
 
@@ -44,8 +44,8 @@ pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
     }
     let inward = closed.iter().zip(&faces_inward).filter(|(_, inward)| **inward);
     let mut to_turn: Vec<usize> = inward.flat_map(|(part, _)| part.triangles.iter().copied()).collect();
-    let around_open = volume(&open.iter().map(|&t| surface.corners(t)).collect::<Vec<_>>());
-    if around_open < 0.0 {
+    let of_open: Vec<[VertexId; 3]> = open.iter().map(|&t| surface.triangles[t]).collect();
+    if volume(&surface.points, &of_open) < 0.0 {
         to_turn.extend(open);
     }
     to_turn.into_iter().for_each(|t| surface.triangles[t].swap(1, 2));
@@ -76,12 +76,11 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
             continue;
         }
         let n_turned = triangles.iter().filter(|&&t| is_turned(came[t], surface.triangles[t])).count();
-        let places: Vec<[Point; 3]> = triangles.iter().map(|&t| surface.corners(t)).collect();
         closed.push(Part {
             triangles: triangles.to_vec(),
+            bounds: around(corners.as_flattened().iter().map(|v| surface.points[v.index()])),
+            volume: volume(&surface.points, &corners),
             corners,
-            bounds: around(places.as_flattened().iter().copied()),
-            volume: volume(&places),
             came_inward: 2 * n_turned > triangles.len(),
         });
     }
@@ -103,17 +102,14 @@ fn holds(holder: &Part, part: &Part, points: &[Point]) -> bool {
     part.corners.as_flattened().iter().all(|v| winding.at(points[v.index()]) > INSIDE)
 }
 
-/// What triangles go round, seen from the middle of their area: so an open surface goes round what it would if it were closed by a cone from there.
-pub(super) fn volume(triangles: &[[Point; 3]]) -> f64 {
-    let whole: f64 = triangles.iter().map(|t| area(*t)).sum();
+/// What triangles go round, seen from the middle of their area: so open ones go round what they would if a cone from there closed them.
+pub(super) fn volume(points: &[Point], triangles: &[[VertexId; 3]]) -> f64 {
+    let corners = |t: &[VertexId; 3]| t.map(|v| points[v.index()]);
+    let whole: f64 = triangles.iter().map(|t| area(corners(t))).sum();
     if whole <= 0.0 {
         return 0.0;
     }
-    let sum = triangles.iter().map(|t| scale(centroid(*t), area(*t))).fold([0.0; 3], add);
-    let middle = scale(sum, 1.0 / whole);
-    let part = |t: &[Point; 3]| {
-        let [a, b, c] = t.map(|p| sub(p, middle));
-        dot(cross(a, b), c) / 6.0
-    };
-    triangles.iter().map(part).sum()
+    let weighted = |t: &[VertexId; 3]| scale(centroid(corners(t)), area(corners(t)));
+    let middle = scale(triangles.iter().map(weighted).fold([0.0; 3], add), 1.0 / whole);
+    triangles.iter().map(|t| cone_volume(t.iter().copied(), points, middle)).sum()
 }

@@ -48,15 +48,16 @@ impl Old {
         }
         surface.triangles = renamed(&surface.triangles, &firsts_at_place(&surface.points));
         face(&mut surface, threads)?;
-        let corners: Vec<[Point; 3]> = (0..surface.triangles.len()).map(|t| surface.corners(t)).collect();
-        let (volume, whole) = (volume(&corners), corners.iter().map(|t| area(*t)).sum::<f64>());
+        let corners = || (0..surface.triangles.len()).map(|t| surface.corners(t));
+        let volume = volume(&surface.points, &surface.triangles);
+        let whole = corners().map(area).sum::<f64>();
         if volume <= 0.0 || whole <= 0.0 {
             return Err(nothing(name));
         }
         Ok(Self {
             nearest: NearestTriangle::new(&surface.points, &surface.triangles, threads),
             winding: WindingNumber::new(&surface.points, &surface.triangles),
-            boxes: BoxTree::new(&corners.into_iter().map(around).collect::<Vec<_>>()),
+            boxes: BoxTree::new(&corners().map(around).collect::<Vec<_>>()),
             is_closed: is_closed(&surface.triangles),
             radius: 2.0 * volume / whole,
             surface,
