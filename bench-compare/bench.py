@@ -7,6 +7,7 @@ import sys
 import bench_contact
 import bench_delaunay
 import bench_files
+import bench_implant
 import bench_mesh
 import bench_motion
 import bench_refine
@@ -14,7 +15,7 @@ import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh}
+           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant}
 
 
 def words():

@@ -96,7 +96,7 @@ def call(command, limit):
 _WRAPPER = """
 import json, resource, subprocess, sys
 done = subprocess.run(sys.argv[1:], stdout=subprocess.PIPE, text=True)
-if done.returncode: sys.exit(f"{sys.argv[1]} ended with {done.returncode}: {done.stdout[-200:]}")
+if done.returncode: sys.exit(f"{sys.argv[1]} ended with {done.returncode}: {' '.join(done.stdout[-200:].split())}")
 result = json.loads(done.stdout.strip().splitlines()[-1])
 result["peak_mib"] = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
 print(json.dumps(result))

@@ -2,7 +2,8 @@
 //!
 //! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word); and `loops.vtp`, a coil
 //! that lies in the sac of the aneurysm; and `stent.vtp`, a stent in its vessel, across the neck, pressed into the wall by a twentieth of the radius;
-//! `box.vtu` and `ball.vtu`, both of tets, the one in the middle of the other.
+//! `box.vtu` and `ball.vtu`, both of tets, the one in the middle of the other; `block.vtu` and `turns.vtp`: a box of tets, and a coil of 11,520 triangles that
+//! lies in it.
 
 use std::error::Error;
 use std::path::Path;
@@ -34,6 +35,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         Stent { length: axis.length(), crowns: 6, strut_width: 0.12, link_length: 0.2, ..Stent::default() };
     let mut stent = lattice.mesh(1.05 * aneurysm.radius)?;
     stent.points = axis.bent(&stent.points);
+    // 359 pieces.
+    let turns = Coil { centre: [0.0; 3], radius: 0.6, pitch: 0.5, turns: 359.0 / 120.0, wire_radius: 0.12 };
     let shapes = [
         ("aneurysm.vtp", aneurysm.mesh()?),
         ("bifurcation.vtp", Bifurcation { around, ..Bifurcation::default() }.mesh()?),
@@ -41,6 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("stent.vtp", stent),
         ("box.vtu", box_grid([12; 3], [[-2.5; 3], [2.5; 3]])),
         ("ball.vtu", ball(6, 4)),
+        ("block.vtu", box_grid([12; 3], [[-1.5; 3], [1.5; 3]])),
+        ("turns.vtp", turns.mesh(120, 16)?),
     ];
     for (file, mesh) in shapes {
         io::write(Path::new(&folder).join(file), &mesh, &WriteOptions::default())?;
