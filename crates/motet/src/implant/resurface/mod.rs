@@ -66,8 +66,12 @@ pub(super) fn resurface(
             "the device `{name}` needs a lattice with edges of {edge:.2e}, which has far too many cubes"
         );
         let least = (shortest / CHORD).powi(2) / (8.0 * old.radius);
-        let remedy =
-            format!("give a tolerance of {least:.2e} at least, or a size of {shortest:.2e} at least");
+        let by_size = format!("a size of {shortest:.2e} at least");
+        // Edges longer than a share of the radius come by no tolerance.
+        let remedy = match size.is_none() && EDGE_OVER_RADIUS * old.radius >= shortest {
+            true => format!("give a tolerance of {least:.2e} at least, or {by_size}"),
+            false => format!("give {by_size}"),
+        };
         return Err(Error::input(what).at("its surface").remedy(remedy));
     }
     let mut best: Option<(Skin, Fit)> = None;
