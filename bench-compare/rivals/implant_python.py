@@ -17,13 +17,9 @@ os.environ |= {"IGL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 import numpy as np
 
+from in_memory import clocked, gmsh_tets
+
 BUDGET = 10.0  # no repeat is begun after so many seconds of work
-
-
-def clocked(work):
-    start = time.perf_counter()
-    done = work()
-    return time.perf_counter() - start, done
 
 
 def tetgen(given, switches):
@@ -54,12 +50,9 @@ def gmsh(given, algorithm):
     program.model.geo.addVolume(loops)  # the first bounds it, the others are holes
     program.model.geo.synchronize()
     seconds, _ = clocked(lambda: mesh.generate(3))
-    tags, coordinates, _ = mesh.getNodes()
-    row = np.zeros(int(tags.max()) + 1, np.int64)
-    row[tags.astype(np.int64)] = np.arange(len(tags))
-    tets = row[mesh.getElementsByType(4)[1].astype(np.int64).reshape(-1, 4)]
+    points, tets = gmsh_tets(mesh)
     program.finalize()
-    return seconds, {"points": coordinates.reshape(-1, 3), "tets": tets}, program.__version__
+    return seconds, {"points": points, "tets": tets}, program.__version__
 
 
 def ftetwild(given):

@@ -8,18 +8,13 @@ from the program's own surface in memory to its own mesh in memory; fewer repeat
 import json
 import os
 import sys
-import time
 from importlib.metadata import version
 
 import numpy as np
 
+from in_memory import clocked, gmsh_tets
+
 BUDGET = 3.0  # no repeat is begun after so many seconds of work
-
-
-def clocked(work):
-    start = time.perf_counter()
-    done = work()
-    return time.perf_counter() - start, done
 
 
 def tetgen(points, triangles, size, switches):
@@ -47,12 +42,9 @@ def gmsh(points, triangles, size, algorithm):
     program.model.geo.addVolume([program.model.geo.addSurfaceLoop([1])])
     program.model.geo.synchronize()
     seconds, _ = clocked(lambda: mesh.generate(3))
-    tags, coordinates, _ = mesh.getNodes()
-    row = np.zeros(int(tags.max()) + 1, np.int64)
-    row[tags.astype(np.int64)] = np.arange(len(tags))
-    tets = row[mesh.getElementsByType(4)[1].astype(np.int64).reshape(-1, 4)]
+    points, tets = gmsh_tets(mesh)
     program.finalize()
-    return seconds, coordinates.reshape(-1, 3), tets, program.__version__
+    return seconds, points, tets, program.__version__
 
 
 def ftetwild(points, triangles, size):

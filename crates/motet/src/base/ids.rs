@@ -9,6 +9,12 @@ pub(crate) fn rising<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
     ids
 }
 
+/// Whether two triangles of the same vertices run the same way round.
+pub(crate) fn runs_alike<T: PartialEq + Copy>(first: [T; 3], second: [T; 3]) -> bool {
+    let [a, b, c] = first;
+    [[a, b, c], [b, c, a], [c, a, b]].contains(&second)
+}
+
 /// What all ids have in common: for lists that serve any of them.
 pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
     /// What stands in an array for no id.

@@ -10,8 +10,8 @@ mod threads;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
-pub(crate) use ids::rising;
 pub use ids::{CellId, Id, TetId, VertexId};
+pub(crate) use ids::{rising, runs_alike};
 pub(crate) use lanewise::lanewise;
 pub(crate) use mixed::mixed;
 pub(crate) use sets::Sets;

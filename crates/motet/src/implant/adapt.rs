@@ -72,14 +72,7 @@ pub(super) fn adapt(
 fn at_walls(host: &TetMesh, nearest: &NearestTriangle, size: f64) -> Vec<TetId> {
     let mut marks = Vec::new();
     for_each_tet_facet(&host.tets, &host.triangles, |sharing| {
-        let is_wall = match *sharing.tets {
-            [] => false,
-            [(x, _), (y, _)] => {
-                host.regions[x.index()] != host.regions[y.index()] || !sharing.triangles.is_empty()
-            }
-            _ => true,
-        };
-        if is_wall {
+        if sharing.is_wall(&host.regions) {
             let (t, i) = sharing.tets[0];
             let corners = FACETS[i].map(|k| host.points[host.tets[t.index()][k].index()]);
             if is_too_large(corners, nearest, size) {

@@ -103,6 +103,11 @@ impl Devices {
         self.points = points;
     }
 
+    /// The triangles of a device.
+    pub(super) fn triangles_of(&self, device: usize) -> impl Iterator<Item = usize> + Clone + '_ {
+        (0..self.triangles.len()).filter(move |&t| self.of_triangle.list(t).contains(&(device as u32)))
+    }
+
     /// The corners of a triangle.
     pub(super) fn corners(&self, triangle: usize) -> [Point; 3] {
         self.triangles[triangle].map(|v| self.points[v.index()])

@@ -11,7 +11,7 @@ use super::devices::Devices;
 use super::options::{Inside, Outside};
 use super::parts::{Parts, edges_of_both};
 use super::place::{check_inside, told};
-use crate::base::{Error, Point, Result, Threads, VertexId, rising};
+use crate::base::{Error, Point, Result, Threads, VertexId, rising, runs_alike};
 use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{TetMesh, cone_volume};
@@ -98,13 +98,11 @@ impl Frame {
         };
         frame.loosen(host, devices, carved, &cut, &on_both);
         let mut walls = frame.of_devices(host, devices, carved, (&cut, &sorted), outside, threads)?;
-        let within: Vec<Vec<bool>> = (0..devices.names.len() as u32)
-            .map(|k| {
-                let is_of = |t: &usize| devices.of_triangle.list(*t).contains(&k);
-                let own: Vec<_> = (0..of_devices.len()).filter(is_of).map(|t| of_devices[t]).collect();
-                sorted[1].ask(&cut, &own, threads)
-            })
-            .collect();
+        let within = |k: usize| {
+            let own: Vec<_> = devices.triangles_of(k).map(|t| of_devices[t]).collect();
+            sorted[1].ask(&cut, &own, threads)
+        };
+        let within: Vec<Vec<bool>> = (0..devices.names.len()).map(within).collect();
         frame.add_faces(devices, carved, (&cut, &sorted[1]), &within, outside, &mut walls);
         frame.check_others(host, carved, &cut, &walls)?;
         frame.take(&cut, walls);
@@ -147,7 +145,7 @@ impl Frame {
         host: &TetMesh,
         devices: &Devices,
         carved: &Carved,
-        (cut, [sorted, faces]): (&Cut, &[Parts; 2]),
+        (cut, [sorted, faces]): (&Cut, &[Parts<'_>; 2]),
         outside: Outside,
         threads: &Threads,
     ) -> Result<Vec<Wall>> {
@@ -162,9 +160,7 @@ impl Frame {
             let twin = twins.get(&rising(vertices));
             // On the boundary a device lies inside where it faces as the wall does.
             let is_inside = match twin {
-                Some(&(face, f)) => {
-                    carved.faces[f as usize].front.is_some() || is_turned_alike(vertices, face)
-                }
+                Some(&(face, f)) => carved.faces[f as usize].front.is_some() || runs_alike(vertices, face),
                 None => is_in[part],
             };
             let is_fixed = self.is_fixed(vertices);
@@ -210,7 +206,7 @@ impl Frame {
         &mut self,
         devices: &Devices,
         carved: &Carved,
-        (cut, sorted): (&Cut, &Parts),
+        (cut, sorted): (&Cut, &Parts<'_>),
         within: &[Vec<bool>],
         outside: Outside,
         walls: &mut Vec<Wall>,
@@ -292,11 +288,6 @@ fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
 /// The volume between a triangle and one place for all, by its sign.
 fn cone(cut: &Cut, triangle: [VertexId; 3]) -> f64 {
     cone_volume(triangle.into_iter(), &cut.points, cut.points[0])
-}
-
-/// Whether two triangles of the same vertices are turned the same way.
-fn is_turned_alike(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
-    (0..3).any(|k| [a[k], a[(k + 1) % 3], a[(k + 2) % 3]] == b)
 }
 
 /// The boundary of the host, outward.

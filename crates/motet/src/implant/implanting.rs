@@ -182,7 +182,7 @@ fn certify(
     let is_kept = |t: usize| is_there.contains(&rising(joined.triangles[t].map(|v| gap.names[v.index()])));
     report.volume_expected = volume_of(host);
     for (k, device) in devices.iter().enumerate() {
-        let own = (0..joined.triangles.len()).filter(|t| joined.of_triangle.list(*t).contains(&(k as u32)));
+        let own = joined.triangles_of(k);
         let regions = names.regions[k].clone();
         let bodies = report.regions.iter().filter(|body| regions.contains(&body.region));
         let volume = bodies.map(|body| body.volume).sum();

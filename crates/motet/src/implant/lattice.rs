@@ -41,8 +41,7 @@ pub(super) fn lattice(
         if is_filled && options.outside == Outside::Cut {
             continue;
         }
-        let is_of = |t: &usize| devices.of_triangle.list(*t).contains(&(k as u32));
-        let own: Vec<_> = (0..devices.triangles.len()).filter(is_of).map(|t| devices.triangles[t]).collect();
+        let own: Vec<_> = devices.triangles_of(k).map(|t| devices.triangles[t]).collect();
         for (needed, is_in) in is_needed.iter_mut().zip(is_in(&own)) {
             *needed = if is_filled { *needed || is_in } else { *needed && !is_in };
         }

@@ -8,9 +8,9 @@ use crate::contact::inside;
 use crate::geometry::triangle::{area, centroid};
 
 /// The pieces of the devices' triangles, or of the faces, and how they lie to the other surface.
-pub(super) struct Parts {
+pub(super) struct Parts<'a> {
     /// With the triangle that each is, or is a part of.
-    pub(super) pieces: Vec<([VertexId; 3], u32)>,
+    pub(super) pieces: &'a [([VertexId; 3], u32)],
     /// Parts that hang together without crossing the other surface, by a number.
     pub(super) parts: Vec<usize>,
     /// A place in each part.
@@ -30,19 +30,19 @@ pub(super) fn edges_of_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
     if asked.is_empty() { asked } else { edges(1).filter(|edge| asked.contains(edge)).collect() }
 }
 
-impl Parts {
-    pub(super) fn new(cut: &Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
-        let pieces = cut.pieces[s].clone();
+impl<'a> Parts<'a> {
+    pub(super) fn new(cut: &'a Cut, s: usize, on_both: &BTreeSet<[VertexId; 2]>) -> Self {
+        let pieces = &cut.pieces[s];
         let mut first_at: HashMap<[VertexId; 2], u32> = HashMap::new();
         let mut sets = Sets::new(pieces.len());
-        for (i, &([a, b, c], _)) in (0u32..).zip(&pieces) {
+        for (i, &([a, b, c], _)) in (0u32..).zip(pieces) {
             for edge in [[a, b], [b, c], [c, a]].map(rising).iter().filter(|edge| !on_both.contains(*edge)) {
                 sets.join(*first_at.entry(*edge).or_insert(i), i);
             }
         }
         let mut largest: BTreeMap<u32, (f64, Point)> = BTreeMap::new();
         let roots: Vec<u32> = (0..pieces.len() as u32).map(|i| sets.root(i)).collect();
-        for (root, (t, _)) in roots.iter().zip(&pieces) {
+        for (root, (t, _)) in roots.iter().zip(pieces) {
             let corners = t.map(|v| cut.points[v.index()]);
             let known = largest.entry(*root).or_default();
             if area(corners) > known.0 {

@@ -33,7 +33,12 @@ pub struct Fit {
 impl Fit {
     /// Whether both are within the tolerance.
     pub fn is_reached(&self) -> bool {
-        self.to_old.max(self.from_old) <= self.tolerance
+        self.farthest() <= self.tolerance
+    }
+
+    /// The larger of both distances.
+    pub fn farthest(&self) -> f64 {
+        self.to_old.max(self.from_old)
     }
 }
 

@@ -200,12 +200,7 @@ impl Zone {
         let is_loose = |v: VertexId| loose.contains(&self.to_result[v.index()]);
         let Self { mesh: TetMesh { tets, triangles, regions, .. }, .. } = self;
         for_each_tet_facet(tets, triangles, |sharing| {
-            let is_wall = match *sharing.tets {
-                [] => false,
-                [(t, _), (u, _)] => !sharing.triangles.is_empty() || regions[t.index()] != regions[u.index()],
-                _ => true,
-            };
-            if !is_wall {
+            if !sharing.is_wall(regions) {
                 return;
             }
             let (t, i) = sharing.tets[0];

@@ -15,6 +15,17 @@ pub struct Sharing<'a> {
     pub triangles: &'a [u32],
 }
 
+impl Sharing<'_> {
+    /// Whether it is a facet that bounds the tets or parts their regions, or has a triangle.
+    pub fn is_wall(&self, regions: &[i32]) -> bool {
+        match *self.tets {
+            [] => false,
+            [(x, _), (y, _)] => !self.triangles.is_empty() || regions[x.index()] != regions[y.index()],
+            _ => true,
+        }
+    }
+}
+
 /// Calls `see` once for every facet of `tets` and every triangle, with everything that has it. Facets come in the order of their lowest vertex.
 ///
 /// A facet of a tet that names a vertex twice does not count. Panics past 2^29 tets and triangles.

@@ -3,7 +3,7 @@
 use super::flats::Flats;
 use super::tets::Tets;
 use super::unmade::{Part, Unmade};
-use crate::base::{Csr, Error, TetId, VertexId};
+use crate::base::{Csr, Error, TetId, VertexId, runs_alike};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
@@ -78,9 +78,8 @@ impl Bodies {
 }
 
 /// Whether the tet of a facet lies in front of it, turned as `part`.
-fn faces(tets: &Tets, half: HalfFacet, [a, b, c]: [VertexId; 3]) -> bool {
-    let inward = tets.inward(half);
-    [[a, b, c], [b, c, a], [c, a, b]].contains(&inward)
+fn faces(tets: &Tets, half: HalfFacet, part: [VertexId; 3]) -> bool {
+    runs_alike(part, tets.inward(half))
 }
 
 fn lost(triangle: u32) -> Unmade {

@@ -1,6 +1,6 @@
 //! Which way a surface is meant to face: outward as a whole, cavities inward, neighbours alike.
 
-use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising};
+use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising, runs_alike};
 use crate::contact::is_closed;
 use crate::geometry::triangle::{area, centroid};
 use crate::geometry::vector::{add, scale};
@@ -75,7 +75,7 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
             open.extend_from_slice(triangles);
             continue;
         }
-        let n_turned = triangles.iter().filter(|&&t| is_turned(came[t], surface.triangles[t])).count();
+        let n_turned = triangles.iter().filter(|&&t| !runs_alike(came[t], surface.triangles[t])).count();
         closed.push(Part {
             triangles: triangles.to_vec(),
             bounds: around(corners.as_flattened().iter().map(|v| surface.points[v.index()])),
@@ -85,11 +85,6 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
         });
     }
     (closed, open)
-}
-
-fn is_turned(before: [VertexId; 3], now: [VertexId; 3]) -> bool {
-    let [a, b, c] = before;
-    ![[a, b, c], [b, c, a], [c, a, b]].contains(&now)
 }
 
 /// Whether a part lies wholly within another.

@@ -79,7 +79,7 @@ pub(super) fn resurface(
         let lattice = Cubes::near(&old.surface, edge).lattice();
         let skin = Skin::new(lattice, &old, threads);
         let fit = old.fit(&skin, tolerance, threads);
-        if best.as_ref().is_none_or(|(_, best)| farthest(&fit) < farthest(best)) {
+        if best.as_ref().is_none_or(|(_, best)| fit.farthest() < best.farthest()) {
             best = Some((skin, fit));
         }
         edge *= FINER;
@@ -91,15 +91,11 @@ pub(super) fn resurface(
         best.filter(|(skin, _)| !skin.triangles.is_empty()).ok_or_else(|| nothing(name))?;
     if let Some(evened) = old.evened(&skin, tolerance, threads) {
         let now = old.fit(&evened, tolerance, threads);
-        if now.is_reached() || farthest(&now) <= farthest(&fit) {
+        if now.is_reached() || now.farthest() <= fit.farthest() {
             (skin, fit) = (evened, now);
         }
     }
     let mut cells = Cells::new();
     skin.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
     Ok(Resurfaced { mesh: Mesh::new(skin.points, cells), fit })
-}
-
-fn farthest(fit: &Fit) -> f64 {
-    fit.to_old.max(fit.from_old)
 }
