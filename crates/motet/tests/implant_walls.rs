@@ -87,12 +87,12 @@ fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> V
             faults.push(format!("a facet at {:?} is open", facet[0]));
         }
     }
-    // Triangles of the device that are far from walls are there.
+    // Triangles of the device that are far from walls are there: those that are divided, two rings round them and what these touch may have changed.
     let longest = (0..surface.triangles.len()).flat_map(|t| {
         let [a, b, c] = surface.corners(t);
         [distance(a, b), distance(b, c), distance(c, a)]
     });
-    let margin = longest.fold(0.0, f64::max) * 2.0 + near;
+    let margin = longest.fold(0.0, f64::max) * 4.0 + near;
     for corners in (0..surface.triangles.len()).map(|t| surface.corners(t)) {
         let is_deep = corners.as_flattened().iter().all(|x| x.abs() < 1.5 - margin);
         let n = users.get(&key(corners)).map_or(0, |(n, _)| *n);

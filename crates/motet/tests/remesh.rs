@@ -8,10 +8,10 @@ use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::distance;
 use motet::kernel::{Complex, Hold, NEW};
-use motet::mesh::shapes::sphere_in_box;
+use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::classify::{Defect, classify};
-use motet::remesh::{Options, Outcome, SurfaceRule, remesh};
+use motet::remesh::{Options, Outcome, Reason, SurfaceRule, remesh};
 use motet::spatial::NearestTriangle;
 use proptest::prelude::*;
 
@@ -238,5 +238,29 @@ fn bad_surfaces_give_way_within_the_distance() {
         // The other way only what vertices leave is watched.
         assert!(out <= 1.0 + 1e-9 && back < 2.0);
         hold_to_the_promise(&part, &outcome, false).unwrap();
+    }
+}
+
+/// Between two plates that are nearer than their triangles are wide there is no room for a good tet on any of these.
+#[test]
+fn a_narrow_gap_is_told_as_the_cause() {
+    for (height, is_narrow) in [(0.01, true), (0.02, true), (0.5, false)] {
+        let mesh = box_grid([4, 4, 1], [[0.0; 3], [2.0, 2.0, height]]);
+        let part = TetPart::of(&mesh).unwrap();
+        let report = remesh(&part.mesh, &Options::default()).unwrap().report;
+        let near = report.left.iter().filter_map(|left| match left.reason {
+            Reason::WallNear { degrees, best_eas } => Some((left.eas, degrees, best_eas)),
+            _ => None,
+        });
+        let near: Vec<_> = near.collect();
+        assert_eq!(near.is_empty(), !is_narrow, "{height}: {:?}", report.left);
+        for (eas, degrees, best_eas) in near {
+            assert!(
+                eas <= best_eas && best_eas < 0.2 && degrees < 14.2,
+                "{height}: {eas} {degrees} {best_eas}"
+            );
+        }
+        let n_forced = report.left.iter().filter(|left| left.reason.is_forced()).count();
+        assert!(3 * n_forced >= report.left.len(), "{height}: {n_forced} of {}", report.left.len());
     }
 }

@@ -9,6 +9,7 @@ pub mod predicates;
 pub mod quality;
 pub mod segment;
 pub mod symmetric;
+pub mod tent;
 pub mod tet;
 pub mod triangle;
 pub(crate) mod unit;

@@ -16,6 +16,10 @@ use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{TetMesh, cone_volume};
 
+/// So many rings of triangles round where a device meets a wall may stray as well: what is narrow there is often held by its neighbours alone. (Of a stent across the
+/// neck of an aneurysm 55 bad tets were left with none, 25 with one, 12 with two.)
+const RINGS: usize = 2;
+
 /// A triangle that tets have to fit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wall {
@@ -125,6 +129,12 @@ impl Frame {
         }
         if self.loose.is_empty() {
             return;
+        }
+        for _ in 0..RINGS {
+            let pieces = cut.pieces.iter().flatten().map(|piece| piece.0);
+            let touched = pieces.filter(|t| !self.is_fixed(*t)).flatten();
+            let touched: Vec<VertexId> = touched.collect();
+            self.loose.extend(touched);
         }
         let staying = host.tets.iter().zip(&carved.fates).filter(|(_, fate)| **fate != Fate::Gone);
         let own = devices.own_tets.iter().flat_map(|tet| tet.vertices.map(|v| self.names[v.index()]));

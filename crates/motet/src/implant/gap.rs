@@ -75,11 +75,7 @@ impl Gap {
         let lattice = lattice(host, devices, carved, options, threads)?;
         let all: Vec<Point> = frame.points.iter().chain(&lattice).copied().collect();
         let filled = constrain(&all, &frame.triangles, EdgePoints::MoveInside, threads)?;
-        let is_divided = |t: &usize| {
-            let wall = &frame.walls[*t];
-            wall.device.is_none() && wall.is_fixed && filled.triangle_to_facets.list(*t).len() != 1
-        };
-        if (0..frame.walls.len()).any(|t| is_divided(&t)) {
+        if (0..frame.walls.len()).any(|t| is_divided(&frame, &filled, t)) {
             return Ok(None);
         }
         let within = within(devices, &frame, &filled);
@@ -156,6 +152,19 @@ impl Gap {
             }
         }
     }
+}
+
+/// Whether a facet or an edge of what stays in the host would be divided.
+fn is_divided(frame: &Frame, filled: &Constrained, t: usize) -> bool {
+    let (wall, parts) = (&frame.walls[t], filled.triangle_to_facets.list(t));
+    if wall.device.is_some() || parts.len() == 1 {
+        return false;
+    }
+    let sides = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].map(rising);
+    let is_held =
+        |edge: &[VertexId; 2]| !edge.iter().any(|v| frame.loose.contains(&frame.to_result[v.index()]));
+    let is_whole = |edge: &[VertexId; 2]| parts.iter().any(|part| sides(*part).contains(edge));
+    wall.is_fixed || sides(frame.triangles[t]).iter().any(|edge| is_held(edge) && !is_whole(edge))
 }
 
 fn are_distinct<const N: usize>(vertices: [VertexId; N]) -> bool {

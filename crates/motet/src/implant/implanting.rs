@@ -16,7 +16,7 @@ use super::resurface::resurface;
 use super::starts;
 use super::zone::Draft;
 use crate::base::{CellId, Error, Result, Threads, VertexId, rising};
-use crate::mesh::check::check;
+use crate::mesh::check::{Defect, check};
 use crate::mesh::history::{History, Rules};
 use crate::mesh::{Mesh, TetPart};
 use crate::meshing;
@@ -102,8 +102,7 @@ pub fn implant(
     report.devices.iter_mut().zip(fits).for_each(|(device, fit)| device.fit = *fit);
     report.seconds.check = lap();
     if !report.is_valid() {
-        let told: Vec<String> =
-            report.defects.iter().map(|defect| format!("{} {}", defect.count, defect.kind.name())).collect();
+        let told: Vec<String> = report.defects.iter().map(Defect::to_string).collect();
         return Err(Error::input(format!("what came of it is no mesh: {}", told.join(", "))).remedy(
             "see with `motet info` whether the host is one; if it is, please tell the authors of motet",
         ));

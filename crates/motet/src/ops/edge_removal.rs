@@ -5,7 +5,9 @@
 //! polygonal domains*; Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral meshes*): the flips
 //! 3-2 and 4-4 are its cases for rings of three and four.
 
-use crate::base::{TetId, VertexId};
+use crate::base::{Point, TetId, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, dot};
 use crate::kernel::{Change, Complex, NewWall, Shell};
 
 /// Rings with more vertices are left alone: triangulations become many, and good ones rare.
@@ -48,7 +50,8 @@ impl EdgeRemoval {
         }
     }
 
-    /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches.
+    /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches, and when one of
+    /// them would lie on the other.
     fn swap_walls(
         &self,
         complex: &Complex,
@@ -61,7 +64,7 @@ impl EdgeRemoval {
         for (end, wall) in [(a, first), (b, second)] {
             change.walls.push(NewWall { vertices: [end, p, q], patch: wall.patch, triangle: wall.triangle });
         }
-        first.patch == second.patch
+        first.patch == second.patch && !would_fold([a, b, p, q].map(|v| complex.point(v)))
     }
 
     /// Fills the part of the ring that begins at a place and has so many vertices. Nothing comes between two.
@@ -146,4 +149,10 @@ impl EdgeRemoval {
         self.build(complex, [a, b], ring, region, (i, k), change);
         self.build(complex, [a, b], ring, region, (k, j), change);
     }
+}
+/// Whether of the walls `apq` and `bqp`, which are to take the place of `abp` and `baq`, one would face the other way: where all four vertices lie in a plane and the
+/// middle of `pq` outside of both walls, that leaves a tet of no volume between walls.
+fn would_fold([a, b, p, q]: [Point; 4]) -> bool {
+    let before = add(area_vector([a, b, p]), area_vector([b, a, q]));
+    [[p, a, q], [q, b, p]].into_iter().any(|wall| dot(area_vector(wall), before) <= 0.0)
 }

@@ -6,9 +6,10 @@ use serde::Serialize;
 
 use crate::base::{Point, TetId};
 use crate::geometry::quality::{dihedral, eas};
+use crate::geometry::tent::Tent;
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{cross, dot, norm, sub};
-use crate::kernel::{Complex, Hold, Shell};
+use crate::kernel::{Complex, Hold, Shell, Star};
 use crate::remesh::classify::{DEFECT_NAMES, classify};
 use crate::remesh::surface::Surface;
 
@@ -45,6 +46,13 @@ pub enum Reason {
         /// The highest EAS that a tet in such an angle can have.
         best_eas: f64,
     },
+    /// A wall stands so near above one of its facets, which is a wall, that no better tet has room between.
+    WallNear {
+        /// The angle of the tent over the facet that the wall leaves, in degrees: no tet on it has three larger dihedral angles there.
+        degrees: f64,
+        /// The highest EAS that a tet on that facet can have.
+        best_eas: f64,
+    },
     /// All its vertices are held, and no change of its edges and facets raises the worst quality.
     AllHeld,
     /// No operation raises the worst quality round it.
@@ -52,9 +60,9 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// Whether an angle of walls allows no better tet there.
+    /// Whether walls allow no good tet there.
     pub fn is_forced(&self) -> bool {
-        matches!(self, Self::WallAngle { .. } | Self::WallsMeet { .. })
+        matches!(self, Self::WallAngle { .. } | Self::WallsMeet { .. } | Self::WallNear { .. })
     }
 }
 
@@ -73,6 +81,12 @@ impl fmt::Display for Reason {
                     "walls meet at it at {degrees:.2} degrees: no tet between can have an EAS above {best_eas:.3}"
                 )
             }
+            Self::WallNear { degrees, best_eas } => {
+                write!(
+                    f,
+                    "a wall stands so near above one that there is room for {degrees:.2} degrees: no tet between can have an EAS above {best_eas:.3}"
+                )
+            }
             Self::AllHeld => write!(f, "all four vertices are held by the surface, and no swap helps"),
             Self::NothingHelps => write!(f, "no operation raises the worst quality round it"),
         }
@@ -86,7 +100,7 @@ pub(super) fn explain(
     min_eas: f64,
     new_id: impl Fn(TetId) -> u32,
 ) -> Vec<Left> {
-    let mut shell = Shell::default();
+    let (mut shell, mut star) = (Shell::default(), Star::default());
     let of = |&tet: &TetId| {
         let corners = complex.corners(tet);
         Left {
@@ -94,13 +108,13 @@ pub(super) fn explain(
             eas: eas(corners),
             place: centroid(corners),
             defect: DEFECT_NAMES[classify(corners).number()],
-            reason: reason(complex, tet, min_eas, &mut shell),
+            reason: reason(complex, tet, min_eas, &mut shell, &mut star),
         }
     };
     left.iter().map(of).collect()
 }
 
-fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell) -> Reason {
+fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell, star: &mut Star) -> Reason {
     let least = |bounds: &mut dyn Iterator<Item = (f64, f64)>| {
         bounds.filter(|b| b.1 < min_eas).min_by(|x, y| x.1.total_cmp(&y.1))
     };
@@ -109,6 +123,9 @@ fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell) -> Rea
     }
     if let Some((degrees, best_eas)) = least(&mut edge_bounds(complex, tet, shell).into_iter()) {
         return Reason::WallsMeet { degrees, best_eas };
+    }
+    if let Some((degrees, best_eas)) = least(&mut tent_bounds(complex, tet, star).into_iter()) {
+        return Reason::WallNear { degrees, best_eas };
     }
     match complex.vertices(tet).into_iter().all(|v| complex.hold(v) != Hold::Free) {
         true => Reason::AllHeld,
@@ -204,6 +221,36 @@ fn best_between_walls(complex: &Complex, tet: TetId, shell: &Shell, edge: [usize
             dihedral::angles(complex.corners(t))[e].to_degrees()
         })
         .sum();
-    let regular = (1.0f64 / 3.0).acos().to_degrees();
-    Some((degrees, degrees / regular))
+    Some((degrees, degrees / dihedral::REGULAR.to_degrees()))
+}
+
+/// For each wall that a tet has the angle of the tent over it that other walls of the tets round this one leave, in degrees, and the highest EAS of a tet
+/// on it: one whose dihedral angles there are all larger would hold a part of a wall in it. Walls count that have to stay: all where walls do, else those
+/// between fixed vertices.
+fn tent_bounds(complex: &Complex, tet: TetId, star: &mut Star) -> Vec<(f64, f64)> {
+    let stays = |tet: TetId, i: usize| {
+        let vertices = complex.vertices(tet);
+        let is_fixed = |&k: &usize| complex.hold(vertices[k]) == Hold::Fixed;
+        complex.is_wall(tet, i) && (complex.keeps_surface() || FACETS[i].iter().all(is_fixed))
+    };
+    let facet = |tet: TetId, i: usize| FACETS[i].map(|k| complex.corners(tet)[k]);
+    let bases: Vec<usize> = (0..4).filter(|&i| stays(tet, i)).collect();
+    if bases.is_empty() {
+        return Vec::new();
+    }
+    let mut walls = Vec::new();
+    for vertex in complex.vertices(tet) {
+        star.gather(complex, vertex);
+        for &near in &star.tets {
+            walls.extend((0..4).filter(|&i| stays(near, i)).map(|i| facet(near, i)));
+        }
+    }
+    let bound = |i: usize| {
+        // Facets are counter-clockwise seen from outside of the tet.
+        let [a, b, c] = facet(tet, i);
+        let tent = Tent::over([a, c, b])?;
+        let angle = walls.iter().filter_map(|wall| tent.angle_below(*wall)).reduce(f64::min)?;
+        Some((angle.to_degrees(), angle / dihedral::REGULAR))
+    };
+    bases.into_iter().filter_map(bound).collect()
 }

@@ -32,6 +32,9 @@ const STRAIGHT: f64 = 0.707;
 /// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
 const TURNED: f64 = 0.707;
 
+/// A change of walls brings no tet of a lower quality, whatever was there: two walls of a tet of no height may lie on each other.
+const FLATTEST: f64 = 1e-6;
+
 /// The walls of the first mesh, patch by patch.
 pub(super) struct Surface {
     patches: BTreeMap<i32, Patch>,
@@ -72,6 +75,9 @@ impl Surface {
         };
         if change.walls.is_empty() && moved.is_none() {
             return true;
+        }
+        if change.worst() < FLATTEST {
+            return false;
         }
         let mut walls: Vec<(i32, [Point; 3])> =
             change.walls.iter().map(|wall| (wall.patch, change.corners(complex, wall.vertices))).collect();

@@ -148,7 +148,7 @@ impl Report {
         }
         let n_forced = left.len() - self.unforced;
         console.say(format_args!(
-            "{} of the bad tets that are left are forced by angles of surfaces, {} are not:",
+            "{} of the bad tets that are left are forced by surfaces, {} are not:",
             count(n_forced),
             count(self.unforced)
         ));
