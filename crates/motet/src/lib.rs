@@ -3,6 +3,7 @@
 //! | module | floor | what it holds |
 //! |---|---|---|
 //! | [`base`] | 0 | typed ids, lists of lists, errors, threads |
+//! | [`algebra`] | 1 | sparse matrices, and solving with them |
 //! | [`geometry`] | 1 | pure functions on points: exact signs, simplices, quality, distances |
 //! | [`mesh`] | 2 | the exchange form: points, cells of any kind, fields, labels, shapes |
 //! | [`io`] | 3 | one file per format, their registry, time series |
@@ -20,6 +21,7 @@
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
 
+pub mod algebra;
 pub mod base;
 pub mod contact;
 pub mod delaunay;

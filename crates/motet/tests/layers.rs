@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 const FLOORS: &[(&str, u32)] = &[
     ("base", 0),
+    ("algebra", 1),
     ("geometry", 1),
     ("mesh", 2),
     ("io", 3),

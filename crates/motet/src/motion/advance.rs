@@ -13,8 +13,9 @@ use crate::base::{Point, Result, Threads};
 use crate::geometry::vector::{add, scale, sub};
 use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
-use crate::motion::mover::Mover;
-use crate::motion::update::{Displacements, Padded, Update};
+use crate::motion::map::Map;
+use crate::motion::mover::{Mover, Work};
+use crate::motion::update::{Displacements, Padded};
 
 /// Where a call of [`Mover::advance`] left the mesh.
 #[derive(Debug)]
@@ -22,8 +23,8 @@ pub(crate) struct State {
     points: Vec<Point>,
     /// Displacements of the driven vertices there.
     driven: Vec<Point>,
-    /// The graph of that place; `None` until it is needed.
-    update: Option<Update>,
+    /// The method set up at that place; `None` until it is needed.
+    map: Option<Map>,
 }
 
 /// Halvings of the part of the way that is still admissible: 1/4096 of it.
@@ -48,22 +49,36 @@ impl Mover {
     ) -> Result<Certificate> {
         let begin = Instant::now();
         let mut seconds = Seconds::default();
-        timed(&mut seconds.update, || self.step(displacement, out, threads))?;
+        self.check_lengths(displacement, out)?;
+        let work = timed(&mut seconds.update, || self.go(displacement, out, threads))?;
         let turned = timed(&mut seconds.check, || self.check.turned_over(out, threads));
-        let mut certificate =
-            Certificate { complete: true, fraction: 1.0, admissible_fraction: 1.0, ..Default::default() };
+        let mut certificate = Certificate {
+            complete: true,
+            fraction: 1.0,
+            admissible_fraction: 1.0,
+            iterations: work.iterations,
+            smoothed: work.smoothed,
+            ..Default::default()
+        };
         if turned.is_empty() {
-            self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec(), update: None });
+            self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec(), map: None });
         } else {
             certificate.blocked_by = self.check.cells_of(&turned);
             certificate.blocked_by.truncate(10);
-            certificate.admissible_fraction =
-                self.admissible_in_one_step(displacement, out, threads, &mut seconds);
+            certificate.admissible_fraction = self.admissible_in_one_step(
+                displacement,
+                out,
+                threads,
+                &mut certificate.iterations,
+                &mut seconds,
+            )?;
             let from_reference = self.state.is_none();
             self.go_on(displacement, out, threads, &mut certificate, &mut seconds)?;
             if from_reference && certificate.fraction < certificate.admissible_fraction {
                 certificate.fraction = certificate.admissible_fraction;
-                self.go_in_one_step(displacement, certificate.fraction, out, threads);
+                let work = self.go_in_one_step(displacement, certificate.fraction, out, threads)?;
+                certificate.iterations += work.iterations;
+                certificate.smoothed = work.smoothed;
             }
         }
         self.certify(out, &mut certificate, threads, &mut seconds);
@@ -113,15 +128,13 @@ impl Mover {
         target: &[Point],
         out: &mut [Point],
         threads: &Threads,
+        iterations: &mut usize,
         seconds: &mut Seconds,
-    ) -> f64 {
+    ) -> Result<f64> {
         largest(|fraction| {
             let part: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
-            timed(&mut seconds.update, || {
-                let nodes = self.nodes.displacements(&part, threads);
-                self.update.apply(&self.reference, &nodes, out, threads);
-            });
-            timed(&mut seconds.check, || self.check.holds(out, &self.reference, 0.0, threads))
+            *iterations += timed(&mut seconds.update, || self.go(&part, out, threads))?.iterations;
+            Ok(timed(&mut seconds.check, || self.check.holds(out, &self.reference, 0.0, threads)))
         })
     }
 
@@ -136,26 +149,26 @@ impl Mover {
         let mut state = self.state.take().unwrap_or_else(|| State {
             points: self.reference.clone(),
             driven: vec![[0.0; 3]; target.len()],
-            update: None,
+            map: None,
         });
         let mut left = 1.0;
         certificate.complete = false;
         while certificate.substeps < self.limits.substeps {
-            if state.update.is_none() {
-                let update = timed(&mut seconds.graph, || self.rebuild(&state.points, threads))?;
-                state.update = Some(update);
+            if state.map.is_none() {
+                state.map = Some(timed(&mut seconds.graph, || self.rebuild(&state.points, threads))?);
             }
-            let leg = Leg { mover: self, state: &state, target };
-            let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds);
+            let mut leg = Leg { mover: self, state: &state, target, iterations: 0 };
+            let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds)?;
             if part * left < self.limits.smallest {
-                part = leg.longest(0.0, out, threads, seconds);
+                part = leg.longest(0.0, out, threads, seconds)?;
             }
-            leg.place(part, out, threads);
+            certificate.smoothed = leg.place(part, out, threads)?;
+            certificate.iterations += leg.iterations;
             certificate.substeps += 1;
             left *= 1.0 - part;
             state.driven = leg.driven(part);
             state.points.copy_from_slice(out);
-            state.update = None;
+            state.map = None;
             certificate.complete = left == 0.0;
             if certificate.complete || part * (left / (1.0 - part)) < self.limits.smallest {
                 break;
@@ -168,18 +181,26 @@ impl Mover {
     }
 
     /// Goes the admissible part of the displacement in one step from the reference.
-    fn go_in_one_step(&mut self, target: &[Point], fraction: f64, out: &mut [Point], threads: &Threads) {
+    fn go_in_one_step(
+        &mut self,
+        target: &[Point],
+        fraction: f64,
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<Work> {
         let driven: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
-        self.update.apply(&self.reference, &self.nodes.displacements(&driven, threads), out, threads);
-        self.state = Some(State { points: out.to_vec(), driven, update: None });
+        let work = self.go(&driven, out, threads)?;
+        self.state = Some(State { points: out.to_vec(), driven, map: None });
+        Ok(work)
     }
 }
 
-/// The way from one state to the target, over the graph of that state.
+/// The way from one state to the target, by the method set up at that state.
 struct Leg<'a> {
     mover: &'a Mover,
     state: &'a State,
     target: &'a [Point],
+    iterations: usize,
 }
 
 impl Leg<'_> {
@@ -192,47 +213,58 @@ impl Leg<'_> {
         self.state.driven.iter().zip(self.target).map(between).collect()
     }
 
-    fn place(&self, part: f64, out: &mut [Point], threads: &Threads) {
+    fn place(&mut self, part: f64, out: &mut [Point], threads: &Threads) -> Result<usize> {
         let nodes = &self.mover.nodes;
         let target = self.driven(part);
         let to = nodes.displacements(&target, threads);
         let from = nodes.displacements(&self.state.driven, threads);
         let (to, from) = (to.table(), from.table());
         let change = to.iter().zip(&*from).map(|(to, from)| Padded::new(sub(to.point(), from.point())));
-        if let Some(update) = &self.state.update {
-            update.apply(&self.state.points, &Displacements::All(change.collect()), out, threads);
+        if let Some(map) = &self.state.map {
+            let change = Displacements::All(change.collect());
+            self.iterations += map.apply(&self.state.points, &change, out, threads)?;
         }
         nodes.place(&self.mover.reference, &to, out);
+        Ok(self.mover.smooth(out, threads))
     }
 
     /// The largest part of the way on which every cell stays upright; all of it where
     /// that is so, else no further than to where each has kept `share` of its volume.
-    fn longest(&self, share: f64, out: &mut [Point], threads: &Threads, seconds: &mut Seconds) -> f64 {
-        let check: &Check = &self.mover.check;
+    fn longest(
+        &mut self,
+        share: f64,
+        out: &mut [Point],
+        threads: &Threads,
+        seconds: &mut Seconds,
+    ) -> Result<f64> {
+        let (check, state): (&Check, _) = (&self.mover.check, self.state);
         largest(|part| {
-            timed(&mut seconds.update, || self.place(part, out, threads));
+            timed(&mut seconds.update, || self.place(part, out, threads).map(|_| ()))?;
             let share = if part == 1.0 { 0.0 } else { share };
-            timed(&mut seconds.check, || check.holds(out, &self.state.points, share, threads))
+            Ok(timed(&mut seconds.check, || check.holds(out, &state.points, share, threads)))
         })
     }
 }
 
 /// The largest part of 1 for which `holds` is true, to within 2^-[`HALVINGS`], if it
 /// holds up to some part and not beyond; 0 where it never does.
-fn largest(mut holds: impl FnMut(f64) -> bool) -> f64 {
-    if holds(1.0) {
-        return 1.0;
+///
+/// # Errors
+/// Those of `holds`.
+fn largest(mut holds: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
+    if holds(1.0)? {
+        return Ok(1.0);
     }
     let (mut good, mut bad) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (good + bad);
-        if holds(middle) {
+        if holds(middle)? {
             good = middle;
         } else {
             bad = middle;
         }
     }
-    good
+    Ok(good)
 }
 
 /// Adds to `seconds` what `work` takes.

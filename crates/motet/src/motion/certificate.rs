@@ -22,6 +22,10 @@ pub struct Certificate {
     pub admissible_fraction: f64,
     /// How often the motion went part of the way and the graph was built anew.
     pub substeps: usize,
+    /// Iterations of a linear system, all in all; 0 for the graph, which has none.
+    pub iterations: usize,
+    /// Vertices of bad tets that smoothing has moved.
+    pub smoothed: usize,
     /// Volume cells that are inverted or flat.
     pub inverted: usize,
     /// Of the reference: volume cells that were inverted or flat before anything moved.
@@ -66,7 +70,7 @@ pub struct Worst {
 /// Seconds by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Seconds {
-    /// Placing vertices.
+    /// Placing vertices, and smoothing.
     pub update: f64,
     /// Looking for inverted cells.
     pub check: f64,

@@ -9,8 +9,11 @@ use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::check::Check;
 use crate::motion::graph::{Hanging, hang, triangulate};
-use crate::motion::nodes::Nodes;
-use crate::motion::options::{Limits, Options};
+use crate::motion::map::Map;
+use crate::motion::nodes::{Nodes, not_sliding};
+use crate::motion::options::{FacetSet, Limits, Method, Options};
+use crate::motion::smooth::Smoother;
+use crate::motion::solve::Solve;
 use crate::motion::update::Update;
 
 /// Moves the vertices of one mesh after its boundary.
@@ -22,16 +25,27 @@ use crate::motion::update::Update;
 pub struct Mover {
     pub(crate) reference: Vec<Point>,
     pub(crate) nodes: Nodes,
-    /// Vertices that hang in the graph.
+    /// Vertices that follow the nodes.
     hanging: Vec<VertexId>,
-    /// How each vertex hangs in the graph of the reference.
-    pub(crate) update: Update,
+    method: Method,
+    /// Where a Laplace equation is stiff.
+    wall: FacetSet,
+    /// How they follow from the reference.
+    pub(crate) map: Map,
+    pub(crate) smoother: Option<Smoother>,
     /// Tets of that graph that hold a vertex, by the nodes at their corners.
     pub(crate) tets: Vec<[u32; 4]>,
     pub(crate) check: Check,
     pub(crate) limits: Limits,
     pub(crate) state: Option<crate::motion::advance::State>,
     setup: Setup,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Work {
+    pub(crate) iterations: usize,
+    pub(crate) smoothed: usize,
 }
 
 /// What setting up found, and how long it took.
@@ -51,6 +65,8 @@ pub struct Setup {
     pub holding_tets: usize,
     /// Vertices that hang in the graph.
     pub hanging: usize,
+    /// Vertices that a linear system is solved for.
+    pub solved: usize,
     /// Of these, vertices of cells that lie outside the graph (middle nodes of a curved
     /// boundary, vertices of inverted cells): they follow the nearest place of it.
     pub outside: usize,
@@ -73,6 +89,10 @@ pub struct SetupSeconds {
     pub triangulation: f64,
     /// Finding the tet and the weights of every other vertex.
     pub hanging: f64,
+    /// Setting up a linear system.
+    pub system: f64,
+    /// Finding the tets of each vertex, for smoothing.
+    pub smoothing: f64,
     /// All of it.
     pub total: f64,
 }
@@ -87,6 +107,7 @@ impl Mover {
         let begin = Instant::now();
         let mut setup = Setup::default();
         let boundary = Boundary::of(&mesh.cells);
+        options.method.check()?;
         check_input(mesh, &boundary, options)?;
         let mut clock = Instant::now();
         setup.seconds.boundary = (clock - begin).as_secs_f64();
@@ -103,14 +124,21 @@ impl Mover {
             reference: mesh.points.clone(),
             nodes,
             hanging: hanging.collect(),
-            update: Update::default(),
+            wall: wall(&boundary, options),
+            method: options.method.clone(),
+            map: Map::Graph(Update::default()),
+            smoother: None,
             tets: Vec::new(),
             check,
             limits: options.limits,
             state: None,
             setup,
         };
-        mover.hang_reference(&is_used, threads)?;
+        match mover.method {
+            Method::Delaunay => mover.hang_reference(&is_used, threads)?,
+            _ => mover.assemble_reference(&is_used, threads)?,
+        }
+        mover.setup.seconds.smoothing = mover.set_up_smoothing(options.smoothing);
         mover.setup.seconds.total = begin.elapsed().as_secs_f64();
         Ok(mover)
     }
@@ -135,7 +163,8 @@ impl Mover {
     /// Panics when there is no such vertex.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
         self.hanging.binary_search(&v).ok()?;
-        let (nodes, weights) = self.update.of(v.index());
+        let Map::Graph(update) = &self.map else { return None };
+        let (nodes, weights) = update.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
         let [a, b, c, d] = nodes.map(vertex);
         Some(([a?, b?, c?, d?], weights))
@@ -149,17 +178,40 @@ impl Mover {
     /// # Errors
     /// When a length does not fit, or a displacement is not finite.
     pub fn step(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<()> {
+        self.check_lengths(displacement, out)?;
+        self.go(displacement, out, threads).map(|_| ())
+    }
+
+    pub(crate) fn check_lengths(&self, displacement: &[Point], out: &[Point]) -> Result<()> {
         self.check_displacement(displacement)?;
-        if out.len() != self.reference.len() {
-            return Err(Error::input(format!(
+        match out.len() == self.reference.len() {
+            true => Ok(()),
+            false => Err(Error::input(format!(
                 "room for {} points is given, but the mesh has {}",
                 out.len(),
                 self.reference.len()
-            )));
+            ))),
         }
+    }
+
+    /// A step without a look at the lengths.
+    pub(crate) fn go(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<Work> {
         let nodes = self.nodes.displacements(displacement, threads);
-        self.update.apply(&self.reference, &nodes, out, threads);
-        Ok(())
+        let iterations = self.map.apply(&self.reference, &nodes, out, threads)?;
+        Ok(Work { iterations, smoothed: self.smooth(out, threads) })
+    }
+
+    /// Smooths, where that is asked for; how many vertices have moved.
+    pub(crate) fn smooth(&self, out: &mut [Point], threads: &Threads) -> usize {
+        self.smoother.as_ref().map_or(0, |smoother| smoother.apply(out, threads))
+    }
+
+    /// Seconds that it took.
+    fn set_up_smoothing(&mut self, sweeps: usize) -> f64 {
+        let begin = Instant::now();
+        let new = || Smoother::new(&self.check, &self.hanging, self.reference.len(), sweeps);
+        self.smoother = (sweeps > 0).then(new);
+        begin.elapsed().as_secs_f64()
     }
 
     /// Builds the graph anew and hangs every vertex into it, then does a [`Self::step`]: what
@@ -174,9 +226,9 @@ impl Mover {
         threads: &Threads,
     ) -> Result<()> {
         self.check_displacement(displacement)?;
-        let update = self.rebuild(&self.reference, threads)?;
-        update.apply(&self.reference, &self.nodes.displacements(displacement, threads), out, threads);
-        Ok(())
+        let map = self.rebuild(&self.reference, threads)?;
+        let nodes = self.nodes.displacements(displacement, threads);
+        map.apply(&self.reference, &nodes, out, threads).map(|_| ())
     }
 
     pub(crate) fn check_displacement(&self, displacement: &[Point]) -> Result<()> {
@@ -194,10 +246,35 @@ impl Mover {
         }
     }
 
-    /// Hangs every vertex into the graph of the nodes where `points` has them.
-    pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Update> {
-        let (found, _) = self.find(points, threads)?;
-        Ok(self.tabulate(&found))
+    /// Sets the method up where `points` has the vertices.
+    pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
+        match self.method {
+            Method::Delaunay => Ok(Map::Graph(self.tabulate(&self.find(points, threads)?.0))),
+            _ => {
+                let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
+                let vertices = (&self.hanging[..], &nodes[..]);
+                Solve::new(&self.method, tets, points, vertices, &self.wall, threads)
+                    .map(|solve| Map::Solve(Box::new(solve)))
+            }
+        }
+    }
+
+    /// Sets up the system of the reference. Vertices that no cell uses are not part of what moves.
+    fn assemble_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
+        let begin = Instant::now();
+        self.hanging.retain(|v| is_used[v.index()]);
+        self.map = self.rebuild(&self.reference, threads)?;
+        let nodes = &self.nodes;
+        self.setup.seconds.system = begin.elapsed().as_secs_f64();
+        self.setup = Setup {
+            driven: nodes.n_driven,
+            sliding: nodes.n_sliding(),
+            layer: nodes.vertices.len() - nodes.n_driven,
+            solved: self.hanging.len(),
+            left: self.reference.len() - nodes.vertices.len() - self.hanging.len(),
+            ..self.setup
+        };
+        Ok(())
     }
 
     /// Where the vertices hang in the graph; seconds for building it, and for looking them up.
@@ -221,7 +298,7 @@ impl Mover {
         found.remove(&staying);
         let mut i = 0u32..;
         self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
-        self.update = self.tabulate(&found);
+        self.map = Map::Graph(self.tabulate(&found));
         self.tets = found.tets.iter().map(|t| t.map(|i| self.nodes.of_graph[i as usize])).collect();
         let nodes = &self.nodes;
         self.setup.seconds.triangulation = triangulation;
@@ -254,6 +331,14 @@ impl Mover {
             update.weights[vertex.index()] = [w[1], w[2], w[3]];
         }
         update
+    }
+}
+
+/// Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
+fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
+    match &options.method {
+        Method::Laplace(law) => law.wall.clone().unwrap_or_else(|| not_sliding(boundary, &options.sliding)),
+        _ => FacetSet::default(),
     }
 }
 

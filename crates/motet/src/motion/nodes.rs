@@ -132,7 +132,7 @@ impl Nodes {
 }
 
 /// The boundary without the facets of sliding patches.
-fn not_sliding(boundary: &Boundary, sliding: &[FacetSet]) -> FacetSet {
+pub(crate) fn not_sliding(boundary: &Boundary, sliding: &[FacetSet]) -> FacetSet {
     let keys: HashSet<_> = sliding.iter().flat_map(|s| s.rings.iter().map(key)).collect();
     let rings = FacetSet::of_boundary(boundary, "", |_| true).rings;
     FacetSet::of_boundary(boundary, "boundary", |i| !keys.contains(&key(rings.list(i))))

@@ -1,12 +1,99 @@
 //! What a mover is told beside the mesh: which facets are walls, what stays rigid, what slides.
 
-use crate::base::{Csr, VertexId};
+use crate::algebra::Tolerance;
+use crate::base::{Csr, Error, Result, VertexId};
 use crate::mesh::{Boundary, CellKind, Mesh, corners};
+
+/// How the vertices inside follow.
+#[derive(Clone, Debug, Default)]
+pub enum Method {
+    /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
+    #[default]
+    Delaunay,
+    /// As an elastic body that is stiff where cells are small. A linear system a step.
+    Elastic(Elastic),
+    /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system a step.
+    Laplace(Laplace),
+}
+
+/// Linear elasticity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elastic {
+    /// Poisson's ratio, at least 0 and below 0.5. Default: 0.3.
+    pub poisson: f64,
+    /// A cell is as stiff as one over its volume to this power (Stein, Tezduyar, Benney 2003). Default: 1.
+    pub stiffening: f64,
+    /// When a step is solved. Default: a residual of 1e-6.
+    pub tolerance: Tolerance,
+}
+
+impl Default for Elastic {
+    fn default() -> Self {
+        Self { poisson: 0.3, stiffening: 1.0, tolerance: SOLVED }
+    }
+}
+
+/// A Laplace equation.
+#[derive(Clone, Debug)]
+pub struct Laplace {
+    /// The diffusivity is one over the distance from the wall to this power. Default: 1.
+    pub exponent: f64,
+    /// The wall; `None`: all of the boundary that does not slide.
+    pub wall: Option<FacetSet>,
+    /// When a step is solved. Default: a residual of 1e-6.
+    pub tolerance: Tolerance,
+}
+
+impl Default for Laplace {
+    fn default() -> Self {
+        Self { exponent: 1.0, wall: None, tolerance: SOLVED }
+    }
+}
+
+impl Method {
+    /// # Errors
+    /// When a number means nothing.
+    pub(crate) fn check(&self) -> Result<()> {
+        let (power, tolerance) = match self {
+            Self::Delaunay => return Ok(()),
+            Self::Elastic(law) => {
+                if !(0.0..0.5).contains(&law.poisson) {
+                    return Err(Error::options(format!(
+                        "{} is no ratio of Poisson that can be solved with",
+                        law.poisson
+                    ))
+                    .remedy("give one from 0 to below 0.5, such as 0.3"));
+                }
+                (law.stiffening, law.tolerance)
+            }
+            Self::Laplace(law) => (law.exponent, law.tolerance),
+        };
+        if !power.is_finite() {
+            return Err(Error::options(format!("{power} is no power that stiffness could follow"))
+                .remedy("give 1; 0 makes all as stiff"));
+        }
+        if !(tolerance.residual > 0.0 && tolerance.residual < 1.0) {
+            return Err(Error::options(format!(
+                "{} is no part of a residual that could be reached",
+                tolerance.residual
+            ))
+            .remedy("give one between 0 and 1, such as 1e-6"));
+        }
+        Ok(())
+    }
+}
+
+/// Displacements are right to about this part of the largest: far finer than cells are.
+const SOLVED: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
 
 /// How a mesh is to be moved. The default moves every inner vertex by the graph
 /// of the boundary alone.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
+    /// How the vertices inside follow.
+    pub method: Method,
+    /// Sweeps over the vertices of bad tets after each step, which move them to where their tets are better. Default: none.
+    pub smoothing: usize,
     /// Vertices inside the volume that the caller moves, too, such as those of an
     /// interface between fluid and wall. Default: none.
     pub also_moved: Vec<VertexId>,

@@ -92,6 +92,13 @@ pub(crate) struct MoveArgs {
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
     pub(crate) method: Method,
+    /// Then move the vertices of bad tets, and no others, to where their tets are better: so many
+    /// sweeps over them, 2 are enough
+    #[arg(long, value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0, help_heading = "Volume")]
+    pub(crate) smooth: u8,
+    /// Solve the system of a method that has one to this residual, as a part of the first
+    #[arg(long, value_name = "RESIDUAL", value_parser = positive, default_value_t = 1e-6, help_heading = "Volume")]
+    pub(crate) residual: f64,
     /// Move all within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
     /// for layers of cells
     #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]
@@ -108,6 +115,10 @@ pub(crate) struct MoveArgs {
 pub(crate) enum Method {
     /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006)
     Delaunay,
+    /// An elastic body, stiff where cells are small: a linear system a step, to compare with
+    Elastic,
+    /// A Laplace equation for each coordinate, stiff at the wall that moves: as well
+    Laplace,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -9,11 +9,14 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
+use motet::algebra::Tolerance;
 use motet::base::{Point, Threads};
 use motet::geometry::quality::eas;
 use motet::io::{self, SeriesWriter, WriteOptions};
 use motet::mesh::{Boundary, Field};
-use motet::motion::{Certificate, Extent, FacetSet, Mover, Options, RigidLayer, mesh_velocity};
+use motet::motion::{
+    self, Certificate, Elastic, Extent, FacetSet, Laplace, Mover, Options, RigidLayer, mesh_velocity,
+};
 use motet::{Error, Mesh};
 
 pub(crate) use args::MoveArgs;
@@ -31,7 +34,6 @@ use crate::outputs;
 pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
     outputs::check(&args.output, args.displacement.as_ref().map(Path::new), "the motion")?;
-    let Method::Delaunay = args.method;
     let threads = common.threads()?;
     let (mesh, notes) = io::read_noted(&args.mesh)?;
     notes.iter().for_each(|note| console.warn(note));
@@ -78,7 +80,33 @@ fn options(
             Some(RigidLayer { extent, wall: Some(wall(args, boundary, patches, plan, &sliding)?) })
         }
     };
-    Ok(Options { also_moved: inside.copied().collect(), rigid_layer, sliding, ..Options::default() })
+    let method = method(args, || wall(args, boundary, patches, plan, &sliding))?;
+    let smoothing = usize::from(args.smooth);
+    Ok(Options {
+        method,
+        smoothing,
+        also_moved: inside.copied().collect(),
+        rigid_layer,
+        sliding,
+        ..Options::default()
+    })
+}
+
+/// A Laplace equation is stiff where the rigid layer would be.
+fn method(args: &MoveArgs, wall: impl Fn() -> motet::Result<FacetSet>) -> motet::Result<motion::Method> {
+    let residual = args.residual;
+    Ok(match args.method {
+        Method::Delaunay => motion::Method::Delaunay,
+        Method::Elastic => {
+            let law = Elastic::default();
+            motion::Method::Elastic(Elastic { tolerance: Tolerance { residual, ..law.tolerance }, ..law })
+        }
+        Method::Laplace => {
+            let law = Laplace::default();
+            let tolerance = Tolerance { residual, ..law.tolerance };
+            motion::Method::Laplace(Laplace { wall: Some(wall()?), tolerance, ..law })
+        }
+    })
 }
 
 /// The facets that have the rigid layer: of the patches named, else all that move and do not slide.

@@ -100,13 +100,22 @@ impl Report {
 
     pub(crate) fn tell(&self, console: &Console) {
         console.report(self);
+        let follow = match self.setup.solved {
+            0 => format!(
+                "{} hanging in a graph of {} tets",
+                count(self.setup.hanging),
+                count(self.setup.graph_tets)
+            ),
+            n => {
+                let iterations: usize = self.steps.iter().map(|step| step.certificate.iterations).sum();
+                format!("{} solved for, in {} iterations", count(n), count(iterations))
+            }
+        };
         console.say(format_args!(
-            "{}: {} points, {} of them driven, {} hanging in a graph of {} tets",
+            "{}: {} points, {} of them driven, {follow}",
             self.mesh.display(),
             count(self.points),
             count(self.setup.driven),
-            count(self.setup.hanging),
-            count(self.setup.graph_tets)
         ));
         if self.setup.layer > 0 || self.setup.sliding > 0 {
             console.say(format_args!(

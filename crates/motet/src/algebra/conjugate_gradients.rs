@@ -1,0 +1,191 @@
+//! Conjugate gradients (Hestenes and Stiefel 1952), preconditioned by a symmetric sweep of Gauss and Seidel over blocks.
+
+use crate::algebra::{Block, SparseMatrix, Vector3};
+use crate::base::{Error, Result, Threads};
+
+/// When an iteration is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// The residual, in the norm of the preconditioner, as a part of that of the right side.
+    pub residual: f64,
+    /// No more iterations than this.
+    pub iterations: usize,
+}
+
+/// What an iteration came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Solved {
+    /// Iterations.
+    pub iterations: usize,
+    /// The residual that is left, measured as in [`Tolerance::residual`].
+    pub residual: f64,
+}
+
+/// A forward and a backward sweep of Gauss and Seidel: `(D + L) D^-1 (D + U)` in place of the matrix `L + D + U`. Of
+/// elastic matrices of 8,000 to 166,000 vertices it took a third of the iterations that the diagonal blocks alone take, at twice the price of each.
+#[derive(Clone, Debug)]
+pub struct Sgs<B> {
+    inverses: Vec<B>,
+}
+
+impl<B: Block> Sgs<B> {
+    /// # Errors
+    /// When a block on the diagonal is not positive definite.
+    pub fn new(matrix: &SparseMatrix<B>) -> Result<Self> {
+        let inverse = |row| {
+            matrix.diagonal(row).inverse().ok_or_else(|| {
+                Error::input(format!(
+                    "row {row} of a matrix to be solved has no positive block on its diagonal"
+                ))
+            })
+        };
+        Ok(Self { inverses: (0..matrix.n_rows()).map(inverse).collect::<Result<_>>()? })
+    }
+
+    /// What comes out for `residual`.
+    fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3]) {
+        for i in 0..residual.len() {
+            let (columns, blocks) = matrix.row(i);
+            let mut sum = [0.0; 3];
+            for (&column, block) in
+                columns.iter().zip(blocks).take_while(|(column, _)| (**column as usize) < i)
+            {
+                block.add_times(out[column as usize], &mut sum);
+            }
+            out[i] = self.inverses[i].times(minus(residual[i], sum));
+        }
+        for i in (0..residual.len()).rev() {
+            let (columns, blocks) = matrix.row(i);
+            let mut sum = [0.0; 3];
+            for (&column, block) in
+                columns.iter().zip(blocks).rev().take_while(|(column, _)| (**column as usize) > i)
+            {
+                block.add_times(out[column as usize], &mut sum);
+            }
+            out[i] = minus(out[i], self.inverses[i].times(sum));
+        }
+    }
+}
+
+/// Solves `matrix x = right`; `x` holds a guess before, zeros where there is none, and the solution after. The best multiple of the guess is where it begins.
+/// The same bits with any number of threads.
+///
+/// # Errors
+/// When the tolerance is not reached within the iterations; `x` holds what was.
+pub fn conjugate_gradients<B: Block>(
+    matrix: &SparseMatrix<B>,
+    sweeps: &Sgs<B>,
+    right: &[Vector3],
+    x: &mut [Vector3],
+    tolerance: Tolerance,
+    threads: &Threads,
+) -> Result<Solved> {
+    let n = right.len();
+    let mut z = vec![[0.0; 3]; n];
+    sweeps.apply(matrix, right, &mut z);
+    let of_right = dot(right, &z);
+    if of_right == 0.0 {
+        x.fill([0.0; 3]);
+        return Ok(Solved::default());
+    }
+    let of_x = matrix.times(x, threads);
+    let energy = dot(x, &of_x);
+    let share = if energy > 0.0 { dot(x, right) / energy } else { 0.0 };
+    x.iter_mut().for_each(|x| *x = x.map(|x| share * x));
+    let mut residual: Vec<Vector3> =
+        right.iter().zip(&of_x).map(|(b, ax)| minus(*b, ax.map(|ax| share * ax))).collect();
+    sweeps.apply(matrix, &residual, &mut z);
+    let mut rz = dot(&residual, &z);
+    let mut along = z.clone();
+    let mut solved = Solved { iterations: 0, residual: (rz / of_right).sqrt() };
+    while solved.residual > tolerance.residual {
+        if solved.iterations == tolerance.iterations || !solved.residual.is_finite() {
+            return Err(Error::input(format!(
+                "{} iterations left a residual of {:.1e} where {:.1e} is asked for",
+                solved.iterations, solved.residual, tolerance.residual
+            ))
+            .remedy("ask for less, or begin with a mesh whose cells are less flat"));
+        }
+        let of_along = matrix.times(&along, threads);
+        let step = rz / dot(&along, &of_along);
+        for i in 0..n {
+            for k in 0..3 {
+                x[i][k] += step * along[i][k];
+                residual[i][k] -= step * of_along[i][k];
+            }
+        }
+        sweeps.apply(matrix, &residual, &mut z);
+        let next = dot(&residual, &z);
+        let turn = next / rz;
+        along.iter_mut().zip(&z).for_each(|(p, z)| (0..3).for_each(|k| p[k] = z[k] + turn * p[k]));
+        rz = next;
+        solved = Solved { iterations: solved.iterations + 1, residual: (rz / of_right).sqrt() };
+    }
+    Ok(solved)
+}
+
+fn minus(a: Vector3, b: Vector3) -> Vector3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: &[Vector3], b: &[Vector3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::Block3;
+
+    /// A chain of springs, held at both ends: the exact inverse is known.
+    #[test]
+    fn a_chain_takes_the_shape_of_a_parabola() {
+        let n = 60;
+        let near = |i: usize| (i.saturating_sub(1)..(i + 2).min(n)).map(|j| j as u32).collect();
+        let mut matrix = SparseMatrix::<f64>::with_pattern((0..n).map(near));
+        for i in 0..n {
+            matrix.add(i, i as u32, 2.0);
+            if i > 0 {
+                matrix.add(i, i as u32 - 1, -1.0);
+                matrix.add(i - 1, i as u32, -1.0);
+            }
+        }
+        let sweeps = Sgs::new(&matrix).unwrap();
+        let right = vec![[1.0, -2.0, 0.0]; n];
+        let tolerance = Tolerance { residual: 1e-13, iterations: 1000 };
+        for threads in [Threads::single(), Threads::new(2).unwrap()] {
+            let mut x = vec![[0.0; 3]; n];
+            let solved = conjugate_gradients(&matrix, &sweeps, &right, &mut x, tolerance, &threads).unwrap();
+            assert!(solved.iterations > 0 && solved.residual <= 1e-13);
+            for (i, x) in x.iter().enumerate() {
+                let exact = (i + 1) as f64 * (n - i) as f64 / 2.0;
+                assert!((x[0] - exact).abs() < 1e-9 && (x[1] + 2.0 * exact).abs() < 1e-9 && x[2] == 0.0);
+            }
+            // A multiple of the solution is as good as the solution.
+            x.iter_mut().for_each(|x| *x = x.map(|x| 3.0 * x));
+            let again = conjugate_gradients(&matrix, &sweeps, &right, &mut x, tolerance, &threads).unwrap();
+            assert!(again.iterations <= 1, "{again:?}");
+        }
+        let few = Tolerance { iterations: 3, ..tolerance };
+        let mut x = vec![[0.0; 3]; n];
+        let error =
+            conjugate_gradients(&matrix, &sweeps, &right, &mut x, few, &Threads::single()).unwrap_err();
+        assert!(error.what().contains("3 iterations") && error.remedy_text().is_some());
+    }
+
+    #[test]
+    fn blocks_are_inverted_or_refused() {
+        let block: Block3 = [[4.0, 1.0, 0.5], [1.0, 3.0, -1.0], [0.5, -1.0, 2.0]];
+        let inverse = block.inverse().unwrap();
+        for k in 0..3 {
+            let mut unit = [0.0; 3];
+            unit[k] = 1.0;
+            let back = inverse.times(block.times(unit));
+            assert!((0..3).all(|i| (back[i] - unit[i]).abs() < 1e-15), "{back:?}");
+        }
+        assert!([[1.0, 2.0, 0.0], [2.0, 1.0, 0.0], [0.0, 0.0, 1.0]].inverse().is_none());
+        assert!(0.0f64.inverse().is_none() && (-1.0f64).inverse().is_none());
+        let empty = SparseMatrix::<f64>::with_pattern(std::iter::once(vec![]));
+        assert!(Sgs::new(&empty).is_err());
+    }
+}

@@ -1,0 +1,36 @@
+//! What carries the displacements of the nodes to all vertices.
+
+use crate::base::{Point, Result, Threads};
+use crate::motion::solve::Solve;
+use crate::motion::update::{Displacements, Update};
+
+/// One of the methods, set up for one place of the mesh.
+#[derive(Debug)]
+pub(crate) enum Map {
+    /// A weighted sum for each vertex.
+    Graph(Update),
+    /// A linear system.
+    Solve(Box<Solve>),
+}
+
+impl Map {
+    /// Moves all vertices from where they are; how many iterations that took.
+    ///
+    /// # Errors
+    /// When a system is not solved to the tolerance.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacements: &Displacements<'_>,
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<usize> {
+        match self {
+            Self::Graph(update) => {
+                update.apply(from, displacements, out, threads);
+                Ok(0)
+            }
+            Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),
+        }
+    }
+}

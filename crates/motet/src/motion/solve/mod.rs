@@ -1,0 +1,105 @@
+//! The other way for the volume to follow: its vertices go where a linear system puts them.
+//!
+//! Slow beside the graph, and what that is measured against: as users know it from their solvers, done as well as it can be. Linear elasticity whose cells are the stiffer the
+//! smaller they are (Tezduyar 1992; Stein, Tezduyar, Benney 2003: "Jacobian-based stiffening"), and a Laplace equation for each coordinate with a diffusivity that falls with the distance
+//! from the wall (Jasak and Tukovic 2006).
+
+mod assemble;
+mod element;
+
+use std::sync::{Mutex, PoisonError};
+
+use crate::algebra::{Block3, Solved, Tolerance, conjugate_gradients};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::add;
+use crate::motion::options::{FacetSet, Method};
+use crate::motion::solve::assemble::{Numbering, System};
+use crate::motion::update::Displacements;
+
+/// A linear system for the displacements of the vertices that nothing else moves.
+#[derive(Debug)]
+pub(crate) struct Solve {
+    /// The vertices that are solved for.
+    free: Vec<VertexId>,
+    /// The vertices that are given.
+    nodes: Vec<VertexId>,
+    kind: Kind,
+    tolerance: Tolerance,
+    /// The last solution, where the next one begins.
+    last: Mutex<Vec<Point>>,
+}
+
+#[derive(Debug)]
+enum Kind {
+    Elastic(System<Block3>),
+    Laplace(System<f64>),
+}
+
+impl Solve {
+    /// Sets up the system of a mesh whose cells have these corners, with its vertices at `points`; `nodes` are given. `wall` is where a Laplace equation is stiff.
+    ///
+    /// # Errors
+    /// When `free` has a vertex that no corner holds, and when all cells at one are flat.
+    pub(crate) fn new(
+        method: &Method,
+        tets: &[[VertexId; 4]],
+        points: &[Point],
+        (free, nodes): (&[VertexId], &[VertexId]),
+        wall: &FacetSet,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let numbering = Numbering::new(points.len(), free, nodes);
+        let tets = numbering.of_tets(tets);
+        let (kind, tolerance) = match method {
+            Method::Delaunay => return Err(Error::options("the graph has no system to be solved")),
+            Method::Elastic(law) => {
+                let of_tet = element::elastic(law, &tets.vertices, points);
+                (Kind::Elastic(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
+            }
+            Method::Laplace(law) => {
+                let of_tet = element::laplace(law, &tets.vertices, points, wall, threads);
+                (Kind::Laplace(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
+            }
+        };
+        let last = Mutex::new(vec![[0.0; 3]; free.len()]);
+        Ok(Self { free: free.to_vec(), nodes: nodes.to_vec(), kind, tolerance, last })
+    }
+
+    /// Moves all vertices from where they are; those of no cell and no node stay.
+    ///
+    /// # Errors
+    /// When the tolerance is not reached.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacements: &Displacements<'_>,
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<Solved> {
+        let table = displacements.table();
+        let given: Vec<Point> = table[..self.nodes.len()].iter().map(|d| d.point()).collect();
+        let mut x = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let solved = match &self.kind {
+            Kind::Elastic(system) => solve(system, &given, &mut x, self.tolerance, threads),
+            Kind::Laplace(system) => solve(system, &given, &mut x, self.tolerance, threads),
+        }?;
+        out.copy_from_slice(from);
+        for (v, d) in self.free.iter().zip(&x).chain(self.nodes.iter().zip(&given)) {
+            out[v.index()] = add(from[v.index()], *d);
+        }
+        *self.last.lock().unwrap_or_else(PoisonError::into_inner) = x;
+        Ok(solved)
+    }
+}
+
+fn solve<B: crate::algebra::Block>(
+    system: &System<B>,
+    given: &[Point],
+    x: &mut [Point],
+    tolerance: Tolerance,
+    threads: &Threads,
+) -> Result<Solved> {
+    let right: Vec<Point> =
+        system.coupling.times(given, threads).into_iter().map(|f| f.map(|x| -x)).collect();
+    conjugate_gradients(&system.inner, &system.sweeps, &right, x, tolerance, threads)
+}
