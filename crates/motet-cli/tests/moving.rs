@@ -330,3 +330,18 @@ fn a_run_that_is_killed_leaves_a_whole_shorter_series() {
         read(file).unwrap();
     }
 }
+
+#[test]
+fn a_body_turns_by_a_right_angle_and_takes_the_cells_along() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &sphere_in_box(11, 6));
+    let turn = ["move", "box.vtu", "-o", "out.vtu", "--rotate", "sphere=0,0,1,90", "--method", "bodies"];
+    for more in [&[][..], &["--body", "sphere"]] {
+        let call = folder.motet(turn.iter().chain(more).chain(&["--json"])).assert().code(0);
+        let report = report(&call);
+        let certificate = &report["steps"][0];
+        assert_eq!((&certificate["inverted"], &certificate["substeps"]), (&Value::from(0), &Value::from(0)));
+    }
+    let call = folder.motet([&turn[..6], &["--body", "sphere"]].concat()).assert().code(2);
+    assert!(stderr(&call).contains("--method bodies"));
+}

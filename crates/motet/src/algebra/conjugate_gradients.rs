@@ -28,6 +28,13 @@ pub struct Sgs<B> {
     inverses: Vec<B>,
 }
 
+impl<B> Default for Sgs<B> {
+    /// Of a matrix without rows.
+    fn default() -> Self {
+        Self { inverses: Vec::new() }
+    }
+}
+
 impl<B: Block> Sgs<B> {
     /// # Errors
     /// When a block on the diagonal is not positive definite.

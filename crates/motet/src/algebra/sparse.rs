@@ -24,6 +24,11 @@ impl<B: Block> SparseMatrix<B> {
         Self { blocks: vec![B::ZERO; columns.len()], starts, columns }
     }
 
+    /// Makes all entries zero; the pattern stays.
+    pub fn clear(&mut self) {
+        self.blocks.fill(B::ZERO);
+    }
+
     /// How many rows there are.
     pub fn n_rows(&self) -> usize {
         self.starts.len() - 1
@@ -39,10 +44,22 @@ impl<B: Block> SparseMatrix<B> {
     /// # Panics
     /// When it has not.
     pub fn add(&mut self, row: usize, column: u32, block: B) {
+        self.add_at(self.place(row, column), block);
+    }
+
+    /// Where an entry is that the pattern has: for [`Self::add_at`].
+    ///
+    /// # Panics
+    /// When it has not.
+    pub fn place(&self, row: usize, column: u32) -> usize {
         let range = self.starts[row]..self.starts[row + 1];
-        let place = self.columns[range.clone()].binary_search(&column).expect("the pattern has the entry");
-        let entry = &mut self.blocks[range.start + place];
-        *entry = entry.plus(block);
+        range.start + self.columns[range].binary_search(&column).expect("the pattern has the entry")
+    }
+
+    /// Adds to the entry at a [`Self::place`].
+    #[inline(always)]
+    pub fn add_at(&mut self, place: usize, block: B) {
+        self.blocks[place] = self.blocks[place].plus(block);
     }
 
     /// The columns and blocks of a row.

@@ -2,7 +2,9 @@
 
 mod csr;
 mod error;
+pub(crate) mod four;
 mod ids;
+
 mod lanewise;
 mod mixed;
 mod sets;

@@ -20,7 +20,9 @@ pub fn eigenvalues(matrix: Symmetric) -> [f64; 3] {
         if [a[0][1], a[0][2], a[1][2]] == [0.0; 3] {
             break;
         }
-        [[0, 1], [0, 2], [1, 2]].into_iter().for_each(|pair| rotate(&mut a, pair));
+        for pair in [[0, 1], [0, 2], [1, 2]] {
+            rotate(&mut a, pair);
+        }
     }
     let mut values = [0, 1, 2].map(|i| a[i][i] * largest);
     values.sort_by(f64::total_cmp);
@@ -28,10 +30,12 @@ pub fn eigenvalues(matrix: Symmetric) -> [f64; 3] {
 }
 
 /// Turns the axes `p` and `q` so that the entry of both becomes 0.
-fn rotate(a: &mut [[f64; 3]; 3], [p, q]: [usize; 2]) {
+///
+/// Sine and cosine of the angle.
+fn rotate<const N: usize>(a: &mut [[f64; N]; N], [p, q]: [usize; 2]) -> [f64; 2] {
     let off = a[p][q];
     if off == 0.0 {
-        return;
+        return [0.0, 1.0];
     }
     // The tangent of the smaller angle.
     let cotangent = (a[q][q] - a[p][p]) / (2.0 * off);
@@ -41,11 +45,34 @@ fn rotate(a: &mut [[f64; 3]; 3], [p, q]: [usize; 2]) {
     a[p][p] -= tangent * off;
     a[q][q] += tangent * off;
     [a[p][q], a[q][p]] = [0.0; 2];
-    let r = 3 - p - q;
-    let (x, y) = (a[r][p], a[r][q]);
-    let turned = [cosine * x - sine * y, sine * x + cosine * y];
-    [a[r][p], a[p][r]] = [turned[0]; 2];
-    [a[r][q], a[q][r]] = [turned[1]; 2];
+    for r in (0..N).filter(|&r| r != p && r != q) {
+        let (x, y) = (a[r][p], a[r][q]);
+        let turned = [cosine * x - sine * y, sine * x + cosine * y];
+        [a[r][p], a[p][r]] = [turned[0]; 2];
+        [a[r][q], a[q][r]] = [turned[1]; 2];
+    }
+    [sine, cosine]
+}
+
+/// The eigenvector, of length 1, to the largest eigenvalue, by the same rotations; of equal ones the first. NaN where an entry is not finite.
+pub fn largest_eigenvector(matrix: [[f64; 4]; 4]) -> [f64; 4] {
+    let largest = matrix.as_flattened().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let mut vectors = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f64::from(u8::from(i == j))));
+    if largest == 0.0 {
+        return vectors[0];
+    }
+    let mut a = matrix.map(|row| row.map(|x| x / largest));
+    for _ in 0..SWEEPS {
+        for (p, q) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            let [sine, cosine] = rotate(&mut a, [p, q]);
+            let (x, y) = (vectors[p], vectors[q]);
+            vectors[p] = [0, 1, 2, 3].map(|i| cosine * x[i] - sine * y[i]);
+            vectors[q] = [0, 1, 2, 3].map(|i| sine * x[i] + cosine * y[i]);
+        }
+    }
+    let at = (1..4).fold(0, |at, i| if a[i][i] > a[at][at] { i } else { at });
+    let length = vectors[at].iter().map(|x| x * x).sum::<f64>().sqrt();
+    vectors[at].map(|x| x / length)
 }
 
 #[cfg(test)]

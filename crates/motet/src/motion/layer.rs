@@ -103,6 +103,13 @@ impl Layer {
         })
     }
 
+    /// For each member what numbers at the driven nodes are at its foot.
+    pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
+        let of_wall = |v: u32| driven[self.wall_nodes[v as usize] as usize];
+        let foot = |m: &Member| triangle::at(self.wall.triangle(m.triangle as usize).map(of_wall), m.weights);
+        self.members.iter().map(foot).collect()
+    }
+
     /// Which members share a cell with a vertex that is neither a member nor driven:
     /// the layer's outer ones.
     pub(crate) fn outer(

@@ -1,6 +1,7 @@
 //! What carries the displacements of the nodes to all vertices.
 
 use crate::base::{Point, Result, Threads};
+use crate::motion::bodies::Bodies;
 use crate::motion::solve::Solve;
 use crate::motion::update::{Displacements, Update};
 
@@ -9,6 +10,8 @@ use crate::motion::update::{Displacements, Update};
 pub(crate) enum Map {
     /// A weighted sum for each vertex.
     Graph(Update),
+    /// Shares in the motion of rigid bodies, and weighted sums for the rest.
+    Bodies(Box<Bodies>),
     /// A linear system.
     Solve(Box<Solve>),
 }
@@ -28,6 +31,10 @@ impl Map {
         match self {
             Self::Graph(update) => {
                 update.apply(from, displacements, out, threads);
+                Ok(0)
+            }
+            Self::Bodies(bodies) => {
+                bodies.apply(from, displacements, out, threads);
                 Ok(0)
             }
             Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),

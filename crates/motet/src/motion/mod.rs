@@ -42,8 +42,8 @@
 //! of the graph with three nodes on a body of radius r and one at the distance D
 //! keeps its sign while the angle is below acos(r / D), never 90 degrees, and cells
 //! suffer from 30 degrees on. Turn in several calls of [`Mover::advance`], which
-//! builds the graph anew where a step from the first place will not do; large turns
-//! beyond that need another method. Between the tets of the graph the map has kinks:
+//! builds the graph anew where a step from the first place will not do; or let the parts
+//! that turn carry the volume along as rigid bodies ([`Method::Bodies`]). Between the tets of the graph the map has kinks:
 //! thin layers at a wall are better kept whole by a [`RigidLayer`].
 //!
 //! # What the checks mean
@@ -69,6 +69,7 @@
 //!   no volume cell stay where they are.
 
 mod advance;
+mod bodies;
 mod boundary_motion;
 mod certificate;
 mod check;

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::{Boundary, Mesh};
+use crate::motion::bodies::{self, Bodies};
 use crate::motion::check::Check;
 use crate::motion::graph::{Hanging, hang, triangulate};
 use crate::motion::map::Map;
@@ -28,6 +29,8 @@ pub struct Mover {
     /// Vertices that follow the nodes.
     hanging: Vec<VertexId>,
     method: Method,
+    /// The vertices of each rigid body.
+    bodies: Vec<Vec<VertexId>>,
     /// Where a Laplace equation is stiff.
     wall: FacetSet,
     /// How they follow from the reference.
@@ -89,7 +92,7 @@ pub struct SetupSeconds {
     pub triangulation: f64,
     /// Finding the tet and the weights of every other vertex.
     pub hanging: f64,
-    /// Setting up a linear system.
+    /// Setting up a linear system, or the shares of bodies.
     pub system: f64,
     /// Finding the tets of each vertex, for smoothing.
     pub smoothing: f64,
@@ -126,6 +129,10 @@ impl Mover {
             hanging: hanging.collect(),
             wall: wall(&boundary, options),
             method: options.method.clone(),
+            bodies: match &options.method {
+                Method::Bodies(sets) => bodies::vertices(sets, &boundary, &mesh.points)?,
+                _ => Vec::new(),
+            },
             map: Map::Graph(Update::default()),
             smoother: None,
             tets: Vec::new(),
@@ -135,7 +142,7 @@ impl Mover {
             setup,
         };
         match mover.method {
-            Method::Delaunay => mover.hang_reference(&is_used, threads)?,
+            Method::Delaunay | Method::Bodies(_) => mover.hang_reference(&is_used, threads)?,
             _ => mover.assemble_reference(&is_used, threads)?,
         }
         mover.setup.seconds.smoothing = mover.set_up_smoothing(options.smoothing);
@@ -163,7 +170,11 @@ impl Mover {
     /// Panics when there is no such vertex.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
         self.hanging.binary_search(&v).ok()?;
-        let Map::Graph(update) = &self.map else { return None };
+        let update = match &self.map {
+            Map::Graph(update) => update,
+            Map::Bodies(bodies) => bodies.graph(),
+            Map::Solve(_) => return None,
+        };
         let (nodes, weights) = update.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
         let [a, b, c, d] = nodes.map(vertex);
@@ -249,7 +260,10 @@ impl Mover {
     /// Sets the method up where `points` has the vertices.
     pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
         match self.method {
-            Method::Delaunay => Ok(Map::Graph(self.tabulate(&self.find(points, threads)?.0))),
+            Method::Delaunay | Method::Bodies(_) => {
+                let graph = self.tabulate(&self.find(points, threads)?.0);
+                self.with_bodies(graph, points, threads)
+            }
             _ => {
                 let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
                 let vertices = (&self.hanging[..], &nodes[..]);
@@ -257,6 +271,16 @@ impl Mover {
                     .map(|solve| Map::Solve(Box::new(solve)))
             }
         }
+    }
+
+    /// The graph's map, with what bodies carry along.
+    fn with_bodies(&self, graph: Update, points: &[Point], threads: &Threads) -> Result<Map> {
+        if self.bodies.is_empty() {
+            return Ok(Map::Graph(graph));
+        }
+        let tets = &self.check.corners.tets;
+        let bodies = Bodies::new(&self.bodies, tets, points, (&self.hanging, &self.nodes), graph, threads)?;
+        Ok(Map::Bodies(Box::new(bodies)))
     }
 
     /// Sets up the system of the reference. Vertices that no cell uses are not part of what moves.
@@ -298,7 +322,9 @@ impl Mover {
         found.remove(&staying);
         let mut i = 0u32..;
         self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
-        self.map = Map::Graph(self.tabulate(&found));
+        let begin = Instant::now();
+        self.map = self.with_bodies(self.tabulate(&found), &self.reference, threads)?;
+        self.setup.seconds.system = begin.elapsed().as_secs_f64();
         self.tets = found.tets.iter().map(|t| t.map(|i| self.nodes.of_graph[i as usize])).collect();
         let nodes = &self.nodes;
         self.setup.seconds.triangulation = triangulation;

@@ -118,6 +118,24 @@ impl Nodes {
         Displacements::All(all)
     }
 
+    /// Nodes that slide after others, rising; those of the layer are not among them.
+    pub(crate) fn sliding(&self) -> Vec<u32> {
+        let mut sliding: Vec<u32> = self.slides.iter().flat_map(|s| s.sliding.iter().copied()).collect();
+        sliding.sort_unstable();
+        sliding
+    }
+
+    /// Numbers of all nodes from those of the driven ones: nodes of the layer have those of their feet.
+    pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
+        let mut all = driven.to_vec();
+        all.resize(self.vertices.len(), [0.0; 3]);
+        if let Some(layer) = &self.layer {
+            let feet = layer.at_feet(driven);
+            self.member_nodes.iter().zip(feet).for_each(|(&node, value)| all[node as usize] = value);
+        }
+        all
+    }
+
     pub(crate) fn n_sliding(&self) -> usize {
         let members = self.member_slides.iter().filter(|s| s.is_some()).count();
         members + self.slides.iter().map(Slide::n_sliding).sum::<usize>()

@@ -10,6 +10,9 @@ pub enum Method {
     /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
     #[default]
     Delaunay,
+    /// As rigid bodies carry them along: the patches, each a body; where there is none, each part of the boundary that hangs together is one, but for the outer one.
+    /// A body's motion is the rigid one that fits its vertices best, a turn of at most half a circle; the rest is done by the graph.
+    Bodies(Vec<FacetSet>),
     /// As an elastic body that is stiff where cells are small. A linear system a step.
     Elastic(Elastic),
     /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system a step.
@@ -55,7 +58,7 @@ impl Method {
     /// When a number means nothing.
     pub(crate) fn check(&self) -> Result<()> {
         let (power, tolerance) = match self {
-            Self::Delaunay => return Ok(()),
+            Self::Delaunay | Self::Bodies(_) => return Ok(()),
             Self::Elastic(law) => {
                 if !(0.0..0.5).contains(&law.poisson) {
                     return Err(Error::options(format!(

@@ -27,7 +27,7 @@ const FLAT: f64 = 1e-2;
 pub(crate) struct Slide {
     pub(crate) normal: Point,
     /// Nodes of the sliding vertices.
-    sliding: Vec<u32>,
+    pub(crate) sliding: Vec<u32>,
     /// For each the nodes that it follows, and their weights.
     follows: Vec<([u32; 4], [f64; 4])>,
 }

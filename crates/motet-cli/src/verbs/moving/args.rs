@@ -92,6 +92,10 @@ pub(crate) struct MoveArgs {
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
     pub(crate) method: Method,
+    /// Patches of which each is a rigid body, for `--method bodies` [default: each part of the boundary that
+    /// hangs together, but for the outer one]. Repeatable
+    #[arg(long, value_name = "PATCH", help_heading = "Volume")]
+    pub(crate) body: Vec<String>,
     /// Then move the vertices of bad tets, and no others, to where their tets are better: so many
     /// sweeps over them, 2 are enough
     #[arg(long, value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0, help_heading = "Volume")]
@@ -115,6 +119,8 @@ pub(crate) struct MoveArgs {
 pub(crate) enum Method {
     /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006)
     Delaunay,
+    /// The graph, and rigid bodies that carry along what is round them: for parts that turn, or shift far
+    Bodies,
     /// An elastic body, stiff where cells are small: a linear system a step, to compare with
     Elastic,
     /// A Laplace equation for each coordinate, stiff at the wall that moves: as well

@@ -80,7 +80,8 @@ fn options(
             Some(RigidLayer { extent, wall: Some(wall(args, boundary, patches, plan, &sliding)?) })
         }
     };
-    let method = method(args, || wall(args, boundary, patches, plan, &sliding))?;
+    let bodies = args.body.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
+    let method = method(args, bodies, || wall(args, boundary, patches, plan, &sliding))?;
     let smoothing = usize::from(args.smooth);
     Ok(Options {
         method,
@@ -93,10 +94,19 @@ fn options(
 }
 
 /// A Laplace equation is stiff where the rigid layer would be.
-fn method(args: &MoveArgs, wall: impl Fn() -> motet::Result<FacetSet>) -> motet::Result<motion::Method> {
+fn method(
+    args: &MoveArgs,
+    bodies: Vec<FacetSet>,
+    wall: impl Fn() -> motet::Result<FacetSet>,
+) -> motet::Result<motion::Method> {
+    if !bodies.is_empty() && args.method != Method::Bodies {
+        return Err(Error::options("--body names a rigid body, but the method has none")
+            .remedy("add --method bodies"));
+    }
     let residual = args.residual;
     Ok(match args.method {
         Method::Delaunay => motion::Method::Delaunay,
+        Method::Bodies => motion::Method::Bodies(bodies),
         Method::Elastic => {
             let law = Elastic::default();
             motion::Method::Elastic(Elastic { tolerance: Tolerance { residual, ..law.tolerance }, ..law })

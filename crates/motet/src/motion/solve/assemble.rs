@@ -5,7 +5,7 @@ use crate::base::{Csr, Error, Result, VertexId};
 
 /// The unknowns: free vertices first, then those that are given.
 #[derive(Debug)]
-pub(super) struct Numbering {
+pub(crate) struct Numbering {
     of_vertex: Vec<u32>,
     n_free: usize,
     n_given: usize,
@@ -15,13 +15,13 @@ pub(super) struct Numbering {
 const NONE: u32 = u32::MAX;
 
 /// Tets all of whose vertices have numbers.
-pub(super) struct NumberedTets {
-    pub(super) vertices: Vec<[VertexId; 4]>,
-    pub(super) numbers: Vec<[u32; 4]>,
+pub(crate) struct NumberedTets {
+    pub(crate) vertices: Vec<[VertexId; 4]>,
+    pub(crate) numbers: Vec<[u32; 4]>,
 }
 
 impl Numbering {
-    pub(super) fn new(n_points: usize, free: &[VertexId], given: &[VertexId]) -> Self {
+    pub(crate) fn new(n_points: usize, free: &[VertexId], given: &[VertexId]) -> Self {
         let mut of_vertex = vec![NONE; n_points];
         for (number, v) in (0..).zip(free.iter().chain(given)) {
             of_vertex[v.index()] = number;
@@ -29,7 +29,11 @@ impl Numbering {
         Self { of_vertex, n_free: free.len(), n_given: given.len() }
     }
 
-    pub(super) fn of_tets(&self, tets: &[[VertexId; 4]]) -> NumberedTets {
+    pub(crate) fn n_free(&self) -> usize {
+        self.n_free
+    }
+
+    pub(crate) fn of_tets(&self, tets: &[[VertexId; 4]]) -> NumberedTets {
         let numbered = tets.iter().map(|tet| (*tet, tet.map(|v| self.of_vertex[v.index()])));
         let (vertices, numbers) = numbered.filter(|(_, numbers)| !numbers.contains(&NONE)).unzip();
         NumberedTets { vertices, numbers }
@@ -38,24 +42,19 @@ impl Numbering {
 
 /// The equations of the free vertices.
 #[derive(Debug)]
-pub(super) struct System<B> {
+pub(crate) struct System<B> {
     /// What they have to do with each other.
-    pub(super) inner: SparseMatrix<B>,
+    pub(crate) inner: SparseMatrix<B>,
     /// And with those that are given.
-    pub(super) coupling: SparseMatrix<B>,
-    pub(super) sweeps: Sgs<B>,
+    pub(crate) coupling: SparseMatrix<B>,
+    pub(crate) sweeps: Sgs<B>,
+    /// For each tet where its matrix goes, row after row. To look for them each time takes five times as long.
+    places: Vec<[[u32; 4]; 4]>,
 }
 
 impl<B: Block> System<B> {
-    /// `of_tet` gives the matrix of each tet.
-    ///
-    /// # Errors
-    /// When a free vertex has no tet, or only flat ones.
-    pub(super) fn assemble(
-        numbering: &Numbering,
-        tets: &[[u32; 4]],
-        of_tet: impl Fn(usize) -> [[B; 4]; 4],
-    ) -> Result<Self> {
+    /// All zero, with room for what tets of these numbers bring.
+    pub(crate) fn with_pattern(numbering: &Numbering, tets: &[[u32; 4]]) -> Self {
         let n_free = numbering.n_free as u32;
         let is_free = |number: u32| number < n_free;
         let uses = || {
@@ -65,27 +64,59 @@ impl<B: Block> System<B> {
         let tets_of = Csr::from_pairs(numbering.n_free, uses);
         let near = |row: usize| tets_of.list(row).iter().flat_map(|&t| tets[t as usize]);
         let rows = 0..numbering.n_free;
-        let mut inner =
+        let inner =
             SparseMatrix::with_pattern(rows.clone().map(|row| near(row).filter(|n| is_free(*n)).collect()));
-        let mut coupling = SparseMatrix::with_pattern(
+        let coupling = SparseMatrix::with_pattern(
             rows.map(|row| near(row).filter(|n| !is_free(*n)).map(|n| n - n_free).collect()),
         );
         debug_assert!(numbering.n_given > 0);
-        for (t, tet) in tets.iter().enumerate() {
+        let places_of = |tet: &[u32; 4]| {
+            tet.map(|row| {
+                tet.map(|column| match (is_free(row), is_free(column)) {
+                    (false, _) => NONE,
+                    (true, true) => inner.place(row as usize, column) as u32,
+                    (true, false) => coupling.place(row as usize, column - n_free) as u32,
+                })
+            })
+        };
+        let places = tets.iter().map(places_of).collect();
+        Self { places, inner, coupling, sweeps: Sgs::default() }
+    }
+
+    /// [`Self::with_pattern`] and [`Self::fill`].
+    pub(super) fn assemble(
+        numbering: &Numbering,
+        tets: &[[u32; 4]],
+        of_tet: impl Fn(usize) -> [[B; 4]; 4],
+    ) -> Result<Self> {
+        let mut system = Self::with_pattern(numbering, tets);
+        system.fill(tets, of_tet)?;
+        Ok(system)
+    }
+
+    /// `of_tet` gives the matrix of each tet.
+    ///
+    /// # Errors
+    /// When a free vertex has no tet, or only flat ones.
+    pub(crate) fn fill(&mut self, tets: &[[u32; 4]], of_tet: impl Fn(usize) -> [[B; 4]; 4]) -> Result<()> {
+        let Self { inner, coupling, sweeps, places } = self;
+        inner.clear();
+        coupling.clear();
+        let n_free = inner.n_rows() as u32;
+        for (t, (tet, places)) in tets.iter().zip(places).enumerate() {
             let matrix = of_tet(t);
-            for (row, blocks) in tet.iter().zip(matrix).filter(|(row, _)| is_free(**row)) {
-                for (&column, block) in tet.iter().zip(blocks) {
-                    match is_free(column) {
-                        true => inner.add(*row as usize, column, block),
-                        false => coupling.add(*row as usize, column - n_free, block),
-                    }
+            let rows = tet.iter().zip(matrix).zip(places).filter(|((row, _), _)| **row < n_free);
+            for ((_, blocks), places) in rows {
+                for ((&column, block), &place) in tet.iter().zip(blocks).zip(&*places) {
+                    let matrix = if column < n_free { &mut *inner } else { &mut *coupling };
+                    matrix.add_at(place as usize, block);
                 }
             }
         }
-        let sweeps = Sgs::new(&inner).map_err(|_| {
+        *sweeps = Sgs::new(inner).map_err(|_| {
             Error::input("a vertex that is to follow has no cell with a volume at its corner")
                 .remedy("use the method `delaunay`, which needs no cells; or write the mesh with linear cells, none of them flat")
         })?;
-        Ok(Self { inner, coupling, sweeps })
+        Ok(())
     }
 }

@@ -8,7 +8,7 @@ use crate::motion::options::{Elastic, FacetSet, Laplace};
 use crate::spatial::NearestTriangle;
 
 /// The gradients of the shape functions, and the volume without its sign; `None` where that is zero.
-fn gradients([p, q, r, s]: [Point; 4]) -> Option<([Point; 4], f64)> {
+pub(crate) fn gradients([p, q, r, s]: [Point; 4]) -> Option<([Point; 4], f64)> {
     let (a, b, c) = (sub(q, p), sub(r, p), sub(s, p));
     let volume_6 = dot(a, cross(b, c));
     if volume_6 == 0.0 || !volume_6.is_finite() {

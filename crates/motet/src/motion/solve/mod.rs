@@ -13,7 +13,8 @@ use crate::algebra::{Block3, Solved, Tolerance, conjugate_gradients};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::add;
 use crate::motion::options::{FacetSet, Method};
-use crate::motion::solve::assemble::{Numbering, System};
+pub(crate) use crate::motion::solve::assemble::{Numbering, System};
+pub(crate) use crate::motion::solve::element::gradients;
 use crate::motion::update::Displacements;
 
 /// A linear system for the displacements of the vertices that nothing else moves.
@@ -51,7 +52,9 @@ impl Solve {
         let numbering = Numbering::new(points.len(), free, nodes);
         let tets = numbering.of_tets(tets);
         let (kind, tolerance) = match method {
-            Method::Delaunay => return Err(Error::options("the graph has no system to be solved")),
+            Method::Delaunay | Method::Bodies(_) => {
+                return Err(Error::options("the graph has no system to be solved"));
+            }
             Method::Elastic(law) => {
                 let of_tet = element::elastic(law, &tets.vertices, points);
                 (Kind::Elastic(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)

@@ -1,0 +1,152 @@
+//! Four numbers that are worked on at once, by the machine's wide instructions or without: the bits are the same.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// Four numbers.
+pub(crate) trait Four:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// What says that the machine can do it.
+    type Machine: Copy;
+
+    fn load(machine: Self::Machine, numbers: &[f64; 4]) -> Self;
+    fn sqrt(self) -> Self;
+    /// `yes` where this is positive, else `no`.
+    fn if_positive(self, yes: Self, no: Self) -> Self;
+    fn stored(self) -> [f64; 4];
+
+    #[inline(always)]
+    fn all(machine: Self::Machine, x: f64) -> Self {
+        Self::load(machine, &[x; 4])
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        (self - other).if_positive(other, self)
+    }
+
+    #[inline(always)]
+    fn sum(self) -> f64 {
+        let [a, b, c, d] = self.stored();
+        (a + b) + (c + d)
+    }
+
+    #[inline(always)]
+    fn least(self) -> f64 {
+        let [a, b, c, d] = self.stored();
+        a.min(b).min(c.min(d))
+    }
+}
+
+/// Four points, or vectors.
+pub(crate) type Vectors<F> = [F; 3];
+
+/// One by one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain([f64; 4]);
+
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wide(pulp::x86::V3, pulp::f64x4);
+
+macro_rules! by_each {
+    ($($trait:ident $method:ident $operator:tt $simd:ident;)*) => {
+        $(impl $trait for Plain {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let ([a, b, c, d], [p, q, r, s]) = (self.0, other.0);
+                Self([a $operator p, b $operator q, c $operator r, d $operator s])
+            }
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        impl $trait for Wide {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0, self.0.$simd(self.1, other.1))
+            }
+        })*
+    };
+}
+
+by_each! {
+    Add add + add_f64x4;
+    Sub sub - sub_f64x4;
+    Mul mul * mul_f64x4;
+    Div div / div_f64x4;
+}
+
+impl Four for Plain {
+    type Machine = ();
+
+    #[inline(always)]
+    fn load(_: (), numbers: &[f64; 4]) -> Self {
+        Self(*numbers)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt()])
+    }
+
+    #[inline(always)]
+    fn if_positive(self, yes: Self, no: Self) -> Self {
+        let mut chosen = no;
+        for i in 0..4 {
+            chosen.0[i] = if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] };
+        }
+        chosen
+    }
+
+    #[inline(always)]
+    fn stored(self) -> [f64; 4] {
+        self.0
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Four for Wide {
+    type Machine = pulp::x86::V3;
+
+    #[inline(always)]
+    fn load(machine: pulp::x86::V3, &[a, b, c, d]: &[f64; 4]) -> Self {
+        Self(machine, pulp::f64x4(a, b, c, d))
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0, self.0.sqrt_f64x4(self.1))
+    }
+
+    #[inline(always)]
+    fn if_positive(self, yes: Self, no: Self) -> Self {
+        let is_positive = self.0.cmp_gt_f64x4(self.1, self.0.splat_f64x4(0.0));
+        Self(self.0, self.0.select_f64x4(is_positive, yes.1, no.1))
+    }
+
+    #[inline(always)]
+    fn stored(self) -> [f64; 4] {
+        let pulp::f64x4(a, b, c, d) = self.1;
+        [a, b, c, d]
+    }
+}
+
+#[inline(always)]
+pub(crate) fn sub<F: Four>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+pub(crate) fn dot<F: Four>(a: Vectors<F>, b: Vectors<F>) -> F {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+pub(crate) fn cross<F: Four>(a: Vectors<F>, b: Vectors<F>) -> Vectors<F> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

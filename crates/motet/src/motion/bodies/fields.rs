@@ -1,0 +1,199 @@
+//! How much of a body's shift, and of its turn, reaches a vertex.
+//!
+//! Both are harmonic, 1 on the body and 0 on the rest of what is given, so that they rise and fall smoothly and never beyond. What spoils cells is the slope of the share,
+//! for the turn times the distance from the body's centre: where conductivities follow that slope, it is spread evenly. That is the equation of the p-Laplacian, `p = 4`,
+//! solved by conductivities of the solution before. They also fall with the length of edges, for a shift by its square: small cells are the
+//! stiffer ones. On a sphere in a box, 10,000 vertices, cells growing with the distance: moved by 3 radii 782 bad tets and none inverted, 844 without the
+//! slope; where all edges are as long, 912 and 34, without the slope 1,277 and 463.
+//!
+//! All bodies share the conductivities: where several move alike, the shares between them add up to 1.
+
+use crate::algebra::{Tolerance, conjugate_gradients};
+use crate::base::{Point, Result, Threads, VertexId};
+use crate::geometry::tet::centroid;
+use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
+use crate::motion::nodes::Nodes;
+use crate::motion::solve::{Numbering, System, gradients};
+
+/// Shares of shift and turn, for each vertex those of all bodies.
+#[derive(Debug)]
+pub(super) struct Fields {
+    n_bodies: usize,
+    shares: Vec<[f64; 2]>,
+}
+
+/// Solutions that lead to the last one: with twice as many the counts above change by a tenth.
+const ROUNDS: usize = 6;
+/// The least of a slope that counts, as a part of the mean.
+const LEAST: f64 = 1e-2;
+const ROUGH: Tolerance = Tolerance { residual: 1e-3, iterations: 10_000 };
+const FINE: Tolerance = Tolerance { residual: 1e-8, iterations: 10_000 };
+
+/// What both fields are solved on.
+struct Domain<'a> {
+    tets: Vec<[VertexId; 4]>,
+    numbers: Vec<[u32; 4]>,
+    /// For each tet its mean edge length at its corners.
+    lengths: Vec<f64>,
+    points: &'a [Point],
+    numbering: Numbering,
+    /// Shares of three bodies at a time on what is given.
+    given: Vec<Vec<Point>>,
+    /// The middle of each body.
+    centres: Vec<Point>,
+    threads: &'a Threads,
+}
+
+impl Fields {
+    pub(super) fn new(
+        bodies: &[Vec<u32>],
+        tets: &[[VertexId; 4]],
+        points: &[Point],
+        (free, nodes): (&[VertexId], &Nodes),
+        threads: &Threads,
+    ) -> Result<Self> {
+        // A vertex that slides is at nobody's wall.
+        let sliding = nodes.sliding();
+        let vertex = |n: &u32| nodes.vertices[*n as usize];
+        let free: Vec<VertexId> = free.iter().copied().chain(sliding.iter().map(vertex)).collect();
+        let held: Vec<u32> =
+            (0..nodes.vertices.len() as u32).filter(|n| sliding.binary_search(n).is_err()).collect();
+        let held_vertices: Vec<VertexId> = held.iter().map(vertex).collect();
+        let numbering = Numbering::new(points.len(), &free, &held_vertices);
+        let numbered = numbering.of_tets(tets);
+        let of_nodes = |three: &[Vec<u32>]| {
+            let mut on_driven = vec![[0.0; 3]; nodes.n_driven];
+            for (k, body) in three.iter().enumerate() {
+                body.iter().for_each(|&n| on_driven[n as usize][k] = 1.0);
+            }
+            let all = nodes.at_feet(&on_driven);
+            held.iter().map(|&n| all[n as usize]).collect()
+        };
+        let at = |n: &u32| points[nodes.vertices[*n as usize].index()];
+        let centre =
+            |body: &Vec<u32>| scale(body.iter().map(at).fold([0.0; 3], add), 1.0 / body.len().max(1) as f64);
+        let domain = Domain {
+            lengths: lengths(&numbered.vertices, points),
+            tets: numbered.vertices,
+            numbers: numbered.numbers,
+            points,
+            numbering,
+            given: bodies.chunks(3).map(of_nodes).collect(),
+            centres: bodies.iter().map(centre).collect(),
+            threads,
+        };
+        let mut shares = vec![[0.0; 2]; points.len() * bodies.len()];
+        for (kind, turn) in [false, true].into_iter().enumerate() {
+            for (group, values) in domain.solve(turn)?.iter().enumerate() {
+                let all = free.iter().zip(values).chain(held_vertices.iter().zip(&domain.given[group]));
+                for (v, three) in all {
+                    let of_vertex = &mut shares[v.index() * bodies.len()..][3 * group..];
+                    for (share, value) in
+                        of_vertex.iter_mut().zip(three).take((bodies.len() - 3 * group).min(3))
+                    {
+                        share[kind] = value.clamp(0.0, 1.0);
+                    }
+                }
+            }
+        }
+        Ok(Self { n_bodies: bodies.len(), shares })
+    }
+
+    /// Shares of a vertex in the bodies' shifts and turns.
+    #[inline]
+    pub(super) fn of(&self, v: usize) -> &[[f64; 2]] {
+        &self.shares[v * self.n_bodies..(v + 1) * self.n_bodies]
+    }
+}
+
+impl Domain<'_> {
+    /// Shares of three bodies at a time, for each free vertex.
+    fn solve(&self, turn: bool) -> Result<Vec<Vec<Point>>> {
+        let mut system = System::<f64>::with_pattern(&self.numbering, &self.numbers);
+        let stiffness: Vec<f64> =
+            self.lengths.iter().map(|h| if turn { 1.0 / h } else { 1.0 / (h * h) }).collect();
+        let mut conductivities = stiffness.clone();
+        let n_free = self.numbering.n_free();
+        let mut shares = vec![vec![[0.0; 3]; n_free]; self.given.len()];
+        for round in 0..=ROUNDS {
+            system.fill(&self.numbers, |t| self.matrix(t, conductivities[t]))?;
+            let tolerance = if round < ROUNDS { ROUGH } else { FINE };
+            for (shares, given) in shares.iter_mut().zip(&self.given) {
+                let right: Vec<Point> =
+                    system.coupling.times(given, self.threads).into_iter().map(|f| f.map(|x| -x)).collect();
+                let mut new = shares.clone();
+                conjugate_gradients(
+                    &system.inner,
+                    &system.sweeps,
+                    &right,
+                    &mut new,
+                    tolerance,
+                    self.threads,
+                )?;
+                // Half the way: the whole one goes to and fro.
+                let part = if round == 0 || round == ROUNDS { 1.0 } else { 0.5 };
+                shares
+                    .iter_mut()
+                    .zip(new)
+                    .for_each(|(old, new)| *old = add(*old, scale(sub(new, *old), part)));
+            }
+            let slopes = self.threads.map(self.tets.len(), |t| self.slope_squared(t, &shares, turn));
+            let mean = slopes.iter().map(|s| s.sqrt()).sum::<f64>() / slopes.len().max(1) as f64;
+            let least = (LEAST * mean).powi(2);
+            conductivities =
+                stiffness.iter().zip(slopes).map(|(k, s)| k * s.max(least) / (mean * mean)).collect();
+        }
+        Ok(shares)
+    }
+
+    fn corners(&self, t: usize) -> [Point; 4] {
+        self.tets[t].map(|v| self.points[v.index()])
+    }
+
+    fn matrix(&self, t: usize, conductivity: f64) -> [[f64; 4]; 4] {
+        let Some((g, volume)) = gradients(self.corners(t)) else { return [[0.0; 4]; 4] };
+        std::array::from_fn(|i| std::array::from_fn(|j| conductivity * volume * dot(g[i], g[j])))
+    }
+
+    /// The squared slopes of all shares in a tet; those of turns times the squared distance from the body's middle.
+    fn slope_squared(&self, t: usize, shares: &[Vec<Point>], turn: bool) -> f64 {
+        let corners = self.corners(t);
+        let Some((g, _)) = gradients(corners) else { return 0.0 };
+        let n_free = self.numbering.n_free();
+        let mut sum = 0.0;
+        for (i, &centre) in self.centres.iter().enumerate() {
+            let value = |number: u32| {
+                let number = number as usize;
+                let (of, number) = if number < n_free {
+                    (&shares[i / 3], number)
+                } else {
+                    (&self.given[i / 3], number - n_free)
+                };
+                of[number][i % 3]
+            };
+            let slope = self.numbers[t].iter().zip(g).fold([0.0; 3], |s, (n, g)| add(s, scale(g, value(*n))));
+            let arm = if turn { distance(centroid(corners), centre) } else { 1.0 };
+            sum += arm * arm * dot(slope, slope);
+        }
+        sum
+    }
+}
+
+/// The mean over the corners of each tet of the mean length of the edges there. An edge counts once for each tet that it is of.
+fn lengths(tets: &[[VertexId; 4]], points: &[Point]) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); points.len()];
+    for tet in tets {
+        for i in 0..4 {
+            for j in 0..i {
+                let length = norm(sub(points[tet[i].index()], points[tet[j].index()]));
+                for v in [tet[i], tet[j]] {
+                    let (sum, count) = &mut sums[v.index()];
+                    *sum += length;
+                    *count += 1.0;
+                }
+            }
+        }
+    }
+    let of_vertex = |v: VertexId| sums[v.index()].0 / sums[v.index()].1;
+    tets.iter().map(|tet| 0.25 * tet.iter().map(|&v| of_vertex(v)).sum::<f64>()).collect()
+}

@@ -1,0 +1,145 @@
+//! The rigid motion that fits how vertices move best.
+
+use crate::base::Point;
+use crate::base::four::{Four, Vectors, cross, sub as sub4};
+use crate::geometry::symmetric::largest_eigenvector;
+use crate::geometry::vector::{add, norm, scale, sub};
+
+/// A turn about a centre and a shift.
+#[derive(Clone, Debug)]
+pub(super) struct Rigid {
+    centre: Point,
+    shift: Point,
+    /// Of length 1.
+    axis: Point,
+    /// Of a turn, from 0 to pi.
+    half_angle: f64,
+    /// Sine and cosine of its parts, each of [`PARTS`] larger than the one before; none where nothing turns.
+    parts: Vec<[f64; 2]>,
+}
+
+/// With a table of so many angles a step of 32,000 vertices takes 0.5 of the time that it takes with a sine and a cosine for each.
+const PARTS: usize = 512;
+
+impl Rigid {
+    /// The motion for which the squared distances to the second points are smallest in sum (Horn 1987: the turn is the quaternion that is the eigenvector
+    /// to the largest eigenvalue of a symmetric matrix). Where all points stay, it is none, to the bit.
+    pub(super) fn fit(pairs: Vec<(Point, Point)>) -> Self {
+        let share = 1.0 / pairs.len().max(1) as f64;
+        let mean = |of: fn(&(Point, Point)) -> Point| scale(pairs.iter().map(of).fold([0.0; 3], add), share);
+        let centres = [mean(|p| p.0), mean(|p| p.1)];
+        let mut s = [[0.0; 3]; 3];
+        for (from, to) in &pairs {
+            let (a, b) = (sub(*from, centres[0]), sub(*to, centres[1]));
+            (0..3).for_each(|i| (0..3).for_each(|j| s[i][j] += a[i] * b[j]));
+        }
+        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
+        let q = largest_eigenvector([
+            [xx + yy + zz, yz - zy, zx - xz, xy - yx],
+            [yz - zy, xx - yy - zz, xy + yx, zx + xz],
+            [zx - xz, xy + yx, yy - xx - zz, yz + zy],
+            [xy - yx, zx + xz, yz + zy, zz - xx - yy],
+        ]);
+        let [w, x, y, z] = if q[0] < 0.0 { q.map(|c| -c) } else { q };
+        let sine = norm([x, y, z]);
+        let axis = if sine > 0.0 { [x, y, z].map(|c| c / sine) } else { [0.0, 0.0, 1.0] };
+        let half_angle = sine.atan2(w);
+        let part = |k: usize| {
+            let (sine, cosine) = (half_angle * k as f64 / PARTS as f64).sin_cos();
+            [sine, cosine]
+        };
+        let parts = if half_angle > 0.0 { (0..=PARTS).map(part).collect() } else { Vec::new() };
+        Self { centre: centres[0], shift: sub(centres[1], centres[0]), axis, half_angle, parts }
+    }
+
+    /// By how much four points move that get these shares of shift and turn.
+    #[inline(always)]
+    pub(super) fn change<F: Four>(
+        &self,
+        machine: F::Machine,
+        p: Vectors<F>,
+        [shift, turn]: [[f64; 4]; 2],
+    ) -> Vectors<F> {
+        let all = |x: f64| F::all(machine, x);
+        let by = F::load(machine, &shift);
+        let shifted = [all(self.shift[0]) * by, all(self.shift[1]) * by, all(self.shift[2]) * by];
+        if self.parts.is_empty() {
+            return shifted;
+        }
+        let (mut sines, mut cosines, mut rests) = ([0.0; 4], [0.0; 4], [0.0; 4]);
+        for i in 0..4 {
+            let at = turn[i] * PARTS as f64;
+            let k = (at as usize).min(PARTS);
+            [sines[i], cosines[i]] = self.parts[k];
+            rests[i] = at - k as f64;
+        }
+        let (sine, cosine) = (F::load(machine, &sines), F::load(machine, &cosines));
+        // The rest of the angle is below pi / 1024: what the series leave out is below 1e-17.
+        let rest = F::load(machine, &rests) * all(self.half_angle / PARTS as f64);
+        let square = rest * rest;
+        let small_sine = rest * (all(1.0) - square * all(1.0 / 6.0) * (all(1.0) - square * all(0.05)));
+        let small_cosine = all(1.0) - all(0.5) * square * (all(1.0) - square * all(1.0 / 12.0));
+        let (sine, cosine) =
+            (sine * small_cosine + cosine * small_sine, cosine * small_cosine - sine * small_sine);
+        let splat = |p: Point| [all(p[0]), all(p[1]), all(p[2])];
+        let axis = splat(self.axis);
+        let across = cross(axis, sub4(p, splat(self.centre)));
+        let back = cross(axis, across);
+        // sin a = 2 sin a/2 cos a/2, 1 - cos a = 2 sin^2 a/2
+        let twice = sine + sine;
+        let (sine_of_all, one_less_cosine) = (twice * cosine, twice * sine);
+        let of_axis = |i: usize| across[i] * sine_of_all + back[i] * one_less_cosine + shifted[i];
+        [of_axis(0), of_axis(1), of_axis(2)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::four::Plain;
+    use crate::geometry::vector::distance;
+    use crate::motion::Prescribed;
+
+    fn points() -> Vec<Point> {
+        (0..20).map(|i| f64::from(i) * 0.7).map(|t| [t.sin() + 3.0, (2.0 * t).cos(), 0.2 * t]).collect()
+    }
+
+    fn change(rigid: &Rigid, p: Point, [shift, turn]: [f64; 2]) -> Point {
+        let four = p.map(|x| Plain::all((), x));
+        rigid.change((), four, [[shift; 4], [turn; 4]]).map(|x| x.stored()[2])
+    }
+
+    fn fitted(turn: &Prescribed, shift: Point) -> Rigid {
+        Rigid::fit(points().into_iter().map(|p| (p, add(turn.apply(p, 1.0), shift))).collect())
+    }
+
+    #[test]
+    fn a_rigid_motion_is_found_and_parts_of_it_are_parts_of_the_turn() {
+        let (axis, centre, shift) = ([0.3, -0.4, 1.2], [3.0, 1.0, -2.0], [0.5, 0.0, -7.0]);
+        for degrees in [1e-3, 15.0, 90.0, 179.0] {
+            let turn = |part: f64| Prescribed::Turn { axis, angle: part * f64::to_radians(degrees), centre };
+            let rigid = fitted(&turn(1.0), shift);
+            for part in [0.0, 0.001, 0.37, 0.5, 0.9999, 1.0] {
+                for p in points() {
+                    // About the middle of the points, whatever the centre was.
+                    let middle = rigid.centre;
+                    let own =
+                        Prescribed::Turn { axis, angle: part * f64::to_radians(degrees), centre: middle };
+                    let expected = sub(own.apply(p, 1.0), p);
+                    assert!(distance(change(&rigid, p, [0.0, part]), expected) < 1e-13, "{degrees} {part}");
+                }
+            }
+            for p in points() {
+                let expected = sub(add(turn(1.0).apply(p, 1.0), shift), p);
+                assert!(distance(change(&rigid, p, [1.0, 1.0]), expected) < 1e-13, "{degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_stays_stays_to_the_bit() {
+        let rigid = Rigid::fit(points().into_iter().map(|p| (p, p)).collect());
+        assert!(points().into_iter().all(|p| change(&rigid, p, [0.4, 0.7]) == [0.0; 3]));
+        assert!(rigid.parts.is_empty());
+    }
+}

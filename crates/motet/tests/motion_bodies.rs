@@ -1,0 +1,190 @@
+//! Motion carried along by rigid bodies: turns, shifts, several bodies, what does not move rigidly, bad input.
+
+use motet::Mesh;
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::tet::volume;
+use motet::geometry::vector::{add, distance, norm, sub};
+use motet::mesh::shapes::{box_grid, sphere_in_box};
+use motet::mesh::{Boundary, CellKind, Cells};
+use motet::motion::{Extent, FacetSet, Method, Mover, Options, Prescribed, RigidLayer};
+
+fn bodies(sets: Vec<FacetSet>) -> Options {
+    Options { method: Method::Bodies(sets), ..Options::default() }
+}
+
+fn mover(mesh: &Mesh, options: &Options) -> Mover {
+    Mover::new(mesh, options, &Threads::single()).unwrap()
+}
+
+fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<Point> {
+    let displacement: Vec<Point> =
+        (mover.boundary().iter()).map(|v| mover.reference()[v.index()]).map(|p| sub(map(p), p)).collect();
+    let mut out = vec![[f64::NAN; 3]; mover.reference().len()];
+    mover.step(&displacement, &mut out, threads).unwrap();
+    for (v, d) in mover.boundary().iter().zip(&displacement) {
+        assert_eq!(
+            out[v.index()],
+            add(mover.reference()[v.index()], *d),
+            "the boundary is where it is told to be"
+        );
+    }
+    out
+}
+
+fn n_inverted(mesh: &Mesh, points: &[Point]) -> usize {
+    mesh.cells.tets().filter(|(_, tet)| volume(tet.map(|v| points[v.index()])) <= 0.0).count()
+}
+
+fn is_sphere(p: Point) -> bool {
+    norm(p) < 1.01
+}
+
+fn turned(degrees: f64, shift: Point) -> impl Fn(Point) -> Point {
+    let turn = Prescribed::Turn { axis: [1.0, 2.0, -0.5], angle: degrees.to_radians(), centre: [0.0; 3] };
+    move |p| if is_sphere(p) { add(turn.apply(p, 1.0), shift) } else { p }
+}
+
+/// A box with two holes, each a box of cells taken out.
+fn two_holes() -> (Mesh, [Vec<VertexId>; 2]) {
+    let grid = box_grid([15, 8, 8], [[0.0; 3], [15.0, 8.0, 8.0]]);
+    let hole = |p: Point| {
+        let inside = |low: f64| p[0] > low && p[0] < low + 2.0 && (1..3).all(|i| p[i] > 3.0 && p[i] < 5.0);
+        if inside(4.0) {
+            Some(0)
+        } else if inside(9.0) {
+            Some(1)
+        } else {
+            None
+        }
+    };
+    let mut mesh = Mesh { points: grid.points.clone(), ..Mesh::default() };
+    let mut new = vec![None; grid.points.len()];
+    mesh.points.clear();
+    mesh.cells = Cells::new();
+    for (_, tet) in grid.cells.tets() {
+        let centre = tet.iter().fold([0.0; 3], |s, v| add(s, grid.points[v.index()])).map(|x| x / 4.0);
+        if hole(centre).is_none() {
+            let tet = tet.map(|v| {
+                *new[v.index()].get_or_insert_with(|| {
+                    mesh.points.push(grid.points[v.index()]);
+                    VertexId::new(mesh.points.len() - 1)
+                })
+            });
+            mesh.cells.push(CellKind::TETRA, tet);
+        }
+    }
+    let near = |low: f64| {
+        let is = |p: Point| p[0] >= low && p[0] <= low + 2.0 && (1..3).all(|i| p[i] >= 3.0 && p[i] <= 5.0);
+        let boundary = Boundary::of(&mesh.cells);
+        boundary.vertices.into_iter().filter(|v| is(mesh.points[v.index()])).collect()
+    };
+    let holes = [near(4.0), near(9.0)];
+    (mesh, holes)
+}
+
+#[test]
+fn a_sphere_turns_by_a_right_angle_and_shifts_and_no_cell_inverts() {
+    let mesh = sphere_in_box(11, 6);
+    let (graph, carried) = (mover(&mesh, &Options::default()), mover(&mesh, &bodies(Vec::new())));
+    for (degrees, shift) in [(90.0, [0.0; 3]), (0.0, [2.0, 0.0, 0.0]), (60.0, [1.0, -1.0, 0.5])] {
+        let map = turned(degrees, shift);
+        let by_bodies = step(&carried, &map, &Threads::single());
+        assert_eq!(n_inverted(&mesh, &by_bodies), 0, "{degrees} {shift:?}");
+        assert!(by_bodies == step(&carried, &map, &Threads::new(3).unwrap()));
+    }
+    // What it is for: the graph alone does not get there.
+    assert!(n_inverted(&mesh, &step(&graph, turned(90.0, [0.0; 3]), &Threads::single())) > 100);
+}
+
+#[test]
+fn the_way_does_not_matter_and_what_comes_back_is_the_first_mesh_to_the_bit() {
+    let mesh = sphere_in_box(8, 5);
+    let mut carried = mover(&mesh, &Options { smoothing: 2, ..bodies(Vec::new()) });
+    let first = step(&carried, |p| p, &Threads::single());
+    let mut last = Vec::new();
+    for degrees in [0.0, 20.0, 50.0, 20.0, 0.0] {
+        let map = turned(degrees, [0.4, 0.0, 0.0].map(|x| x * degrees));
+        let displacement: Vec<Point> =
+            carried.boundary().iter().map(|v| mesh.points[v.index()]).map(|p| sub(map(p), p)).collect();
+        last = mesh.points.clone();
+        carried.advance(&displacement, &mut last, &Threads::single()).unwrap();
+    }
+    assert!(last == first);
+}
+
+#[test]
+fn what_is_not_rigid_is_left_to_the_graph() {
+    let mesh = sphere_in_box(8, 5);
+    let (graph, carried) = (mover(&mesh, &Options::default()), mover(&mesh, &bodies(Vec::new())));
+    // The sphere swells, and the box is pressed: neither is a rigid motion of the sphere.
+    let map = |p: Point| if is_sphere(p) { p.map(|x| 1.3 * x) } else { [p[0], p[1], 0.8 * p[2]] };
+    let [a, b] = [&graph, &carried].map(|mover| step(mover, map, &Threads::single()));
+    let apart = a.iter().zip(&b).map(|(p, q)| distance(*p, *q)).fold(0.0, f64::max);
+    assert!(apart < 1e-12, "{apart}");
+}
+
+#[test]
+fn bodies_that_move_alike_take_along_what_is_between_them() {
+    let (mesh, holes) = two_holes();
+    assert!(holes.iter().all(|hole| hole.len() == 26));
+    let carried = mover(&mesh, &bodies(Vec::new()));
+    let is_hole = |p: Point| holes.iter().flatten().any(|v| mesh.points[v.index()] == p);
+    let shifted =
+        step(&carried, |p| if is_hole(p) { [p[0], p[1] + 0.5, p[2]] } else { p }, &Threads::single());
+    let between: Vec<usize> = (0..mesh.points.len())
+        .filter(|&v| mesh.points[v] == [7.0, 4.0, 4.0] || mesh.points[v] == [8.0, 4.0, 4.0])
+        .collect();
+    assert_eq!(between.len(), 2);
+    for v in between {
+        let moved = shifted[v][1] - mesh.points[v][1];
+        assert!(moved > 0.4 && moved < 0.5 + 1e-9, "{moved}");
+    }
+    // Each on its own: one turns, one shifts.
+    let turn = Prescribed::Turn { axis: [1.0, 0.0, 0.0], angle: 0.8, centre: [5.0, 4.0, 4.0] };
+    let map = |p: Point| match () {
+        () if is_hole(p) && p[0] < 7.5 => turn.apply(p, 1.0),
+        () if is_hole(p) => [p[0] + 1.0, p[1], p[2]],
+        () => p,
+    };
+    let moved = step(&carried, map, &Threads::single());
+    assert_eq!(n_inverted(&mesh, &moved), 0);
+}
+
+#[test]
+fn a_rigid_layer_turns_with_its_body() {
+    let mesh = sphere_in_box(11, 6);
+    let sphere = FacetSet::of_boundary(&Boundary::of(&mesh.cells), "sphere", |i| {
+        let boundary = Boundary::of(&mesh.cells);
+        boundary.facets.list(i).iter().all(|v| is_sphere(mesh.points[v.index()]))
+    });
+    let layer = RigidLayer { extent: Extent::Cells(1), wall: Some(sphere.clone()) };
+    let options = Options { rigid_layer: Some(layer), ..bodies(vec![sphere]) };
+    let moved = step(&mover(&mesh, &options), turned(90.0, [0.5, 0.0, 0.0]), &Threads::single());
+    assert_eq!(n_inverted(&mesh, &moved), 0);
+}
+
+#[test]
+fn what_is_no_body_is_refused() {
+    let mesh = sphere_in_box(5, 3);
+    let boundary = Boundary::of(&mesh.cells);
+    let refused = |sets: Vec<FacetSet>, mesh: &Mesh| {
+        let error = Mover::new(mesh, &bodies(sets), &Threads::single()).unwrap_err();
+        assert!(error.remedy_text().is_some());
+        error.what().to_string()
+    };
+    let all = FacetSet::of_boundary(&boundary, "all", |_| true);
+    assert!(refused(vec![all.clone(), all], &mesh).contains("share vertex"));
+    assert!(
+        refused(vec![FacetSet { name: "none".into(), ..FacetSet::default() }], &mesh)
+            .contains("has 0 vertices")
+    );
+    let whole = box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]);
+    assert!(refused(Vec::new(), &whole).contains("all in one piece"));
+    let inside: Vec<VertexId> = (0..mesh.points.len())
+        .map(VertexId::new)
+        .filter(|v| boundary.vertices.binary_search(v).is_err())
+        .take(3)
+        .collect();
+    let inner = FacetSet { name: "inner".into(), vertices: inside, ..FacetSet::default() };
+    assert!(refused(vec![inner], &mesh).contains("inside the volume"));
+}
