@@ -22,6 +22,14 @@ struct Row {
     degrees: f64,
 }
 
+/// A flap that stands on the floor, `y = -1`, and bends about `z`: an arc of so many degrees.
+const FLAP: [Row; 4] = [
+    Row { name: "flap 30 degrees", steps: 6, shift: 0.0, degrees: 30.0 },
+    Row { name: "flap 45 degrees", steps: 9, shift: 0.0, degrees: 45.0 },
+    Row { name: "flap 60 degrees", steps: 12, shift: 0.0, degrees: 60.0 },
+    Row { name: "flap 90 degrees", steps: 18, shift: 0.0, degrees: 90.0 },
+];
+
 const ROWS: [Row; 7] = [
     Row { name: "0.5 radii", steps: 5, shift: 0.5, degrees: 0.0 },
     Row { name: "1 radius", steps: 10, shift: 1.0, degrees: 0.0 },
@@ -33,7 +41,19 @@ const ROWS: [Row; 7] = [
 ];
 
 impl Row {
+    fn moves(&self, p: Point) -> bool {
+        match self.name.starts_with("flap") {
+            true => p[0].abs() < 0.0301 && p[1] < 1e-6 && p[2].abs() < 0.5001,
+            false => norm(p) < 1.2,
+        }
+    }
+
     fn place(&self, p: Point, part: f64) -> Point {
+        if self.name.starts_with("flap") {
+            let (curvature, along) = (self.degrees.to_radians() * part, p[1] + 1.0);
+            let (sine, cosine) = (curvature * along).sin_cos();
+            return [(1.0 - cosine) / curvature + p[0] * cosine, sine / curvature - 1.0 - p[0] * sine, p[2]];
+        }
         let angle = self.degrees.to_radians() * part;
         let turn = Prescribed::Turn { axis: [0.0, 0.0, 1.0], angle, centre: [0.0; 3] };
         let [x, y, z] = turn.apply(p, 1.0);
@@ -59,8 +79,7 @@ fn moved(
         let driven: Vec<Point> = (mover.boundary().iter())
             .map(|v| {
                 let first = mesh.points[v.index()];
-                let is_sphere = norm(first) < 1.2;
-                let to = if is_sphere { row.place(first, step as f64 / steps as f64) } else { first };
+                let to = if row.moves(first) { row.place(first, step as f64 / steps as f64) } else { first };
                 sub(to, now.points[v.index()])
             })
             .collect();
@@ -122,20 +141,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     let laplace = Method::Laplace(Laplace::default());
     let methods = [
         ("graph", Method::Delaunay, false),
+        ("guided", Method::Guided, false),
         ("bodies", Method::Bodies(Vec::new()), false),
         ("elastic", elastic.clone(), false),
         ("laplace", laplace, false),
         ("elastic in steps", elastic, true),
     ];
-    let titles: Vec<&str> = ROWS.iter().map(|row| row.name).collect();
-    println!("| method | {} |\n|---|{}", titles.join(" | "), "---|".repeat(ROWS.len()));
+    let rows = if size.contains("flap") { &FLAP[..] } else { &ROWS };
+    let titles: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    println!("| method | {} |\n|---|{}", titles.join(" | "), "---|".repeat(rows.len()));
     for (name, method, in_steps) in methods {
-        if !name.contains(&only) {
+        // The flap hangs on the wall: it is no body of its own.
+        if !name.contains(&only) || (name == "bodies" && rows.len() == FLAP.len()) {
             continue;
         }
         let options = Options { method, smoothing: sweeps, ..Options::default() };
         let mut cells = Vec::new();
-        for row in &ROWS {
+        for row in rows {
             let (points, seconds) =
                 moved(&mesh, row, (&options, if in_steps { row.steps } else { 1 }), &threads)?;
             cells.push(format!("{}; {seconds:.2e} s", told(&mesh, &points)));

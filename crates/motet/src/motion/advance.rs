@@ -9,7 +9,7 @@
 
 use std::time::Instant;
 
-use crate::base::{Point, Result, Threads};
+use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, scale, sub};
 use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
@@ -116,7 +116,7 @@ impl Mover {
         certificate.inverted = now;
         certificate.inverted_before = before;
         certificate.quality = timed(&mut seconds.quality, || measure(&self.check, points, threads));
-        let place = |node: u32| points[self.nodes.vertices[node as usize].index()];
+        let place = |v: VertexId| points[v.index()];
         let tets = self.tets.iter();
         certificate.graph_tets_inverted =
             tets.filter(|t| crate::geometry::tet::volume_6(t.map(place)) <= 0.0).count();

@@ -2,6 +2,7 @@
 
 use crate::base::{Point, Result, Threads};
 use crate::motion::bodies::Bodies;
+use crate::motion::guided::Guided;
 use crate::motion::solve::Solve;
 use crate::motion::update::{Displacements, Update};
 
@@ -12,6 +13,8 @@ pub(crate) enum Map {
     Graph(Update),
     /// Shares in the motion of rigid bodies, and weighted sums for the rest.
     Bodies(Box<Bodies>),
+    /// The graph, whose nodes turn.
+    Guided(Box<Guided>),
     /// A linear system.
     Solve(Box<Solve>),
 }
@@ -37,6 +40,7 @@ impl Map {
                 bodies.apply(from, displacements, out, threads);
                 Ok(0)
             }
+            Self::Guided(guided) => guided.apply(from, displacements, out, threads),
             Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),
         }
     }

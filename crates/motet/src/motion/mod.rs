@@ -75,6 +75,7 @@ mod certificate;
 mod check;
 mod corners;
 mod graph;
+mod guided;
 mod layer;
 mod map;
 mod matching;

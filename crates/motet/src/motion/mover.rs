@@ -5,11 +5,13 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::delaunay::Triangulation;
 use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::bodies::{self, Bodies};
 use crate::motion::check::Check;
 use crate::motion::graph::{Hanging, hang, triangulate};
+use crate::motion::guided::{self, Graph, Guided, Helpers};
 use crate::motion::map::Map;
 use crate::motion::nodes::{Nodes, not_sliding};
 use crate::motion::options::{FacetSet, Limits, Method, Options};
@@ -31,13 +33,15 @@ pub struct Mover {
     method: Method,
     /// The vertices of each rigid body.
     bodies: Vec<Vec<VertexId>>,
-    /// Where a Laplace equation is stiff.
+    /// Where a Laplace equation is stiff; facets whose rotation guides.
     wall: FacetSet,
     /// How they follow from the reference.
     pub(crate) map: Map,
     pub(crate) smoother: Option<Smoother>,
-    /// Tets of that graph that hold a vertex, by the nodes at their corners.
-    pub(crate) tets: Vec<[u32; 4]>,
+    /// Nodes of the graph beside those that are given.
+    helpers: Helpers,
+    /// Tets of the graph of the reference that hold a vertex.
+    pub(crate) tets: Vec<[VertexId; 4]>,
     pub(crate) check: Check,
     pub(crate) limits: Limits,
     pub(crate) state: Option<crate::motion::advance::State>,
@@ -60,7 +64,7 @@ pub struct Setup {
     pub sliding: usize,
     /// Vertices of the rigid layer.
     pub layer: usize,
-    /// Nodes of the graph: driven vertices, and the outer ones of the layer.
+    /// Nodes of the graph: driven vertices, the outer ones of the layer, and those inside that the method adds.
     pub graph_nodes: usize,
     /// Tets of the graph.
     pub graph_tets: usize,
@@ -135,6 +139,7 @@ impl Mover {
             },
             map: Map::Graph(Update::default()),
             smoother: None,
+            helpers: Helpers::default(),
             tets: Vec::new(),
             check,
             limits: options.limits,
@@ -142,8 +147,8 @@ impl Mover {
             setup,
         };
         match mover.method {
-            Method::Delaunay | Method::Bodies(_) => mover.hang_reference(&is_used, threads)?,
-            _ => mover.assemble_reference(&is_used, threads)?,
+            Method::Elastic(_) | Method::Laplace(_) => mover.assemble_reference(&is_used, threads)?,
+            _ => mover.hang_reference(&is_used, threads)?,
         }
         mover.setup.seconds.smoothing = mover.set_up_smoothing(options.smoothing);
         mover.setup.seconds.total = begin.elapsed().as_secs_f64();
@@ -165,7 +170,7 @@ impl Mover {
         &self.setup
     }
 
-    /// The vertices that vertex `v` follows and their weights, as far as it hangs in the graph.
+    /// The vertices that vertex `v` follows and their weights, as far as it hangs in the graph and follows nothing else.
     ///
     /// Panics when there is no such vertex.
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
@@ -173,7 +178,7 @@ impl Mover {
         let update = match &self.map {
             Map::Graph(update) => update,
             Map::Bodies(bodies) => bodies.graph(),
-            Map::Solve(_) => return None,
+            Map::Guided(_) | Map::Solve(_) => return None,
         };
         let (nodes, weights) = update.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
@@ -260,27 +265,56 @@ impl Mover {
     /// Sets the method up where `points` has the vertices.
     pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
         match self.method {
-            Method::Delaunay | Method::Bodies(_) => {
-                let graph = self.tabulate(&self.find(points, threads)?.0);
-                self.with_bodies(graph, points, threads)
-            }
-            _ => {
+            Method::Elastic(_) | Method::Laplace(_) => {
                 let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
                 let vertices = (&self.hanging[..], &nodes[..]);
                 Solve::new(&self.method, tets, points, vertices, &self.wall, threads)
                     .map(|solve| Map::Solve(Box::new(solve)))
             }
+            _ => {
+                let (graph, found, _) = self.find(points, threads)?;
+                self.on_graph(&graph, &found, points, threads)
+            }
         }
     }
 
-    /// The graph's map, with what bodies carry along.
-    fn with_bodies(&self, graph: Update, points: &[Point], threads: &Threads) -> Result<Map> {
-        if self.bodies.is_empty() {
-            return Ok(Map::Graph(graph));
+    /// What carries displacements on a graph, found with the vertices at `points`.
+    fn on_graph(
+        &self,
+        graph: &Triangulation,
+        found: &Hanging,
+        points: &[Point],
+        threads: &Threads,
+    ) -> Result<Map> {
+        match &self.method {
+            Method::Guided => {
+                let n_nodes = graph.points().len() as u32;
+                let mut update = Update::never(n_nodes, self.reference.len());
+                for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
+                    update.hang(*vertex, found.tets[tet as usize], *w);
+                }
+                let tets: Vec<[u32; 4]> = graph.tets().iter().map(|t| t.map(|v| v.0)).collect();
+                let graph =
+                    Graph { places: graph.points().to_vec(), helpers: &self.helpers, tets: &tets, update };
+                Ok(Map::Guided(Box::new(Guided::new(graph, &self.nodes, &self.wall, points)?)))
+            }
+            Method::Bodies(_) => {
+                let (tets, graph) = (&self.check.corners.tets, self.tabulate(found));
+                let bodies =
+                    Bodies::new(&self.bodies, tets, points, (&self.hanging, &self.nodes), graph, threads)?;
+                Ok(Map::Bodies(Box::new(bodies)))
+            }
+            _ => Ok(Map::Graph(self.tabulate(found))),
         }
-        let tets = &self.check.corners.tets;
-        let bodies = Bodies::new(&self.bodies, tets, points, (&self.hanging, &self.nodes), graph, threads)?;
-        Ok(Map::Bodies(Box::new(bodies)))
+    }
+
+    /// The vertex of a node of the graph.
+    fn vertex_of_graph(&self, i: u32) -> VertexId {
+        let n_given = self.nodes.of_graph.len();
+        match self.nodes.of_graph.get(i as usize) {
+            Some(&node) => self.nodes.vertices[node as usize],
+            None => self.helpers.vertices[i as usize - n_given],
+        }
     }
 
     /// Sets up the system of the reference. Vertices that no cell uses are not part of what moves.
@@ -302,30 +336,33 @@ impl Mover {
     }
 
     /// Where the vertices hang in the graph; seconds for building it, and for looking them up.
-    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Hanging, [f64; 2])> {
+    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Triangulation, Hanging, [f64; 2])> {
         let mut clock = Instant::now();
         let at = |v: &VertexId| points[v.index()];
-        let graph: Vec<Point> =
-            self.nodes.of_graph.iter().map(|&n| at(&self.nodes.vertices[n as usize])).collect();
+        let given = self.nodes.of_graph.iter().map(|&n| &self.nodes.vertices[n as usize]);
+        let graph: Vec<Point> = given.chain(&self.helpers.vertices).map(at).collect();
         let triangulation = triangulate(&graph, threads)?;
         let built = lap(&mut clock);
         let places: Vec<Point> = self.hanging.iter().map(at).collect();
         let found = hang(&triangulation, &places, threads);
-        Ok((found, [built, lap(&mut clock)]))
+        Ok((triangulation, found, [built, lap(&mut clock)]))
     }
 
     /// Builds the graph of the reference. Vertices outside of it that no cell uses are not part of what moves.
     fn hang_reference(&mut self, is_used: &[bool], threads: &Threads) -> Result<()> {
-        let (mut found, [triangulation, hanging]) = self.find(&self.reference, threads)?;
+        if matches!(self.method, Method::Guided) {
+            self.helpers = guided::choose(&self.check.corners.tets, &self.reference, &self.hanging, RINGS);
+        }
+        let (graph, mut found, [triangulation, hanging]) = self.find(&self.reference, threads)?;
         let stays = |i: u32| !is_used[self.hanging[i as usize].index()];
         let staying: Vec<u32> = found.outside.iter().copied().filter(|&i| stays(i)).collect();
         found.remove(&staying);
         let mut i = 0u32..;
         self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
         let begin = Instant::now();
-        self.map = self.with_bodies(self.tabulate(&found), &self.reference, threads)?;
+        self.map = self.on_graph(&graph, &found, &self.reference, threads)?;
         self.setup.seconds.system = begin.elapsed().as_secs_f64();
-        self.tets = found.tets.iter().map(|t| t.map(|i| self.nodes.of_graph[i as usize])).collect();
+        self.tets = found.tets.iter().map(|t| t.map(|i| self.vertex_of_graph(i))).collect();
         let nodes = &self.nodes;
         self.setup.seconds.triangulation = triangulation;
         self.setup.seconds.hanging = hanging;
@@ -333,7 +370,7 @@ impl Mover {
             driven: nodes.n_driven,
             sliding: nodes.n_sliding(),
             layer: nodes.vertices.len() - nodes.n_driven,
-            graph_nodes: self.nodes.of_graph.len(),
+            graph_nodes: self.nodes.of_graph.len() + self.helpers.vertices.len(),
             graph_tets: found.n_tets,
             holding_tets: found.tets.len(),
             hanging: self.hanging.len(),
@@ -346,23 +383,25 @@ impl Mover {
 
     /// The table for all vertices: nodes hang on themselves, what stays on the node that never moves.
     fn tabulate(&self, found: &Hanging) -> Update {
-        let never = self.nodes.vertices.len() as u32;
-        let n = self.reference.len();
-        let mut update = Update { nodes: vec![[never; 4]; n], weights: vec![[0.0; 3]; n] };
+        let mut update = Update::never(self.nodes.vertices.len() as u32, self.reference.len());
         for (node, vertex) in (0..).zip(&self.nodes.vertices) {
             update.nodes[vertex.index()] = [node; 4];
         }
         for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-            update.nodes[vertex.index()] = found.tets[tet as usize].map(|i| self.nodes.of_graph[i as usize]);
-            update.weights[vertex.index()] = [w[1], w[2], w[3]];
+            let nodes = found.tets[tet as usize].map(|i| self.nodes.of_graph[i as usize]);
+            update.hang(*vertex, nodes, *w);
         }
         update
     }
 }
 
-/// Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
+/// Helpers are more than so many edges apart.
+const RINGS: usize = 2;
+
+/// The facets that guide: the boundary. Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
 fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
     match &options.method {
+        Method::Guided => FacetSet::of_boundary(boundary, "boundary", |_| true),
         Method::Laplace(law) => law.wall.clone().unwrap_or_else(|| not_sliding(boundary, &options.sliding)),
         _ => FacetSet::default(),
     }

@@ -13,6 +13,8 @@ pub enum Method {
     /// As rigid bodies carry them along: the patches, each a body; where there is none, each part of the boundary that hangs together is one, but for the outer one.
     /// A body's motion is the rigid one that fits its vertices best, a turn of at most half a circle; the rest is done by the graph.
     Bodies(Vec<FacetSet>),
+    /// By the graph with some vertices inside as nodes, each with a rotation beside its displacement, that of the walls near it: for walls that bend. Two small linear systems a step.
+    Guided,
     /// As an elastic body that is stiff where cells are small. A linear system a step.
     Elastic(Elastic),
     /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system a step.
@@ -58,7 +60,7 @@ impl Method {
     /// When a number means nothing.
     pub(crate) fn check(&self) -> Result<()> {
         let (power, tolerance) = match self {
-            Self::Delaunay | Self::Bodies(_) => return Ok(()),
+            Self::Delaunay | Self::Bodies(_) | Self::Guided => return Ok(()),
             Self::Elastic(law) => {
                 if !(0.0..0.5).contains(&law.poisson) {
                     return Err(Error::options(format!(

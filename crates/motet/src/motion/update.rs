@@ -17,7 +17,7 @@ use std::sync::Mutex;
 
 use pulp::{NullaryFnOnce, f64x4};
 
-use crate::base::{Point, Threads};
+use crate::base::{Point, Threads, VertexId};
 
 /// A displacement and a zero: four numbers load at once, and from one cache line.
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
@@ -76,6 +76,16 @@ const SMALLEST: usize = 2048;
 const PARTS: usize = 16;
 
 impl Update {
+    /// All of so many vertices hang on a node that never moves.
+    pub(crate) fn never(node: u32, n: usize) -> Self {
+        Self { nodes: vec![[node; 4]; n], weights: vec![[0.0; 3]; n] }
+    }
+
+    pub(crate) fn hang(&mut self, v: VertexId, nodes: [u32; 4], w: [f64; 4]) {
+        self.nodes[v.index()] = nodes;
+        self.weights[v.index()] = [w[1], w[2], w[3]];
+    }
+
     /// `out = from + sum w_i d_i`.
     ///
     /// Every thread makes a table of its own: one that another thread has read a step ago is slow to

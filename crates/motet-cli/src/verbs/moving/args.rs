@@ -121,6 +121,8 @@ pub(crate) enum Method {
     Delaunay,
     /// The graph, and rigid bodies that carry along what is round them: for parts that turn, or shift far
     Bodies,
+    /// The graph, whose nodes turn with the walls near them: for walls that bend
+    Guided,
     /// An elastic body, stiff where cells are small: a linear system a step, to compare with
     Elastic,
     /// A Laplace equation for each coordinate, stiff at the wall that moves: as well

@@ -107,6 +107,7 @@ fn method(
     Ok(match args.method {
         Method::Delaunay => motion::Method::Delaunay,
         Method::Bodies => motion::Method::Bodies(bodies),
+        Method::Guided => motion::Method::Guided,
         Method::Elastic => {
             let law = Elastic::default();
             motion::Method::Elastic(Elastic { tolerance: Tolerance { residual, ..law.tolerance }, ..law })

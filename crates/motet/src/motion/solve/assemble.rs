@@ -41,7 +41,7 @@ impl Numbering {
 }
 
 /// The equations of the free vertices.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct System<B> {
     /// What they have to do with each other.
     pub(crate) inner: SparseMatrix<B>,

@@ -52,7 +52,7 @@ impl Solve {
         let numbering = Numbering::new(points.len(), free, nodes);
         let tets = numbering.of_tets(tets);
         let (kind, tolerance) = match method {
-            Method::Delaunay | Method::Bodies(_) => {
+            Method::Delaunay | Method::Bodies(_) | Method::Guided => {
                 return Err(Error::options("the graph has no system to be solved"));
             }
             Method::Elastic(law) => {

@@ -1,0 +1,113 @@
+//! From the nodes of the graph to all vertices: the weighted mean of four affine maps.
+
+use pulp::NullaryFnOnce;
+
+#[cfg(target_arch = "x86_64")]
+use crate::base::four::Wide;
+use crate::base::four::{Four, Plain};
+use crate::base::{Point, Threads};
+use crate::geometry::vector::{add, scale, sub};
+use crate::motion::guided::GraphTet;
+use crate::motion::update::Update;
+
+/// How the displacement near a node depends on the place: three columns, and what is left at the origin. The fourth number of each is 0.
+pub(super) type Affine = [[f64; 4]; 4];
+
+/// On what vertices hang.
+#[derive(Debug)]
+pub(super) struct Lift {
+    update: Update,
+    /// 1 over the sum of the weights of a node's tets.
+    shares: Vec<f64>,
+}
+
+/// Vertices that are moved in one go.
+const CHUNK: usize = 1 << 12;
+
+impl Lift {
+    pub(super) fn new(update: Update, tets: &[GraphTet], n_nodes: usize) -> Self {
+        let mut sums = vec![0.0; n_nodes];
+        for tet in tets {
+            tet.nodes.iter().for_each(|n| sums[*n as usize] += tet.weight);
+        }
+        Self { update, shares: sums.into_iter().map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }).collect() }
+    }
+
+    /// From displacements and the weighted sums of their gradients, as columns. The last map is that of a node that never moves.
+    pub(super) fn affine(&self, places: &[Point], moved: &[Point], sums: &[[Point; 3]]) -> Vec<Affine> {
+        let origin = places.first().copied().unwrap_or_default();
+        let one = |i: usize| {
+            // Half of it: a whole one is as much off for motions of second order, the other way.
+            let columns = sums[i].map(|column| scale(column, 0.5 * self.shares[i]));
+            let from = sub(places[i], origin);
+            let at_origin = (0..3).fold(moved[i], |d, j| sub(d, scale(columns[j], from[j])));
+            let [a, b, c] = columns;
+            [a, b, c, at_origin].map(|[x, y, z]| [x, y, z, 0.0])
+        };
+        (0..moved.len()).map(one).chain([Affine::default()]).collect()
+    }
+
+    pub(super) fn apply(
+        &self,
+        places: &[Point],
+        from: &[Point],
+        maps: &[Affine],
+        out: &mut [Point],
+        threads: &Threads,
+    ) {
+        let origin = places.first().copied().unwrap_or_default();
+        let chunks = out.chunks_mut(CHUNK).enumerate().collect();
+        threads.each(chunks, |(i, out): (usize, &mut [Point])| {
+            let (first, update) = (i * CHUNK, &self.update);
+            #[cfg(target_arch = "x86_64")]
+            if let Some(machine) = pulp::x86::V3::try_new() {
+                return machine.vectorize(Vertices::<Wide> {
+                    machine,
+                    update,
+                    origin,
+                    from,
+                    maps,
+                    first,
+                    out,
+                });
+            }
+            Vertices::<Plain> { machine: (), update, origin, from, maps, first, out }.call();
+        });
+    }
+}
+
+/// Vertices from a first one on.
+struct Vertices<'a, F: Four> {
+    machine: F::Machine,
+    update: &'a Update,
+    origin: Point,
+    from: &'a [Point],
+    maps: &'a [Affine],
+    first: usize,
+    out: &'a mut [Point],
+}
+
+impl<F: Four> NullaryFnOnce for Vertices<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { machine, update, origin, from, maps, first, out } = self;
+        let vertices = first..first + out.len();
+        let hangs = update.nodes[vertices.clone()].iter().zip(&update.weights[vertices.clone()]);
+        for ((out, &from), (&[i, j, k, l], &[w1, w2, w3])) in out.iter_mut().zip(&from[vertices]).zip(hangs) {
+            let all = |x: f64| F::all(machine, x);
+            let weights = [all(1.0 - w1 - w2 - w3), all(w1), all(w2), all(w3)];
+            let nodes = [&maps[i as usize], &maps[j as usize], &maps[k as usize], &maps[l as usize]];
+            let [x, y, z] = sub(from, origin);
+            let mut sum = all(0.0);
+            for (weight, map) in weights.into_iter().zip(nodes) {
+                let column = |c: usize| F::load(machine, &map[c]);
+                let change = column(0) * all(x) + column(1) * all(y) + column(2) * all(z) + column(3);
+                sum = sum + weight * change;
+            }
+            let [x, y, z, _] = sum.stored();
+            *out = add(from, [x, y, z]);
+        }
+    }
+}

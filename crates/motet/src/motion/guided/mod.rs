@@ -1,0 +1,351 @@
+//! Guided motion: walls that bend and turn take the volume round them along, turned.
+//!
+//! A weighted sum of displacements cannot turn cells: where a flap bends by 60 degrees it shears them until they invert. So each node of the graph gets a
+//! rotation beside its displacement, and the graph some nodes inside:
+//!
+//! 1. The rotation of a boundary vertex is that of the facets at it. Inside, rotation vectors are harmonic (harmonic guidance: Zayer, Roessl, Karni, Seidel 2005).
+//! 2. Nodes inside go to where the gradient of the motion is nearest to those rotations, `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson
+//!    editing: Yu, Zhou, Xu, Shi, Bao, Guo, Shum 2004). Sparse systems of some hundred unknowns.
+//!    Then once more, to the rotations nearest to the gradients that came of it (as rigid as possible: Sorkine, Alexa 2007), what is squeezed the stiffer.
+//! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted mean of those of its four nodes: exact for
+//!    motions of second order, and without the kinks that linear weights have where tets of the graph meet.
+//!
+//! All of it starts from the first place of the mesh: a step depends on where the boundary is, not on how it came there.
+
+mod helpers;
+mod lift;
+
+use crate::algebra::{Tolerance, conjugate_gradients};
+use crate::base::{Point, Result, Threads, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
+use crate::motion::guided::lift::{Affine, Lift};
+use crate::motion::nodes::Nodes;
+use crate::motion::options::FacetSet;
+use crate::motion::rotation::{Quaternion, Wall};
+use crate::motion::solve::{Numbering, System, gradients};
+use crate::motion::update::{Displacements, Update};
+
+pub(crate) use helpers::{Helpers, choose};
+
+/// A step is solved to this residual: far below what cells see.
+const SOLVED: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
+/// Small tets are stiff, for displacements by edge length to this power. Tried 2 to 3.5 on a sphere that shifts and turns and on a flap that bends: below 2.25 the flap's tip inverts cells,
+/// above 2.5 the shifted sphere does.
+const STIFF: f64 = -2.25;
+/// And for rotations. With -2 the turned sphere leaves a tenth more bad tets.
+const STIFF_TO_TURN: f64 = -1.0;
+/// A tet of the graph counts from this volume on, as a part of its longest edge cubed: gradients of flatter ones mean nothing.
+const FLAT: f64 = 1e-9;
+
+/// A graph whose nodes turn.
+#[derive(Debug)]
+pub(crate) struct Guided {
+    /// The vertex of each node that is given.
+    vertices: Vec<VertexId>,
+    /// For each node of the graph that is given its place among all nodes; helpers come after them.
+    of_graph: Vec<u32>,
+    n_helpers: usize,
+    places: Vec<Point>,
+    /// The facets whose rotation counts, and the node of the graph for each of their vertices.
+    wall: Wall,
+    wall_nodes: Vec<u32>,
+    /// Nodes of the graph that are on no facet: their rotation is harmonic.
+    off_wall: Vec<u32>,
+    on_wall: Vec<u32>,
+    tets: Vec<GraphTet>,
+    /// Those of them that have a helper, and the numbers of their nodes in the system.
+    inner: Vec<u32>,
+    inner_numbers: Vec<[u32; 4]>,
+    turn: System<f64>,
+    place: System<f64>,
+    lift: Lift,
+}
+
+/// A tet of the graph that is not flat.
+#[derive(Clone, Copy, Debug)]
+struct GraphTet {
+    nodes: [u32; 4],
+    gradients: [Point; 4],
+    /// Volume times conductivity.
+    stiffness: f64,
+    /// Its part in the gradient at its nodes: volume over the cube of the longest edge.
+    weight: f64,
+}
+
+/// The graph that [`Guided::new`] is made of.
+pub(crate) struct Graph<'a> {
+    /// Places of its nodes, the helpers at the end.
+    pub(crate) places: Vec<Point>,
+    pub(crate) helpers: &'a Helpers,
+    pub(crate) tets: &'a [[u32; 4]],
+    /// On what vertices hang, in nodes of the graph.
+    pub(crate) update: Update,
+}
+
+impl Guided {
+    /// # Errors
+    /// When a helper has no tet in the graph that is not flat.
+    pub(crate) fn new(graph: Graph<'_>, nodes: &Nodes, facets: &FacetSet, points: &[Point]) -> Result<Self> {
+        let Graph { places, helpers: Helpers { vertices: helpers, lengths }, tets, update } = graph;
+        let n_given = nodes.of_graph.len();
+        let given = nodes.of_graph.iter().map(|&n| nodes.vertices[n as usize]);
+        let length: Vec<f64> = given.chain(helpers.iter().copied()).map(|v| lengths[v.index()]).collect();
+        let mean = |tet: &[u32; 4], power: f64| {
+            0.25 * tet.iter().map(|&n| length[n as usize].powf(power)).sum::<f64>()
+        };
+        let mut kept = Vec::new();
+        let mut turn_stiffness = Vec::new();
+        for tet in tets {
+            let corners = tet.map(|n| places[n as usize]);
+            let longest = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).fold(0.0, f64::max);
+            let Some((gradients, volume)) = gradients(corners) else { continue };
+            let weight = volume / (longest * longest * longest);
+            if weight > FLAT {
+                turn_stiffness.push(volume * mean(tet, STIFF_TO_TURN));
+                kept.push(GraphTet { nodes: *tet, gradients, stiffness: volume * mean(tet, STIFF), weight });
+            }
+        }
+        let numbers = |range: std::ops::Range<usize>| range.map(VertexId::new).collect::<Vec<_>>();
+        let all = places.len();
+        let mut node_of = vec![None; points.len()];
+        (0u32..)
+            .zip(&nodes.of_graph)
+            .for_each(|(i, &n)| node_of[nodes.vertices[n as usize].index()] = Some(i));
+        // Corners only: middle nodes have no facet of their own.
+        let mut corners: Vec<VertexId> = facets.rings.items().to_vec();
+        corners.sort_unstable();
+        corners.dedup();
+        let local = |v: VertexId| corners.binary_search(&v).ok().map(|i| i as u32);
+        let triangles: Vec<[u32; 3]> =
+            (facets.triangles()).filter_map(|t| Some([local(t[0])?, local(t[1])?, local(t[2])?])).collect();
+        let wall_points: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
+        let wall_nodes: Vec<u32> = corners.iter().map(|v| node_of[v.index()].unwrap_or(u32::MAX)).collect();
+        // What is in no tet has no say: nodes in the place of another.
+        let mut is_on_wall = vec![true; all];
+        kept.iter().flat_map(|t| t.nodes).for_each(|n| is_on_wall[n as usize] = false);
+        wall_nodes.iter().filter(|n| **n != u32::MAX).for_each(|n| is_on_wall[*n as usize] = true);
+        let (on_wall, off_wall): (Vec<u32>, Vec<u32>) =
+            (0..all as u32).partition(|n| is_on_wall[*n as usize]);
+        let ids = |nodes: &[u32]| nodes.iter().map(|&n| VertexId(n)).collect::<Vec<_>>();
+        let system =
+            |tets: &[u32], (free, given): (&[VertexId], &[VertexId]), stiffness: &dyn Fn(usize) -> f64| {
+                let numbering = Numbering::new(all, free, given);
+                let vertices: Vec<[VertexId; 4]> =
+                    tets.iter().map(|&t| kept[t as usize].nodes.map(VertexId)).collect();
+                let numbers = numbering.of_tets(&vertices).numbers;
+                let mut system = System::<f64>::with_pattern(&numbering, &numbers);
+                system.fill(&numbers, |i| {
+                    laplacian(&kept[tets[i] as usize].gradients, stiffness(tets[i] as usize))
+                })?;
+                Result::Ok((system, numbers))
+            };
+        let every: Vec<u32> = (0..kept.len() as u32).collect();
+        let has_helper = |t: &u32| kept[*t as usize].nodes.iter().any(|n| *n as usize >= n_given);
+        let inner: Vec<u32> = every.iter().copied().filter(has_helper).collect();
+        let (turn, _) = system(&every, (&ids(&off_wall), &ids(&on_wall)), &|t| turn_stiffness[t])?;
+        let (place, inner_numbers) =
+            system(&inner, (&numbers(n_given..all), &numbers(0..n_given)), &|t| kept[t].stiffness)?;
+        Ok(Self {
+            vertices: nodes.vertices.clone(),
+            of_graph: nodes.of_graph.clone(),
+            n_helpers: helpers.len(),
+            wall: Wall::new(&wall_points, triangles),
+            wall_nodes,
+            off_wall,
+            on_wall,
+            lift: Lift::new(update, &kept, all),
+            tets: kept,
+            inner,
+            inner_numbers,
+            turn,
+            place,
+            places,
+        })
+    }
+
+    /// Moves all vertices from where they are; iterations that it took.
+    ///
+    /// # Errors
+    /// When a system is not solved to the tolerance.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacements: &Displacements<'_>,
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> Result<usize> {
+        let table = displacements.table();
+        let mut moved: Vec<Point> = self.of_graph.iter().map(|&n| table[n as usize].point()).collect();
+        let (turns, iterations) = self.turns(&moved, threads)?;
+        let guides: Vec<Guide> = (self.inner.iter())
+            .map(|&t| {
+                let tet = &self.tets[t as usize];
+                let mean = tet.nodes.iter().fold([0.0; 3], |sum, &n| add(sum, turns[n as usize]));
+                Guide { rotation: rotation(scale(mean, 0.25)), stiffness: tet.stiffness }
+            })
+            .collect();
+        let mut inner = vec![[0.0; 3]; self.n_helpers];
+        let first = self.solve(&self.place, &guides, &moved, &mut inner, threads)?;
+        let given = moved.len();
+        moved.extend(&inner);
+        // Once more: to the rotations that came of it, and what is squeezed made stiffer.
+        let guides = threads.map(guides.len(), |i| {
+            let tet = &self.tets[self.inner[i] as usize];
+            let gradient = deformation(tet, &moved);
+            Guide {
+                rotation: nearest_rotation(gradient, guides[i].rotation),
+                stiffness: tet.stiffness * squeezed(gradient),
+            }
+        });
+        let mut stiffer = self.place.clone();
+        stiffer.fill(&self.inner_numbers, |i| {
+            laplacian(&self.tets[self.inner[i] as usize].gradients, guides[i].stiffness)
+        })?;
+        let second = self.solve(&stiffer, &guides, &moved[..given], &mut inner, threads)?;
+        moved.truncate(given);
+        moved.extend(inner);
+        let maps = self.affine(&moved);
+        self.lift.apply(&self.places, from, &maps, out, threads);
+        for (v, d) in self.vertices.iter().zip(&*table) {
+            out[v.index()] = add(from[v.index()], d.point());
+        }
+        Ok(iterations + first + second)
+    }
+
+    /// Where helpers go so that gradients are nearest to the guides; `inner` holds a guess before. Iterations.
+    fn solve(
+        &self,
+        system: &System<f64>,
+        guides: &[Guide],
+        given: &[Point],
+        inner: &mut [Point],
+        threads: &Threads,
+    ) -> Result<usize> {
+        let mut right = system.coupling.times(given, threads);
+        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
+        for (&t, guide) in self.inner.iter().zip(guides) {
+            let tet = &self.tets[t as usize];
+            for (&node, &gradient) in tet.nodes.iter().zip(&tet.gradients) {
+                if let Some(row) = (node as usize).checked_sub(given.len()) {
+                    let change = sub(times(guide.rotation, gradient), gradient);
+                    right[row] = add(right[row], scale(change, guide.stiffness));
+                }
+            }
+        }
+        let solved = conjugate_gradients(&system.inner, &system.sweeps, &right, inner, SOLVED, threads)?;
+        Ok(solved.iterations)
+    }
+
+    /// The rotation vector of every node, and iterations.
+    fn turns(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
+        let of_wall = |v: u32| {
+            let node = self.wall_nodes[v as usize];
+            moved.get(node as usize).copied().unwrap_or_default()
+        };
+        let rotations = self.wall.rotations(of_wall, threads);
+        let mut turns = vec![[0.0; 3]; self.places.len()];
+        for (&node, q) in self.wall_nodes.iter().zip(&rotations).filter(|(node, _)| **node != u32::MAX) {
+            turns[node as usize] = rotation_vector(*q);
+        }
+        let given: Vec<Point> = self.on_wall.iter().map(|&n| turns[n as usize]).collect();
+        let mut right = self.turn.coupling.times(&given, threads);
+        right.iter_mut().for_each(|f| *f = f.map(|x| -x));
+        let mut inner = vec![[0.0; 3]; self.off_wall.len()];
+        let solved =
+            conjugate_gradients(&self.turn.inner, &self.turn.sweeps, &right, &mut inner, SOLVED, threads)?;
+        self.off_wall.iter().zip(inner).for_each(|(&n, turn)| turns[n as usize] = turn);
+        Ok((turns, solved.iterations))
+    }
+
+    /// The affine map of every node: its displacement there, and half the mean gradient of the displacement in its tets.
+    fn affine(&self, moved: &[Point]) -> Vec<Affine> {
+        let mut sums = vec![[[0.0; 3]; 3]; moved.len()];
+        for tet in &self.tets {
+            let mut gradient = [[0.0; 3]; 3];
+            for (&n, g) in tet.nodes.iter().zip(tet.gradients) {
+                let u = moved[n as usize];
+                (0..3).for_each(|j| gradient[j] = add(gradient[j], scale(u, g[j])));
+            }
+            let gradient = gradient.map(|column| scale(column, tet.weight));
+            for &n in &tet.nodes {
+                let sum = &mut sums[n as usize];
+                (0..3).for_each(|j| sum[j] = add(sum[j], gradient[j]));
+            }
+        }
+        self.lift.affine(&self.places, moved, &sums)
+    }
+}
+
+/// Its axis times its angle, from 0 to pi.
+fn rotation_vector([w, x, y, z]: Quaternion) -> Point {
+    let side = if w < 0.0 { -1.0 } else { 1.0 };
+    let sine = norm([x, y, z]);
+    if sine == 0.0 {
+        return [0.0; 3];
+    }
+    scale([x, y, z], side * 2.0 * sine.atan2(w * side) / sine)
+}
+
+/// What a tet of the graph is to do.
+struct Guide {
+    rotation: Matrix,
+    stiffness: f64,
+}
+
+/// Three columns.
+type Matrix = [Point; 3];
+
+fn times(matrix: Matrix, v: Point) -> Point {
+    let [a, b, c] = matrix;
+    add(add(scale(a, v[0]), scale(b, v[1])), scale(c, v[2]))
+}
+
+/// By its vector (Rodrigues 1840).
+fn rotation(vector: Point) -> Matrix {
+    let angle = norm(vector);
+    let half = 0.5 * angle;
+    let (first, of_half) = match angle > 1e-6 {
+        true => (angle.sin() / angle, half.sin() / half),
+        false => (1.0, 1.0),
+    };
+    AXES.map(|v| {
+        let across = cross(vector, v);
+        add(v, add(scale(across, first), scale(cross(vector, across), 0.5 * of_half * of_half)))
+    })
+}
+
+const AXES: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// The gradient of the motion in a tet of the graph: images of the axes.
+fn deformation(tet: &GraphTet, moved: &[Point]) -> Matrix {
+    let mut columns = AXES;
+    for (&n, g) in tet.nodes.iter().zip(tet.gradients) {
+        (0..3).for_each(|j| columns[j] = add(columns[j], scale(moved[n as usize], g[j])));
+    }
+    columns
+}
+
+/// The rotation nearest to a matrix, from one that is near (Mueller, Bender, Chentanez, Macklin 2016); also that of an inverted one is proper.
+fn nearest_rotation(matrix: Matrix, mut from: Matrix) -> Matrix {
+    const ROUNDS: usize = 5;
+    for _ in 0..ROUNDS {
+        let across = (0..3).fold([0.0; 3], |s, j| add(s, cross(from[j], matrix[j])));
+        let along: f64 = (0..3).map(|j| dot(from[j], matrix[j])).sum();
+        let step = rotation(scale(across, 1.0 / (along.abs() + 1e-9)));
+        from = from.map(|column| times(step, column));
+    }
+    from
+}
+
+/// By how much stiffer a tet gets: the mean stretch of the inverse, 1 for one that keeps its shape; at least 1, at most 20.
+fn squeezed([a, b, c]: Matrix) -> f64 {
+    let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
+    let size = (cofactors.iter().map(|v| dot(*v, *v)).sum::<f64>() / 3.0).sqrt();
+    let volume = dot(a, cofactors[0]);
+    if volume > 0.05 * size { (size / volume).max(1.0) } else { 20.0 }
+}
+
+fn laplacian(gradients: &[Point; 4], stiffness: f64) -> [[f64; 4]; 4] {
+    std::array::from_fn(|i| std::array::from_fn(|j| stiffness * dot(gradients[i], gradients[j])))
+}
