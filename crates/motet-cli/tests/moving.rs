@@ -336,7 +336,7 @@ fn a_body_turns_by_a_right_angle_and_takes_the_cells_along() {
     let folder = Folder::new();
     folder.mesh("box.vtu", &sphere_in_box(11, 6));
     let turn = ["move", "box.vtu", "-o", "out.vtu", "--rotate", "sphere=0,0,1,90", "--method", "bodies"];
-    for more in [&[][..], &["--body", "sphere"]] {
+    for more in [&[][..], &["--body", "sphere"], &["--within-walls"]] {
         let call = folder.motet(turn.iter().chain(more).chain(&["--json"])).assert().code(0);
         let report = report(&call);
         let certificate = &report["steps"][0];

@@ -188,3 +188,32 @@ fn what_is_no_body_is_refused() {
     let inner = FacetSet { name: "inner".into(), vertices: inside, ..FacetSet::default() };
     assert!(refused(vec![inner], &mesh).contains("inside the volume"));
 }
+
+#[test]
+fn after_a_thousand_cycles_the_mesh_is_the_first_one_to_the_bit() {
+    let mesh = sphere_in_box(5, 3);
+    let methods = [Method::Delaunay, Method::Bodies(Vec::new()), Method::Guided];
+    for (method, within_walls) in methods.into_iter().flat_map(|m| [(m.clone(), false), (m, true)]) {
+        let options = Options { smoothing: 2, within_walls, method, ..Options::default() };
+        let mut mover = mover(&mesh, &options);
+        let at = |mover: &mut Mover, phase: f64| {
+            let map = turned(20.0 * phase.sin(), [0.8 * phase.sin(), 0.4 * (1.0 - phase.cos()), 0.0]);
+            let place = |v: &VertexId| mesh.points[v.index()];
+            let displacement: Vec<Point> =
+                mover.boundary().iter().map(place).map(|p| sub(map(p), p)).collect();
+            let mut out = mesh.points.clone();
+            assert!(mover.advance(&displacement, &mut out, &Threads::single()).unwrap().substeps == 0);
+            out
+        };
+        let phases = [0.0, 1.0, 2.5, 4.5].map(|k: f64| k * std::f64::consts::PI / 3.0);
+        let first = phases.map(|phase| at(&mut mover, phase));
+        assert!(first[1] != first[0]);
+        for cycle in 1..=1000 {
+            // The whole of the last cycle, of the others the place farthest away and the first.
+            let looked_at = if cycle == 1000 { 0..4 } else { 2..4 };
+            for k in looked_at {
+                assert!(at(&mut mover, phases[k]) == first[k], "cycle {cycle}, {options:?}");
+            }
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! The graph: the Delaunay triangulation of the nodes, and where each other vertex hangs in it.
 
-use crate::base::{Point, Result, TetId, Threads};
+use crate::base::{Point, Result, Threads, VertexId};
 use crate::delaunay::Triangulation;
 use crate::motion::weights::weights;
 
@@ -32,6 +32,14 @@ impl Hanging {
     }
 }
 
+/// The tets of some nodes.
+#[derive(Debug)]
+pub(crate) struct Graph {
+    /// Where its nodes are: those that were given, then what it needed beside.
+    pub(crate) places: Vec<Point>,
+    pub(crate) tets: Vec<[u32; 4]>,
+}
+
 /// Triangulates `nodes`.
 ///
 /// # Errors
@@ -46,20 +54,34 @@ pub(crate) fn triangulate(nodes: &[Point], threads: &Threads) -> Result<Triangul
 pub(crate) fn hang(triangulation: &Triangulation, points: &[Point], threads: &Threads) -> Hanging {
     let located = triangulation.locator().locate_all(points, threads);
     let nodes = triangulation.points();
-    let corners = |tet: TetId| triangulation.tets()[tet.index()].map(|v| nodes[v.index()]);
-    let weights = threads.map(points.len(), |i| weights(points[i], corners(located[i].tet())));
-    let mut number = vec![0; triangulation.tets().len()];
-    located.iter().for_each(|at| number[at.tet().index()] = 1);
-    let mut tets = Vec::new();
-    for (tet, number) in triangulation.tets().iter().zip(&mut number).filter(|(_, number)| **number == 1) {
-        *number = tets.len() as u32;
-        tets.push(tet.map(|v| v.0));
-    }
-    Hanging {
-        tet: located.iter().map(|at| number[at.tet().index()]).collect(),
-        outside: (0..).zip(&located).filter(|(_, at)| !at.is_inside()).map(|(i, _)| i).collect(),
-        n_tets: triangulation.tets().len(),
-        tets,
-        weights,
+    let found: Vec<(u32, bool)> = located.iter().map(|at| (at.tet().0, at.is_inside())).collect();
+    Hanging::new(nodes, triangulation.tets(), &found, points, threads)
+}
+
+impl Hanging {
+    /// From the tet of each point, and whether it lies inside.
+    pub(crate) fn new(
+        nodes: &[Point],
+        tets: &[[VertexId; 4]],
+        found: &[(u32, bool)],
+        points: &[Point],
+        threads: &Threads,
+    ) -> Self {
+        let corners = |tet: u32| tets[tet as usize].map(|v| nodes[v.index()]);
+        let weights = threads.map(points.len(), |i| weights(points[i], corners(found[i].0)));
+        let mut number = vec![0; tets.len()];
+        found.iter().for_each(|(tet, _)| number[*tet as usize] = 1);
+        let mut holding = Vec::new();
+        for (tet, number) in tets.iter().zip(&mut number).filter(|(_, number)| **number == 1) {
+            *number = holding.len() as u32;
+            holding.push(tet.map(|v| v.0));
+        }
+        Self {
+            tet: found.iter().map(|(tet, _)| number[*tet as usize]).collect(),
+            outside: (0..).zip(found).filter(|(_, (_, is_inside))| !is_inside).map(|(i, _)| i).collect(),
+            n_tets: tets.len(),
+            tets: holding,
+            weights,
+        }
     }
 }

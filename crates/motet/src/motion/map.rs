@@ -4,13 +4,14 @@ use crate::base::{Point, Result, Threads};
 use crate::motion::bodies::Bodies;
 use crate::motion::guided::Guided;
 use crate::motion::solve::Solve;
-use crate::motion::update::{Displacements, Update};
+use crate::motion::spread::Spread;
+use crate::motion::update::Displacements;
 
 /// One of the methods, set up for one place of the mesh.
 #[derive(Debug)]
 pub(crate) enum Map {
     /// A weighted sum for each vertex.
-    Graph(Update),
+    Graph(Spread),
     /// Shares in the motion of rigid bodies, and weighted sums for the rest.
     Bodies(Box<Bodies>),
     /// The graph, whose nodes turn.
@@ -32,14 +33,8 @@ impl Map {
         threads: &Threads,
     ) -> Result<usize> {
         match self {
-            Self::Graph(update) => {
-                update.apply(from, displacements, out, threads);
-                Ok(0)
-            }
-            Self::Bodies(bodies) => {
-                bodies.apply(from, displacements, out, threads);
-                Ok(0)
-            }
+            Self::Graph(spread) => spread.apply(from, displacements, out, threads),
+            Self::Bodies(bodies) => bodies.apply(from, displacements, out, threads),
             Self::Guided(guided) => guided.apply(from, displacements, out, threads),
             Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),
         }

@@ -34,14 +34,17 @@
 //! The graph fills the convex hull of the boundary, so it holds every vertex of any
 //! domain, also of one that is not convex. It knows nothing of walls: a vertex in a
 //! narrow branch may hang on vertices of another one, and one beside a thin flap on
-//! the flap's far side, where the boundary is coarser than the gap is wide.
+//! the flap's far side, where the boundary is coarser than the gap is wide. With
+//! [`Options::within_walls`] the graph is the constrained Delaunay triangulation of the
+//! boundary, and none does.
 //!
 //! # What limits it
 //!
 //! A shift of a body is good almost until it touches another. A *turn* is not: a tet
 //! of the graph with three nodes on a body of radius r and one at the distance D
 //! keeps its sign while the angle is below acos(r / D), never 90 degrees, and cells
-//! suffer from 30 degrees on. Turn in several calls of [`Mover::advance`], which
+//! suffer from 30 degrees on. Where walls bend, let the nodes turn with them
+//! ([`Method::Guided`]). Turn bodies in several calls of [`Mover::advance`], which
 //! builds the graph anew where a step from the first place will not do; or let the parts
 //! that turn carry the volume along as rigid bodies ([`Method::Bodies`]). Between the tets of the graph the map has kinks:
 //! thin layers at a wall are better kept whole by a [`RigidLayer`].
@@ -87,7 +90,9 @@ mod rotation;
 mod slide;
 mod smooth;
 mod solve;
+mod spread;
 mod update;
+mod walls;
 mod weights;
 
 pub use boundary_motion::{BoundaryMotion, Taken};

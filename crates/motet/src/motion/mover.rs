@@ -5,19 +5,20 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::delaunay::Triangulation;
 use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::bodies::{self, Bodies};
 use crate::motion::check::Check;
-use crate::motion::graph::{Hanging, hang, triangulate};
-use crate::motion::guided::{self, Graph, Guided, Helpers};
+use crate::motion::graph::{Graph, Hanging, hang, triangulate};
+use crate::motion::guided::{self, Guided, Helpers};
 use crate::motion::map::Map;
 use crate::motion::nodes::{Nodes, not_sliding};
 use crate::motion::options::{FacetSet, Limits, Method, Options};
 use crate::motion::smooth::Smoother;
 use crate::motion::solve::Solve;
+use crate::motion::spread::Spread;
 use crate::motion::update::Update;
+use crate::motion::walls::{Added, Walls};
 
 /// Moves the vertices of one mesh after its boundary.
 ///
@@ -40,6 +41,8 @@ pub struct Mover {
     pub(crate) smoother: Option<Smoother>,
     /// Nodes of the graph beside those that are given.
     helpers: Helpers,
+    /// What the graph keeps within.
+    walls: Option<Walls>,
     /// Tets of the graph of the reference that hold a vertex.
     pub(crate) tets: Vec<[VertexId; 4]>,
     pub(crate) check: Check,
@@ -119,7 +122,8 @@ impl Mover {
         let mut clock = Instant::now();
         setup.seconds.boundary = (clock - begin).as_secs_f64();
         let is_used = used_by_volume(mesh);
-        let nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
+        let mut nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
+        let walls = options.within_walls.then(|| Walls::new(mesh, &boundary, &mut nodes));
         setup.seconds.layer = lap(&mut clock);
         let check = Check::new(&mesh.cells, &mesh.points, threads);
         setup.seconds.cells = lap(&mut clock);
@@ -137,9 +141,10 @@ impl Mover {
                 Method::Bodies(sets) => bodies::vertices(sets, &boundary, &mesh.points)?,
                 _ => Vec::new(),
             },
-            map: Map::Graph(Update::default()),
+            map: Map::Graph(Spread::default()),
             smoother: None,
             helpers: Helpers::default(),
+            walls,
             tets: Vec::new(),
             check,
             limits: options.limits,
@@ -176,7 +181,7 @@ impl Mover {
     pub fn weights(&self, v: VertexId) -> Option<([VertexId; 4], [f64; 4])> {
         self.hanging.binary_search(&v).ok()?;
         let update = match &self.map {
-            Map::Graph(update) => update,
+            Map::Graph(spread) => &spread.update,
             Map::Bodies(bodies) => bodies.graph(),
             Map::Guided(_) | Map::Solve(_) => return None,
         };
@@ -273,47 +278,37 @@ impl Mover {
             }
             _ => {
                 let (graph, found, _) = self.find(points, threads)?;
-                self.on_graph(&graph, &found, points, threads)
+                self.on_graph(graph, &found, points, threads)
             }
         }
     }
 
     /// What carries displacements on a graph, found with the vertices at `points`.
-    fn on_graph(
-        &self,
-        graph: &Triangulation,
-        found: &Hanging,
-        points: &[Point],
-        threads: &Threads,
-    ) -> Result<Map> {
-        match &self.method {
-            Method::Guided => {
-                let n_nodes = graph.points().len() as u32;
-                let mut update = Update::never(n_nodes, self.reference.len());
-                for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-                    update.hang(*vertex, found.tets[tet as usize], *w);
-                }
-                let tets: Vec<[u32; 4]> = graph.tets().iter().map(|t| t.map(|v| v.0)).collect();
-                let graph =
-                    Graph { places: graph.points().to_vec(), helpers: &self.helpers, tets: &tets, update };
-                Ok(Map::Guided(Box::new(Guided::new(graph, &self.nodes, &self.wall, points)?)))
+    fn on_graph(&self, graph: Graph, found: &Hanging, points: &[Point], threads: &Threads) -> Result<Map> {
+        if matches!(self.method, Method::Guided) {
+            let mut update = Update::never(graph.places.len() as u32, self.reference.len());
+            for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
+                update.hang(*vertex, found.tets[tet as usize], *w);
             }
-            Method::Bodies(_) => {
-                let (tets, graph) = (&self.check.corners.tets, self.tabulate(found));
-                let bodies =
-                    Bodies::new(&self.bodies, tets, points, (&self.hanging, &self.nodes), graph, threads)?;
-                Ok(Map::Bodies(Box::new(bodies)))
-            }
-            _ => Ok(Map::Graph(self.tabulate(found))),
+            let guided = Guided::new(graph, update, (&self.nodes, &self.helpers), &self.wall, points)?;
+            return Ok(Map::Guided(Box::new(guided)));
         }
+        let added = Added::new(&graph, &self.nodes.of_graph)?;
+        let n_added = added.as_ref().map_or(0, Added::len);
+        let spread = Spread { update: self.tabulate(found, n_added), added: added.map(Box::new) };
+        if self.bodies.is_empty() {
+            return Ok(Map::Graph(spread));
+        }
+        let (tets, vertices) = (&self.check.corners.tets, (&self.hanging[..], &self.nodes));
+        Bodies::new(&self.bodies, tets, points, vertices, spread, threads).map(|b| Map::Bodies(Box::new(b)))
     }
 
-    /// The vertex of a node of the graph.
-    fn vertex_of_graph(&self, i: u32) -> VertexId {
+    /// The vertex of a node of the graph; `None` for a point that the graph added.
+    fn vertex_of_graph(&self, i: u32) -> Option<VertexId> {
         let n_given = self.nodes.of_graph.len();
         match self.nodes.of_graph.get(i as usize) {
-            Some(&node) => self.nodes.vertices[node as usize],
-            None => self.helpers.vertices[i as usize - n_given],
+            Some(&node) => Some(self.nodes.vertices[node as usize]),
+            None => self.helpers.vertices.get(i as usize - n_given).copied(),
         }
     }
 
@@ -336,16 +331,22 @@ impl Mover {
     }
 
     /// Where the vertices hang in the graph; seconds for building it, and for looking them up.
-    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Triangulation, Hanging, [f64; 2])> {
+    fn find(&self, points: &[Point], threads: &Threads) -> Result<(Graph, Hanging, [f64; 2])> {
         let mut clock = Instant::now();
         let at = |v: &VertexId| points[v.index()];
         let given = self.nodes.of_graph.iter().map(|&n| &self.nodes.vertices[n as usize]);
         let graph: Vec<Point> = given.chain(&self.helpers.vertices).map(at).collect();
+        if let Some(walls) = &self.walls {
+            let places: Vec<Point> = self.hanging.iter().map(at).collect();
+            let (graph, found) = walls.graph(graph, &places, threads)?;
+            return Ok((graph, found, [lap(&mut clock), 0.0]));
+        }
         let triangulation = triangulate(&graph, threads)?;
         let built = lap(&mut clock);
         let places: Vec<Point> = self.hanging.iter().map(at).collect();
         let found = hang(&triangulation, &places, threads);
-        Ok((triangulation, found, [built, lap(&mut clock)]))
+        let tets = triangulation.tets().iter().map(|t| t.map(|v| v.0)).collect();
+        Ok((Graph { places: graph, tets }, found, [built, lap(&mut clock)]))
     }
 
     /// Builds the graph of the reference. Vertices outside of it that no cell uses are not part of what moves.
@@ -360,9 +361,13 @@ impl Mover {
         let mut i = 0u32..;
         self.hanging.retain(|_| i.next().is_none_or(|i| staying.binary_search(&i).is_err()));
         let begin = Instant::now();
-        self.map = self.on_graph(&graph, &found, &self.reference, threads)?;
+        self.map = self.on_graph(graph, &found, &self.reference, threads)?;
         self.setup.seconds.system = begin.elapsed().as_secs_f64();
-        self.tets = found.tets.iter().map(|t| t.map(|i| self.vertex_of_graph(i))).collect();
+        let vertices = |t: &[u32; 4]| {
+            let [a, b, c, d] = t.map(|i| self.vertex_of_graph(i));
+            Some([a?, b?, c?, d?])
+        };
+        self.tets = found.tets.iter().filter_map(vertices).collect();
         let nodes = &self.nodes;
         self.setup.seconds.triangulation = triangulation;
         self.setup.seconds.hanging = hanging;
@@ -382,13 +387,18 @@ impl Mover {
     }
 
     /// The table for all vertices: nodes hang on themselves, what stays on the node that never moves.
-    fn tabulate(&self, found: &Hanging) -> Update {
-        let mut update = Update::never(self.nodes.vertices.len() as u32, self.reference.len());
+    fn tabulate(&self, found: &Hanging, n_added: usize) -> Update {
+        let n_nodes = self.nodes.vertices.len();
+        let mut update = Update::never((n_nodes + n_added) as u32, self.reference.len());
+        let (of_graph, n_given) = (&self.nodes.of_graph, self.nodes.of_graph.len());
+        let node = |i: u32| {
+            of_graph.get(i as usize).copied().unwrap_or_else(|| (i as usize - n_given + n_nodes) as u32)
+        };
         for (node, vertex) in (0..).zip(&self.nodes.vertices) {
             update.nodes[vertex.index()] = [node; 4];
         }
         for (vertex, (&tet, w)) in self.hanging.iter().zip(found.tet.iter().zip(&found.weights)) {
-            let nodes = found.tets[tet as usize].map(|i| self.nodes.of_graph[i as usize]);
+            let nodes = found.tets[tet as usize].map(node);
             update.hang(*vertex, nodes, *w);
         }
         update

@@ -97,6 +97,9 @@ const SOLVED: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
 pub struct Options {
     /// How the vertices inside follow.
     pub method: Method,
+    /// Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap. It is slower to set up, and needs a boundary whose
+    /// facets do not meet in more than they share. Default: no.
+    pub within_walls: bool,
     /// Sweeps over the vertices of bad tets after each step, which move them to where their tets are better. Default: none.
     pub smoothing: usize,
     /// Vertices inside the volume that the caller moves, too, such as those of an

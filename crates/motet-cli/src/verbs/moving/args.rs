@@ -92,6 +92,10 @@ pub(crate) struct MoveArgs {
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
     pub(crate) method: Method,
+    /// Keep the graph within the walls: no vertex follows the wall of another branch, or the far side of a flap. Slower to
+    /// set up; facets of the boundary must not cross or touch each other
+    #[arg(long, help_heading = "Volume")]
+    pub(crate) within_walls: bool,
     /// Patches of which each is a rigid body, for `--method bodies` [default: each part of the boundary that
     /// hangs together, but for the outer one]. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Volume")]

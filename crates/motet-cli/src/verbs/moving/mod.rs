@@ -86,6 +86,7 @@ fn options(
     Ok(Options {
         method,
         smoothing,
+        within_walls: args.within_walls,
         also_moved: inside.copied().collect(),
         rigid_layer,
         sliding,

@@ -13,7 +13,7 @@ use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::centroid;
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
 use crate::motion::nodes::Nodes;
-use crate::motion::solve::{Numbering, System, gradients};
+use crate::motion::solve::{Numbering, System, gradients, laplacian};
 
 /// Shares of shift and turn, for each vertex those of all bodies.
 #[derive(Debug)]
@@ -152,7 +152,7 @@ impl Domain<'_> {
 
     fn matrix(&self, t: usize, conductivity: f64) -> [[f64; 4]; 4] {
         let Some((g, volume)) = gradients(self.corners(t)) else { return [[0.0; 4]; 4] };
-        std::array::from_fn(|i| std::array::from_fn(|j| conductivity * volume * dot(g[i], g[j])))
+        laplacian(&g, conductivity * volume)
     }
 
     /// The squared slopes of all shares in a tet; those of turns times the squared distance from the body's middle.

@@ -24,6 +24,7 @@ use crate::motion::bodies::fields::Fields;
 use crate::motion::bodies::rigid::Rigid;
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
+use crate::motion::spread::Spread;
 use crate::motion::update::{Displacements, Padded, Update};
 
 /// Shares of bodies for every vertex, and the graph for the rest.
@@ -34,7 +35,7 @@ pub(crate) struct Bodies {
     /// The vertex of each node.
     vertices: Vec<VertexId>,
     fields: Fields,
-    graph: Update,
+    graph: Spread,
 }
 
 /// A body moves rigidly when its vertices are no farther from where that takes them than this part of the largest displacement: then the graph has nothing to do.
@@ -53,7 +54,7 @@ impl Bodies {
         tets: &[[VertexId; 4]],
         points: &[Point],
         (free, nodes): (&[VertexId], &Nodes),
-        graph: Update,
+        graph: Spread,
         threads: &Threads,
     ) -> Result<Self> {
         let node = |v: &VertexId| nodes.vertices[..nodes.n_driven].binary_search(v).ok().map(|i| i as u32);
@@ -64,7 +65,7 @@ impl Bodies {
 
     /// The graph for what no body carries.
     pub(crate) fn graph(&self) -> &Update {
-        &self.graph
+        &self.graph.update
     }
 
     /// Moves the vertices of `out`, of which this is the first, along with the bodies.
@@ -77,14 +78,17 @@ impl Bodies {
         Carry::<Plain> { machine: (), motions, fields, from, first, out }.call();
     }
 
-    /// Moves all vertices from where they are.
+    /// Moves all vertices from where they are; iterations that the graph took.
+    ///
+    /// # Errors
+    /// As [`Spread::apply`].
     pub(crate) fn apply(
         &self,
         from: &[Point],
         displacements: &Displacements<'_>,
         out: &mut [Point],
         threads: &Threads,
-    ) {
+    ) -> Result<usize> {
         let table = displacements.table();
         let motions: Vec<Rigid> = (self.nodes.iter())
             .map(|nodes| {
@@ -101,14 +105,16 @@ impl Bodies {
         let rest = places.map(|(v, d)| sub(add(from[v.index()], d.point()), out[v.index()]));
         let rest: Vec<Padded> = rest.map(Padded::new).collect();
         let largest = |of: &[Padded]| of.iter().map(|d| norm(d.point())).fold(0.0, f64::max);
+        let mut iterations = 0;
         if largest(&rest) > ROUNDING * largest(&table) {
             let carried = out.to_vec();
             let rest = Displacements::All(rest.into_iter().chain([Padded::default()]).collect());
-            self.graph.apply(&carried, &rest, out, threads);
+            iterations = self.graph.apply(&carried, &rest, out, threads)?;
         }
         for (v, d) in self.vertices.iter().zip(&*table) {
             out[v.index()] = add(from[v.index()], d.point());
         }
+        Ok(iterations)
     }
 }
 

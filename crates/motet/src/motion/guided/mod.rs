@@ -19,11 +19,12 @@ use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
+use crate::motion::graph::Graph;
 use crate::motion::guided::lift::{Affine, Lift};
 use crate::motion::nodes::Nodes;
 use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Quaternion, Wall};
-use crate::motion::solve::{Numbering, System, gradients};
+use crate::motion::solve::{Numbering, System, gradients, laplacian};
 use crate::motion::update::{Displacements, Update};
 
 pub(crate) use helpers::{Helpers, choose};
@@ -73,30 +74,28 @@ struct GraphTet {
     weight: f64,
 }
 
-/// The graph that [`Guided::new`] is made of.
-pub(crate) struct Graph<'a> {
-    /// Places of its nodes, the helpers at the end.
-    pub(crate) places: Vec<Point>,
-    pub(crate) helpers: &'a Helpers,
-    pub(crate) tets: &'a [[u32; 4]],
-    /// On what vertices hang, in nodes of the graph.
-    pub(crate) update: Update,
-}
-
 impl Guided {
+    /// The nodes of the graph are those that are given, the helpers, and others that it needed; `update` says on which each vertex hangs.
+    ///
     /// # Errors
     /// When a helper has no tet in the graph that is not flat.
-    pub(crate) fn new(graph: Graph<'_>, nodes: &Nodes, facets: &FacetSet, points: &[Point]) -> Result<Self> {
-        let Graph { places, helpers: Helpers { vertices: helpers, lengths }, tets, update } = graph;
+    pub(crate) fn new(
+        Graph { places, tets }: Graph,
+        update: Update,
+        (nodes, helpers): (&Nodes, &Helpers),
+        facets: &FacetSet,
+        points: &[Point],
+    ) -> Result<Self> {
         let n_given = nodes.of_graph.len();
         let given = nodes.of_graph.iter().map(|&n| nodes.vertices[n as usize]);
-        let length: Vec<f64> = given.chain(helpers.iter().copied()).map(|v| lengths[v.index()]).collect();
+        let known = given.chain(helpers.vertices.iter().copied()).map(|v| helpers.lengths[v.index()]);
+        let length = with_others(known.collect(), &tets, places.len());
         let mean = |tet: &[u32; 4], power: f64| {
             0.25 * tet.iter().map(|&n| length[n as usize].powf(power)).sum::<f64>()
         };
         let mut kept = Vec::new();
         let mut turn_stiffness = Vec::new();
-        for tet in tets {
+        for tet in &tets {
             let corners = tet.map(|n| places[n as usize]);
             let longest = EDGES.iter().map(|&[i, j]| distance(corners[i], corners[j])).fold(0.0, f64::max);
             let Some((gradients, volume)) = gradients(corners) else { continue };
@@ -149,7 +148,7 @@ impl Guided {
         Ok(Self {
             vertices: nodes.vertices.clone(),
             of_graph: nodes.of_graph.clone(),
-            n_helpers: helpers.len(),
+            n_helpers: all - n_given,
             wall: Wall::new(&wall_points, triangles),
             wall_nodes,
             off_wall,
@@ -277,6 +276,23 @@ impl Guided {
     }
 }
 
+/// Nodes of which no length is known have the mean of those that they share tets with.
+fn with_others(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
+    let known = lengths.len();
+    let mut sums = vec![(0.0, 0.0); n - known];
+    for tet in tets {
+        for other in tet.iter().filter_map(|&i| (i as usize).checked_sub(known)) {
+            for &near in tet.iter().filter(|i| (**i as usize) < known) {
+                sums[other].0 += lengths[near as usize];
+                sums[other].1 += 1.0;
+            }
+        }
+    }
+    let mean = lengths.iter().sum::<f64>() / known.max(1) as f64;
+    lengths.extend(sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { mean }));
+    lengths
+}
+
 /// Its axis times its angle, from 0 to pi.
 fn rotation_vector([w, x, y, z]: Quaternion) -> Point {
     let side = if w < 0.0 { -1.0 } else { 1.0 };
@@ -344,8 +360,4 @@ fn squeezed([a, b, c]: Matrix) -> f64 {
     let size = (cofactors.iter().map(|v| dot(*v, *v)).sum::<f64>() / 3.0).sqrt();
     let volume = dot(a, cofactors[0]);
     if volume > 0.05 * size { (size / volume).max(1.0) } else { 20.0 }
-}
-
-fn laplacian(gradients: &[Point; 4], stiffness: f64) -> [[f64; 4]; 4] {
-    std::array::from_fn(|i| std::array::from_fn(|j| stiffness * dot(gradients[i], gradients[j])))
 }

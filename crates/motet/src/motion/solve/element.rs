@@ -73,6 +73,11 @@ pub(super) fn laplace<'a>(
         let Some((g, volume)) = gradients(tets[t].map(|v| points[v.index()])) else { return [[0.0; 4]; 4] };
         // The centre of a tet at the wall is as far from it as a quarter of its height: never zero but by rounding.
         let weight = volume * distances[t].max(1e-9 * volume.cbrt()).powf(-exponent);
-        std::array::from_fn(|i| std::array::from_fn(|j| weight * dot(g[i], g[j])))
+        laplacian(&g, weight)
     }
+}
+
+/// `stiffness g_i . g_j`
+pub(crate) fn laplacian(gradients: &[Point; 4], stiffness: f64) -> [[f64; 4]; 4] {
+    std::array::from_fn(|i| std::array::from_fn(|j| stiffness * dot(gradients[i], gradients[j])))
 }

@@ -14,7 +14,7 @@ use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::add;
 use crate::motion::options::{FacetSet, Method};
 pub(crate) use crate::motion::solve::assemble::{Numbering, System};
-pub(crate) use crate::motion::solve::element::gradients;
+pub(crate) use crate::motion::solve::element::{gradients, laplacian};
 use crate::motion::update::Displacements;
 
 /// A linear system for the displacements of the vertices that nothing else moves.
