@@ -10,12 +10,13 @@ import bench_files
 import bench_implant
 import bench_mesh
 import bench_motion
+import bench_quality
 import bench_refine
 import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant}
+           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant, "quality": bench_quality}
 
 
 def words():

@@ -43,6 +43,11 @@ def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
     depth = f"Min(1,Max(0,(Sqrt(x*x+y*y+z*z)-{RADIUS})/({HALF_EDGE - RADIUS})))"
     field = gmsh.model.mesh.field.add("MathEval")
     gmsh.model.mesh.field.setString(field, "F", growth(sphere_size, wall_size, f"{depth}^{grading}"))
+    return meshed(gmsh, field)
+
+
+def meshed(gmsh, field):
+    """Points and positive tets of Gmsh's model, in the sizes of a field."""
     gmsh.model.mesh.field.setAsBackgroundMesh(field)
     for option in ("ExtendFromBoundary", "FromPoints", "FromCurvature"):
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
@@ -59,6 +64,24 @@ def build(sphere_size, wall_size, grading, ahead=HALF_EDGE, growth=geometric):
     negative = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
     tets[negative] = tets[negative][:, [1, 0, 2, 3]]
     return points, tets
+
+
+def flap_in_channel():
+    """A channel, 4 by 2 by 2, with a flap of 0.06 by 1 by 1 on its floor, y = -1: points and tets."""
+    import gmsh
+
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.NumThreads", 1)
+    occ = gmsh.model.occ
+    channel, flap = occ.addBox(-2, -1, -1, 4, 2, 2), occ.addBox(-0.03, -1, -0.5, 0.06, 1, 1)
+    occ.cut([(3, channel)], [(3, flap)])
+    occ.synchronize()
+    field = gmsh.model.mesh.field.add("Box")
+    sizes = dict(VIn=0.05, VOut=0.25, XMin=-0.05, XMax=0.05, YMin=-1, YMax=0.02, ZMin=-0.52, ZMax=0.52, Thickness=1)
+    for name, value in sizes.items():
+        gmsh.model.mesh.field.setNumber(field, name, value)
+    return meshed(gmsh, field)
 
 
 def boundary_vertices(points):
@@ -81,9 +104,15 @@ def sphere_in_box(name, folder):
 
 def vtu(name, folder):
     """The same mesh as a VTU file, for programs that read files; its path."""
-    path = os.path.join(folder, f"sphere_in_box_{name}.vtu")
     points, tets, _, _ = sphere_in_box(name, folder)
+    return written(f"sphere_in_box_{name}", lambda: (points, tets), folder)
+
+
+def written(name, made, folder):
+    """The path of a VTU file; `made` tells its points and tets where it is not there."""
+    path = os.path.join(folder, f"{name}.vtu")
     if not os.path.exists(path):
+        points, tets = made()
         import vtk
         from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 
