@@ -345,3 +345,41 @@ fn a_body_turns_by_a_right_angle_and_takes_the_cells_along() {
     let call = folder.motet([&turn[..6], &["--body", "sphere"]].concat()).assert().code(2);
     assert!(stderr(&call).contains("--method bodies"));
 }
+
+#[test]
+fn the_cheapest_method_that_keeps_the_mesh_good_is_taken() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &sphere_in_box(11, 6));
+    let auto = |motion: [&str; 2], more: &[&str]| {
+        let words = ["move", "box.vtu", "-o", "out.vtu", "--method", "auto", "--steps", "2", "--json"];
+        report(&folder.motet(words.iter().chain(&motion).chain(more)).assert().code(0))
+    };
+    let told = auto(["--translate", "sphere=0.3,0,0"], &[]);
+    assert_eq!(told["choice"]["method"], "delaunay");
+    assert_eq!(told["choice"]["tried"].as_array().unwrap().len(), 1);
+    let told = auto(["--rotate", "sphere=0,0,1,90"], &["--smooth", "2"]);
+    assert_eq!(told["choice"]["method"], "bodies");
+    assert!(told["choice"]["tried"][0]["kept"] == false && told["choice"]["tried"][1]["kept"] == true);
+    let least = told["choice"]["least"].as_f64().unwrap();
+    assert!(told["after"]["worst_eas"]["value"].as_f64().unwrap() >= least);
+    // Nothing is as good as that: the best is taken, and it is said.
+    let words = [
+        "move",
+        "box.vtu",
+        "-o",
+        "out.vtu",
+        "--method",
+        "auto",
+        "--least",
+        "0.9",
+        "--translate",
+        "sphere=0.3,0,0",
+    ];
+    let call = folder.motet(words).assert().code(0);
+    assert!(stderr(&call).contains("no method keeps every cell"));
+    let call = folder
+        .motet(["move", "box.vtu", "-o", "out.vtu", "--least", "0.1", "--translate", "sphere=1,0,0"])
+        .assert()
+        .code(2);
+    assert!(stderr(&call).contains("--method auto"));
+}

@@ -76,6 +76,7 @@ mod bodies;
 mod boundary_motion;
 mod certificate;
 mod check;
+mod choose;
 mod corners;
 mod graph;
 mod guided;
@@ -97,6 +98,7 @@ mod weights;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
 pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
+pub use choose::{Choice, Tried, choose};
 pub use matching::{Matching, SurfaceMotion, match_patch};
 pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
 pub use options::{Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, RigidLayer};

@@ -56,6 +56,17 @@ impl Default for Laplace {
 }
 
 impl Method {
+    /// As the command line has it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Delaunay => "delaunay",
+            Self::Bodies(_) => "bodies",
+            Self::Guided => "guided",
+            Self::Elastic(_) => "elastic",
+            Self::Laplace(_) => "laplace",
+        }
+    }
+
     /// # Errors
     /// When a number means nothing.
     pub(crate) fn check(&self) -> Result<()> {

@@ -92,6 +92,10 @@ pub(crate) struct MoveArgs {
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
     pub(crate) method: Method,
+    /// For `--method auto`: no cell may have an EAS (or scaled Jacobian) below this [default: half of the worst as the
+    /// mesh came, at most 0.1]
+    #[arg(long, value_name = "EAS", value_parser = positive, help_heading = "Volume")]
+    pub(crate) least: Option<f64>,
     /// Keep the graph within the walls: no vertex follows the wall of another branch, or the far side of a flap. Slower to
     /// set up; facets of the boundary must not cross or touch each other
     #[arg(long, help_heading = "Volume")]
@@ -127,6 +131,8 @@ pub(crate) enum Method {
     Bodies,
     /// The graph, whose nodes turn with the walls near them: for walls that bend
     Guided,
+    /// The cheapest of the three above and `elastic` that keeps the worst cell at `--least`: tried on all steps first
+    Auto,
     /// An elastic body, stiff where cells are small: a linear system a step, to compare with
     Elastic,
     /// A Laplace equation for each coordinate, stiff at the wall that moves: as well

@@ -24,7 +24,7 @@ pub(crate) use args::MoveArgs;
 use self::args::Method;
 use self::patches::Patches;
 use self::plan::Plan;
-use self::report::{Report, Step};
+use self::report::{Chosen, Report, Step};
 use self::words::LayerWord;
 use crate::args::Common;
 use crate::console::Console;
@@ -48,7 +48,10 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     }
     let patches = Patches::new(&mesh, &args.patch)?;
     let mut plan = Plan::new(&mesh, &boundary.vertices, &patches, args, console)?;
-    let options = options(args, &boundary, &patches, &plan)?;
+    let mut options = options(args, &boundary, &patches, &plan)?;
+    if args.method == Method::Auto {
+        report.choice = Some(choose(args, (&mesh, &boundary, &patches), &mut options, &threads, console)?);
+    }
     let setup = Instant::now();
     let mut mover = Mover::new(&mesh, &options, &threads).map_err(|e| e.in_file(&args.mesh))?;
     report.seconds.setup = setup.elapsed().as_secs_f64();
@@ -94,20 +97,45 @@ fn options(
     })
 }
 
+/// Puts the chosen method into the options.
+fn choose(
+    args: &MoveArgs,
+    (mesh, boundary, patches): (&Mesh, &Boundary, &Patches<'_>),
+    options: &mut Options,
+    threads: &Threads,
+    console: &Console,
+) -> motet::Result<Chosen> {
+    let frames = || {
+        // Frames come in order: each method gets a plan of its own.
+        let mut plan = Plan::new(mesh, &boundary.vertices, patches, args, console)?;
+        Ok((plan.first..plan.times.len()).map(move |k| plan.displacements(k)))
+    };
+    let choice =
+        motion::choose(mesh, options, args.least, frames, threads).map_err(|e| e.in_file(&args.mesh))?;
+    let chosen = Chosen { method: choice.method.name(), least: choice.least, tried: choice.tried };
+    options.method = choice.method;
+    Ok(chosen)
+}
+
 /// A Laplace equation is stiff where the rigid layer would be.
 fn method(
     args: &MoveArgs,
     bodies: Vec<FacetSet>,
     wall: impl Fn() -> motet::Result<FacetSet>,
 ) -> motet::Result<motion::Method> {
-    if !bodies.is_empty() && args.method != Method::Bodies {
+    if args.least.is_some() && args.method != Method::Auto {
+        return Err(Error::options("--least is a bound to choose a method by, but one is given")
+            .remedy("add --method auto"));
+    }
+    if !bodies.is_empty() && !matches!(args.method, Method::Bodies | Method::Auto) {
         return Err(Error::options("--body names a rigid body, but the method has none")
             .remedy("add --method bodies"));
     }
     let residual = args.residual;
     Ok(match args.method {
         Method::Delaunay => motion::Method::Delaunay,
-        Method::Bodies => motion::Method::Bodies(bodies),
+        // To choose, the graph comes first; bodies are kept for their turn.
+        Method::Bodies | Method::Auto => motion::Method::Bodies(bodies),
         Method::Guided => motion::Method::Guided,
         Method::Elastic => {
             let law = Elastic::default();

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::Threads;
-use motet::motion::{Certificate, Mover, Setup};
+use motet::motion::{Certificate, Mover, Setup, Tried};
 use serde::Serialize;
 
 use super::args::MoveArgs;
@@ -23,6 +23,9 @@ pub(crate) struct Report {
     cells: usize,
     /// Vertices that are where they were, as a share of all.
     untouched: f64,
+    /// How the method was chosen, if that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) choice: Option<Chosen>,
     setup: Setup,
     /// The mesh as it came.
     before: Certificate,
@@ -30,6 +33,37 @@ pub(crate) struct Report {
     after: Certificate,
     steps: Vec<Step>,
     pub(crate) seconds: Stages,
+}
+
+/// How a method was chosen.
+#[derive(Debug, Serialize)]
+pub(crate) struct Chosen {
+    pub(crate) method: &'static str,
+    /// No cell was to be worse.
+    pub(crate) least: f64,
+    pub(crate) tried: Vec<Tried>,
+}
+
+impl Chosen {
+    fn tell(&self, console: &Console) {
+        for tried in &self.tried {
+            let came_to = match (&tried.refused, tried.worst) {
+                (Some(why), _) => why.clone(),
+                (None, Some(worst)) => format!("worst {} in {} steps", short(worst), tried.frames),
+                (None, None) => format!("{} steps", tried.frames),
+            };
+            console.say(format_args!("tried {}: {came_to} ({})", tried.method, seconds(tried.seconds)));
+        }
+        if self.tried.last().is_some_and(|last| last.kept) {
+            console.say(format_args!("{} keeps every cell at {}", self.method, short(self.least)));
+        } else {
+            let least = short(self.least);
+            console.warn(format_args!(
+                "no method keeps every cell at {least}; {} comes nearest to it",
+                self.method
+            ));
+        }
+    }
 }
 
 /// One step of a motion.
@@ -63,6 +97,7 @@ impl Report {
             points: mesh.points.len(),
             cells: mesh.cells.len(),
             untouched: 1.0,
+            choice: None,
             setup: Setup::default(),
             before: Certificate::default(),
             after: Certificate::default(),
@@ -100,6 +135,9 @@ impl Report {
 
     pub(crate) fn tell(&self, console: &Console) {
         console.report(self);
+        if let Some(choice) = &self.choice {
+            choice.tell(console);
+        }
         let follow = match self.setup.solved {
             0 => format!(
                 "{} hanging in a graph of {} tets",
