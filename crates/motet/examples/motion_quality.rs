@@ -85,9 +85,9 @@ fn moved(
             .collect();
         let mut out = now.points.clone();
         // A system begins with what the last step left: its first step counts.
-        let has_system = matches!(options.method, Method::Elastic(_) | Method::Laplace(_));
+        let once = !matches!(options.method, Method::Delaunay | Method::Bodies(_) | Method::Guided);
         let mut times = Vec::new();
-        for _ in 0..if has_system { 1 } else { REPEATS } {
+        for _ in 0..if once { 1 } else { REPEATS } {
             let begin = Instant::now();
             mover.step(&driven, &mut out, threads)?;
             times.push(begin.elapsed().as_secs_f64());
@@ -145,6 +145,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("bodies", Method::Bodies(Vec::new()), false),
         ("elastic", elastic.clone(), false),
         ("laplace", laplace, false),
+        ("idw", Method::InverseDistance, false),
+        ("rbf", Method::Radial, false),
         ("elastic in steps", elastic, true),
     ];
     let rows = if size.contains("flap") { &FLAP[..] } else { &ROWS };

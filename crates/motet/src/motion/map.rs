@@ -2,6 +2,7 @@
 
 use crate::base::{Point, Result, Threads};
 use crate::motion::bodies::Bodies;
+use crate::motion::distance::{Inverse, Radial};
 use crate::motion::guided::Guided;
 use crate::motion::solve::Solve;
 use crate::motion::spread::Spread;
@@ -16,6 +17,10 @@ pub(crate) enum Map {
     Bodies(Box<Bodies>),
     /// The graph, whose nodes turn.
     Guided(Box<Guided>),
+    /// Means of rigid motions, by distance.
+    Inverse(Box<Inverse>),
+    /// Radial basis functions.
+    Radial(Box<Radial>),
     /// A linear system.
     Solve(Box<Solve>),
 }
@@ -36,6 +41,11 @@ impl Map {
             Self::Graph(spread) => spread.apply(from, displacements, out, threads),
             Self::Bodies(bodies) => bodies.apply(from, displacements, out, threads),
             Self::Guided(guided) => guided.apply(from, displacements, out, threads),
+            Self::Inverse(inverse) => {
+                inverse.apply(from, displacements, out, threads);
+                Ok(0)
+            }
+            Self::Radial(radial) => Ok(radial.apply(from, displacements, out, threads)),
             Self::Solve(solve) => Ok(solve.apply(from, displacements, out, threads)?.iterations),
         }
     }

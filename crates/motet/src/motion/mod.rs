@@ -78,6 +78,7 @@ mod certificate;
 mod check;
 mod choose;
 mod corners;
+mod distance;
 mod graph;
 mod guided;
 mod layer;

@@ -9,6 +9,7 @@ use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::bodies::{self, Bodies};
 use crate::motion::check::Check;
+use crate::motion::distance::{Inverse, Radial};
 use crate::motion::graph::{Graph, Hanging, hang, triangulate};
 use crate::motion::guided::{self, Guided, Helpers};
 use crate::motion::map::Map;
@@ -152,8 +153,10 @@ impl Mover {
             setup,
         };
         match mover.method {
-            Method::Elastic(_) | Method::Laplace(_) => mover.assemble_reference(&is_used, threads)?,
-            _ => mover.hang_reference(&is_used, threads)?,
+            Method::Delaunay | Method::Bodies(_) | Method::Guided => {
+                mover.hang_reference(&is_used, threads)?;
+            }
+            _ => mover.assemble_reference(&is_used, threads)?,
         }
         mover.setup.seconds.smoothing = mover.set_up_smoothing(options.smoothing);
         mover.setup.seconds.total = begin.elapsed().as_secs_f64();
@@ -183,7 +186,7 @@ impl Mover {
         let update = match &self.map {
             Map::Graph(spread) => &spread.update,
             Map::Bodies(bodies) => bodies.graph(),
-            Map::Guided(_) | Map::Solve(_) => return None,
+            _ => return None,
         };
         let (nodes, weights) = update.of(v.index());
         let vertex = |node: u32| self.nodes.vertices.get(node as usize).copied();
@@ -270,6 +273,13 @@ impl Mover {
     /// Sets the method up where `points` has the vertices.
     pub(crate) fn rebuild(&self, points: &[Point], threads: &Threads) -> Result<Map> {
         match self.method {
+            Method::InverseDistance => {
+                let inverse = Inverse::new(&self.wall, &self.nodes.vertices, &self.hanging, points);
+                Ok(Map::Inverse(Box::new(inverse)))
+            }
+            Method::Radial => {
+                Ok(Map::Radial(Box::new(Radial::new(&self.nodes.vertices, &self.hanging, points))))
+            }
             Method::Elastic(_) | Method::Laplace(_) => {
                 let (tets, nodes) = (&self.check.corners.tets, &self.nodes.vertices);
                 let vertices = (&self.hanging[..], &nodes[..]);
@@ -323,7 +333,8 @@ impl Mover {
             driven: nodes.n_driven,
             sliding: nodes.n_sliding(),
             layer: nodes.vertices.len() - nodes.n_driven,
-            solved: self.hanging.len(),
+            solved: if matches!(self.map, Map::Solve(_)) { self.hanging.len() } else { 0 },
+            hanging: if matches!(self.map, Map::Solve(_)) { 0 } else { self.hanging.len() },
             left: self.reference.len() - nodes.vertices.len() - self.hanging.len(),
             ..self.setup
         };
@@ -411,7 +422,7 @@ const RINGS: usize = 2;
 /// The facets that guide: the boundary. Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
 fn wall(boundary: &Boundary, options: &Options) -> FacetSet {
     match &options.method {
-        Method::Guided => FacetSet::of_boundary(boundary, "boundary", |_| true),
+        Method::Guided | Method::InverseDistance => FacetSet::of_boundary(boundary, "boundary", |_| true),
         Method::Laplace(law) => law.wall.clone().unwrap_or_else(|| not_sliding(boundary, &options.sliding)),
         _ => FacetSet::default(),
     }

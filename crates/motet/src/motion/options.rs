@@ -19,6 +19,10 @@ pub enum Method {
     Elastic(Elastic),
     /// Each coordinate of the displacement by a Laplace equation that is stiff at the wall. A linear system a step.
     Laplace(Laplace),
+    /// By the mean of the rigid motions of all boundary vertices, weighted by distance (Luke, Collins, Blades 2012).
+    InverseDistance,
+    /// By radial basis functions of compact support on chosen centres (de Boer, van der Schoot, Bijl 2007; Rendall, Allen 2009).
+    Radial,
 }
 
 /// Linear elasticity.
@@ -64,6 +68,8 @@ impl Method {
             Self::Guided => "guided",
             Self::Elastic(_) => "elastic",
             Self::Laplace(_) => "laplace",
+            Self::InverseDistance => "idw",
+            Self::Radial => "rbf",
         }
     }
 
@@ -71,7 +77,9 @@ impl Method {
     /// When a number means nothing.
     pub(crate) fn check(&self) -> Result<()> {
         let (power, tolerance) = match self {
-            Self::Delaunay | Self::Bodies(_) | Self::Guided => return Ok(()),
+            Self::Delaunay | Self::Bodies(_) | Self::Guided | Self::InverseDistance | Self::Radial => {
+                return Ok(());
+            }
             Self::Elastic(law) => {
                 if !(0.0..0.5).contains(&law.poisson) {
                     return Err(Error::options(format!(

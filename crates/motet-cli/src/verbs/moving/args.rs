@@ -137,6 +137,10 @@ pub(crate) enum Method {
     Elastic,
     /// A Laplace equation for each coordinate, stiff at the wall that moves: as well
     Laplace,
+    /// The mean of the rigid motions of all boundary vertices, weighted by distance: as well
+    Idw,
+    /// Radial basis functions of compact support: as well
+    Rbf,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

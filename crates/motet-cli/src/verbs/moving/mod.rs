@@ -137,6 +137,8 @@ fn method(
         // To choose, the graph comes first; bodies are kept for their turn.
         Method::Bodies | Method::Auto => motion::Method::Bodies(bodies),
         Method::Guided => motion::Method::Guided,
+        Method::Idw => motion::Method::InverseDistance,
+        Method::Rbf => motion::Method::Radial,
         Method::Elastic => {
             let law = Elastic::default();
             motion::Method::Elastic(Elastic { tolerance: Tolerance { residual, ..law.tolerance }, ..law })

@@ -52,9 +52,6 @@ impl Solve {
         let numbering = Numbering::new(points.len(), free, nodes);
         let tets = numbering.of_tets(tets);
         let (kind, tolerance) = match method {
-            Method::Delaunay | Method::Bodies(_) | Method::Guided => {
-                return Err(Error::options("the graph has no system to be solved"));
-            }
             Method::Elastic(law) => {
                 let of_tet = element::elastic(law, &tets.vertices, points);
                 (Kind::Elastic(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
@@ -62,6 +59,9 @@ impl Solve {
             Method::Laplace(law) => {
                 let of_tet = element::laplace(law, &tets.vertices, points, wall, threads);
                 (Kind::Laplace(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
+            }
+            _ => {
+                return Err(Error::options("this method has no system to be solved"));
             }
         };
         let last = Mutex::new(vec![[0.0; 3]; free.len()]);

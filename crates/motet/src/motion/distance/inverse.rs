@@ -1,0 +1,96 @@
+//! Inverse-distance weighting with rotations (Luke, Collins, Blades 2012, *A fast mesh deformation method using explicit interpolation*).
+//!
+//! Each boundary vertex moves all of space rigidly, by its displacement and its rotation; a vertex inside gets the mean of these motions, weighted by
+//! `area ((L / r)^3 + (L / (4 r))^5)`, `r` its distance, `L` the extent of the mesh. Every vertex asks every node; programs that live from it sum over trees.
+
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::mesh::bounds;
+use crate::motion::options::FacetSet;
+use crate::motion::rotation::{Wall, change};
+use crate::motion::update::Displacements;
+
+/// The corners of the boundary, set up at one place of the mesh.
+#[derive(Debug)]
+pub(crate) struct Inverse {
+    wall: Wall,
+    /// For each corner its vertex, its node, its place, and a third of the area of its facets.
+    corners: Vec<Corner>,
+    /// All nodes, which are where they are told to be.
+    nodes: Vec<VertexId>,
+    free: Vec<VertexId>,
+    extent: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    node: u32,
+    place: Point,
+    area: f64,
+}
+
+/// The near part of the weight begins at this part of the extent.
+const NEAR: f64 = 0.25;
+
+impl Inverse {
+    pub(crate) fn new(facets: &FacetSet, nodes: &[VertexId], free: &[VertexId], points: &[Point]) -> Self {
+        let mut node_of = vec![None; points.len()];
+        (0u32..).zip(nodes).for_each(|(i, v)| node_of[v.index()] = Some(i));
+        let mut vertices: Vec<VertexId> = facets.rings.items().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices.retain(|v| node_of[v.index()].is_some());
+        let local = |v: VertexId| vertices.binary_search(&v).ok().map(|i| i as u32);
+        let of_nodes = |t: [VertexId; 3]| Some([local(t[0])?, local(t[1])?, local(t[2])?]);
+        let triangles: Vec<[u32; 3]> = facets.triangles().filter_map(of_nodes).collect();
+        let places: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+        let mut areas = vec![0.0; places.len()];
+        for t in &triangles {
+            let area = norm(area_vector(t.map(|v| places[v as usize])));
+            t.iter().for_each(|v| areas[*v as usize] += area / 3.0);
+        }
+        let corner = |(v, (&place, area)): (&VertexId, (&Point, f64))| {
+            node_of[v.index()].map(|node| Corner { node, place, area })
+        };
+        let extent = bounds(&places).map_or(1.0, |[low, high]| norm(sub(high, low)));
+        Self {
+            corners: vertices.iter().zip(places.iter().zip(areas)).filter_map(corner).collect(),
+            wall: Wall::new(&places, triangles),
+            nodes: nodes.to_vec(),
+            free: free.to_vec(),
+            extent,
+        }
+    }
+
+    /// Moves all vertices from where they are.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacements: &Displacements<'_>,
+        out: &mut [Point],
+        threads: &Threads,
+    ) {
+        let table = displacements.table();
+        let moved: Vec<Point> = self.corners.iter().map(|c| table[c.node as usize].point()).collect();
+        let rotations = self.wall.rotations(|v| moved[v as usize], threads);
+        let places = threads.map(self.free.len(), |i| {
+            let p = from[self.free[i].index()];
+            let (mut sum, mut weights) = ([0.0; 3], 0.0);
+            for ((corner, &d), &q) in self.corners.iter().zip(&moved).zip(&rotations) {
+                let arm = sub(p, corner.place);
+                let near = self.extent * self.extent / dot(arm, arm);
+                let cubed = near * near.sqrt();
+                let weight = corner.area * (cubed + NEAR.powi(5) * cubed * near);
+                sum = add(sum, scale(add(d, change(q, arm)), weight));
+                weights += weight;
+            }
+            if weights > 0.0 && weights.is_finite() { add(p, scale(sum, 1.0 / weights)) } else { p }
+        });
+        out.copy_from_slice(from);
+        self.free.iter().zip(places).for_each(|(v, p)| out[v.index()] = p);
+        for (v, d) in self.nodes.iter().zip(&*table) {
+            out[v.index()] = add(from[v.index()], d.point());
+        }
+    }
+}

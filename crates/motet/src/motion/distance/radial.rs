@@ -1,0 +1,128 @@
+//! Radial basis functions (de Boer, van der Schoot, Bijl 2007) of compact support, on centres that are chosen step by step where the boundary is off most (Rendall, Allen 2009).
+//!
+//! `d(x) = sum a_c phi(|x - c| / R)`, `phi(r) = (1 - r)^4 (4 r + 1)` below 1 and 0 beyond (Wendland 1995, C2); `R` is half of the extent of the mesh. Boundary vertices go where they are
+//! told to be all the same; those near them are as far off as the basis is.
+
+use crate::base::{Point, Threads, VertexId};
+use crate::geometry::vector::{add, distance, norm, scale, sub};
+use crate::mesh::bounds;
+use crate::motion::update::Displacements;
+
+/// All nodes, of which each step chooses centres.
+#[derive(Debug)]
+pub(crate) struct Radial {
+    nodes: Vec<VertexId>,
+    free: Vec<VertexId>,
+    radius: f64,
+}
+
+/// Centres that come at once.
+const BATCH: usize = 8;
+/// No more centres than this: the work grows with its square, and their equations with what they have in common.
+const MOST: usize = 1000;
+/// The boundary may be off by this part of the largest displacement.
+const OFF: f64 = 1e-3;
+
+/// Centres, and the triangle of Cholesky's factorisation of their matrix, a row for each.
+#[derive(Default)]
+struct Centres {
+    nodes: Vec<usize>,
+    rows: Vec<Vec<f64>>,
+    /// The displacements, after the forward half of solving.
+    halves: Vec<Point>,
+}
+
+impl Radial {
+    pub(crate) fn new(nodes: &[VertexId], free: &[VertexId], points: &[Point]) -> Self {
+        let places: Vec<Point> = nodes.iter().map(|v| points[v.index()]).collect();
+        let extent = bounds(&places).map_or(1.0, |[low, high]| norm(sub(high, low)));
+        Self { nodes: nodes.to_vec(), free: free.to_vec(), radius: 0.5 * extent }
+    }
+
+    fn phi(&self, a: Point, b: Point) -> f64 {
+        let r = distance(a, b) / self.radius;
+        let rest = (1.0 - r).max(0.0);
+        rest * rest * rest * rest * (4.0 * r + 1.0)
+    }
+
+    /// Moves all vertices from where they are; how many centres that took.
+    pub(crate) fn apply(
+        &self,
+        from: &[Point],
+        displacements: &Displacements<'_>,
+        out: &mut [Point],
+        threads: &Threads,
+    ) -> usize {
+        let table = displacements.table();
+        let places: Vec<Point> = self.nodes.iter().map(|v| from[v.index()]).collect();
+        let wanted: Vec<Point> = table[..places.len()].iter().map(|d| d.point()).collect();
+        let largest = wanted.iter().map(|d| norm(*d)).fold(0.0, f64::max);
+        let mut centres = Centres::default();
+        let mut weights: Vec<Point> = Vec::new();
+        loop {
+            let off = threads.map(places.len(), |i| {
+                norm(sub(wanted[i], self.sum(places[i], &centres, &places, &weights)))
+            });
+            let mut order: Vec<usize> = (0..off.len()).filter(|&i| off[i] > OFF * largest).collect();
+            order.sort_by(|&i, &j| off[j].total_cmp(&off[i]).then(i.cmp(&j)));
+            let before = centres.nodes.len();
+            for &i in &order {
+                if centres.nodes.len() < (before + BATCH).min(MOST) {
+                    centres.add(i, wanted[i], |j| self.phi(places[i], places[j]));
+                }
+            }
+            if centres.nodes.len() == before {
+                break;
+            }
+            weights = centres.solved();
+        }
+        let moved = threads.map(self.free.len(), |i| {
+            let p = from[self.free[i].index()];
+            add(p, self.sum(p, &centres, &places, &weights))
+        });
+        out.copy_from_slice(from);
+        self.free.iter().zip(moved).for_each(|(v, p)| out[v.index()] = p);
+        for (v, d) in self.nodes.iter().zip(&wanted) {
+            out[v.index()] = add(from[v.index()], *d);
+        }
+        centres.nodes.len()
+    }
+
+    fn sum(&self, p: Point, centres: &Centres, places: &[Point], weights: &[Point]) -> Point {
+        let parts = centres.nodes.iter().zip(weights);
+        parts.fold([0.0; 3], |sum, (&c, &a)| add(sum, scale(a, self.phi(p, places[c]))))
+    }
+}
+
+impl Centres {
+    /// Adds a row to the triangle; none where the centre has nothing of its own.
+    fn add(&mut self, node: usize, wanted: Point, phi: impl Fn(usize) -> f64) {
+        let mut row: Vec<f64> = Vec::with_capacity(self.nodes.len() + 1);
+        for (other, &c) in self.rows.iter().zip(&self.nodes) {
+            let known: f64 = row.iter().zip(other).map(|(a, b)| a * b).sum();
+            row.push((phi(c) - known) / other[row.len()]);
+        }
+        let own = 1.0 - row.iter().map(|x| x * x).sum::<f64>();
+        if own < 1e-12 {
+            return;
+        }
+        let known = row.iter().zip(&self.halves).fold([0.0; 3], |s, (x, h)| add(s, scale(*h, *x)));
+        let own = own.sqrt();
+        self.halves.push(scale(sub(wanted, known), 1.0 / own));
+        row.push(own);
+        self.rows.push(row);
+        self.nodes.push(node);
+    }
+
+    /// The backward half.
+    fn solved(&self) -> Vec<Point> {
+        let mut solved = self.halves.clone();
+        for i in (0..solved.len()).rev() {
+            solved[i] = scale(solved[i], 1.0 / self.rows[i][i]);
+            for j in 0..i {
+                solved[j] = sub(solved[j], scale(solved[i], self.rows[i][j]));
+            }
+        }
+        solved
+    }
+}
