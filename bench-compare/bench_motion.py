@@ -1,4 +1,4 @@
-"""Mesh motion: the paper's four sizes, with and without a rigid layer, beside a C loop, SciPy and OpenFOAM."""
+"""Mesh motion: the paper's four sizes, with and without a rigid layer, beside a C loop, SciPy, and what solves a linear system a step."""
 import sys
 import time
 
@@ -23,6 +23,23 @@ BIG = 1 << 30  # bytes that no cache holds
 LARGE = "56,64"  # motet's built-in sphere in a box with 1.2 M vertices: its update moves more than caches hold
 LARGE_INSIDE = 1_185_408
 BUDGET = 0.5  # seconds that an update is repeated for in one turn
+SOLVE_LIMIT = 600.0  # seconds that setting up and some steps of a linear system may take
+FACTOR = 8  # GiB that motet's factor may take
+# Programs that solve a linear system a step: threads, which equation, what it is, a C loop's factor that was reached elsewhere.
+SOLVERS = {
+    "NGSolve, elastic": (2, "conjugate gradients, diagonal, 1e-8", 38_000),
+    "pyamg, elastic": (1, "conjugate gradients, smoothed aggregation, 1e-8", None),
+    "PARDISO, elastic": (2, "factor kept", None),
+    "motet, elastic": (2, "conjugate gradients, two levels, 1e-8", None),
+    "motet, elastic, factor": (1, "factor kept", None),
+    "OpenFOAM, displacementSBRStress": (1, "conjugate gradients, incomplete Cholesky, relTol 0.01", None),
+    "OpenFOAM, displacementLaplacian": (1, "conjugate gradients, incomplete Cholesky, relTol 0.01", 8_000),
+    "NGSolve, laplace": (2, "conjugate gradients, multigrid, 1e-8", None),
+    "pyamg, laplace": (1, "conjugate gradients, Ruge-Stueben, 1e-8", None),
+    "PARDISO, laplace": (2, "factor kept", 2_800),
+    "motet, laplace": (2, "conjugate gradients, two levels, 1e-8", None),
+    "motet, laplace, factor": (1, "factor kept", None),
+}
 
 
 class Model:
@@ -51,19 +68,28 @@ class Model:
             contenders[f"copy {t}t"] = [loop, "copy", 72 * self.inside, t, BUDGET]
             contenders[f"copy big {t}t"] = [loop, "copy", BIG, t, BUDGET]
         self.add(record, in_turn(contenders, options.rounds, options.limit))
-        if openfoam.available():
-            self.add(record, {"OpenFOAM": self.foam(options)})
+        for program, (threads, _, _) in SOLVERS.items():
+            who, what, *factor = program.split(", ")
+            if who == "OpenFOAM":
+                result = self.foam(options, what) if openfoam.available() else {"error": "not installed"}
+            elif who == "motet":
+                kept = ["--factor", FACTOR] if factor else []
+                result = combine([call([*motet(path, LAYERS[0], threads), "--method", what, *kept], SOLVE_LIMIT)])
+            else:
+                rival = [sys.executable, HERE / "rivals" / "motion_python.py", who.lower(), what, mesh, threads]
+                result = combine([call(rival, SOLVE_LIMIT)])
+            self.add(record, {program: result})
 
     def add(self, record, results):
         for program, result in results.items():
             record.add(**{**result, "bench": "motion", "model": self.name, "program": program})
         self.results |= results
 
-    def foam(self, options):
+    def foam(self, options, solver):
         busy, own, start = busy_seconds(), own_seconds(), time.perf_counter()
         try:
             rounds = min(options.rounds, 3)
-            step = openfoam.step_seconds(TARGET / "foam", self.points, self.tets, self.sphere, 0.5, rounds)
+            step = openfoam.step_seconds(TARGET / "foam", self.points, self.tets, self.sphere, 0.5, rounds, solver)
         except Exception as error:  # an optional rival: whatever stops it, the others go on
             return {"error": str(error)[-200:]}
         others = (busy_seconds() - busy) - (own_seconds() - own)
@@ -91,6 +117,7 @@ def run(record, options):
     if "D" in options.sizes:
         large(record, models[-1], options)
     steps(models)
+    solvers(models)
     paper(models)
 
 
@@ -181,7 +208,7 @@ def steps(models):
     rows = []
     for m in models:
         ours = [m.seconds(f"motet {LAYERS[0]} {t}t", "rebuild_seconds") for t in (1, 2)]
-        foam, other = m.results.get("OpenFOAM"), known.get(there[m.name])
+        foam, other = m.results.get("OpenFOAM, displacementLaplacian"), known.get(there[m.name])
         rows.append([m.name, *map(seconds_text, ours), shown(foam) if foam else "not installed",
                      over(foam and foam.get("seconds"), ours[0], 1), seconds_text(other), over(other, ours[0], 1), "8"])
     print("\nGraph and weights built anew plus one step, against one step of OpenFOAM's displacementLaplacian"
@@ -190,13 +217,39 @@ def steps(models):
                  "wanted"], rows))
 
 
+def solvers(models):
+    """What solves a linear system a step: set-up, step, and how many of motet's steps that is."""
+    known = {m.name: [m.results[f"motet {layer} 2t"] for layer in LAYERS] for m in models}
+    rows = []
+    for program, (threads, how, reached) in SOLVERS.items():
+        row = [program, threads, how]
+        for m in models:
+            result = m.results.get(program)
+            step, setup = ((result or {}).get(key) for key in ("seconds", "setup_seconds"))
+            if program.endswith("factor") and step and not result["setup"]["factor_bytes"]:
+                row += [f"a factor of more than {FACTOR} GiB", "-", "-", "-", "-"]
+                continue
+            row += [cell(result, seconds_text(setup)), shown(result)]
+            row += [over(step, r.get("seconds"), 0) for r in known[m.name]]
+            row.append(over(step, known[m.name][0].get("rebuild_seconds"), 1))
+        largest = models[-1]
+        row += [over(largest.seconds(program), largest.seconds("C loop 2t"), 0), f"{reached:,}" if reached and largest.name == "D" else ""]
+        rows.append(row)
+    head = [f"{m.name} {what}" for m in models for what in ("set-up", "step", "ratio", "rigid layer", "rebuilt")]
+    print("\nA step of what solves a linear system, beside motet's (two threads). `ratio`: to the update, without a layer; `rigid layer`: to"
+          "\nthe update with one; `rebuilt`: to graph, weights and a step together (wanted: 30). `C loop`: of the largest model, to the C loop on two"
+          "\nthreads; `reached`: what that was on the machine where the aim was set. The sphere moves along x: the iterated Laplace equations"
+          "\nsolve for x alone, but for motet's.\n")
+    print(table(["program", "threads", "how", *head, "C loop", "reached"], rows))
+
+
 def paper(models):
     """Table 1 row by row: the paper / here."""
     columns = [(m, layer, PAPER[m.name], PAPER[m.name][5 + i], m.results[f"motet {layer} 1t"])
                for m in models for i, layer in reversed(list(enumerate(LAYERS)))]
     pair = lambda a, b: f"{a} / {b}"
     count = lambda v: "?" if v is None else f"{v:,}"
-    foam = lambda m: m.seconds("OpenFOAM")
+    solved = lambda m: m.seconds("NGSolve, elastic")
     factor = lambda slow, fast: f"{slow / fast:,.0f}" if slow and fast else "-"
     rows = [
         ["volume nodes", *[pair(count(p[0]), count(len(m.points))) for m, _, p, _, _ in columns]],
@@ -206,13 +259,13 @@ def paper(models):
         ["Delaunay nodes", *[pair(count(q[0]), count(r.get("graph_nodes"))) for _, _, _, q, r in columns]],
         ["Delaunay elements", *[pair(count(q[1]), count(r.get("graph_tets"))) for _, _, _, q, r in columns]],
         ["total Delaunay setup time", *[pair(seconds_text(q[2]), seconds_text(r.get("setup_seconds"))) for _, _, _, q, r in columns]],
-        ["computational timestep: elastic / OpenFOAM",
-         *[pair(seconds_text(p[4]), seconds_text(foam(m))) for m, _, p, _, _ in columns]],
+        ["computational timestep: elastic",
+         *[pair(seconds_text(p[4]), seconds_text(solved(m))) for m, _, p, _, _ in columns]],
         ["computational timestep: Delaunay", *[pair(seconds_text(q[3]), seconds_text(r.get("seconds"))) for _, _, _, q, r in columns]],
-        ["speed increase factor", *[pair(factor(p[4], q[3]), factor(foam(m), r.get("seconds"))) for m, _, p, q, r in columns]],
+        ["speed increase factor", *[pair(factor(p[4], q[3]), factor(solved(m), r.get("seconds"))) for m, _, p, q, r in columns]],
     ]
-    print("\nThe paper's table 1, row by row, each cell `the paper / here` (one thread; here the elastic solver's place is"
-          "\ntaken by OpenFOAM's displacementLaplacian, a Laplace equation, cheaper than elasticity).\n")
+    print("\nThe paper's table 1, row by row, each cell `the paper / here` (here one thread, and two for elasticity, which"
+          "\nis NGSolve's).\n")
     print(table(["", *[f"{m.name}{' rigid' if layer == LAYERS[1] else ''}" for m, layer, *_ in columns]], rows))
 
 

@@ -1,64 +1,139 @@
-//! How good meshes are that different methods move, and what a step takes: a sphere in a box, shifted and turned.
+//! How good meshes are that different methods move, and what a step takes: a sphere in a box that shifts and turns, a flap and a vessel that bend, a wall that was measured.
 //!
-//! `motion_quality [N,LAYERS|FILE] [--threads N] [--only WORD] [--smooth SWEEPS]` prints a table; `22,10` has 32,000 vertices; a file's sphere is of radius 1 about the origin. Each cell: bad tets (EAS below 0.2),
-//! inverted ones in brackets, the smallest dihedral angle of the others in degrees; seconds. "In steps": a tenth of a radius or five degrees
-//! at a time, the method set up anew on the mesh of the step before.
+//! `motion_quality [N,LAYERS|FILE] [--motion sphere|flap|vessel|frames] [--threads N] [--only WORD] [--row WORD] [--smooth SWEEPS]` prints a table; `22,10` has 32,000 vertices.
+//! The sphere is of radius 1 about the origin; the flap stands on the floor `y = -1`; the vessel goes along `z` from 0; a mesh that
+//! was measured has an array of points for each frame, `frame_1` and on, where its boundary is then. Each cell: bad tets (EAS below 0.2), inverted ones in brackets, the smallest dihedral angle of
+//! the others in degrees; the worst EAS, and that which a twentieth does not reach; seconds. "In steps": a tenth of a radius, five degrees or a frame at a time, the
+//! method set up anew on the mesh of the step before. "In legs": so, but by a radius, 45 degrees or four frames.
 
 use std::error::Error;
 use std::time::Instant;
 
-use motet::base::{Point, Threads};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{norm, sub};
 use motet::mesh::{Mesh, shapes};
 use motet::motion::{BAD_EAS, Elastic, Laplace, Method, Mover, Options, Prescribed};
 
-/// Parts of a whole motion, and where a part of it takes a point.
+/// A whole motion.
 struct Row {
-    name: &'static str,
+    name: String,
     steps: usize,
-    shift: f64,
-    degrees: f64,
+    legs: usize,
+    motion: Motion,
 }
 
-/// A flap that stands on the floor, `y = -1`, and bends about `z`: an arc of so many degrees.
-const FLAP: [Row; 4] = [
-    Row { name: "flap 30 degrees", steps: 6, shift: 0.0, degrees: 30.0 },
-    Row { name: "flap 45 degrees", steps: 9, shift: 0.0, degrees: 45.0 },
-    Row { name: "flap 60 degrees", steps: 12, shift: 0.0, degrees: 60.0 },
-    Row { name: "flap 90 degrees", steps: 18, shift: 0.0, degrees: 90.0 },
-];
+enum Motion {
+    /// The sphere goes along x and turns about z.
+    Sphere { shift: f64, degrees: f64 },
+    /// The flap becomes an arc of so many degrees.
+    Flap { degrees: f64 },
+    /// The vessel's axis becomes an arc, and its cross-sections turn about it, the farther along the more.
+    Vessel { bend: f64, twist: f64 },
+    /// The boundary in frames 0 to the last one.
+    Frames(Vec<Vec<Point>>),
+}
 
-const ROWS: [Row; 7] = [
-    Row { name: "0.5 radii", steps: 5, shift: 0.5, degrees: 0.0 },
-    Row { name: "1 radius", steps: 10, shift: 1.0, degrees: 0.0 },
-    Row { name: "2 radii", steps: 20, shift: 2.0, degrees: 0.0 },
-    Row { name: "3 radii", steps: 30, shift: 3.0, degrees: 0.0 },
-    Row { name: "15 degrees", steps: 3, shift: 0.0, degrees: 15.0 },
-    Row { name: "45 degrees", steps: 9, shift: 0.0, degrees: 45.0 },
-    Row { name: "90 degrees", steps: 18, shift: 0.0, degrees: 90.0 },
-];
+fn rows(motion: &str, mesh: &Mesh) -> Result<Vec<Row>, Box<dyn Error>> {
+    let sphere = |name: &str, steps, legs, shift, degrees| Row {
+        name: name.into(),
+        steps,
+        legs,
+        motion: Motion::Sphere { shift, degrees },
+    };
+    Ok(match motion {
+        "sphere" => vec![
+            sphere("0.5 radii", 5, 1, 0.5, 0.0),
+            sphere("1 radius", 10, 1, 1.0, 0.0),
+            sphere("2 radii", 20, 2, 2.0, 0.0),
+            sphere("3 radii", 30, 3, 3.0, 0.0),
+            sphere("15 degrees", 3, 1, 0.0, 15.0),
+            sphere("45 degrees", 9, 1, 0.0, 45.0),
+            sphere("90 degrees", 18, 2, 0.0, 90.0),
+            sphere("180 degrees", 36, 4, 0.0, 180.0),
+        ],
+        "flap" => [30, 45, 60, 90]
+            .map(|degrees| Row {
+                name: format!("flap {degrees} degrees"),
+                steps: degrees / 5,
+                legs: degrees.div_ceil(45),
+                motion: Motion::Flap { degrees: degrees as f64 },
+            })
+            .into(),
+        "vessel" => [(30, 0), (60, 0), (90, 0), (0, 45), (0, 90), (60, 60)]
+            .map(|(bend, twist): (usize, usize)| Row {
+                name: format!("bent {bend}, twisted {twist}"),
+                steps: bend.max(twist) / 5,
+                legs: bend.max(twist).div_ceil(45),
+                motion: Motion::Vessel { bend: bend as f64, twist: twist as f64 },
+            })
+            .into(),
+        "frames" => {
+            let frames = frames(mesh);
+            let parts = [frames.len() / 3, 2 * frames.len() / 3, frames.len() - 1];
+            parts
+                .map(|last| Row {
+                    name: format!("frame {last}"),
+                    steps: last,
+                    legs: last.div_ceil(4),
+                    motion: Motion::Frames(frames[..=last].to_vec()),
+                })
+                .into()
+        }
+        other => return Err(format!("no motion is called {other}").into()),
+    })
+}
 
-impl Row {
-    fn moves(&self, p: Point) -> bool {
-        match self.name.starts_with("flap") {
-            true => p[0].abs() < 0.0301 && p[1] < 1e-6 && p[2].abs() < 0.5001,
-            false => norm(p) < 1.2,
+/// The places of the points at rest, and in each frame that the mesh has.
+fn frames(mesh: &Mesh) -> Vec<Vec<Point>> {
+    let mut frames = vec![mesh.points.clone()];
+    while let Some(field) = mesh.point_field(&format!("frame_{}", frames.len())) {
+        let numbers = field.values.to_f64().expect("places are numbers");
+        frames.push(numbers.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect());
+    }
+    frames
+}
+
+impl Motion {
+    /// Where a boundary vertex is after a part of the motion; `p` is its first place.
+    fn place(&self, v: VertexId, p: Point, part: f64) -> Point {
+        match self {
+            Self::Sphere { shift, degrees } if norm(p) < 1.2 => {
+                let turn = Prescribed::Turn {
+                    axis: [0.0, 0.0, 1.0],
+                    angle: degrees.to_radians() * part,
+                    centre: [0.0; 3],
+                };
+                let [x, y, z] = turn.apply(p, 1.0);
+                [x + shift * part, y, z]
+            }
+            Self::Flap { degrees } if p[0].abs() < 0.0301 && p[1] < 1e-6 && p[2].abs() < 0.5001 => {
+                let (across, along) = arc(degrees.to_radians() * part, p[0], p[1] + 1.0);
+                [across, along - 1.0, p[2]]
+            }
+            Self::Sphere { .. } | Self::Flap { .. } => p,
+            Self::Vessel { bend, twist } => {
+                let (sine, cosine) = (twist.to_radians() * part * p[2] / VESSEL).sin_cos();
+                let [x, y] = [cosine * p[0] - sine * p[1], sine * p[0] + cosine * p[1]];
+                let (across, along) = arc(bend.to_radians() * part / VESSEL, x, p[2]);
+                [across, y, along]
+            }
+            Self::Frames(frames) => frames[((frames.len() - 1) as f64 * part).round() as usize][v.index()],
         }
     }
+}
 
-    fn place(&self, p: Point, part: f64) -> Point {
-        if self.name.starts_with("flap") {
-            let (curvature, along) = (self.degrees.to_radians() * part, p[1] + 1.0);
-            let (sine, cosine) = (curvature * along).sin_cos();
-            return [(1.0 - cosine) / curvature + p[0] * cosine, sine / curvature - 1.0 - p[0] * sine, p[2]];
-        }
-        let angle = self.degrees.to_radians() * part;
-        let turn = Prescribed::Turn { axis: [0.0, 0.0, 1.0], angle, centre: [0.0; 3] };
-        let [x, y, z] = turn.apply(p, 1.0);
-        [x + self.shift * part, y, z]
+/// How long the vessel is.
+const VESSEL: f64 = 10.0;
+
+/// A line bent to an arc: where the point `along` it and `across` it goes.
+fn arc(curvature: f64, across: f64, along: f64) -> (f64, f64) {
+    if curvature == 0.0 {
+        return (across, along);
     }
+    let (sine, cosine) = (curvature * along).sin_cos();
+    ((1.0 - cosine) / curvature + across * cosine, sine / curvature - across * sine)
 }
 
 /// Steps of which the median time counts.
@@ -78,8 +153,7 @@ fn moved(
         let set_up = begin.elapsed().as_secs_f64();
         let driven: Vec<Point> = (mover.boundary().iter())
             .map(|v| {
-                let first = mesh.points[v.index()];
-                let to = if row.moves(first) { row.place(first, step as f64 / steps as f64) } else { first };
+                let to = row.motion.place(*v, mesh.points[v.index()], step as f64 / steps as f64);
                 sub(to, now.points[v.index()])
             })
             .collect();
@@ -101,26 +175,51 @@ fn moved(
 }
 
 fn told(mesh: &Mesh, points: &[Point]) -> String {
-    let (mut bad, mut inverted, mut smallest) = (0, 0, f64::INFINITY);
+    let (mut inverted, mut smallest, mut all) = (0, f64::INFINITY, Vec::new());
     for (_, tet) in mesh.cells.tets() {
         let corners = tet.map(|v| points[v.index()]);
-        bad += usize::from(eas(corners) < BAD_EAS);
+        all.push(eas(corners));
         if volume(corners) <= 0.0 {
             inverted += 1;
         } else {
             smallest = smallest.min(dihedral::min(corners));
         }
     }
-    format!("{bad} [{inverted}] {:.1}", smallest.to_degrees())
+    all.sort_by(f64::total_cmp);
+    let bad = all.partition_point(|&eas| eas < BAD_EAS);
+    let (worst, twentieth) = (all[0], all[all.len() / 20]);
+    format!("{bad} [{inverted}] {:.1}; {worst:.3}, {twentieth:.3}", smallest.to_degrees())
+}
+
+/// Three digits with the unit that fits.
+fn time(seconds: f64) -> String {
+    let (number, unit) = match seconds {
+        s if s >= 1.0 => (s, "s"),
+        s if s >= 1e-3 => (s * 1e3, "ms"),
+        s => (s * 1e6, "us"),
+    };
+    let digits = (2 - number.log10().floor() as i32).max(0) as usize;
+    format!("{number:.digits$} {unit}")
+}
+
+/// How a way is divided.
+#[derive(Clone, Copy, PartialEq)]
+enum Parts {
+    One,
+    Legs,
+    Steps,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (mut size, mut only, mut sweeps, mut n_threads) = ("22,10".to_string(), String::new(), 0, 1);
+    let (mut size, mut motion) = ("22,10".to_string(), "sphere".to_string());
+    let (mut only, mut row_word, mut sweeps, mut n_threads) = (String::new(), String::new(), 0, 1);
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
         match word.as_str() {
+            "--motion" => motion = value()?,
             "--only" => only = value()?,
+            "--row" => row_word = value()?,
             "--smooth" => sweeps = value()?.parse()?,
             "--threads" => n_threads = value()?.parse()?,
             _ => size = word,
@@ -138,31 +237,42 @@ fn main() -> Result<(), Box<dyn Error>> {
         told(&mesh, &mesh.points)
     );
     let elastic = Method::Elastic(Elastic::default());
-    let laplace = Method::Laplace(Laplace::default());
     let methods = [
-        ("graph", Method::Delaunay, false),
-        ("guided", Method::Guided, false),
-        ("bodies", Method::Bodies(Vec::new()), false),
-        ("elastic", elastic.clone(), false),
-        ("laplace", laplace, false),
-        ("idw", Method::InverseDistance, false),
-        ("rbf", Method::Radial, false),
-        ("elastic in steps", elastic, true),
+        ("graph", Method::Delaunay, Parts::One),
+        ("guided", Method::Guided, Parts::One),
+        ("bodies", Method::Bodies(Vec::new()), Parts::One),
+        ("elastic", elastic.clone(), Parts::One),
+        ("laplace", Method::Laplace(Laplace::default()), Parts::One),
+        ("idw", Method::InverseDistance, Parts::One),
+        ("rbf", Method::Radial, Parts::One),
+        ("graph in legs", Method::Delaunay, Parts::Legs),
+        ("guided in legs", Method::Guided, Parts::Legs),
+        ("bodies in legs", Method::Bodies(Vec::new()), Parts::Legs),
+        ("elastic in steps", elastic, Parts::Steps),
     ];
-    let rows = if size.contains("flap") { &FLAP[..] } else { &ROWS };
-    let titles: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    let mut rows = rows(&motion, &mesh)?;
+    rows.retain(|row| row.name.contains(&row_word));
+    let titles: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
     println!("| method | {} |\n|---|{}", titles.join(" | "), "---|".repeat(rows.len()));
-    for (name, method, in_steps) in methods {
-        // The flap hangs on the wall: it is no body of its own.
-        if !name.contains(&only) || (name == "bodies" && rows.len() == FLAP.len()) {
+    for (name, method, parts) in methods {
+        // Only the sphere is a body of its own.
+        if !name.contains(&only) || (name.starts_with("bodies") && motion != "sphere") {
             continue;
         }
         let options = Options { method, smoothing: sweeps, ..Options::default() };
         let mut cells = Vec::new();
-        for row in rows {
-            let (points, seconds) =
-                moved(&mesh, row, (&options, if in_steps { row.steps } else { 1 }), &threads)?;
-            cells.push(format!("{}; {seconds:.2e} s", told(&mesh, &points)));
+        for row in &rows {
+            let parts = match parts {
+                Parts::One => 1,
+                Parts::Legs if row.legs == 1 => {
+                    cells.push(String::new());
+                    continue;
+                }
+                Parts::Legs => row.legs,
+                Parts::Steps => row.steps,
+            };
+            let (points, seconds) = moved(&mesh, row, (&options, parts), &threads)?;
+            cells.push(format!("{}; {}", told(&mesh, &points), time(seconds)));
         }
         println!("| {name} | {} |", cells.join(" | "));
     }

@@ -1,17 +1,19 @@
 //! How long mesh motion takes: set-up by stage, the update on its own, a rebuild, and a copy beside it.
 //!
-//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X]` prints one JSON object.
+//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X] [--method NAME] [--residual R] [--factor GIB]` prints one JSON object.
 //! MESH is any mesh file; `15,7`, `22,10`, `30,13` and `38,17` are the four sizes of the built-in sphere in a box.
 //! `--rigid-layer` holds one layer of cells at the whole boundary. `--travel X` moves the sphere by X along x
-//! with `advance` and adds its certificate.
+//! with `advance` and adds its certificate. NAME is `delaunay` (default), `bodies`, `guided`, `elastic` or `laplace`; of the last two steps are solved to R (1e-8), and
+//! with a factor of at most so many GiB where one is asked for. Each step is along another axis than the one before, so that no iteration begins with what it looks for.
 
 use std::error::Error;
 use std::time::Instant;
 
+use motet::algebra::Tolerance;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::norm;
 use motet::mesh::{Mesh, shapes};
-use motet::motion::{Extent, Mover, Options, RigidLayer};
+use motet::motion::{Elastic, Extent, Laplace, Method, Mover, Options, RigidLayer};
 
 struct Call {
     mesh: String,
@@ -19,10 +21,37 @@ struct Call {
     seconds: f64,
     rigid: bool,
     travel: Option<f64>,
+    method: String,
+    residual: f64,
+    factor: f64,
+}
+
+impl Call {
+    fn method(&self) -> Result<Method, Box<dyn Error>> {
+        let tolerance = Tolerance { residual: self.residual, iterations: 10_000 };
+        let factor_bytes = (self.factor * (1u64 << 30) as f64) as u64;
+        Ok(match &self.method[..] {
+            "delaunay" => Method::Delaunay,
+            "bodies" => Method::Bodies(Vec::new()),
+            "guided" => Method::Guided,
+            "elastic" => Method::Elastic(Elastic { tolerance, factor_bytes, ..Elastic::default() }),
+            "laplace" => Method::Laplace(Laplace { tolerance, factor_bytes, ..Laplace::default() }),
+            other => return Err(format!("no method is called {other}").into()),
+        })
+    }
 }
 
 fn call() -> Result<Call, Box<dyn Error>> {
-    let mut call = Call { mesh: "22,10".into(), threads: 1, seconds: 0.5, rigid: false, travel: None };
+    let mut call = Call {
+        mesh: "22,10".into(),
+        threads: 1,
+        seconds: 0.5,
+        rigid: false,
+        travel: None,
+        method: "delaunay".into(),
+        residual: 1e-8,
+        factor: 0.0,
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
@@ -30,6 +59,9 @@ fn call() -> Result<Call, Box<dyn Error>> {
             "--threads" => call.threads = value()?.parse()?,
             "--seconds" => call.seconds = value()?.parse()?,
             "--travel" => call.travel = Some(value()?.parse()?),
+            "--method" => call.method = value()?,
+            "--residual" => call.residual = value()?.parse()?,
+            "--factor" => call.factor = value()?.parse()?,
             "--rigid-layer" => call.rigid = true,
             _ => call.mesh = word,
         }
@@ -83,11 +115,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mesh = load(&call.mesh)?;
     let threads = Threads::new(call.threads)?;
     let rigid_layer = call.rigid.then_some(RigidLayer { extent: Extent::Cells(1), wall: None });
-    let options = Options { rigid_layer, ..Options::default() };
+    let options = Options { rigid_layer, method: call.method()?, ..Options::default() };
 
-    let mut setups: Vec<_> = Vec::new();
     let mut mover = Mover::new(&mesh, &options, &threads)?;
-    for _ in 0..5 {
+    let mut setups = vec![*mover.setup()];
+    for _ in 0..if setups[0].seconds.total < 1.0 { 5 } else { 1 } {
         mover = Mover::new(&mesh, &options, &threads)?;
         setups.push(*mover.setup());
     }
@@ -95,13 +127,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let setup = setups[0];
 
     let sphere = |v: &VertexId| norm(mesh.points[v.index()]) < 1.2;
-    let by = |x: f64| -> Vec<Point> {
-        let one = |v: &VertexId| [if sphere(v) { x } else { 0.0 }, 0.0, 0.0];
+    let by = |axis: usize, x: f64| -> Vec<Point> {
+        let one = |v: &VertexId| std::array::from_fn(|k| if k == axis && sphere(v) { x } else { 0.0 });
         mover.boundary().iter().map(one).collect()
     };
-    let driven = by(0.5);
+    let driven = [0, 1, 2].map(|axis| by(axis, 0.5));
     let mut out = mesh.points.clone();
-    let (best, median) = repeat(call.seconds, || mover.step(&driven, &mut out, &threads).expect("it fits"));
+    let mut axis = 0;
+    let (best, median) = repeat(call.seconds, || {
+        axis = (axis + 1) % 3;
+        mover.step(&driven[axis], &mut out, &threads).expect("it fits");
+    });
+    let driven = by(0, 0.5);
 
     // What a step reads and writes once: places before and after, nodes and weights of each vertex, and each node's
     // displacement as it is given and as it is used.
@@ -132,7 +169,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "rebuild_seconds": rebuild,
     });
     if let Some(x) = call.travel {
-        let driven = by(x);
+        let driven = by(0, x);
         json["travel"] = x.into();
         let mut mover = mover;
         json["certificate"] = serde_json::to_value(mover.advance(&driven, &mut out, &threads)?)?;

@@ -27,6 +27,17 @@ fn laplace(exponent: f64) -> Options {
     }
 }
 
+/// The same with a factor that is kept.
+fn factorised(options: Options) -> Options {
+    let factor_bytes = 1 << 28;
+    let method = match options.method {
+        Method::Elastic(law) => Method::Elastic(Elastic { factor_bytes, ..law }),
+        Method::Laplace(law) => Method::Laplace(Laplace { factor_bytes, ..law }),
+        other => other,
+    };
+    Options { method, ..options }
+}
+
 fn mover(mesh: &Mesh, options: &Options) -> Mover {
     Mover::new(mesh, options, &Threads::single()).unwrap()
 }
@@ -229,7 +240,7 @@ fn what_cannot_be_solved_is_refused_with_a_remedy() {
         [(0.5, 1.0, 1e-6), (-0.1, 1.0, 1e-6), (0.3, f64::NAN, 1e-6), (0.3, 1.0, 0.0)]
     {
         let tolerance = Tolerance { residual, iterations: 10 };
-        let method = Method::Elastic(Elastic { poisson, stiffening, tolerance });
+        let method = Method::Elastic(Elastic { poisson, stiffening, tolerance, ..Elastic::default() });
         let options = Options { method, ..Options::default() };
         let error = Mover::new(&mesh, &options, &Threads::single()).unwrap_err();
         assert!(error.remedy_text().is_some(), "{error}");
@@ -243,4 +254,32 @@ fn what_cannot_be_solved_is_refused_with_a_remedy() {
     around.into_iter().for_each(|v| flat.points[v][2] = 0.5);
     let error = Mover::new(&flat, &elastic(1.0), &Threads::single()).unwrap_err();
     assert!(error.what().contains("no cell with a volume") && error.remedy_text().is_some(), "{error}");
+}
+
+#[test]
+fn a_factor_gives_what_iterations_give() {
+    let mesh = room();
+    let push = |p: Point| if is_sphere(p) { [0.4, 0.1, -0.2] } else { [0.0; 3] };
+    for options in [elastic(1.0), laplace(1.0)] {
+        let iterated = mover(&mesh, &options);
+        let exact = mover(&mesh, &factorised(options));
+        assert!(iterated.setup().factor_bytes == 0 && exact.setup().factor_bytes > 100_000);
+        assert_eq!(iterated.setup().solved, exact.setup().solved);
+        let first = step(&exact, push, &Threads::single());
+        let other = step(&iterated, push, &Threads::single());
+        assert!(first.iter().zip(&other).all(|(&p, &q)| distance(p, q) < 1e-9));
+        // Whatever came between, and however many threads.
+        step(&exact, |p| cross([0.0, 0.1, 0.2], p), &Threads::single());
+        assert_eq!(step(&exact, push, &Threads::new(2).unwrap()), first);
+    }
+}
+
+#[test]
+fn a_factor_that_takes_too_much_is_not_made() {
+    let mesh = room();
+    let few = Elastic { factor_bytes: 100_000, tolerance: TIGHT, ..Elastic::default() };
+    let options = Options { method: Method::Elastic(few), ..Options::default() };
+    let mover = mover(&mesh, &options);
+    assert_eq!(mover.setup().factor_bytes, 0);
+    assert!(error(&mesh, &options, |_| [0.3, -0.2, 0.1]) < 1e-9);
 }

@@ -1,4 +1,4 @@
-//! Conjugate gradients (Hestenes and Stiefel 1952), preconditioned by a symmetric sweep of Gauss and Seidel over blocks.
+//! Conjugate gradients (Hestenes and Stiefel 1952), and to precondition them a symmetric sweep of Gauss and Seidel over blocks.
 
 use crate::algebra::{Block, SparseMatrix, Vector3};
 use crate::base::{Error, Result, Threads};
@@ -49,8 +49,12 @@ impl<B: Block> Sgs<B> {
         Ok(Self { inverses: (0..matrix.n_rows()).map(inverse).collect::<Result<_>>()? })
     }
 
-    /// What comes out for `residual`.
-    fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3]) {
+    pub(super) fn inverses(&self) -> &[B] {
+        &self.inverses
+    }
+
+    /// The forward sweep from zero; what comes out for `residual`.
+    pub(super) fn forward(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3]) {
         for i in 0..residual.len() {
             let (columns, blocks) = matrix.row(i);
             let mut sum = [0.0; 3];
@@ -61,14 +65,52 @@ impl<B: Block> Sgs<B> {
             }
             out[i] = self.inverses[i].times(minus(residual[i], sum));
         }
-        for i in (0..residual.len()).rev() {
+    }
+
+    /// What a forward sweep has left of its residual: `-U x`.
+    pub(super) fn left(&self, matrix: &SparseMatrix<B>, x: &[Vector3], threads: &Threads) -> Vec<Vector3> {
+        threads.map(x.len(), |i| {
+            let mut sum = [0.0; 3];
+            later(matrix, i, |column, block| block.add_times(x[column], &mut sum));
+            sum.map(|x| -x)
+        })
+    }
+
+    /// A backward sweep from `x`.
+    pub(super) fn backward(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], x: &mut [Vector3]) {
+        for i in (0..x.len()).rev() {
             let (columns, blocks) = matrix.row(i);
             let mut sum = [0.0; 3];
-            for (&column, block) in
-                columns.iter().zip(blocks).rev().take_while(|(column, _)| (**column as usize) > i)
-            {
-                block.add_times(out[column as usize], &mut sum);
+            for (&column, block) in columns.iter().zip(blocks).filter(|(column, _)| **column as usize != i) {
+                block.add_times(x[column as usize], &mut sum);
             }
+            x[i] = self.inverses[i].times(minus(residual[i], sum));
+        }
+    }
+}
+
+/// The blocks of row `i` right of the diagonal.
+#[inline(always)]
+fn later<B: Block>(matrix: &SparseMatrix<B>, i: usize, mut each: impl FnMut(usize, B)) {
+    let (columns, blocks) = matrix.row(i);
+    for (&column, block) in columns.iter().zip(blocks).rev().take_while(|(column, _)| (**column as usize) > i)
+    {
+        each(column as usize, *block);
+    }
+}
+
+/// What makes conjugate gradients converge faster: a symmetric positive definite map near the inverse of the matrix.
+pub trait Preconditioner<B> {
+    /// What comes out for `residual`. The same bits with any number of threads.
+    fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3], threads: &Threads);
+}
+
+impl<B: Block> Preconditioner<B> for Sgs<B> {
+    fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3], _: &Threads) {
+        self.forward(matrix, residual, out);
+        for i in (0..residual.len()).rev() {
+            let mut sum = [0.0; 3];
+            later(matrix, i, |column, block| block.add_times(out[column], &mut sum));
             out[i] = minus(out[i], self.inverses[i].times(sum));
         }
     }
@@ -81,7 +123,7 @@ impl<B: Block> Sgs<B> {
 /// When the tolerance is not reached within the iterations; `x` holds what was.
 pub fn conjugate_gradients<B: Block>(
     matrix: &SparseMatrix<B>,
-    sweeps: &Sgs<B>,
+    before: &impl Preconditioner<B>,
     right: &[Vector3],
     x: &mut [Vector3],
     tolerance: Tolerance,
@@ -89,7 +131,7 @@ pub fn conjugate_gradients<B: Block>(
 ) -> Result<Solved> {
     let n = right.len();
     let mut z = vec![[0.0; 3]; n];
-    sweeps.apply(matrix, right, &mut z);
+    before.apply(matrix, right, &mut z, threads);
     let of_right = dot(right, &z);
     if of_right == 0.0 {
         x.fill([0.0; 3]);
@@ -101,7 +143,7 @@ pub fn conjugate_gradients<B: Block>(
     x.iter_mut().for_each(|x| *x = x.map(|x| share * x));
     let mut residual: Vec<Vector3> =
         right.iter().zip(&of_x).map(|(b, ax)| minus(*b, ax.map(|ax| share * ax))).collect();
-    sweeps.apply(matrix, &residual, &mut z);
+    before.apply(matrix, &residual, &mut z, threads);
     let mut rz = dot(&residual, &z);
     let mut along = z.clone();
     let mut solved = Solved { iterations: 0, residual: (rz / of_right).sqrt() };
@@ -121,7 +163,7 @@ pub fn conjugate_gradients<B: Block>(
                 residual[i][k] -= step * of_along[i][k];
             }
         }
-        sweeps.apply(matrix, &residual, &mut z);
+        before.apply(matrix, &residual, &mut z, threads);
         let next = dot(&residual, &z);
         let turn = next / rz;
         along.iter_mut().zip(&z).for_each(|(p, z)| (0..3).for_each(|k| p[k] = z[k] + turn * p[k]));

@@ -86,6 +86,66 @@ impl<B: Block> SparseMatrix<B> {
         sum
     }
 
+    /// The product with another matrix, row by row (Gustavson 1978).
+    pub fn product(&self, other: &Self) -> Self {
+        const NONE: usize = usize::MAX;
+        let width = other.columns.iter().map(|&c| c as usize + 1).max().unwrap_or(0);
+        let mut place_of = vec![NONE; width];
+        let (mut starts, mut columns, mut blocks) = (vec![0], Vec::new(), Vec::new());
+        let mut row_of: Vec<(u32, B)> = Vec::new();
+        for row in 0..self.n_rows() {
+            let (middle, first) = self.row(row);
+            for (&m, block) in middle.iter().zip(first) {
+                let (ends, second) = other.row(m as usize);
+                for (&column, other) in ends.iter().zip(second) {
+                    let term = block.times_block(*other);
+                    let place = &mut place_of[column as usize];
+                    if *place == NONE {
+                        *place = row_of.len();
+                        row_of.push((column, term));
+                    } else {
+                        row_of[*place].1 = row_of[*place].1.plus(term);
+                    }
+                }
+            }
+            row_of.sort_unstable_by_key(|(column, _)| *column);
+            for (column, block) in row_of.drain(..) {
+                place_of[column as usize] = NONE;
+                columns.push(column);
+                blocks.push(block);
+            }
+            starts.push(columns.len());
+        }
+        Self { starts, columns, blocks }
+    }
+
+    /// Its columns as rows; `n_columns` is one more than the last column at least.
+    pub fn transposed(&self, n_columns: usize) -> Self {
+        let mut starts = vec![0; n_columns + 1];
+        self.columns.iter().for_each(|&c| starts[c as usize + 1] += 1);
+        (0..n_columns).for_each(|c| starts[c + 1] += starts[c]);
+        let mut next = starts.clone();
+        let (mut columns, mut blocks) = (vec![0; self.columns.len()], vec![B::ZERO; self.blocks.len()]);
+        for row in 0..self.n_rows() {
+            let (here, values) = self.row(row);
+            for (&column, block) in here.iter().zip(values) {
+                let place = &mut next[column as usize];
+                columns[*place] = row as u32;
+                blocks[*place] = block.transposed();
+                *place += 1;
+            }
+        }
+        Self { starts, columns, blocks }
+    }
+
+    /// Puts something else for each block of each row.
+    pub fn change_rows(&mut self, change: impl Fn(usize, B) -> B) {
+        for row in 0..self.n_rows() {
+            let range = self.starts[row]..self.starts[row + 1];
+            self.blocks[range].iter_mut().for_each(|block| *block = change(row, *block));
+        }
+    }
+
     /// The product with `x`. The same bits with any number of threads.
     pub fn times(&self, x: &[Vector3], threads: &Threads) -> Vec<Vector3> {
         threads.map(self.n_rows(), |row| self.row_times(row, x))

@@ -78,6 +78,8 @@ pub struct Setup {
     pub hanging: usize,
     /// Vertices that a linear system is solved for.
     pub solved: usize,
+    /// Bytes of its factor that is kept; 0 where steps are iterated.
+    pub factor_bytes: u64,
     /// Of these, vertices of cells that lie outside the graph (middle nodes of a curved
     /// boundary, vertices of inverted cells): they follow the nearest place of it.
     pub outside: usize,
@@ -328,13 +330,18 @@ impl Mover {
         self.hanging.retain(|v| is_used[v.index()]);
         self.map = self.rebuild(&self.reference, threads)?;
         let nodes = &self.nodes;
+        let (solved, factor_bytes) = match &self.map {
+            Map::Solve(solve) => (self.hanging.len(), solve.factor_bytes()),
+            _ => (0, 0),
+        };
         self.setup.seconds.system = begin.elapsed().as_secs_f64();
         self.setup = Setup {
             driven: nodes.n_driven,
             sliding: nodes.n_sliding(),
             layer: nodes.vertices.len() - nodes.n_driven,
-            solved: if matches!(self.map, Map::Solve(_)) { self.hanging.len() } else { 0 },
-            hanging: if matches!(self.map, Map::Solve(_)) { 0 } else { self.hanging.len() },
+            solved,
+            hanging: self.hanging.len() - solved,
+            factor_bytes,
             left: self.reference.len() - nodes.vertices.len() - self.hanging.len(),
             ..self.setup
         };
@@ -416,8 +423,9 @@ impl Mover {
     }
 }
 
-/// Helpers are more than so many edges apart.
-const RINGS: usize = 2;
+/// Helpers are more than so many edges apart. With 2 a step takes a third of the time on a mesh of 32,000 vertices, but a flap that bends by 90 degrees keeps an inverted tet through 16
+/// sweeps of smoothing, and at 60 degrees half as many bad ones again.
+const RINGS: usize = 1;
 
 /// The facets that guide: the boundary. Where a Laplace equation is stiff: what the options name, else all of the boundary that does not slide.
 fn wall(boundary: &Boundary, options: &Options) -> FacetSet {

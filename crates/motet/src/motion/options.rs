@@ -32,13 +32,15 @@ pub struct Elastic {
     pub poisson: f64,
     /// A cell is as stiff as one over its volume to this power (Stein, Tezduyar, Benney 2003). Default: 1.
     pub stiffening: f64,
-    /// When a step is solved. Default: a residual of 1e-6.
+    /// When a step is solved that is iterated. Default: a residual of 1e-6.
     pub tolerance: Tolerance,
+    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and no longer an iteration; where it would take more than this, steps are iterated. Default: 0.
+    pub factor_bytes: u64,
 }
 
 impl Default for Elastic {
     fn default() -> Self {
-        Self { poisson: 0.3, stiffening: 1.0, tolerance: SOLVED }
+        Self { poisson: 0.3, stiffening: 1.0, tolerance: SOLVED, factor_bytes: 0 }
     }
 }
 
@@ -49,13 +51,15 @@ pub struct Laplace {
     pub exponent: f64,
     /// The wall; `None`: all of the boundary that does not slide.
     pub wall: Option<FacetSet>,
-    /// When a step is solved. Default: a residual of 1e-6.
+    /// When a step is solved that is iterated. Default: a residual of 1e-6.
     pub tolerance: Tolerance,
+    /// Bytes that a factor of the matrix may take. It is kept, so that a step is exact and no longer an iteration; where it would take more than this, steps are iterated. Default: 0.
+    pub factor_bytes: u64,
 }
 
 impl Default for Laplace {
     fn default() -> Self {
-        Self { exponent: 1.0, wall: None, tolerance: SOLVED }
+        Self { exponent: 1.0, wall: None, tolerance: SOLVED, factor_bytes: 0 }
     }
 }
 

@@ -111,6 +111,10 @@ pub(crate) struct MoveArgs {
     /// Solve the system of a method that has one to this residual, as a part of the first
     #[arg(long, value_name = "RESIDUAL", value_parser = positive, default_value_t = 1e-6, help_heading = "Volume")]
     pub(crate) residual: f64,
+    /// Keep a factor of the matrix of such a system from step to step, where it takes no more
+    /// than so many GiB: a step is shorter, setting up longer
+    #[arg(long, value_name = "GIB", value_parser = positive, help_heading = "Volume")]
+    pub(crate) factor: Option<f64>,
     /// Move all within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
     /// for layers of cells
     #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]

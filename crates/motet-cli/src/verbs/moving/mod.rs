@@ -131,7 +131,12 @@ fn method(
         return Err(Error::options("--body names a rigid body, but the method has none")
             .remedy("add --method bodies"));
     }
-    let residual = args.residual;
+    if args.factor.is_some() && !matches!(args.method, Method::Elastic | Method::Laplace) {
+        return Err(Error::options("--factor keeps a factor of a system, but the method has no system")
+            .remedy("add --method elastic"));
+    }
+    let within = |tolerance: Tolerance| Tolerance { residual: args.residual, ..tolerance };
+    let factor_bytes = args.factor.map_or(0, |gib| (gib * (1u64 << 30) as f64) as u64);
     Ok(match args.method {
         Method::Delaunay => motion::Method::Delaunay,
         // To choose, the graph comes first; bodies are kept for their turn.
@@ -141,12 +146,13 @@ fn method(
         Method::Rbf => motion::Method::Radial,
         Method::Elastic => {
             let law = Elastic::default();
-            motion::Method::Elastic(Elastic { tolerance: Tolerance { residual, ..law.tolerance }, ..law })
+            let tolerance = within(law.tolerance);
+            motion::Method::Elastic(Elastic { tolerance, factor_bytes, ..law })
         }
         Method::Laplace => {
             let law = Laplace::default();
-            let tolerance = Tolerance { residual, ..law.tolerance };
-            motion::Method::Laplace(Laplace { wall: Some(wall()?), tolerance, ..law })
+            let tolerance = within(law.tolerance);
+            motion::Method::Laplace(Laplace { wall: Some(wall()?), tolerance, factor_bytes, ..law })
         }
     })
 }

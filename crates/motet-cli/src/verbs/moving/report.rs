@@ -144,6 +144,10 @@ impl Report {
                 count(self.setup.hanging),
                 count(self.setup.graph_tets)
             ),
+            n if self.setup.factor_bytes > 0 => {
+                let mib = self.setup.factor_bytes as f64 / f64::from(1 << 20);
+                format!("{} solved for, with a factor of {mib:.1} MiB", count(n))
+            }
             n => {
                 let iterations: usize = self.steps.iter().map(|step| step.certificate.iterations).sum();
                 format!("{} solved for, in {} iterations", count(n), count(iterations))

@@ -233,7 +233,7 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f64s(self.1, limit.1);
-        Self(self.0, self.0.select_f64s_m64s(mask, yes.1, no.1))
+        Self(self.0, self.0.select_f64s(mask, yes.1, no.1))
     }
 
     /// The root of the size, with the sign.

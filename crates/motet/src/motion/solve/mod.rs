@@ -6,15 +6,17 @@
 
 mod assemble;
 mod element;
+mod solver;
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::algebra::{Block3, Solved, Tolerance, conjugate_gradients};
+use crate::algebra::{Block3, Solved, Tolerance};
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::add;
 use crate::motion::options::{FacetSet, Method};
 pub(crate) use crate::motion::solve::assemble::{Numbering, System};
 pub(crate) use crate::motion::solve::element::{gradients, laplacian};
+use crate::motion::solve::solver::Solver;
 use crate::motion::update::Displacements;
 
 /// A linear system for the displacements of the vertices that nothing else moves.
@@ -32,8 +34,8 @@ pub(crate) struct Solve {
 
 #[derive(Debug)]
 enum Kind {
-    Elastic(System<Block3>),
-    Laplace(System<f64>),
+    Elastic(Solver<Block3>),
+    Laplace(Solver<f64>),
 }
 
 impl Solve {
@@ -51,14 +53,17 @@ impl Solve {
     ) -> Result<Self> {
         let numbering = Numbering::new(points.len(), free, nodes);
         let tets = numbering.of_tets(tets);
+        let places: Vec<Point> = free.iter().map(|v| points[v.index()]).collect();
         let (kind, tolerance) = match method {
             Method::Elastic(law) => {
                 let of_tet = element::elastic(law, &tets.vertices, points);
-                (Kind::Elastic(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
+                let system = System::assemble(&numbering, &tets.numbers, of_tet)?;
+                (Kind::Elastic(Solver::new(system, &places, law.factor_bytes, threads)?), law.tolerance)
             }
             Method::Laplace(law) => {
                 let of_tet = element::laplace(law, &tets.vertices, points, wall, threads);
-                (Kind::Laplace(System::assemble(&numbering, &tets.numbers, of_tet)?), law.tolerance)
+                let system = System::assemble(&numbering, &tets.numbers, of_tet)?;
+                (Kind::Laplace(Solver::new(system, &places, law.factor_bytes, threads)?), law.tolerance)
             }
             _ => {
                 return Err(Error::options("this method has no system to be solved"));
@@ -66,6 +71,14 @@ impl Solve {
         };
         let last = Mutex::new(vec![[0.0; 3]; free.len()]);
         Ok(Self { free: free.to_vec(), nodes: nodes.to_vec(), kind, tolerance, last })
+    }
+
+    /// Bytes of the factor that is kept.
+    pub(crate) fn factor_bytes(&self) -> u64 {
+        match &self.kind {
+            Kind::Elastic(solver) => solver.factor_bytes(),
+            Kind::Laplace(solver) => solver.factor_bytes(),
+        }
     }
 
     /// Moves all vertices from where they are; those of no cell and no node stay.
@@ -83,8 +96,8 @@ impl Solve {
         let given: Vec<Point> = table[..self.nodes.len()].iter().map(|d| d.point()).collect();
         let mut x = self.last.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let solved = match &self.kind {
-            Kind::Elastic(system) => solve(system, &given, &mut x, self.tolerance, threads),
-            Kind::Laplace(system) => solve(system, &given, &mut x, self.tolerance, threads),
+            Kind::Elastic(solver) => solver.solve(&given, &mut x, self.tolerance, threads),
+            Kind::Laplace(solver) => solver.solve(&given, &mut x, self.tolerance, threads),
         }?;
         out.copy_from_slice(from);
         for (v, d) in self.free.iter().zip(&x).chain(self.nodes.iter().zip(&given)) {
@@ -93,16 +106,4 @@ impl Solve {
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = x;
         Ok(solved)
     }
-}
-
-fn solve<B: crate::algebra::Block>(
-    system: &System<B>,
-    given: &[Point],
-    x: &mut [Point],
-    tolerance: Tolerance,
-    threads: &Threads,
-) -> Result<Solved> {
-    let right: Vec<Point> =
-        system.coupling.times(given, threads).into_iter().map(|f| f.map(|x| -x)).collect();
-    conjugate_gradients(&system.inner, &system.sweeps, &right, x, tolerance, threads)
 }

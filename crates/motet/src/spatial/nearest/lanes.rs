@@ -85,7 +85,7 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub(super) fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f32s(self.1, limit.1);
-        Self(self.0, self.0.select_f32s_m32s(mask, yes.1, no.1))
+        Self(self.0, self.0.select_f32s(mask, yes.1, no.1))
     }
 }
 
@@ -98,7 +98,7 @@ pub(super) fn at_most<S: Simd>(simd: S, eight: &Eight, limit: f32) -> u32 {
         let x = Lanes::load(simd, eight, i);
         let is_at_most = simd.less_than_or_equal_f32s(x.1, simd.splat_f32s(limit));
         let bit = Lanes::load(simd, &BITS, i);
-        bits += simd.reduce_sum_f32s(simd.select_f32s_m32s(is_at_most, bit.1, simd.splat_f32s(0.0)));
+        bits += simd.reduce_sum_f32s(simd.select_f32s(is_at_most, bit.1, simd.splat_f32s(0.0)));
     }
     bits as u32
 }
