@@ -383,3 +383,23 @@ fn the_cheapest_method_that_keeps_the_mesh_good_is_taken() {
         .code(2);
     assert!(stderr(&call).contains("--method auto"));
 }
+
+#[test]
+fn a_factor_is_kept_where_there_is_room_for_it() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &sphere_in_box(6, 4));
+    let move_it = |out: &str, more: &[&str]| {
+        let words = ["move", "box.vtu", "-o", out, "--translate", "sphere=0.3,0.1,0", "--json", "--method"];
+        folder.motet(words.iter().chain(more))
+    };
+    let iterated = report(&move_it("iterated.vtu", &["elastic", "--residual", "1e-11"]).assert().code(0));
+    let exact = report(&move_it("exact.vtu", &["elastic", "--factor", "0.5"]).assert().code(0));
+    let no_room = report(&move_it("no_room.vtu", &["elastic", "--factor", "1e-6"]).assert().code(0));
+    assert!(exact["setup"]["factor_bytes"].as_u64().unwrap() > 100_000);
+    assert!(exact["steps"][0]["iterations"] == 0 && iterated["steps"][0]["iterations"] != 0);
+    assert!(no_room["setup"]["factor_bytes"] == 0 && no_room["steps"][0]["iterations"] != 0);
+    let worst = |report: &Value| report["after"]["worst_eas"]["value"].as_f64().unwrap();
+    assert!((worst(&exact) - worst(&iterated)).abs() < 1e-6);
+    let call = move_it("none.vtu", &["delaunay", "--factor", "1"]).assert().code(2);
+    assert!(stderr(&call).contains("--method elastic"));
+}
