@@ -2,11 +2,11 @@
 
     ./test --setup                                        (once: the Python packages)
     target/venv/bin/python docs/motion_picture.py target  (writes target/flap.vtu, a mesh by Gmsh)
-    cargo run --release -- move target/flap.vtu -o target/flap_delaunay.vtu --displacement u --smooth 2
-    cargo run --release -- move target/flap.vtu -o target/flap_guided.vtu --displacement u --smooth 2 --method guided
+    cargo run --release -- move target/flap.vtu -o target/flap_delaunay.vtu --displacement u --smooth 16
+    cargo run --release -- move target/flap.vtu -o target/flap_guided.vtu --displacement u --smooth 16 --method guided
     target/venv/bin/python docs/motion_picture.py target/flap.vtu target/flap_delaunay.vtu target/flap_guided.vtu
 
-A cut through the channel at z = 0: tets by their equi-angle quality, bad ones red. The first `move` gets there in sub-steps, or as far as cells stay upright.
+A cut through the channel at z = 0: tets by their equi-angle quality, bad ones red.
 """
 import sys
 from pathlib import Path
