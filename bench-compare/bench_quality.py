@@ -2,6 +2,7 @@
 import subprocess
 import sys
 
+import layers
 from common import MOTET, TARGET
 from meshes import build, flap_in_channel, linear, written
 from walls import branched_vessel, ventricle
@@ -31,3 +32,4 @@ def run(record, options):
             print(f"\n### {name}, {sweeps} sweeps of smoothing\n\n{done.stdout}", flush=True)
             record.add(bench="quality", mesh=name, sweeps=sweeps, table=done.stdout)
             print(f"  quality {name}, {sweeps} sweeps: done", file=sys.stderr, flush=True)
+    layers.run()
