@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use motet::geometry::quality::eas;
-use motet::mesh::history::{History, Rule, Rules};
+use motet::mesh::history::{Carry, History, Rules};
 use motet::{Error, Mesh, Result, io};
 
 use crate::verbs::convert::WritingArgs;
@@ -25,15 +25,6 @@ pub(crate) struct ArrayArgs {
     pub(crate) history: Option<PathBuf>,
 }
 
-/// What becomes of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Carry {
-    /// On points interpolated, on cells averaged by volume.
-    Mean,
-    Inherit,
-    Drop,
-}
-
 /// What writing came to.
 pub(crate) struct Written {
     /// What the format cannot hold, a sentence each.
@@ -46,24 +37,7 @@ impl ArrayArgs {
     pub(crate) fn rules(&self, mesh: &Mesh) -> Result<Rules> {
         let mut rules = Rules::default();
         for (name, carry) in &self.carry {
-            let rule = |mean| match carry {
-                Carry::Mean => mean,
-                Carry::Inherit => Rule::Inherit,
-                Carry::Drop => Rule::Drop,
-            };
-            let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
-            if on_points {
-                rules.points.insert(name.clone(), rule(Rule::Interpolate));
-            }
-            if on_cells {
-                rules.cells.insert(name.clone(), rule(Rule::Conserve));
-            }
-            if !on_points && !on_cells {
-                let fields = mesh.point_data.iter().chain(&mesh.cell_data);
-                let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
-                return Err(Error::options(format!("--carry: the mesh has no array {name}"))
-                    .remedy(format!("its arrays: {}", known.join(", "))));
-            }
+            rules.carry(mesh, name, *carry)?;
         }
         Ok(rules)
     }

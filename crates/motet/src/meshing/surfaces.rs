@@ -135,6 +135,24 @@ impl Surfaces {
         self.patches.extend(surface.patches.iter().map(|old| old_to_new[old]));
     }
 
+    /// The patch that a word means: its name, or its number.
+    ///
+    /// # Errors
+    /// When there is no such patch.
+    pub fn find_patch(&self, word: &str) -> Result<i32> {
+        let named = self.patch_names.iter().find(|(_, name)| *name == word).map(|(&id, _)| id);
+        let numbered = || word.parse().ok().filter(|id| self.patches.contains(id));
+        named.or_else(numbered).ok_or_else(|| {
+            let mut known = self.patches.clone();
+            known.sort_unstable();
+            known.dedup();
+            let name = |id: &i32| self.patch_names.get(id).cloned().unwrap_or_else(|| id.to_string());
+            let known: Vec<String> = known.iter().map(name).collect();
+            Error::options(format!("the surface has no patch `{word}`"))
+                .remedy(format!("it has {}", known.join(", ")))
+        })
+    }
+
     /// What would stop these surfaces from being filled.
     pub fn preflight(&self, threads: &Threads) -> Preflight {
         preflight::preflight(&self.points, &self.triangles, &self.surface_of, &self.roles, threads)

@@ -205,6 +205,27 @@ impl FacetSet {
         }
     }
 
+    /// The facets of the patch that a word means: its name, or its number.
+    ///
+    /// # Errors
+    /// When the mesh has no such patch.
+    pub fn find(mesh: &Mesh, word: &str) -> Result<Self> {
+        let labels = mesh.patches();
+        if let Some(label) = labels.as_ref().and_then(|labels| labels.find(word)) {
+            return Ok(Self::of_patch(mesh, label));
+        }
+        let names = labels.iter().flat_map(|labels| labels.used().into_iter().map(|id| labels.name(id)));
+        let names: Vec<String> = names.collect();
+        let known = if names.is_empty() { "none at all".to_owned() } else { names.join(", ") };
+        Err(Error::options(format!("the mesh has no patch `{word}`")).remedy(format!("it has {known}")))
+    }
+
+    /// Facets by their corners, in the order in which they follow each other.
+    pub fn of_rings<'a>(name: impl Into<String>, rings: impl Iterator<Item = &'a [VertexId]>) -> Self {
+        let polygon = rings.map(|ring| (CellKind::POLYGON, ring));
+        Self::collect(name.into(), polygon, |v| v)
+    }
+
     /// The cells of another mesh, a surface, whose points are these vertices.
     ///
     /// Panics when a cell names a point that has no entry in `point_to_vertex`.
@@ -258,5 +279,22 @@ impl FacetSet {
     /// Whether it holds no facet.
     pub fn is_empty(&self) -> bool {
         self.rings.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes;
+
+    #[test]
+    fn a_patch_is_found_by_its_name_and_by_its_number() {
+        let mesh = shapes::sphere_in_box(2, 1);
+        let sphere = FacetSet::find(&mesh, "sphere").unwrap();
+        assert_eq!(sphere, FacetSet::of_patch(&mesh, 1));
+        assert_eq!(sphere, FacetSet::find(&mesh, "1").unwrap());
+        let rings = FacetSet::of_rings("sphere", sphere.rings.iter());
+        assert_eq!(rings, sphere);
+        assert!(FacetSet::find(&mesh, "door").unwrap_err().to_string().contains("sphere, box"));
     }
 }

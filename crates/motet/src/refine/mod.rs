@@ -8,6 +8,7 @@
 //! | take back | `inverted` | no division is taken back whose whole would be inverted, where points moved |
 //! | the true surface | `true_surface` | new points of the boundary are put on it, as far as nothing inverts |
 //! | all of it | `handle` | [`Refinement`]: a mesh that is refined and coarsened again and again |
+//! | all wishes | `reach` | generation after generation, until a mesh is as [`Wanted`] |
 //! | remember | `memory` | what has to be kept with the mesh, so that a later run goes on, and what is still true of it when others changed the mesh |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across, the memory as arrays |
 //!
@@ -22,6 +23,7 @@ mod handle;
 mod held;
 mod inverted;
 mod memory;
+mod reach;
 mod shapes;
 mod true_surface;
 mod whole;
@@ -32,6 +34,7 @@ pub use choose::{
 };
 pub use handle::{Left, Options, Refinement, Rule, Summary};
 pub use memory::{Memory, UNKNOWN};
+pub use reach::{Reached, Step, Wanted};
 pub use shapes::Shapes;
 pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;

@@ -59,26 +59,11 @@ pub(super) fn stacks(
         named.extend(on.iter().map(|patch| (patch.as_str(), stack)));
     }
     for (patch, stack) in named {
-        if layers.by_patch.insert(find(surfaces, patch)?, stack).is_some() {
+        if layers.by_patch.insert(surfaces.find_patch(patch)?, stack).is_some() {
             return Err(twice(&format!("on `{patch}`")));
         }
     }
     Ok(Some(layers))
-}
-
-/// The patch that a word means: its name, or its number.
-fn find(surfaces: &Surfaces, word: &str) -> motet::Result<i32> {
-    let named = surfaces.patch_names.iter().find(|(_, name)| *name == word).map(|(&id, _)| id);
-    let numbered = || word.parse().ok().filter(|id| surfaces.patches.contains(id));
-    named.or_else(numbered).ok_or_else(|| {
-        let mut known = surfaces.patches.clone();
-        known.sort_unstable();
-        known.dedup();
-        let name = |id: &i32| surfaces.patch_names.get(id).cloned().unwrap_or_else(|| id.to_string());
-        let known: Vec<String> = known.iter().map(name).collect();
-        Error::options(format!("the surface has no patch `{word}`"))
-            .remedy(format!("it has {}", known.join(", ")))
-    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The words of `motet refine`, as its help shows them.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::{ArgGroup, Args};
-use motet::refine::{Condition, Criterion, HessianSizes, Limits};
+use motet::refine::{Condition, Criterion, HessianSizes, Limits, Target, Wanted};
 
 use super::words::{self, Near, NearSize};
 use crate::arrays::ArrayArgs;
@@ -105,7 +106,7 @@ pub(crate) struct RefineArgs {
 
     /// At most so often [default: once; for sizes as often as it takes]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
-    pub(crate) generations: Option<u32>,
+    generations: Option<u32>,
     /// No tet is divided more often than this since the first mesh, earlier calls included
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=20), help_heading = "How far")]
     limit_generation: Option<u8>,
@@ -118,10 +119,10 @@ pub(crate) struct RefineArgs {
 
     /// Take back divisions where no criterion marks
     #[arg(long, help_heading = "Back")]
-    pub(crate) coarsen: bool,
+    coarsen: bool,
     /// Take back divisions where an array is so on all eight parts, and no criterion marks. Repeatable
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "Back")]
-    pub(crate) coarsen_where: Vec<Condition>,
+    coarsen_where: Vec<Condition>,
     /// Begin anew: the mesh as it is now is the first one, whatever the file remembers
     #[arg(long, conflicts_with_all = ["coarsen", "coarsen_where"], help_heading = "Back")]
     pub(crate) forget: bool,
@@ -137,14 +138,21 @@ pub(crate) struct RefineArgs {
 }
 
 impl RefineArgs {
-    /// How far the call goes.
-    pub(crate) fn limits(&self) -> Limits {
-        Limits { generation: self.limit_generation, smallest: self.smallest, n_tets: self.at_most }
-    }
-
-    /// How often anything is divided at most.
-    pub(super) fn most_generations(&self) -> u32 {
-        self.generations.unwrap_or(20)
+    /// How the mesh is to be.
+    pub(super) fn wanted(&self, criteria: Vec<Criterion>, surface: Option<Arc<Target>>) -> Wanted {
+        Wanted {
+            criteria,
+            coarsen: self.coarsen,
+            coarsen_where: self.coarsen_where.clone(),
+            generations: self.generations,
+            limits: Limits {
+                generation: self.limit_generation,
+                smallest: self.smallest,
+                n_tets: self.at_most,
+            },
+            surface,
+            keeps_history: self.arrays.history.is_some(),
+        }
     }
 
     /// The smallest size that the call gives.

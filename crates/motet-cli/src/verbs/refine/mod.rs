@@ -4,18 +4,15 @@ mod args;
 mod criteria;
 mod report;
 mod words;
-mod work;
 
 use std::time::Instant;
 
-use motet::mesh::history::History;
 use motet::refine::{MeshRefinement, Options, fix_sizes};
 use motet::{Error, io};
 
 pub(crate) use args::RefineArgs;
 
 use self::report::Report;
-use self::work::Work;
 use crate::args::Common;
 use crate::arrays::Written;
 use crate::console::Console;
@@ -33,35 +30,26 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     let mut given = if args.forget { MeshRefinement::forget(&old) } else { old };
     let sizes = fix_sizes(&mut criteria, &mut given, &threads).map_err(|e| e.in_file(&args.mesh))?;
-    let refinement =
+    let mut refinement =
         MeshRefinement::new(&given, Options::default(), &threads).map_err(|e| hint(e).in_file(&args.mesh))?;
     let read = begin.elapsed().as_secs_f64();
 
-    let identity = || History::identity(given.points.len(), given.cells.len());
-    let mut work = Work {
-        args,
-        refinement,
-        surface,
-        rules: &rules,
-        history: args.arrays.history.is_some().then(identity),
-        report: Report::new(args),
-        threads: &threads,
-    };
-    work.begin();
-    let bar = console.bar(u64::from(args.most_generations()), "refining");
-    let is_reached = work.run(&criteria, &bar).map_err(|e| e.in_file(&args.mesh))?;
+    let wanted = args.wanted(criteria, surface);
+    let bar = console.bar(u64::from(wanted.most_generations()), "refining");
+    let done = refinement.reach(&wanted, &rules, &threads, |_| bar.inc(1));
+    let done = done.map_err(|e| e.in_file(&args.mesh))?;
     bar.finish_and_clear();
 
-    let Work { refinement, history, mut report, .. } = work;
     let mut mesh = refinement.with_memory(&threads);
     mesh.point_data.retain(|field| !sizes.contains(&field.name));
     let Written { lost, seconds: write } =
-        args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing)?;
+        args.arrays.write(&mut mesh, done.history.as_ref(), &args.output, &args.writing)?;
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
-    report.end(&refinement, [read, write, begin.elapsed().as_secs_f64()], is_reached, &threads);
-    report.tell(console);
+    let is_reached = done.is_reached;
+    Report::new(args, &refinement, done, [read, write, begin.elapsed().as_secs_f64()], &threads)
+        .tell(console);
     Ok(if is_reached { Outcome::Done } else { Outcome::NotReached })
 }
 

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::Threads;
-use motet::mesh::history::Ledger;
-use motet::refine::{MeshRefinement, OnSurface, Refinement, Shapes, Summary};
+use motet::refine::{MeshRefinement, Reached, Shapes, Step};
 use serde::Serialize;
 
 use super::args::RefineArgs;
@@ -38,30 +37,6 @@ pub(crate) struct Report {
     seconds: Seconds,
 }
 
-/// The mesh after a generation.
-#[derive(Debug, Serialize)]
-pub(super) struct Step {
-    step: String,
-    tets: usize,
-    points: usize,
-    /// Tets that a criterion marked.
-    marked: usize,
-    /// Tets divided, though no criterion marked them, so that all fit.
-    promoted: usize,
-    /// Tets cut to fit their neighbours.
-    cut: usize,
-    /// Tets left as they are for the sake of others.
-    held: usize,
-    worst_eas: f64,
-    mean_eas: f64,
-    worst_mean_ratio: f64,
-    mean_mean_ratio: f64,
-    /// The worst over the worst of the first mesh.
-    eas_of_first: f64,
-    mean_ratio_of_first: f64,
-    seconds: f64,
-}
-
 #[derive(Debug, Default, Serialize)]
 struct Surface {
     moved: usize,
@@ -77,93 +52,46 @@ struct Seconds {
     total: f64,
 }
 
-impl Step {
+impl Report {
+    /// `seconds`: to read, to write, and all.
     pub(super) fn new(
-        step: &str,
-        refinement: &Refinement,
-        summary: Summary,
-        marked: usize,
-        seconds: f64,
+        args: &RefineArgs,
+        mesh: &MeshRefinement,
+        done: Reached,
+        [read, write, total]: [f64; 3],
         threads: &Threads,
     ) -> Self {
-        let [first, now] = [&refinement.first(), refinement.mesh()].map(|mesh| Shapes::of(mesh, threads));
-        Self {
-            step: step.to_string(),
-            tets: refinement.mesh().tets.len(),
-            points: refinement.mesh().points.len(),
-            marked,
-            promoted: summary.n_promoted,
-            cut: summary.n_cut,
-            held: summary.n_held,
-            worst_eas: now.worst_eas,
-            mean_eas: now.mean_eas,
-            worst_mean_ratio: now.worst_mean_ratio,
-            mean_mean_ratio: now.mean_mean_ratio,
-            eas_of_first: now.worst_eas / first.worst_eas,
-            mean_ratio_of_first: now.worst_mean_ratio / first.worst_mean_ratio,
-            seconds,
+        let refinement = mesh.refinement();
+        let first = refinement.first();
+        let left = refinement.left(threads);
+        let mut roots: Vec<u32> = left.iter().map(|left| left.root.0).collect();
+        roots.dedup();
+        let mut generations: Vec<usize> = Vec::new();
+        for generation in refinement.generations().map(usize::from) {
+            generations.resize(generations.len().max(generation + 1), 0);
+            generations[generation] += 1;
         }
-    }
-}
-
-impl Report {
-    pub(super) fn new(args: &RefineArgs) -> Self {
+        let refine = done.steps.iter().map(|step| step.seconds).sum();
         Self {
             mesh: args.mesh.clone(),
             output: args.output.clone(),
             history: args.arrays.history.clone(),
-            complete: true,
-            steps: Vec::new(),
-            first_tets: 0,
-            first_worst_eas: 0.0,
-            left: 0,
-            left_roots: 0,
-            generations: Vec::new(),
-            on_surface: None,
-            volume_deviation: 0.0,
-            memory_per_tet: 0.0,
-            seconds: Seconds::default(),
+            complete: done.is_reached,
+            steps: done.steps,
+            first_tets: first.tets.len(),
+            first_worst_eas: Shapes::of(&first, threads).worst_eas,
+            left: left.len(),
+            left_roots: roots.len(),
+            generations,
+            on_surface: done.on_surface.map(|all| Surface {
+                moved: all.n_moved,
+                short: all.n_short,
+                farthest: all.farthest,
+            }),
+            volume_deviation: done.volume_deviation,
+            memory_per_tet: refinement.memory() as f64 / refinement.mesh().tets.len() as f64,
+            seconds: Seconds { read, refine, write, total },
         }
-    }
-
-    pub(super) fn add(&mut self, step: Step) {
-        self.seconds.refine += step.seconds;
-        self.steps.push(step);
-    }
-
-    pub(super) fn add_volumes(&mut self, ledger: &Ledger) {
-        let parts = ledger.regions.iter().map(|region| region.deviation / region.volume_before);
-        self.volume_deviation = parts.fold(self.volume_deviation, f64::max);
-    }
-
-    pub(super) fn add_on_surface(&mut self, done: OnSurface) {
-        let all = self.on_surface.get_or_insert_default();
-        all.moved += done.n_moved;
-        all.short += done.n_short;
-        all.farthest = all.farthest.max(done.farthest);
-    }
-
-    pub(super) fn end(
-        &mut self,
-        mesh: &MeshRefinement,
-        [read, write, total]: [f64; 3],
-        complete: bool,
-        threads: &Threads,
-    ) {
-        let refinement = mesh.refinement();
-        let first = refinement.first();
-        (self.first_tets, self.first_worst_eas) = (first.tets.len(), Shapes::of(&first, threads).worst_eas);
-        let left = refinement.left(threads);
-        let mut roots: Vec<u32> = left.iter().map(|left| left.root.0).collect();
-        roots.dedup();
-        (self.left, self.left_roots) = (left.len(), roots.len());
-        for generation in refinement.generations().map(usize::from) {
-            self.generations.resize(self.generations.len().max(generation + 1), 0);
-            self.generations[generation] += 1;
-        }
-        self.memory_per_tet = refinement.memory() as f64 / refinement.mesh().tets.len() as f64;
-        self.complete = complete;
-        self.seconds = Seconds { read, write, total, refine: self.seconds.refine };
     }
 
     pub(super) fn tell(&self, console: &Console) {

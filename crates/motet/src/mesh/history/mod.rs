@@ -24,7 +24,7 @@ pub use ledger::{Ledger, RegionLedger};
 pub use numbers::{REFINE_ROOT, number_anew};
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
-pub use rule::{Rule, Rules};
+pub use rule::{Carry, Rule, Rules};
 
 use serde::{Deserialize, Serialize};
 

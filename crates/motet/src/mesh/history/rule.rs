@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mesh::{Field, Values};
+use crate::base::{Error, Result};
+use crate::mesh::{Field, Mesh, Values};
 
 /// What becomes of a field's values where the mesh changed. Where it did not, they go over bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,6 +45,45 @@ pub struct Rules {
     pub points: BTreeMap<String, Rule>,
     /// For cell arrays.
     pub cells: BTreeMap<String, Rule>,
+}
+
+/// What a user says of an array, wherever it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carry {
+    /// On points interpolated, on cells averaged by volume.
+    Mean,
+    /// [`Rule::Inherit`].
+    Inherit,
+    /// [`Rule::Drop`].
+    Drop,
+}
+
+impl Rules {
+    /// The rule that `carry` means, for the arrays of this name: on points, on cells, or on both.
+    ///
+    /// # Errors
+    /// When `mesh` has no such array.
+    pub fn carry(&mut self, mesh: &Mesh, name: &str, carry: Carry) -> Result<()> {
+        let rule = |mean| match carry {
+            Carry::Mean => mean,
+            Carry::Inherit => Rule::Inherit,
+            Carry::Drop => Rule::Drop,
+        };
+        let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
+        if on_points {
+            self.points.insert(name.to_owned(), rule(Rule::Interpolate));
+        }
+        if on_cells {
+            self.cells.insert(name.to_owned(), rule(Rule::Conserve));
+        }
+        if on_points || on_cells {
+            return Ok(());
+        }
+        let fields = mesh.point_data.iter().chain(&mesh.cell_data);
+        let known: Vec<&str> = fields.map(|f| f.name.as_str()).collect();
+        Err(Error::options(format!("there is no array {name} to carry"))
+            .remedy(format!("the mesh has these: {}", known.join(", "))))
+    }
 }
 
 /// Whether a mean of two of its values is a value again.
@@ -95,5 +135,18 @@ mod tests {
         // A field at rest has no direction; a scalar named so has none either.
         assert_eq!(Rule::of_points(&Field::vectors("velocity", &[[0.0; 3]])), Rule::Interpolate);
         assert_eq!(Rule::of_points(&Field::scalars("fiber_stretch", vec![1.0])), Rule::Interpolate);
+    }
+
+    #[test]
+    fn a_word_holds_on_points_and_on_cells() {
+        let mut mesh = crate::mesh::shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
+        mesh.set_point_field(Field::scalars("p", vec![0.0; mesh.points.len()]));
+        mesh.set_cell_field(Field::scalars("p", vec![0.0; mesh.cells.len()]));
+        let mut rules = Rules::default();
+        rules.carry(&mesh, "p", Carry::Mean).unwrap();
+        assert_eq!((rules.points["p"], rules.cells["p"]), (Rule::Interpolate, Rule::Conserve));
+        rules.carry(&mesh, "region", Carry::Drop).unwrap();
+        assert_eq!((rules.points.get("region"), rules.cells["region"]), (None, Rule::Drop));
+        assert!(rules.carry(&mesh, "q", Carry::Inherit).unwrap_err().to_string().contains("these: p"));
     }
 }

@@ -1,0 +1,270 @@
+//! Generation after generation, until a mesh is as wanted: what is wished, what is divided or taken back, what came of it.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::choose::wish::{Wish, check_expected, coarser, marked};
+use super::choose::{Condition, Criterion, Limits, Target, wishes_of_all};
+use super::handle::{Refinement, Summary};
+use super::shapes::Shapes;
+use super::true_surface::OnSurface;
+use super::whole::MeshRefinement;
+use crate::base::{Error, Result, TetId, Threads};
+use crate::mesh::TetPart;
+use crate::mesh::history::{History, Rules};
+
+/// How a mesh is to be.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// What is divided: what any of them marks.
+    pub criteria: Vec<Criterion>,
+    /// Whether divisions are taken back first where no criterion marks; one level where there is no criterion at all.
+    pub coarsen: bool,
+    /// Divisions are taken back first where one of these holds on all eight parts and no criterion marks.
+    pub coarsen_where: Vec<Condition>,
+    /// At most so many generations. `None`: one, for criteria that [last](Criterion::lasts) as many as it takes.
+    pub generations: Option<u32>,
+    /// No tet is divided beyond these.
+    pub limits: Limits,
+    /// The true surface: new points of the boundary are put on it.
+    pub surface: Option<Arc<Target>>,
+    /// Whether [`Reached::history`] is kept.
+    pub keeps_history: bool,
+}
+
+/// What was reached.
+#[derive(Clone, Debug, Default)]
+pub struct Reached {
+    /// Whether all edges are as short as was wanted.
+    pub is_reached: bool,
+    /// The mesh as it came, then after each generation.
+    pub steps: Vec<Step>,
+    /// From the mesh that came to the one that is, where that was asked for.
+    pub history: Option<History>,
+    /// What was put on the true surface, where there is one.
+    pub on_surface: Option<OnSurface>,
+    /// By how much new tets took more or less than the volume of old ones, at most in a step, as a part of what changed.
+    pub volume_deviation: f64,
+}
+
+/// The mesh after a generation.
+#[derive(Clone, Debug, Serialize)]
+pub struct Step {
+    /// `came`, the number of the generation, or `back`.
+    pub step: String,
+    /// Its tets.
+    pub tets: usize,
+    /// Its points.
+    pub points: usize,
+    /// Tets that a criterion marked.
+    pub marked: usize,
+    /// Tets divided, though no criterion marked them, so that all fit.
+    pub promoted: usize,
+    /// Tets cut to fit their neighbours.
+    pub cut: usize,
+    /// Tets left as they are for the sake of others.
+    pub held: usize,
+    /// The worst EAS.
+    pub worst_eas: f64,
+    /// The mean one.
+    pub mean_eas: f64,
+    /// The worst mean ratio.
+    pub worst_mean_ratio: f64,
+    /// The mean one.
+    pub mean_mean_ratio: f64,
+    /// The worst EAS over the worst of the first mesh.
+    pub eas_of_first: f64,
+    /// The same for mean ratios.
+    pub mean_ratio_of_first: f64,
+    /// What it took.
+    pub seconds: f64,
+}
+
+/// As often as sizes take, where nobody said.
+const MOST_GENERATIONS: u32 = 20;
+
+impl Wanted {
+    /// How often anything is divided at most.
+    pub fn most_generations(&self) -> u32 {
+        self.generations.unwrap_or(MOST_GENERATIONS)
+    }
+
+    fn goes_back(&self) -> bool {
+        self.coarsen || !self.coarsen_where.is_empty()
+    }
+}
+
+impl MeshRefinement {
+    /// Takes back what is no longer wanted, then divides, generation after generation; `told` gets each step as it is done.
+    ///
+    /// # Errors
+    /// When nothing is marked at all, a criterion names what the mesh has not, or more tets are wanted than there are ids. What was done before stays done.
+    pub fn reach(
+        &mut self,
+        wanted: &Wanted,
+        rules: &Rules,
+        threads: &Threads,
+        told: impl FnMut(&Step),
+    ) -> Result<Reached> {
+        let identity = || History::identity(self.mesh().points.len(), self.mesh().cells.len());
+        let history = wanted.keeps_history.then(identity);
+        let reached = Reached { history, ..Reached::default() };
+        let mut work = Work { refinement: self, wanted, rules, threads, told, reached };
+        work.tell("came", Summary::default(), 0, Instant::now());
+        work.reached.is_reached = work.run()?;
+        Ok(work.reached)
+    }
+}
+
+struct Work<'a, T> {
+    refinement: &'a mut MeshRefinement,
+    wanted: &'a Wanted,
+    rules: &'a Rules,
+    threads: &'a Threads,
+    told: T,
+    reached: Reached,
+}
+
+impl<T: FnMut(&Step)> Work<'_, T> {
+    /// Takes back, then divides; `false` where edges are still longer than was wanted.
+    fn run(&mut self) -> Result<bool> {
+        let wanted = self.wanted;
+        if wanted.goes_back() {
+            self.take_back()?;
+        }
+        for generation in 0.. {
+            let Some(active) = self.active(generation) else { break };
+            let wishes = self.wishes(&active)?;
+            let (n_wished, marks) = (marked(&wishes[0]).len(), marked(&wishes[1]));
+            if generation == 0 && n_wished == 0 && !wanted.goes_back() {
+                return Err(Error::input("no tet is marked: nothing of it is where, or as, the call says")
+                    .remedy("`motet info` tells bounds and arrays; lengths are in the unit of the mesh"));
+            }
+            if marks.is_empty() || self.divide(&marks, generation)? == marks.len() {
+                break;
+            }
+        }
+        let lasting: Vec<Criterion> = wanted.criteria.iter().filter(|c| c.lasts()).cloned().collect();
+        Ok(lasting.is_empty() || marked(&self.wishes(&lasting)?[0]).is_empty())
+    }
+
+    /// What is wished of each tet, and what of it the limits allow.
+    fn wishes(&self, criteria: &[Criterion]) -> Result<[Vec<Wish>; 2]> {
+        let part = self.refinement.part();
+        let wished = wishes_of_all(criteria, self.refinement.mesh(), &part, self.threads)?;
+        let mut allowed = wished.clone();
+        let generations: Vec<u8> = self.refinement.refinement().generations().collect();
+        self.wanted.limits.apply(&part.mesh, &generations, &mut allowed);
+        check_expected(&allowed)?;
+        Ok([wished, allowed])
+    }
+
+    /// How many were left as they are.
+    fn divide(&mut self, marks: &[TetId], generation: u32) -> Result<usize> {
+        let begin = Instant::now();
+        let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
+        self.put_on_surface();
+        self.went(&history);
+        self.tell(&(generation + 1).to_string(), summary, marks.len(), begin);
+        Ok(summary.n_held)
+    }
+
+    /// The criteria of a generation: those of sizes as often as it takes, others as often as is said; `None` at the end.
+    fn active(&self, generation: u32) -> Option<Vec<Criterion>> {
+        if generation >= self.wanted.most_generations() {
+            return None;
+        }
+        let n_marks = self.wanted.generations.unwrap_or(1);
+        let is_active = |criterion: &&Criterion| criterion.lasts() || generation < n_marks;
+        let active: Vec<Criterion> = self.wanted.criteria.iter().filter(is_active).cloned().collect();
+        if active.is_empty() { None } else { Some(active) }
+    }
+
+    /// Takes back, level after level, what no criterion needs; one level where nothing says how far.
+    fn take_back(&mut self) -> Result<()> {
+        loop {
+            let free = self.free(&self.refinement.part())?;
+            let before = self.refinement.mesh().cells.len();
+            let begin = Instant::now();
+            let (summary, history) = self.refinement.coarsen(&free, self.rules, self.threads)?;
+            self.went(&history);
+            if self.refinement.mesh().cells.len() == before {
+                return Ok(());
+            }
+            self.tell("back", summary, 0, begin);
+            if self.wanted.criteria.is_empty() && self.wanted.coarsen_where.is_empty() {
+                return Ok(());
+            }
+        }
+    }
+
+    /// The tets whose division may be taken back.
+    fn free(&self, part: &TetPart) -> Result<Vec<TetId>> {
+        let mesh = self.refinement.mesh();
+        let wishes = wishes_of_all(&self.wanted.criteria, mesh, part, self.threads)?;
+        let free = coarser(&wishes);
+        if self.wanted.coarsen_where.is_empty() {
+            return Ok(free);
+        }
+        let mut is_so = vec![false; wishes.len()];
+        for condition in &self.wanted.coarsen_where {
+            let marks = Criterion::Where(condition.clone()).marks(mesh, part, self.threads)?;
+            marks.iter().for_each(|tet| is_so[tet.index()] = true);
+        }
+        Ok(free.into_iter().filter(|tet| is_so[tet.index()]).collect())
+    }
+
+    fn went(&mut self, history: &History) {
+        let parts = history.ledger.regions.iter().map(|region| region.deviation / region.volume_before);
+        self.reached.volume_deviation = parts.fold(self.reached.volume_deviation, f64::max);
+        self.reached.history = self.reached.history.as_ref().map(|before| before.then(history));
+    }
+
+    fn put_on_surface(&mut self) {
+        if let Some(surface) = &self.wanted.surface {
+            let done = self.refinement.put_on_surface(surface.tree());
+            let all = self.reached.on_surface.get_or_insert_default();
+            all.n_moved += done.n_moved;
+            all.n_short += done.n_short;
+            all.farthest = all.farthest.max(done.farthest);
+        }
+    }
+
+    fn tell(&mut self, step: &str, summary: Summary, n_marked: usize, begin: Instant) {
+        let seconds = begin.elapsed().as_secs_f64();
+        let step = Step::new(step, self.refinement.refinement(), summary, n_marked, seconds, self.threads);
+        (self.told)(&step);
+        self.reached.steps.push(step);
+    }
+}
+
+impl Step {
+    fn new(
+        step: &str,
+        refinement: &Refinement,
+        summary: Summary,
+        marked: usize,
+        seconds: f64,
+        threads: &Threads,
+    ) -> Self {
+        let [first, now] = [&refinement.first(), refinement.mesh()].map(|mesh| Shapes::of(mesh, threads));
+        Self {
+            step: step.to_string(),
+            tets: refinement.mesh().tets.len(),
+            points: refinement.mesh().points.len(),
+            marked,
+            promoted: summary.n_promoted,
+            cut: summary.n_cut,
+            held: summary.n_held,
+            worst_eas: now.worst_eas,
+            mean_eas: now.mean_eas,
+            worst_mean_ratio: now.worst_mean_ratio,
+            mean_mean_ratio: now.mean_mean_ratio,
+            eas_of_first: now.worst_eas / first.worst_eas,
+            mean_ratio_of_first: now.worst_mean_ratio / first.worst_mean_ratio,
+            seconds,
+        }
+    }
+}

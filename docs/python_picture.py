@@ -1,0 +1,14 @@
+"""Draws docs/python.png: the example of the Python package, run as it stands; only that its window becomes a file.
+
+    pip install ./python pyvista
+    python docs/python_picture.py
+"""
+from pathlib import Path
+
+import pyvista
+
+HERE = Path(__file__).resolve().parent
+pyvista.OFF_SCREEN = True
+plot = pyvista.UnstructuredGrid.plot
+pyvista.UnstructuredGrid.plot = lambda grid, **words: plot(grid, **words, screenshot=HERE / "python.png", window_size=(1000, 640))
+exec((HERE.parent / "python" / "examples" / "story.py").read_text())

@@ -1,0 +1,25 @@
+"""motet keeps tetrahedral meshes good while the world in them moves.
+
+>>> import motet
+>>> mesh = motet.read("vessel.vtu")                               # doctest: +SKIP
+>>> mover = motet.Mover(mesh, slide=["inlet"], smooth=2)          # doctest: +SKIP
+>>> points, certificate = mover.advance(displacement)             # doctest: +SKIP
+
+Verbs take a :class:`Mesh`, a path, a ``meshio.Mesh`` or a PyVista data set, and give back new meshes; what they are given stays as it was.
+Handles (:class:`Mover`, :class:`Refinement`, :class:`Contact`) are set up once and used step after step.
+"""
+from . import shapes
+from ._motet import __version__, formats, read_series
+from ._changing import Changed, History, implant, mesh, remesh
+from ._contact import Ahead, Body, Contact, Gaps
+from .errors import Error, FileError, InputError, OptionsError
+from ._mesh import Mesh, MeshLike, as_mesh, read
+from ._motion import Moved, Mover, mesh_velocity, move
+from ._refinement import Refinement, refine
+from ._report import Report
+
+__all__ = [
+    "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "Mesh", "MeshLike", "Moved", "Mover",
+    "OptionsError", "Refinement", "Report", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_series", "refine",
+    "remesh", "shapes", "__version__",
+]  # fmt: skip

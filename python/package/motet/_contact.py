@@ -1,0 +1,152 @@
+"""Contact warning: how far apart surfaces are, where, and when they will touch."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _motet
+from ._changing import _named
+from .errors import OptionsError
+from ._mesh import Mesh, MeshLike, as_mesh
+from ._report import Report, report
+
+
+@dataclass
+class Body:
+    """The gap at each vertex of a surface; all arrays have a row a vertex."""
+
+    vertices: NDArray[np.uint32]
+    """Its vertices among all points of the handle, rising."""
+    gap: NDArray[np.float64]
+    """The distance to the nearest other surface, in units of the points; negative where the vertex is where it must not be, infinite where nothing is near."""
+    normal: NDArray[np.float64]
+    """(k, 3): the way that makes the gap smaller."""
+    closest_body: NDArray[np.int64]
+    """The surface that is nearest, by its place; -1 for none."""
+    closest_triangle: NDArray[np.int64]
+    closest_point: NDArray[np.float64]
+    warning: NDArray[np.bool_]
+    """Whether a triangle at the vertex is nearer to another surface than the warning distance."""
+
+
+@dataclass
+class Gaps:
+    """The gaps of all surfaces at one time."""
+
+    least: float
+    """The least of all: 0 where surfaces meet."""
+    bodies: dict[str, Body]
+    pairs: list[Report]
+    """For each pair its distance, the places, crossings, vertices beyond the other surface and how deep."""
+    warnings: list[Report]
+    """Groups of connected vertices that warn."""
+
+
+@dataclass
+class Ahead:
+    """When surfaces will touch; nothing touches earlier."""
+
+    first: Report | None
+    """The first contact of all: time, surfaces, triangles, place; None where there is none before the horizon."""
+    times: dict[str, NDArray[np.float64]]
+    """For each vertex: no triangle at it touches before this."""
+
+
+class Contact:
+    """Two or more surfaces, or one with itself, measured again and again while their points move.
+
+    Parameters
+    ----------
+    surfaces : sequence of meshes, mapping from names to meshes, or one mesh with ``patches``
+        Surfaces, or the boundaries of volume meshes.
+    patches : sequence of names or labels
+        Of one mesh: these are the surfaces.
+    room : sequence of names
+        Surfaces that are walls of rooms, such as vessels, and others are within.
+    warn : float
+        Warn of gaps below this.
+    own : bool
+        Whether each surface is measured against itself as well.
+    within : float
+        How far is looked; farther gaps are infinite.
+    facing : bool
+        Whether a gap counts only where both surfaces face each other through free space.
+    fold : float
+        Places of one surface count as neighbours where the way along it is shorter than this many times the straight one.
+
+    All distances are exact up to rounding, in the unit of the points.
+    """
+
+    def __init__(
+        self,
+        surfaces: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
+        *,
+        patches: Sequence[str | int] = (),
+        room: Sequence[str] = (),
+        warn: float | None = None,
+        own: bool = False,
+        within: float = float("inf"),
+        facing: bool = False,
+        fold: float = 3.0,
+        threads: int = 0,
+    ):
+        named = surfaces if isinstance(surfaces, Mapping) else _named(surfaces, "surface")
+        points, bodies = [], []
+        shift = 0
+        for name, one in named.items():
+            mesh = as_mesh(one)
+            bodies += _bodies(mesh, name, patches, shift)
+            points.append(mesh.points)
+            shift += mesh.n_points
+        strange = set(room) - {name for name, _ in bodies}
+        if strange:
+            raise OptionsError(f"room: no surface {', '.join(sorted(strange))}; there are {', '.join(name for name, _ in bodies)}")
+        self.points = np.concatenate(points)
+        self._native = _motet.Contact(
+            self.points, [(name, triangles, name in room) for name, triangles in bodies], warn=warn, own=own, within=within, facing=facing,
+            fold=fold, threads=threads,
+        )  # fmt: skip
+
+    def refit(self, points: ArrayLike) -> None:
+        """New places for all points, (n, 3), in the order of the surfaces."""
+        self.points = np.ascontiguousarray(points, np.float64)
+        self._native.refit(self.points)
+
+    def measure(self) -> Gaps:
+        """The gap at every vertex, and the nearest places of every pair."""
+        told = self._native.measure()
+        bodies = {name: Body(**body) for name, body in told["bodies"].items()}
+        return Gaps(told["least"], bodies, report(told["pairs"]), report(told["warnings"]))
+
+    def look_ahead(self, velocity: ArrayLike, horizon: float = float("inf")) -> Ahead:
+        """When surfaces will touch if every point goes on straight at its velocity, (n, 3)."""
+        return _ahead(self._native.look_ahead(np.ascontiguousarray(velocity, np.float64), horizon))
+
+    def look_ahead_to(self, points: ArrayLike, dt: float) -> Ahead:
+        """The same, on the way to where points will be after a time."""
+        return _ahead(self._native.look_ahead_to(np.ascontiguousarray(points, np.float64), dt))
+
+
+def _ahead(told: dict) -> Ahead:
+    return Ahead(report(told["first"]), told["times"])
+
+
+def _bodies(mesh: Mesh, name: str, patches: Sequence[str | int], shift: int) -> list[tuple[str, NDArray[np.uint32]]]:
+    surface = _motet.surface(mesh)
+    triangles = surface["triangles"] + np.uint32(shift)
+    if not len(triangles):
+        raise OptionsError(f"{name} has no surface: neither surface cells nor volume cells with a boundary")
+    if not patches:
+        return [(name, triangles)]
+    labels = dict(surface["names"])
+    bodies = []
+    for patch in patches:
+        label = labels.get(patch, patch)
+        chosen = surface["patches"] == label if isinstance(label, (int, np.integer)) else np.zeros(len(triangles), bool)
+        if not chosen.any():
+            raise OptionsError(f"{name} has no patch {patch!r}; it has {', '.join(labels) or 'none'}")
+        bodies.append((str(patch), np.ascontiguousarray(triangles[chosen])))
+    return bodies

@@ -1,0 +1,312 @@
+"""Mesh motion: boundary displacement in, volume mesh out."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _motet
+from .errors import InputError, OptionsError
+from ._mesh import Mesh, MeshLike, as_mesh, ids, point
+from ._report import Report, report
+
+Patch = Union[str, int, ArrayLike]
+"""A patch by its name or label, or facets as an array of vertex ids, a row each."""
+
+
+@dataclass
+class _Asked:
+    """What the native mover is told."""
+
+    method: str
+    bodies: list
+    within_walls: bool
+    smooth: int
+    also_moved: Any
+    rigid_layer: float | None
+    rigid_layer_cells: int | None
+    rigid_layer_at: list
+    slide: list
+    residual: float
+    factor_gib: float
+    substeps: int
+
+
+def _asked(
+    *,
+    method: str = "delaunay",
+    bodies: Sequence[Patch] = (),
+    within_walls: bool = False,
+    smooth: int = 0,
+    also_moved: ArrayLike | None = None,
+    rigid_layer: float | None = None,
+    rigid_layer_cells: int | None = None,
+    rigid_layer_at: Sequence[Patch] = (),
+    slide: Sequence[Patch] = (),
+    residual: float = 1e-6,
+    factor_gib: float = 0.0,
+    substeps: int = 50,
+) -> _Asked:
+    if rigid_layer is not None and rigid_layer_cells is not None:
+        raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
+    moved = None if also_moved is None else ids(also_moved, "also_moved")
+    return _Asked(
+        method, _facets(bodies), within_walls, smooth, moved, rigid_layer, rigid_layer_cells, _facets(rigid_layer_at), _facets(slide),
+        residual, factor_gib, substeps,
+    )  # fmt: skip
+
+
+def _facet(patch: Patch) -> Any:
+    if isinstance(patch, (str, int, np.integer)):
+        return patch if isinstance(patch, str) else int(patch)
+    rows = ids(patch, "facets")
+    if rows.ndim != 2 or rows.shape[1] < 3:
+        raise InputError(f"facets of shape {rows.shape}, expected a row of three vertices or more for each")
+    return rows.ravel(), rows.shape[1]
+
+
+def _facets(patches: Sequence[Patch]) -> list:
+    if isinstance(patches, (str, int)):
+        raise OptionsError(f"{patches!r} is one patch, a list of patches is expected: [{patches!r}]")
+    return [_facet(patch) for patch in patches]
+
+
+def _vectors(array: ArrayLike, n: int, what: str) -> NDArray[np.float64]:
+    vectors = np.ascontiguousarray(array, np.float64)
+    if vectors.shape != (n, 3):
+        raise InputError(f"{what} of shape {vectors.shape}, expected ({n}, 3)")
+    return vectors
+
+
+class Mover:
+    """Moves the vertices of one mesh after its boundary: set up once, a weighted sum a step.
+
+    The Delaunay graph of the boundary (Liu, Qin, Xia 2006) and what goes past it; a step depends on the displacement alone, never on the steps
+    before it, so that a wall that comes back brings every vertex back to the same bits.
+
+    Parameters
+    ----------
+    mesh : mesh, path, meshio.Mesh or PyVista data set
+        Volume cells of any kind.
+    method : {"delaunay", "bodies", "guided", "elastic", "laplace", "idw", "rbf"}
+        ``delaunay``: weights in the graph of the boundary, the cheapest. ``bodies``: rigid bodies carry along what is round them, for parts that turn
+        or shift far. ``guided``: nodes inside with rotations, for walls that bend. The others are there to compare with.
+    bodies : sequence of patches
+        The rigid bodies of ``method="bodies"``; where none is named, each part of the boundary that hangs together is one, but for the outer one.
+    within_walls : bool
+        Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap.
+    smooth : int
+        Sweeps over the vertices of bad tets after each step.
+    also_moved : array of ids
+        Vertices inside that are moved, too, such as those of an interface.
+    rigid_layer, rigid_layer_cells : float, int
+        Vertices so near to the wall, in units of the mesh or in cells, keep their place relative to it.
+    rigid_layer_at : sequence of patches
+        The wall of the rigid layer, and where ``laplace`` is stiff; all of the boundary that does not slide, if empty.
+    slide : sequence of patches
+        Flat patches whose vertices slide in their plane.
+    residual : float
+        When an iterated linear system (``elastic``, ``laplace``) is solved.
+    factor_gib : float
+        A factor of that system is kept where it takes no more gibibytes than this.
+    substeps : int
+        At most so many sub-steps in :meth:`advance`.
+    threads : int
+        0 for all cores. The outcome does not depend on it.
+
+    Raises
+    ------
+    InputError
+        The mesh has no volume cells, or a boundary that spans no space.
+    OptionsError
+        A patch that is not there, a method that is none.
+    """
+
+    def __init__(self, mesh: MeshLike, *, threads: int = 1, **options: Any):
+        self._mover = _motet.Mover(as_mesh(mesh), _asked(**options), threads)
+        self._boundary = self._mover.boundary
+        self._reference = self._mover.reference
+        self._boundary.flags.writeable = self._reference.flags.writeable = False
+
+    @property
+    def boundary(self) -> NDArray[np.uint32]:
+        """The vertices that the caller moves, rising: those of the boundary, and ``also_moved``; read-only."""
+        return self._boundary
+
+    @property
+    def reference(self) -> NDArray[np.float64]:
+        """The points of the mesh in its first place, (n, 3); read-only."""
+        return self._reference
+
+    @property
+    def setup(self) -> Report:
+        """What setting up found, and how long it took."""
+        return report(self._mover.setup)
+
+    def weights(self, vertex: int) -> tuple[tuple[int, ...], tuple[float, ...]] | None:
+        """The four vertices that a vertex follows, and their weights; None where it follows something else."""
+        found = self._mover.weights(vertex)
+        return found and (tuple(found[0]), tuple(found[1]))
+
+    def step(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Moves the mesh from its first place; nothing is checked.
+
+        Parameters
+        ----------
+        displacement : array (k, 3)
+            Of each vertex of :attr:`boundary`, from its first place. Contiguous float64 is read where it lies, all else is copied.
+        out : float64 array (n, 3), contiguous
+            Where the points go; a new array if None.
+
+        Returns
+        -------
+        The points, ``out`` itself where it was given.
+        """
+        out = self._out(out)
+        self._mover.step(self._displacement(displacement), out)
+        return out
+
+    def advance(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> tuple[NDArray[np.float64], Report]:
+        """Moves the mesh there in sub-steps if need be, and certifies what it reached: no cell that was upright at first is inverted.
+
+        Parameters as for :meth:`step`.
+
+        Returns
+        -------
+        points : array (n, 3)
+        certificate : Report
+            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``.
+        """
+        out = self._out(out)
+        certificate = self._mover.advance(self._displacement(displacement), out)
+        return out, report(certificate)
+
+    def _displacement(self, displacement: ArrayLike) -> NDArray[np.float64]:
+        return _vectors(displacement, len(self._boundary), "displacement")
+
+    def _out(self, out: NDArray[np.float64] | None) -> NDArray[np.float64]:
+        if out is None:
+            return np.empty_like(self._reference)
+        fits = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == self._reference.shape
+        if not fits or not out.flags.c_contiguous or not out.flags.writeable:
+            raise InputError(f"out is to be a contiguous, writeable array of float64 of shape {self._reference.shape}")
+        return out
+
+
+@dataclass
+class Moved:
+    """What a motion came to."""
+
+    mesh: Mesh
+    """The mesh where it was reached, with the point array ``displacement``."""
+    certificate: Report
+    """How far it got, and how good the cells are there."""
+    choice: Report | None = None
+    """With ``method="auto"``: the method, the bound, and what each method came to."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether the mesh is where it was asked to be."""
+        return self.certificate.complete
+
+
+Turn = Union[tuple[ArrayLike, float], tuple[ArrayLike, float, ArrayLike]]
+
+
+def move(
+    mesh: MeshLike,
+    *,
+    displacement: str | ArrayLike | None = None,
+    translate: Mapping[str | int, ArrayLike] | None = None,
+    rotate: Mapping[str | int, Turn] | None = None,
+    steps: int = 1,
+    method: str = "delaunay",
+    least: float | None = None,
+    threads: int = 0,
+    **options: Any,
+) -> Moved:
+    """Moves a mesh after its boundary, once. For motion step after step keep a :class:`Mover`.
+
+    Parameters
+    ----------
+    mesh : mesh, path, meshio.Mesh or PyVista data set
+    displacement : str or array
+        A point array of the mesh by its name, or an array (n, 3) of all points; values inside are not looked at. Boundary vertices of no displacement stay.
+    translate : mapping from patch to vector
+        A patch may lie inside, such as the surface of a device.
+    rotate : mapping from patch to (axis, degrees) or (axis, degrees, centre)
+        The centre is the middle of the patch where none is given. A patch that turns and shifts turns first.
+    steps : int
+        In so many equal parts; a turn goes along the arc.
+    method : str
+        As for :class:`Mover`, or ``auto``: the cheapest that keeps the worst cell at ``least``.
+    least : float
+        The bound of ``auto``: the EAS that no tet may be below. Half of the worst one that came, at most 0.1, if None.
+    threads : int
+        0 for all cores.
+    **options
+        As for :class:`Mover`.
+
+    Returns
+    -------
+    Moved
+        With the mesh and its certificate. A motion that does not get all the way is no error: see ``complete``.
+    """
+    given = as_mesh(mesh)
+    if steps < 1:
+        raise OptionsError(f"{steps} steps, expected 1 or more")
+    named = [_motet.patch_vertices(given, _facet(patch)) for patch in {**(translate or {}), **(rotate or {})}]
+    inside = [*named, *([] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")])]
+    if inside:
+        options["also_moved"] = np.unique(np.concatenate(inside))
+    auto = method == "auto"
+    if least is not None and not auto:
+        raise OptionsError("least is a bound to choose a method by, but one is given: method='auto'")
+    first = Mover(given, method="delaunay" if auto else method, threads=threads, **options)
+    frames = _frames(given, first.boundary, displacement, translate, rotate, steps)
+    choice = None
+    if auto:
+        name, bound, tried = _motet.choose(given, _asked(method="bodies", **options), least, frames, threads)
+        choice = report({"method": name, "least": bound, "tried": tried})
+        if name != "delaunay":
+            first = Mover(given, method=name, threads=threads, **options)
+    points = first.reference.copy()
+    certificate = Report()
+    for frame in frames:
+        points, certificate = first.advance(frame, points)
+        if not certificate.complete:
+            break
+    moved = given.copy()
+    moved.points = points
+    moved.point_data["displacement"] = points - given.points
+    return Moved(moved, certificate, choice)
+
+
+def _frames(given: Mesh, boundary, displacement, translate, rotate, steps) -> list:
+    fractions = [k / steps for k in range(1, steps + 1)]
+    if displacement is not None:
+        if translate or rotate:
+            raise OptionsError("displacement says where all goes: leave translate and rotate away")
+        if isinstance(displacement, str):
+            if displacement not in given.point_data:
+                raise OptionsError(f"the mesh has no point array {displacement!r}; it has {', '.join(given.point_data) or 'none'}")
+            displacement = given.point_data[displacement]
+        whole = _vectors(displacement, given.n_points, "displacement")[boundary]
+        return [fraction * whole for fraction in fractions]
+    if not translate and not rotate:
+        raise OptionsError("nothing moves: give displacement, translate or rotate")
+    motions: dict[Any, list] = {}
+    for patch, (axis, degrees, *centre) in (rotate or {}).items():
+        motions.setdefault(patch, []).append((point(axis), float(degrees), point(centre[0]) if centre else None))
+    for patch, by in (translate or {}).items():
+        motions.setdefault(patch, []).append(point(by))
+    return _motet.prescribed(given, boundary, list(motions.items()), fractions)
+
+
+def mesh_velocity(before: ArrayLike, points: ArrayLike, dt: float) -> NDArray[np.float64]:
+    """The velocity of each point, (n, 3), by backward difference over a time."""
+    before = np.ascontiguousarray(before, np.float64)
+    return _motet.mesh_velocity(before, _vectors(points, len(before), "points"), dt)

@@ -1,0 +1,71 @@
+"""Reports: dictionaries that are read like objects, and show as tables in a notebook."""
+from __future__ import annotations
+
+import html
+from typing import Any
+
+
+class Report(dict):
+    """What a verb did: a dictionary whose entries are attributes, too.
+
+    >>> Report(before={"bad": 12}).before.bad
+    12
+    """
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"the report has no {name!r}; it has {', '.join(map(str, self))}") from None
+
+    def __dir__(self):
+        return [*super().__dir__(), *(name for name in self if isinstance(name, str))]
+
+    def __repr__(self) -> str:
+        return "\n".join(lines(self)) or "Report()"
+
+    def _repr_html_(self) -> str:
+        return table(self)
+
+
+def report(told: Any) -> Any:
+    """Dictionaries inside of anything as reports."""
+    if isinstance(told, dict):
+        return Report({name: report(value) for name, value in told.items()})
+    if isinstance(told, (list, tuple)):
+        return [report(value) for value in told]
+    return told
+
+
+# How many entries of a list are shown.
+FIRST = 8
+
+
+def short(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, (list, tuple)):
+        more = f", .. {len(value)} in all" if len(value) > FIRST else ""
+        return "[" + ", ".join(short(one) for one in value[:FIRST]) + more + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {short(one)}" for name, one in value.items()) + "}"
+    return str(value)
+
+
+def lines(told: dict, indent: str = "") -> list[str]:
+    width = max((len(str(name)) for name in told), default=0)
+    all_lines = []
+    for name, value in told.items():
+        if isinstance(value, dict) and value:
+            all_lines += [f"{indent}{name}", *lines(value, indent + "  ")]
+        else:
+            all_lines.append(f"{indent}{str(name):{width}}  {short(value)}")
+    return all_lines
+
+
+def table(told: dict) -> str:
+    def row(name: Any, value: Any) -> str:
+        inner = table(value) if isinstance(value, dict) and value else html.escape(short(value))
+        return f"<tr><th style='text-align:left'>{html.escape(str(name))}</th><td style='text-align:left'>{inner}</td></tr>"
+
+    return "<table>" + "".join(row(name, value) for name, value in told.items()) + "</table>"

@@ -1,0 +1,102 @@
+//! Numpy arrays from lists of the library, whose memory they take over, and lists from arrays.
+
+use bytemuck::allocation::cast_vec;
+use motet::base::{Point, VertexId};
+use motet::mesh::{Field, Values};
+use numpy::{
+    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::error::{input, raised};
+
+/// Points or vectors, shape `(n, 3)`.
+pub(crate) type Vectors<'py> = PyReadonlyArray2<'py, f64>;
+/// Numbers of vertices, cells, triangles.
+pub(crate) type Ids<'py> = PyReadonlyArray1<'py, u32>;
+
+/// The rows of an array that is contiguous and has three columns.
+pub(crate) fn rows<'a>(array: &'a Vectors<'_>, what: &str) -> PyResult<&'a [Point]> {
+    let flat = array.as_slice().ok().filter(|_| array.shape()[1] == 3);
+    flat.map(|flat| flat.as_chunks::<3>().0).ok_or_else(|| {
+        input(format!("{what} of shape {:?}, expected (n, 3), contiguous and of float64", array.shape()))
+    })
+}
+
+/// A list of ids as an array.
+pub(crate) fn ids<'py, T: bytemuck::Pod>(py: Python<'py>, list: Vec<T>) -> Bound<'py, PyArray1<u32>> {
+    PyArray1::from_vec(py, cast_vec::<T, u32>(list))
+}
+
+/// Vertices from an array of their numbers.
+pub(crate) fn vertices(array: &Ids<'_>, n_points: usize) -> PyResult<Vec<VertexId>> {
+    let ids: Vec<VertexId> = array.as_array().iter().map(|&v| VertexId(v)).collect();
+    match ids.iter().find(|v| v.index() >= n_points) {
+        None => Ok(ids),
+        Some(v) => Err(input(format!("vertex {v} is named, but the mesh has {n_points} points"))),
+    }
+}
+
+/// Points or vectors as an array `(n, 3)`.
+pub(crate) fn vectors<'py>(py: Python<'py>, list: Vec<Point>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    table(py, list.into_flattened(), 3)
+}
+
+/// Rows of so many values each.
+pub(crate) fn table<'py, T: Element>(
+    py: Python<'py>,
+    flat: Vec<T>,
+    columns: usize,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let n = flat.len() / columns.max(1);
+    PyArray1::from_vec(py, flat).reshape([n, columns])
+}
+
+macro_rules! across {
+    ($($variant:ident($t:ty);)*) => {
+        /// The values of a field: an array of `n`, or of `(n, components)`; texts are a list.
+        pub(crate) fn from_field<'py>(py: Python<'py>, field: Field) -> PyResult<Bound<'py, PyAny>> {
+            let k = field.components;
+            match field.values {
+                $(Values::$variant(v) if k == 1 => Ok(PyArray1::from_vec(py, v).into_any()),
+                Values::$variant(v) => Ok(table(py, v, k)?.into_any()),)*
+                Values::Text(v) => Ok(PyList::new(py, v)?.into_any()),
+            }
+        }
+
+        /// A field from an array of one, two or three dimensions, whose rows are the first; from a list of texts.
+        pub(crate) fn to_field(name: String, array: &Bound<'_, PyAny>) -> PyResult<Field> {
+            $(if let Ok(array) = array.cast::<PyArrayDyn<$t>>() {
+                let shape = array.shape().to_vec();
+                let components = shape.iter().skip(1).product();
+                let array = array.try_readonly()?;
+                let values: Vec<$t> = array.as_array().iter().copied().collect();
+                return Ok(Field { name, components, values: Values::$variant(values) });
+            })*
+            if let Ok(array) = array.cast::<PyArrayDyn<bool>>() {
+                let values: Vec<u8> = array.try_readonly()?.as_array().iter().map(|&b| b.into()).collect();
+                return Ok(Field { components: array.shape().iter().skip(1).product(), name, values: values.into() });
+            }
+            match array.extract::<Vec<String>>() {
+                Ok(texts) => Ok(Field::scalars(name, texts)),
+                Err(_) => Err(raised(motet::Error::input(format!("{} is no array of numbers, nor a list of texts", array.get_type()))
+                    .at(format!("array {name}")))),
+            }
+        }
+    };
+}
+
+across! {
+    F64(f64);
+    F32(f32);
+    I64(i64);
+    I32(i32);
+    U8(u8);
+    I8(i8);
+    I16(i16);
+    U16(u16);
+    U32(u32);
+    U64(u64);
+}

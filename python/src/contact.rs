@@ -1,0 +1,177 @@
+//! How far apart surfaces are, where, and when they will touch.
+
+use motet::base::{Point, Threads, VertexId};
+use motet::contact::{self, Body, Gaps, NONE, Options};
+use motet::mesh::Surface;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde::Serialize;
+
+use crate::arrays::{Vectors, ids, rows, vectors};
+use crate::border::Given;
+use crate::error::{OrRaise, input};
+use crate::report::report;
+use crate::words::threads;
+
+/// Two or more surfaces over one list of points.
+#[pyclass(module = "motet._motet")]
+pub(crate) struct Contact {
+    contact: contact::Contact,
+    names: Vec<String>,
+    threads: Threads,
+}
+
+/// A pair of bodies, as reports have it.
+#[derive(Serialize)]
+struct Pair<'a> {
+    bodies: [&'a str; 2],
+    /// None where nothing is within reach.
+    distance: Option<f64>,
+    points: Option<[Point; 2]>,
+    triangles: Option<[u32; 2]>,
+    crossings: usize,
+    vertices_beyond: [usize; 2],
+    depth: f64,
+    warned: [usize; 2],
+}
+
+#[pymethods]
+impl Contact {
+    /// `bodies`: each with its name, its triangles and whether it is the wall of a room.
+    #[new]
+    #[pyo3(signature = (points, bodies, *, warn, own, within, facing, fold, threads))]
+    #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+    fn new(
+        py: Python<'_>,
+        points: Vectors<'_>,
+        bodies: Vec<(String, numpy::PyReadonlyArray2<'_, u32>, bool)>,
+        warn: Option<f64>,
+        own: bool,
+        within: f64,
+        facing: bool,
+        fold: f64,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let points = rows(&points, "points")?.to_vec();
+        let threads = self::threads(threads)?;
+        let body = |(name, triangles, is_room): (String, numpy::PyReadonlyArray2<'_, u32>, bool)| {
+            let triangles = triangles.as_array();
+            if triangles.ncols() != 3 {
+                return Err(input(format!("{name}: triangles of {} columns, expected 3", triangles.ncols())));
+            }
+            let n = points.len() as u32;
+            if let Some(v) = triangles.iter().find(|&&v| v >= n) {
+                return Err(input(format!("{name}: vertex {v} is named, but there are {n} points")));
+            }
+            let triangles = triangles.rows().into_iter().map(|t| [t[0], t[1], t[2]].map(VertexId)).collect();
+            Ok(Body { name, triangles, is_room })
+        };
+        let bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
+        let names = bodies.iter().map(|body| body.name.clone()).collect();
+        let options = Options { warn, own, within, facing, fold };
+        let contact = py.detach(|| contact::Contact::new(points, bodies, options, &threads)).or_raise()?;
+        Ok(Self { contact, names, threads })
+    }
+
+    fn refit(&mut self, py: Python<'_>, points: Vectors<'_>) -> PyResult<()> {
+        let points = rows(&points, "points")?;
+        py.detach(|| self.contact.refit(points, &self.threads)).or_raise()
+    }
+
+    fn measure<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let gaps = py.detach(|| self.contact.measure(&self.threads));
+        let all = PyDict::new(py);
+        all.set_item("least", gaps.least())?;
+        all.set_item("pairs", report(py, &self.pairs(&gaps))?)?;
+        all.set_item("warnings", report(py, &self.contact.warned(&gaps))?)?;
+        let bodies = PyDict::new(py);
+        for (name, of) in self.names.iter().zip(gaps.bodies) {
+            let body = PyDict::new(py);
+            body.set_item("vertices", ids(py, of.vertices))?;
+            body.set_item("gap", PyArray1::from_vec(py, of.gap))?;
+            body.set_item("normal", vectors(py, of.normal)?)?;
+            body.set_item("closest_body", signed(py, &of.closest_body))?;
+            body.set_item("closest_triangle", signed(py, &of.closest_triangle))?;
+            body.set_item("closest_point", vectors(py, of.closest_point)?)?;
+            body.set_item("warning", PyArray1::from_vec(py, of.warning))?;
+            bodies.set_item(name, body)?;
+        }
+        all.set_item("bodies", bodies)?;
+        Ok(all)
+    }
+
+    /// When surfaces will touch: by a velocity for each point, as far as the horizon.
+    fn look_ahead<'py>(
+        &self,
+        py: Python<'py>,
+        velocity: Vectors<'_>,
+        horizon: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let velocity = rows(&velocity, "velocity")?;
+        let ahead = py.detach(|| self.contact.look_ahead(velocity, horizon, &self.threads)).or_raise()?;
+        self.ahead(py, ahead)
+    }
+
+    /// The same, to where points will be after a time.
+    fn look_ahead_to<'py>(
+        &self,
+        py: Python<'py>,
+        points: Vectors<'_>,
+        dt: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let points = rows(&points, "points")?;
+        let ahead = py.detach(|| self.contact.look_ahead_to(points, dt, &self.threads)).or_raise()?;
+        self.ahead(py, ahead)
+    }
+}
+
+impl Contact {
+    fn ahead<'py>(&self, py: Python<'py>, ahead: contact::Ahead) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        all.set_item("first", report(py, &ahead.first)?)?;
+        let times = PyDict::new(py);
+        for (name, of) in self.names.iter().zip(ahead.times) {
+            times.set_item(name, PyArray1::from_vec(py, of))?;
+        }
+        all.set_item("times", times)?;
+        Ok(all)
+    }
+
+    fn pairs<'a>(&'a self, gaps: &Gaps) -> Vec<Pair<'a>> {
+        let pair = |pair: &contact::PairGap| Pair {
+            bodies: pair.bodies.map(|body| self.names[body as usize].as_str()),
+            distance: pair.nearest.map(|nearest| nearest.distance),
+            points: pair.nearest.map(|nearest| nearest.points),
+            triangles: pair.nearest.map(|nearest| nearest.triangles),
+            crossings: pair.crossings.len(),
+            vertices_beyond: pair.n_wrong,
+            depth: pair.depth,
+            warned: pair.n_warned,
+        };
+        gaps.pairs.iter().map(pair).collect()
+    }
+}
+
+/// -1 stands for none.
+fn signed<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyArray1<i64>> {
+    PyArray1::from_vec(py, ids.iter().map(|&id| if id == NONE { -1 } else { id.into() }).collect())
+}
+
+/// The triangles of a mesh's surface cells; of a mesh without any those of its boundary. With each the cell that it is of and its patch.
+#[pyfunction]
+pub(crate) fn surface<'py>(py: Python<'py>, mesh: Given) -> PyResult<Bound<'py, PyDict>> {
+    let mut surface = Surface::of(&mesh.0);
+    if surface.triangles.is_empty() {
+        surface = Surface::boundary_of(&mesh.0);
+    }
+    let all = PyDict::new(py);
+    let flat: Vec<u32> = surface.triangles.as_flattened().iter().map(|v| v.0).collect();
+    all.set_item("triangles", crate::arrays::table(py, flat, 3)?)?;
+    all.set_item("cells", ids(py, surface.triangle_to_cell))?;
+    all.set_item("patches", PyArray1::from_vec(py, surface.patches))?;
+    let labels = mesh.0.patches();
+    let names = labels.iter().flat_map(|labels| labels.used().into_iter().map(|id| (labels.name(id), id)));
+    all.set_item("names", PyList::new(py, names.collect::<Vec<_>>())?)?;
+    Ok(all)
+}

@@ -1,0 +1,66 @@
+//! Files, and what a mesh is.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
+use motet::io::{self, WriteOptions};
+use motet::mesh::Summary;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::border::{Given, parts};
+use crate::error::OrRaise;
+use crate::report::report;
+use crate::words::one_of;
+
+/// A mesh from a file, and what was passed over.
+#[pyfunction]
+pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
+    let (mesh, notes) = py.detach(|| io::read_noted(&path)).or_raise()?;
+    Ok((parts(py, mesh)?, notes))
+}
+
+/// Writes a mesh; what the format cannot hold.
+#[pyfunction]
+pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: Given) -> PyResult<Vec<String>> {
+    py.detach(|| io::write(&path, &mesh.0, &WriteOptions::default())).or_raise()
+}
+
+/// The times and files of a series.
+#[pyfunction]
+pub(crate) fn read_series(path: PathBuf) -> PyResult<Vec<(f64, PathBuf)>> {
+    io::read_series(path).or_raise()
+}
+
+/// Endings of files that can be read, and whether they can be written.
+#[pyfunction]
+pub(crate) fn formats() -> BTreeMap<String, bool> {
+    let formats = io::formats().iter();
+    formats.flat_map(|f| f.endings.iter().map(|ending| ((*ending).to_owned(), f.write.is_some()))).collect()
+}
+
+/// What a mesh is, how good, and what is wrong with it.
+#[pyfunction]
+pub(crate) fn summary(py: Python<'_>, mesh: Given) -> PyResult<Bound<'_, PyAny>> {
+    let summary = py.detach(|| Summary::of(&mesh.0));
+    report(py, &summary)
+}
+
+/// A measure of each tet; NaN for other cells.
+#[pyfunction]
+pub(crate) fn quality<'py>(py: Python<'py>, mesh: Given, measure: &str) -> PyResult<Bound<'py, PyAny>> {
+    type Measure = fn([[f64; 3]; 4]) -> f64;
+    let known: [(&str, Measure); 6] = [
+        ("eas", eas),
+        ("mean_ratio", mean_ratio),
+        ("min_dihedral_deg", |tet| dihedral::min(tet).to_degrees()),
+        ("max_dihedral_deg", |tet| dihedral::max(tet).to_degrees()),
+        ("edge_ratio", edge_ratio),
+        ("volume", volume),
+    ];
+    let of = one_of("measure", measure, &known)?;
+    let field = py.detach(|| mesh.0.tet_field(measure, of));
+    Ok(PyArray1::from_vec(py, field.values.to_f64().unwrap_or_default()).into_any())
+}

@@ -1,0 +1,87 @@
+//! Where everything in a new mesh came from, and arrays carried along.
+
+use motet::base::{CellId, Id, VertexId};
+use motet::mesh::history::{self, Origins};
+use pyo3::prelude::*;
+
+use crate::arrays::{from_field, ids, to_field};
+use crate::error::{OrRaise, input};
+use crate::report::report;
+use crate::words::one_of;
+use motet::mesh::history::Rule;
+
+/// A history.
+#[pyclass(frozen, module = "motet._motet")]
+pub(crate) struct History(pub(crate) history::History);
+
+#[pymethods]
+impl History {
+    /// The old vertex that each new one is; 2^32-1 for those that came.
+    #[getter]
+    fn vertex_to_old<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        kept::<VertexId>(py, &self.0.vertices)
+    }
+
+    /// The old cell that each new one is; 2^32-1 for those that came.
+    #[getter]
+    fn cell_to_old<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        kept::<CellId>(py, &self.0.cells)
+    }
+
+    /// The old vertex that each new one is, or has most of.
+    #[getter]
+    fn vertex_to_main<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        ids(py, self.0.vertices.main().collect()).into_any()
+    }
+
+    /// The old cell that each new one is, or has most of.
+    #[getter]
+    fn cell_to_main<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        ids(py, self.0.cells.main().collect()).into_any()
+    }
+
+    /// How well volumes fit.
+    #[getter]
+    fn ledger<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        report(py, &self.0.ledger)
+    }
+
+    /// An array of the old mesh on the new one.
+    fn transfer<'py>(
+        &self,
+        py: Python<'py>,
+        name: String,
+        array: &Bound<'py, PyAny>,
+        on: &str,
+        rule: Option<&str>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let field = to_field(name, array)?;
+        let on_points = one_of("on", on, &[("points", true), ("cells", false)])?;
+        let mean = if on_points { Rule::Interpolate } else { Rule::Conserve };
+        let rule = rule
+            .map(|rule| one_of("rule", rule, &[("mean", mean), ("inherit", Rule::Inherit)]))
+            .transpose()?;
+        let new = py.detach(|| match (on_points, rule) {
+            (true, None) => self.0.transfer_points(&field).map(Some),
+            (false, None) => self.0.transfer_cells(&field).map(Some),
+            (true, Some(rule)) => self.0.transfer_points_by(&field, rule),
+            (false, Some(rule)) => self.0.transfer_cells_by(&field, rule),
+        });
+        from_field(py, new.or_raise()?.ok_or_else(|| input("the rule leaves nothing"))?)
+    }
+
+    /// This change, then a later one.
+    fn then(&self, later: &Self) -> PyResult<Self> {
+        let fits = |a: usize, b: usize| a == b;
+        if !fits(self.0.vertices.len(), later.0.vertices.n_old())
+            || !fits(self.0.cells.len(), later.0.cells.n_old())
+        {
+            return Err(input("the later history does not start from the mesh that the first one ends with"));
+        }
+        Ok(Self(self.0.then(&later.0)))
+    }
+}
+
+fn kept<'py, I: Id + bytemuck::Pod>(py: Python<'py>, origins: &Origins<I>) -> Bound<'py, PyAny> {
+    ids(py, origins.kept().to_vec()).into_any()
+}

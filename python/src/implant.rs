@@ -1,0 +1,68 @@
+//! Devices put into a mesh.
+
+use std::collections::BTreeMap;
+
+use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside};
+use motet::remesh;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::border::{Given, parts};
+use crate::error::OrRaise;
+use crate::history::History;
+use crate::report::report;
+use crate::words::{one_of, rules, threads};
+
+/// The new mesh, its history, what was done, and whether all that was asked is reached.
+#[pyfunction]
+#[pyo3(signature = (
+    host, devices, *, inside, interface, tolerance, outside, stray, adapt, size, growth, carve, reach, min_eas, values, carry, threads
+))]
+#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+pub(crate) fn implant<'py>(
+    py: Python<'py>,
+    host: Given,
+    devices: Vec<(Given, String)>,
+    inside: &str,
+    interface: &str,
+    tolerance: Option<f64>,
+    outside: &str,
+    stray: Option<f64>,
+    adapt: &str,
+    size: Option<f64>,
+    growth: f64,
+    carve: f64,
+    reach: f64,
+    min_eas: f64,
+    values: BTreeMap<String, Vec<f64>>,
+    carry: BTreeMap<String, String>,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+    let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
+    let inside = one_of("inside", inside, &insides)?;
+    let device = |(mesh, name): (Given, String)| {
+        let device = Device::new(mesh.0, name);
+        Device { inside: inside.unwrap_or(device.inside), ..device }
+    };
+    let devices: Vec<Device> = devices.into_iter().map(device).collect();
+    let interfaces = [("match", Interface::Match), ("conform", Interface::Conform { tolerance })];
+    let options = Options {
+        interface: one_of("interface", interface, &interfaces)?,
+        outside: one_of("outside", outside, &[("cut", Outside::Cut), ("keep", Outside::Keep)])?,
+        stray,
+        size,
+        growth,
+        adapt: one_of("adapt", adapt, &[("none", Adapt::No), ("walls", Adapt::Walls), ("all", Adapt::All)])?,
+        carve,
+        reach,
+        starts: values,
+        improve: remesh::Options { min_eas, ..remesh::Options::default() },
+    };
+    let rules = rules(&host.0, &carry)?;
+    let threads = self::threads(threads)?;
+    let made =
+        py.detach(|| motet::implant::implant(&host.0, &devices, &options, &rules, &threads)).or_raise()?;
+    let Implanted { mesh, history, report: told } = made;
+    let is_complete = told.is_complete();
+    Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))
+}

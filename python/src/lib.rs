@@ -1,0 +1,57 @@
+//! What Python calls: arrays in, arrays out. The package `motet` beside this crate gives names, words and documentation to it.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `arrays` | numpy arrays from lists of the library, and lists from arrays |
+//! | `border` | whole meshes across the border |
+//! | `error` | errors as Python's exceptions |
+//! | `words` | what a call may say: patches, rules of arrays, threads |
+//! | `shapes` | meshes of the library's own |
+//! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact` | a verb or a handle each |
+
+mod arrays;
+mod border;
+mod contact;
+mod error;
+mod files;
+mod history;
+mod implant;
+mod meshing;
+mod motion;
+mod refine;
+mod remesh;
+mod report;
+mod shapes;
+mod words;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _motet {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::contact::{Contact, surface};
+    #[pymodule_export]
+    use crate::files::{formats, quality, read, read_series, summary, write};
+    #[pymodule_export]
+    use crate::history::History;
+    #[pymodule_export]
+    use crate::implant::implant;
+    #[pymodule_export]
+    use crate::meshing::mesh;
+    #[pymodule_export]
+    use crate::motion::{Mover, choose, mesh_velocity, patch_vertices, prescribed};
+    #[pymodule_export]
+    use crate::refine::{Criterion, Refinement, refined};
+    #[pymodule_export]
+    use crate::remesh::remesh;
+
+    #[pymodule_export]
+    use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,141 @@
+//! Closed surfaces filled with tets.
+
+use std::collections::BTreeMap;
+
+use motet::base::Point;
+use motet::delaunay::EdgePoints;
+use motet::meshing::layers::{Layers, Stack};
+use motet::meshing::{Grading, Options, Seed, Sizes, Surfaces, fill, sizes_by};
+use motet::preflight::{Repair, Repairs, Role};
+use motet::{Mesh, remesh};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+use crate::border::{Given, parts};
+use crate::error::{OrRaise, input, raised};
+use crate::report::report;
+use crate::words::threads;
+
+/// What a call asks for; a class with these attributes on Python's side.
+#[derive(FromPyObject)]
+pub(crate) struct Asked {
+    size: Option<f64>,
+    is_graded: bool,
+    growth: Option<f64>,
+    size_array: Option<String>,
+    seeds: Vec<(Point, String)>,
+    holes: Vec<Point>,
+    min_eas: Option<f64>,
+    /// Layers on all walls, and by patch: how many, the first thickness, the growth.
+    layers: Option<(u32, f64, f64)>,
+    layers_on: BTreeMap<String, (u32, f64, f64)>,
+    keep_prisms: bool,
+    repair: bool,
+    merge: f64,
+    hole_edges: usize,
+}
+
+/// What was done.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    report: &'a motet::meshing::Report,
+    improved: Option<&'a remesh::Report>,
+    layers: Option<&'a motet::meshing::layers::Report>,
+    repaired: &'a [Repair],
+}
+
+/// The mesh, what was done, and whether all that was asked is reached. `surfaces`: each with its name and whether it may end inside the others.
+#[pyfunction]
+pub(crate) fn mesh<'py>(
+    py: Python<'py>,
+    surfaces: Vec<(Given, String, bool)>,
+    asked: Asked,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyAny>, bool)> {
+    let threads = self::threads(threads)?;
+    let role = |is_membrane| if is_membrane { Role::Membrane } else { Role::Boundary };
+    let meshes: Vec<(&Mesh, Role, &str)> = surfaces
+        .iter()
+        .map(|(mesh, name, is_membrane)| (&mesh.0, role(*is_membrane), name.as_str()))
+        .collect();
+    let mut joined = Surfaces::new(&meshes).or_raise()?;
+    let by_array = match &asked.size_array {
+        None => None,
+        Some(name) => {
+            let each: Vec<Vec<f64>> =
+                meshes.iter().map(|(mesh, ..)| sizes_by(mesh, name).or_raise()).collect::<PyResult<_>>()?;
+            Some(joined.sizes(&each))
+        }
+    };
+    let repaired = match asked.repairs() {
+        Some(repairs) => py.detach(|| joined.repair(&repairs, &threads)).or_raise()?.done,
+        None => Vec::new(),
+    };
+    let preflight = py.detach(|| joined.preflight(&threads));
+    if !preflight.is_fit() {
+        let error = preflight.first_error();
+        return Err(error.map_or_else(|| input("the surfaces are not fit"), raised));
+    }
+    let options = asked.options(by_array, &joined)?;
+    let filled = py.detach(|| fill(&joined, &preflight, &options, &threads)).or_raise()?;
+    let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
+    let is_complete = filled.report.points_on_edges == 0
+        && filled.report.not_positive == 0
+        && improved.is_none_or(remesh::Report::is_complete)
+        && layers.is_none_or(|layers| layers.prisms > 0);
+    let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
+    Ok((parts(py, filled.mesh)?, told, is_complete))
+}
+
+impl Asked {
+    fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> PyResult<Options> {
+        let sizes = if self.is_graded || self.growth.is_some() || at_points.is_some() {
+            let growth = self.growth.unwrap_or(Grading::default().growth);
+            Some(Sizes::Graded(Grading { at_points, growth, largest: self.size }))
+        } else {
+            self.size.map(Sizes::Uniform)
+        };
+        let improve = self.min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
+        Ok(Options {
+            edge_points: EdgePoints::MoveInside,
+            sizes,
+            seeds: self
+                .seeds
+                .iter()
+                .map(|(place, name)| Seed { place: *place, name: name.clone() })
+                .collect(),
+            holes: self.holes.clone(),
+            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
+            layers: self.layers(surfaces)?,
+        })
+    }
+
+    fn layers(&self, surfaces: &Surfaces) -> PyResult<Option<Layers>> {
+        if self.layers.is_none() && self.layers_on.is_empty() {
+            return Ok(None);
+        }
+        let stack = |&(count, first, growth): &(u32, f64, f64)| {
+            let stack = Stack { count, first, growth };
+            stack.check().or_raise().map(|()| stack)
+        };
+        let mut all = Layers { keep_prisms: self.keep_prisms, ..Layers::default() };
+        all.everywhere = self.layers.as_ref().map(stack).transpose()?;
+        for (patch, layers) in &self.layers_on {
+            let id = surfaces.find_patch(patch).or_raise()?;
+            all.by_patch.insert(id, stack(layers)?);
+        }
+        Ok(Some(all))
+    }
+
+    fn repairs(&self) -> Option<Repairs> {
+        self.repair.then_some(Repairs {
+            merge: Some(self.merge),
+            drop_degenerate: true,
+            drop_duplicates: true,
+            orient: true,
+            close_holes: Some(self.hole_edges),
+        })
+    }
+}

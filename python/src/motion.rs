@@ -1,0 +1,247 @@
+//! Boundary displacement in, volume mesh out.
+
+use motet::base::{Point, Threads, VertexId};
+use motet::motion::{
+    self, BoundaryMotion, Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, Prescribed, RigidLayer,
+};
+use motet::{Error, Mesh};
+use numpy::{PyArray1, PyReadwriteArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays::{Ids, Vectors, ids, rows, vectors, vertices};
+use crate::border::Given;
+use crate::error::{OrRaise, input, raised};
+use crate::report::report;
+use crate::words::{Facets, all_facets, threads};
+
+/// What a mover is told; a class with these attributes on Python's side.
+#[derive(FromPyObject)]
+pub(crate) struct Asked<'py> {
+    method: String,
+    bodies: Vec<Facets<'py>>,
+    within_walls: bool,
+    smooth: usize,
+    also_moved: Option<Ids<'py>>,
+    rigid_layer: Option<f64>,
+    rigid_layer_cells: Option<usize>,
+    rigid_layer_at: Vec<Facets<'py>>,
+    slide: Vec<Facets<'py>>,
+    residual: f64,
+    factor_gib: f64,
+    substeps: usize,
+}
+
+impl Asked<'_> {
+    fn options(&self, mesh: &Mesh) -> PyResult<Options> {
+        let also_moved = match &self.also_moved {
+            Some(array) => vertices(array, mesh.points.len())?,
+            None => Vec::new(),
+        };
+        let wall = joined(all_facets(mesh, &self.rigid_layer_at)?);
+        let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
+        let rigid_layer = extent.map(|extent| RigidLayer { extent, wall: wall.clone() });
+        Ok(Options {
+            method: self.method(mesh, wall)?,
+            within_walls: self.within_walls,
+            smoothing: self.smooth,
+            also_moved,
+            rigid_layer,
+            sliding: all_facets(mesh, &self.slide)?,
+            limits: Limits { substeps: self.substeps, ..Limits::default() },
+        })
+    }
+
+    fn method(&self, mesh: &Mesh, wall: Option<FacetSet>) -> PyResult<Method> {
+        let bodies = all_facets(mesh, &self.bodies)?;
+        let factor_bytes = (self.factor_gib * (1u64 << 30) as f64) as u64;
+        let mut elastic = Elastic { factor_bytes, ..Elastic::default() };
+        elastic.tolerance.residual = self.residual;
+        let laplace = Laplace { wall, tolerance: elastic.tolerance, factor_bytes, ..Laplace::default() };
+        let known = [
+            Method::Delaunay,
+            Method::Bodies(bodies),
+            Method::Guided,
+            Method::Elastic(elastic),
+            Method::Laplace(laplace),
+            Method::InverseDistance,
+            Method::Radial,
+        ];
+        let names: Vec<&str> = known.iter().map(Method::name).collect();
+        let remedy = format!("give one of {}", names.join(", "));
+        let asked = known.into_iter().find(|method| method.name() == self.method);
+        asked.ok_or_else(|| {
+            raised(Error::options(format!("method={:?} means nothing", self.method)).remedy(remedy))
+        })
+    }
+}
+
+/// All of these as one; `None` where there is none.
+fn joined(sets: Vec<FacetSet>) -> Option<FacetSet> {
+    sets.into_iter().reduce(|mut all, set| {
+        all.name = format!("{}, {}", all.name, set.name);
+        set.rings.iter().for_each(|ring| all.rings.push(ring.iter().copied()));
+        all.vertices.extend(set.vertices);
+        all.vertices.sort_unstable();
+        all.vertices.dedup();
+        all
+    })
+}
+
+/// Moves the vertices of one mesh after its boundary.
+#[pyclass(module = "motet._motet")]
+pub(crate) struct Mover {
+    mover: motion::Mover,
+    threads: Threads,
+}
+
+#[pymethods]
+impl Mover {
+    #[new]
+    fn new(py: Python<'_>, mesh: Given, asked: Asked<'_>, threads: usize) -> PyResult<Self> {
+        let options = asked.options(&mesh.0)?;
+        let threads = self::threads(threads)?;
+        let mover = py.detach(|| motion::Mover::new(&mesh.0, &options, &threads)).or_raise()?;
+        Ok(Self { mover, threads })
+    }
+
+    #[getter]
+    fn boundary<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        ids(py, self.mover.boundary().to_vec()).into_any()
+    }
+
+    #[getter]
+    fn reference<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(vectors(py, self.mover.reference().to_vec())?.into_any())
+    }
+
+    #[getter]
+    fn setup<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        report(py, self.mover.setup())
+    }
+
+    fn weights(&self, vertex: u32) -> PyResult<Option<([u32; 4], [f64; 4])>> {
+        if vertex as usize >= self.mover.reference().len() {
+            return Err(input(format!("there is no vertex {vertex}")));
+        }
+        Ok(self.mover.weights(VertexId(vertex)).map(|(ids, weights)| (ids.map(|v| v.0), weights)))
+    }
+
+    /// Reads and writes where the arrays are.
+    fn step(
+        &self,
+        py: Python<'_>,
+        displacement: Vectors<'_>,
+        mut out: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
+        py.detach(|| self.mover.step(displacement, out, &self.threads)).or_raise()
+    }
+
+    fn advance<'py>(
+        &mut self,
+        py: Python<'py>,
+        displacement: Vectors<'_>,
+        mut out: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
+        let certificate = py.detach(|| self.mover.advance(displacement, out, &self.threads)).or_raise()?;
+        report(py, &certificate)
+    }
+}
+
+fn rows_mut<'a>(out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [Point]> {
+    let shape = out.shape().to_vec();
+    let flat = out.as_slice_mut().ok().filter(|_| shape[1] == 3);
+    flat.map(|flat| flat.as_chunks_mut::<3>().0)
+        .ok_or_else(|| input(format!("out of shape {shape:?}, expected (n, 3), contiguous and of float64")))
+}
+
+/// One motion of some vertices.
+#[derive(FromPyObject)]
+pub(crate) enum Motion {
+    /// Axis, angle in degrees, and centre.
+    Turn((Point, f64, Option<Point>)),
+    Shift(Point),
+}
+
+/// Displacements of the boundary by patches that turn and shift: `parts` of the whole motion, one after the other. A vertex obeys the first that is told about it.
+#[pyfunction]
+pub(crate) fn prescribed<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    boundary: Ids<'_>,
+    motions: Vec<(Facets<'_>, Vec<Motion>)>,
+    fractions: Vec<f64>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let mesh = mesh.0;
+    let boundary = vertices(&boundary, mesh.points.len())?;
+    let mut asked = BoundaryMotion::still(&boundary);
+    for (word, motions) in &motions {
+        let set = crate::words::facets(&mesh, word)?;
+        let mut all: Vec<Prescribed> =
+            motions.iter().map(|motion| of(motion, &mesh, &set.vertices)).collect();
+        let motion = if all.len() == 1 { all.remove(0) } else { Prescribed::Sequence(all) };
+        asked.follow(&set.vertices, motion).or_raise()?;
+    }
+    fractions.iter().map(|&f| Ok(vectors(py, asked.displacements(&mesh.points, f))?.into_any())).collect()
+}
+
+fn of(motion: &Motion, mesh: &Mesh, vertices: &[VertexId]) -> Prescribed {
+    match *motion {
+        Motion::Shift(by) => Prescribed::Shift(by),
+        Motion::Turn((axis, degrees, centre)) => Prescribed::Turn {
+            axis,
+            angle: degrees.to_radians(),
+            centre: centre.unwrap_or_else(|| middle(mesh, vertices)),
+        },
+    }
+}
+
+/// The middle of the box around some vertices.
+fn middle(mesh: &Mesh, vertices: &[VertexId]) -> Point {
+    let points: Vec<Point> = vertices.iter().map(|v| mesh.points[v.index()]).collect();
+    let [low, high] = motet::mesh::bounds(&points).unwrap_or_default();
+    [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
+}
+
+/// The cheapest method that keeps the worst cell at a bound on all of these displacements, and what was tried.
+#[pyfunction]
+pub(crate) fn choose<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    asked: Asked<'_>,
+    least: Option<f64>,
+    frames: Vec<Vectors<'_>>,
+    threads: usize,
+) -> PyResult<(String, f64, Bound<'py, PyAny>)> {
+    let options = asked.options(&mesh.0)?;
+    let frames: Vec<Vec<Point>> =
+        frames.iter().map(|frame| Ok(rows(frame, "displacement")?.to_vec())).collect::<PyResult<_>>()?;
+    let threads = self::threads(threads)?;
+    let all = || Ok(frames.iter().map(|frame| Ok(frame.clone())));
+    let choice = py.detach(|| motion::choose(&mesh.0, &options, least, all, &threads)).or_raise()?;
+    Ok((choice.method.name().to_owned(), choice.least, report(py, &choice.tried)?))
+}
+
+/// Velocities by the difference of two places.
+#[pyfunction]
+pub(crate) fn mesh_velocity<'py>(
+    py: Python<'py>,
+    before: Vectors<'_>,
+    points: Vectors<'_>,
+    dt: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let velocity =
+        motion::mesh_velocity(rows(&before, "points before")?, rows(&points, "points")?, dt).or_raise()?;
+    Ok(vectors(py, velocity)?.into_any())
+}
+
+/// The vertices of the boundary, of patches or of all of it.
+#[pyfunction]
+pub(crate) fn patch_vertices<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    patch: Facets<'_>,
+) -> PyResult<Bound<'py, PyArray1<u32>>> {
+    Ok(ids(py, crate::words::facets(&mesh.0, &patch)?.vertices))
+}

@@ -1,0 +1,305 @@
+//! Tets divided, many generations deep, and taken back.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use motet::base::{Point, TetId};
+use motet::mesh::history;
+use motet::refine;
+use motet::refine::sizes::SizeLimits;
+use motet::refine::{
+    Aim, Amount, Condition, Estimator, HessianSizes, Limits, MeshRefinement, Options, Relation, Size, Target,
+    Wanted, fix_sizes,
+};
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+
+use crate::border::{Given, parts};
+use crate::error::{OrRaise, input, options};
+use crate::history::History;
+use crate::report::report;
+use crate::words::{rules, threads};
+
+/// What is to be divided.
+#[pyclass(frozen, from_py_object, module = "motet._motet")]
+#[derive(Clone)]
+pub(crate) struct Criterion(refine::Criterion);
+
+/// A share of the error, or a number of tets.
+#[derive(FromPyObject)]
+enum Much {
+    Tets(usize),
+    Share(f64),
+}
+
+fn checked(criterion: refine::Criterion) -> PyResult<Criterion> {
+    criterion.check().or_raise()?;
+    Ok(Criterion(criterion))
+}
+
+fn target(surface: &Given) -> PyResult<Arc<Target>> {
+    Target::of_mesh(&surface.0, &threads(1)?).map(Arc::new).or_raise()
+}
+
+fn estimate(array: String, by: Estimator, amount: Much) -> PyResult<Criterion> {
+    let amount = match amount {
+        Much::Tets(n) => Amount::Tets(n),
+        Much::Share(share) => Amount::Share(share),
+    };
+    checked(refine::Criterion::Estimate { array, by, amount })
+}
+
+/// `ARRAY>VALUE`
+fn threshold(text: &str) -> PyResult<(String, f64)> {
+    match text.parse::<Condition>().or_raise()? {
+        Condition { array, relation: Relation::Above, value } => Ok((array, value)),
+        _ => Err(options(format!("{text:?}: ARRAY>VALUE is expected, such as velocity>50"))),
+    }
+}
+
+#[pymethods]
+impl Criterion {
+    #[staticmethod]
+    fn all() -> Self {
+        Self(refine::Criterion::All)
+    }
+
+    #[staticmethod]
+    fn near(surface: Given, within: f64) -> PyResult<Self> {
+        checked(refine::Criterion::Near { target: target(&surface)?, within })
+    }
+
+    #[staticmethod]
+    fn near_size(surface: Given, size: f64, growth: f64) -> PyResult<Self> {
+        checked(refine::Criterion::NearSize { target: target(&surface)?, size, growth })
+    }
+
+    #[staticmethod]
+    fn ball(centre: Point, radius: f64) -> PyResult<Self> {
+        checked(refine::Criterion::Ball { centre, radius })
+    }
+
+    #[staticmethod]
+    fn r#box(low: Point, high: Point) -> PyResult<Self> {
+        checked(refine::Criterion::Box([low, high]))
+    }
+
+    #[staticmethod]
+    fn region(name: String) -> PyResult<Self> {
+        checked(refine::Criterion::Region(name))
+    }
+
+    #[staticmethod]
+    fn patch(name: String, within: Option<f64>) -> PyResult<Self> {
+        checked(refine::Criterion::Patch { patch: name, within })
+    }
+
+    #[staticmethod]
+    fn size(size: f64) -> PyResult<Self> {
+        checked(refine::Criterion::Size(Size::Uniform(size)))
+    }
+
+    #[staticmethod]
+    fn size_array(array: String) -> PyResult<Self> {
+        checked(refine::Criterion::Size(Size::Array(array)))
+    }
+
+    #[staticmethod]
+    fn r#where(condition: &str) -> PyResult<Self> {
+        checked(refine::Criterion::Where(condition.parse().or_raise()?))
+    }
+
+    #[staticmethod]
+    fn gradient(threshold: &str) -> PyResult<Self> {
+        let (array, above) = self::threshold(threshold)?;
+        checked(refine::Criterion::Gradient { array, above })
+    }
+
+    #[staticmethod]
+    fn vorticity(threshold: &str) -> PyResult<Self> {
+        let (array, above) = self::threshold(threshold)?;
+        checked(refine::Criterion::Vorticity { array, above })
+    }
+
+    #[staticmethod]
+    fn q(threshold: &str) -> PyResult<Self> {
+        let (array, above) = self::threshold(threshold)?;
+        checked(refine::Criterion::Q { array, above })
+    }
+
+    #[staticmethod]
+    fn jump(array: String, amount: Much) -> PyResult<Self> {
+        estimate(array, Estimator::Jump, amount)
+    }
+
+    #[staticmethod]
+    fn recovery(array: String, amount: Much) -> PyResult<Self> {
+        estimate(array, Estimator::Recovery, amount)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (arrays, *, error = None, range_part = None, tets = None, smallest = None))]
+    fn hessian(
+        arrays: Vec<String>,
+        error: Option<f64>,
+        range_part: Option<f64>,
+        tets: Option<usize>,
+        smallest: Option<f64>,
+    ) -> PyResult<Self> {
+        let aim = match (error, range_part, tets) {
+            (Some(error), None, None) => Aim::Error(error),
+            (None, Some(part), None) => Aim::RangePart(part),
+            (None, None, Some(n)) => Aim::Tets(n),
+            _ => return Err(options("hessian: give one of error, range_part and tets")),
+        };
+        let limits = SizeLimits { smallest: smallest.unwrap_or(0.0), ..SizeLimits::default() };
+        checked(refine::Criterion::Hessian(HessianSizes { arrays, aim, limits }))
+    }
+}
+
+/// What a call wants; a class with these attributes on Python's side.
+#[derive(FromPyObject)]
+pub(crate) struct Asked {
+    criteria: Vec<Criterion>,
+    coarsen: bool,
+    coarsen_where: Vec<String>,
+    generations: Option<u32>,
+    limit_generation: Option<u8>,
+    smallest: Option<f64>,
+    at_most: Option<usize>,
+    surface: Option<Given>,
+    carry: BTreeMap<String, String>,
+    forget: bool,
+}
+
+/// What a step came to.
+#[derive(Serialize)]
+struct Done {
+    tets: usize,
+    promoted: usize,
+    cut: usize,
+    held: usize,
+}
+
+impl Done {
+    fn of(summary: &refine::Summary) -> Self {
+        Self { tets: summary.n_tets, promoted: summary.n_promoted, cut: summary.n_cut, held: summary.n_held }
+    }
+}
+
+#[derive(Serialize)]
+struct Told {
+    complete: bool,
+    steps: Vec<refine::Step>,
+}
+
+/// The new mesh with its memory, its history, what was done, and whether edges are as short as asked for.
+#[pyfunction]
+pub(crate) fn refined<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    asked: Asked,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+    let threads = self::threads(threads)?;
+    let mut mesh = if asked.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
+    let rules = rules(&mesh, &asked.carry)?;
+    let conditions =
+        asked.coarsen_where.iter().map(|text| text.parse().or_raise()).collect::<PyResult<_>>()?;
+    let mut criteria: Vec<refine::Criterion> = asked.criteria.into_iter().map(|c| c.0).collect();
+    let sizes = fix_sizes(&mut criteria, &mut mesh, &threads).or_raise()?;
+    let wanted = Wanted {
+        criteria,
+        coarsen: asked.coarsen,
+        coarsen_where: conditions,
+        generations: asked.generations,
+        limits: Limits {
+            generation: asked.limit_generation,
+            smallest: asked.smallest,
+            n_tets: asked.at_most,
+        },
+        surface: asked.surface.as_ref().map(target).transpose()?,
+        keeps_history: true,
+    };
+    let (refinement, done) = py
+        .detach(|| {
+            let mut refinement = MeshRefinement::new(&mesh, Options::default(), &threads)?;
+            let done = refinement.reach(&wanted, &rules, &threads, |_| ())?;
+            Ok((refinement, done))
+        })
+        .or_raise()?;
+    let mut new = refinement.with_memory(&threads);
+    new.point_data.retain(|field| !sizes.contains(&field.name));
+    let told = report(py, &Told { complete: done.is_reached, steps: done.steps })?;
+    let history = done.history.ok_or_else(|| input("no history was kept"))?;
+    Ok((parts(py, new)?, History(history), told, done.is_reached))
+}
+
+/// A mesh whose tets are divided and taken back, step after step.
+#[pyclass(module = "motet._motet")]
+pub(crate) struct Refinement {
+    refinement: MeshRefinement,
+    threads: motet::base::Threads,
+}
+
+#[pymethods]
+impl Refinement {
+    #[new]
+    fn new(py: Python<'_>, mesh: Given, threads: usize) -> PyResult<Self> {
+        let threads = self::threads(threads)?;
+        let refinement =
+            py.detach(|| MeshRefinement::new(&mesh.0, Options::default(), &threads)).or_raise()?;
+        Ok(Self { refinement, threads })
+    }
+
+    fn mesh<'py>(&self, py: Python<'py>, memory: bool) -> PyResult<Bound<'py, PyDict>> {
+        parts(
+            py,
+            if memory { self.refinement.with_memory(&self.threads) } else { self.refinement.mesh().clone() },
+        )
+    }
+
+    /// For each cell how often its first one was divided; -1 for cells that are no tets.
+    fn generations<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
+        let part = self.refinement.part();
+        let mut all = vec![-1i16; self.refinement.mesh().cells.len()];
+        for (cell, generation) in part.tet_to_cell.iter().zip(self.refinement.refinement().generations()) {
+            all[cell.index()] = generation.into();
+        }
+        numpy::PyArray1::from_vec(py, all).into_any()
+    }
+
+    fn change<'py>(
+        &mut self,
+        py: Python<'py>,
+        cells: PyReadonlyArray1<'_, bool>,
+        is_back: bool,
+        carry: BTreeMap<String, String>,
+    ) -> PyResult<(History, Bound<'py, PyAny>)> {
+        let rules = rules(self.refinement.mesh(), &carry)?;
+        let is_marked = cells.as_array();
+        if is_marked.len() != self.refinement.mesh().cells.len() {
+            return Err(input(format!(
+                "{} marks, but the mesh has {} cells",
+                is_marked.len(),
+                self.refinement.mesh().cells.len()
+            )));
+        }
+        let cells = self.refinement.part().tet_to_cell;
+        let marked: Vec<TetId> = cells
+            .iter()
+            .enumerate()
+            .filter(|(_, cell)| is_marked[cell.index()])
+            .map(|(t, _)| TetId::new(t))
+            .collect();
+        let (summary, history): (_, history::History) = py
+            .detach(|| match is_back {
+                false => self.refinement.refine(&marked, &rules, &self.threads),
+                true => self.refinement.coarsen(&marked, &rules, &self.threads),
+            })
+            .or_raise()?;
+        Ok((History(history), report(py, &Done::of(&summary))?))
+    }
+}

@@ -1,0 +1,63 @@
+//! Bad tets found and repaired.
+
+use std::collections::BTreeMap;
+
+use motet::remesh::{Goal, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::border::{Given, parts};
+use crate::error::OrRaise;
+use crate::history::History;
+use crate::report::report;
+use crate::words::{one_of, rules, threads};
+
+/// How long edges are to be: everywhere, or at each point.
+#[derive(FromPyObject)]
+pub(crate) enum AskedSizes {
+    Uniform(f64),
+    Points(Vec<f64>),
+}
+
+/// The new mesh, its history, what was done, and whether nothing bad is left.
+#[pyfunction]
+#[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, sizes, rounds, carry, threads))]
+#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+pub(crate) fn remesh<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    min_eas: f64,
+    min_dihedral_deg: f64,
+    goal: &str,
+    surface: &str,
+    distance: Option<f64>,
+    keep_layers: bool,
+    sizes: Option<AskedSizes>,
+    rounds: usize,
+    carry: BTreeMap<String, String>,
+    threads: usize,
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+    let known = [
+        ("keep", SurfaceRule::Keep),
+        ("adapt", SurfaceRule::Adapt { distance }),
+        ("loose", SurfaceRule::Loose { distance }),
+    ];
+    let options = Options {
+        min_eas,
+        min_dihedral_deg,
+        goal: one_of("goal", goal, &[("repair", Goal::Repair), ("best", Goal::Best)])?,
+        surface: one_of("surface", surface, &known)?,
+        keep_layers,
+        sizes: sizes.map(|sizes| match sizes {
+            AskedSizes::Uniform(h) => Sizes::Uniform(h),
+            AskedSizes::Points(all) => Sizes::Vertices(all),
+        }),
+        rounds,
+    };
+    let rules = rules(&mesh.0, &carry)?;
+    let threads = self::threads(threads)?;
+    let outcome = py.detach(|| remesh_mesh(&mesh.0, &options, &rules, &threads)).or_raise()?;
+    let MeshOutcome { mesh, history, report: told, .. } = outcome;
+    let is_complete = told.is_complete();
+    Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))
+}

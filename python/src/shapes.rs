@@ -1,0 +1,102 @@
+//! Meshes that the library makes itself: for tests, documentation and first tries.
+
+use motet::base::Point;
+use motet::mesh::shapes::{self, Aneurysm, Coil, Stent, TubeOptions, WallCells};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::border::parts;
+use crate::error::{OrRaise, options};
+
+#[pyfunction]
+pub(crate) fn sphere_in_box(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
+    at_least(n.min(layers), 1)?;
+    parts(py, shapes::sphere_in_box(n, layers))
+}
+
+#[pyfunction]
+pub(crate) fn box_grid(
+    py: Python<'_>,
+    n: [usize; 3],
+    low: Point,
+    high: Point,
+) -> PyResult<Bound<'_, PyDict>> {
+    at_least(n[0].min(n[1]).min(n[2]), 1)?;
+    parts(py, shapes::box_grid(n, [low, high]))
+}
+
+#[pyfunction]
+pub(crate) fn ball(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
+    at_least(n.min(layers), 1)?;
+    parts(py, shapes::ball(n, layers))
+}
+
+#[pyfunction]
+pub(crate) fn mixed(py: Python<'_>, n: usize) -> PyResult<Bound<'_, PyDict>> {
+    at_least(n, 1)?;
+    parts(py, shapes::mixed(n))
+}
+
+#[pyfunction]
+pub(crate) fn tube(
+    py: Python<'_>,
+    radius: f64,
+    length: f64,
+    n: usize,
+    slices: usize,
+    wall_layers: usize,
+    wedges: bool,
+) -> PyResult<Bound<'_, PyDict>> {
+    at_least(n.min(slices), 1)?;
+    let wall_cells = if wedges { WallCells::Wedges } else { WallCells::Tets };
+    let options =
+        TubeOptions { radius, length, n, slices, wall_layers, wall_cells, ..TubeOptions::default() };
+    parts(py, shapes::tube(&options))
+}
+
+#[pyfunction]
+pub(crate) fn aneurysm(py: Python<'_>, around: usize, bend_deg: f64) -> PyResult<Bound<'_, PyDict>> {
+    let mesh = Aneurysm { around, bend_deg, ..Aneurysm::default() }.mesh().or_raise()?;
+    parts(py, mesh)
+}
+
+#[pyfunction]
+pub(crate) fn stent(
+    py: Python<'_>,
+    radius: f64,
+    length: f64,
+    rings: usize,
+    crowns: usize,
+    strut_width: f64,
+    thickness: f64,
+) -> PyResult<Bound<'_, PyDict>> {
+    let stent = Stent { length, rings, crowns, strut_width, thickness, ..Stent::default() };
+    parts(py, stent.mesh(radius).or_raise()?)
+}
+
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
+pub(crate) fn coil(
+    py: Python<'_>,
+    centre: Point,
+    radius: f64,
+    pitch: f64,
+    turns: f64,
+    wire_radius: f64,
+    steps: usize,
+    around: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let coil = Coil { centre, radius, pitch, turns, wire_radius };
+    parts(py, coil.mesh(steps, around).or_raise()?)
+}
+
+/// The largest count along one direction: beyond it ids would not suffice.
+const MOST: usize = 1000;
+
+fn at_least(n: usize, least: usize) -> PyResult<()> {
+    if (least..=MOST).contains(&n) {
+        Ok(())
+    } else {
+        Err(options(format!("a count of {n}, expected {least} to {MOST}")))
+    }
+}

@@ -1,0 +1,65 @@
+//! What a call may say: patches by their names, rules of arrays, how many threads.
+
+use std::collections::BTreeMap;
+
+use motet::base::Threads;
+use motet::mesh::history::{Carry, Rules};
+use motet::motion::FacetSet;
+use motet::{Error, Mesh};
+use pyo3::prelude::*;
+
+use crate::arrays::Ids;
+use crate::error::{OrRaise, raised};
+
+/// `0`: all cores.
+pub(crate) fn threads(n: usize) -> PyResult<Threads> {
+    Threads::new(n).or_raise()
+}
+
+/// One of a few words.
+pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
+    known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
+        raised(
+            Error::options(format!("{option}={word:?} means nothing"))
+                .remedy(format!("give one of {}", names.join(", "))),
+        )
+    })
+}
+
+/// What becomes of arrays, from their names to "mean", "inherit" or "drop".
+pub(crate) fn rules(mesh: &Mesh, carry: &BTreeMap<String, String>) -> PyResult<Rules> {
+    let mut rules = Rules::default();
+    for (name, word) in carry {
+        let known = [("mean", Carry::Mean), ("inherit", Carry::Inherit), ("drop", Carry::Drop)];
+        rules.carry(mesh, name, one_of("carry", word, &known)?).or_raise()?;
+    }
+    Ok(rules)
+}
+
+/// Facets, as a call names them.
+#[derive(FromPyObject)]
+pub(crate) enum Facets<'py> {
+    Number(i32),
+    Name(String),
+    /// The vertices of each facet, end to end, and how many each has.
+    Own((Ids<'py>, usize)),
+}
+
+/// The facets that a word means: a patch by name or number, or the facets themselves.
+pub(crate) fn facets(mesh: &Mesh, word: &Facets<'_>) -> PyResult<FacetSet> {
+    let word = match word {
+        Facets::Number(label) => label.to_string(),
+        Facets::Name(name) => name.clone(),
+        Facets::Own((vertices, n)) => {
+            let vertices = crate::arrays::vertices(vertices, mesh.points.len())?;
+            return Ok(FacetSet::of_rings("facets given", vertices.chunks(*n)));
+        }
+    };
+    FacetSet::find(mesh, &word).or_raise()
+}
+
+/// The facets of several words.
+pub(crate) fn all_facets(mesh: &Mesh, words: &[Facets<'_>]) -> PyResult<Vec<FacetSet>> {
+    words.iter().map(|word| facets(mesh, word)).collect()
+}

@@ -1,0 +1,64 @@
+"""Contact: gaps, warnings, and what will come."""
+import numpy as np
+import pytest
+
+import motet
+from motet import shapes
+
+
+def balls(apart):
+    first, second = shapes.ball(), shapes.ball()
+    second.points = second.points + [apart, 0.0, 0.0]
+    return {"first": first, "second": second}
+
+
+def test_gaps_are_those_of_brute_force():
+    contact = motet.Contact(balls(2.5), warn=0.6)
+    gaps = contact.measure()
+    assert gaps.least == pytest.approx(0.5) and gaps.pairs[0].bodies == ["first", "second"] and gaps.warnings
+    body = gaps.bodies["first"]
+    at = contact.points[body.vertices]
+    np.testing.assert_allclose(np.linalg.norm(body.closest_point - at, axis=1), body.gap, atol=1e-12)
+    others = contact.points[gaps.bodies["second"].vertices]
+    to_vertices = np.linalg.norm(at[:, None] - others[None], axis=2).min(axis=1)
+    assert (body.gap <= to_vertices + 1e-12).all()
+    assert (body.closest_body == 1).all() and body.warning.any()
+
+
+def test_points_move_and_what_comes_is_told():
+    contact = motet.Contact(balls(2.5))
+    velocity = np.zeros_like(contact.points)
+    velocity[len(contact.points) // 2 :, 0] = -1.0
+    ahead = contact.look_ahead(velocity)
+    assert ahead.first.time == pytest.approx(0.5) and ahead.times["first"].min() == pytest.approx(0.5)
+    same = contact.look_ahead_to(contact.points + velocity, 1.0)
+    assert same.first.time == pytest.approx(0.5)
+    contact.refit(contact.points + 0.6 * velocity)
+    assert contact.measure().least == 0.0 and contact.measure().pairs[0].crossings > 0
+    assert motet.Contact(balls(2.5)).look_ahead(velocity, horizon=0.1).first is None
+
+
+def test_patches_and_rooms():
+    mesh = shapes.sphere_in_box()
+    gaps = motet.Contact(mesh, patches=["sphere", "box"], room=["box"]).measure()
+    assert gaps.least == pytest.approx(4.0) and (gaps.bodies["sphere"].gap > 0).all()
+
+
+def test_a_surface_against_itself():
+    gaps = motet.Contact(shapes.coil(pitch=0.3, wire_radius=0.08), own=True, within=0.5).measure()
+    assert 0.1 < gaps.least < 0.16
+
+
+@pytest.mark.parametrize(
+    "call, told",
+    [
+        (lambda: motet.Contact(balls(3.0), room=["third"]), "first, second"),
+        (lambda: motet.Contact(shapes.sphere_in_box(), patches=["door"]), "sphere, box"),
+        (lambda: motet.Contact(balls(3.0)).refit(np.zeros((3, 3))), "points"),
+        (lambda: motet.Contact(balls(3.0)).look_ahead(np.zeros((3, 3))), "velocit"),
+    ],
+)
+def test_what_does_not_fit_is_told(call, told):
+    with pytest.raises(ValueError) as error:
+        call()
+    assert isinstance(error.value, motet.Error) and told in str(error.value)

@@ -1,0 +1,70 @@
+"""Meshes of meshio and PyVista: in and out, nothing lost."""
+import numpy as np
+import pytest
+from test_mesh import ALL, same
+
+import motet
+from motet import shapes
+
+meshio = pytest.importorskip("meshio")
+pyvista = pytest.importorskip("pyvista")
+
+
+@pytest.mark.parametrize("shape", ALL)
+def test_there_and_back(shape):
+    mesh = shape()
+    mesh.point_data["x"] = mesh.points[:, 0].copy()
+    mesh.cell_data["eas"] = mesh.quality()
+    same(mesh, motet.Mesh.from_pyvista(mesh.to_pyvista()))
+    same(mesh, motet.Mesh.from_meshio(mesh.to_meshio()))
+
+
+def test_volumes_are_what_vtk_says():
+    grid = shapes.mixed().to_pyvista()
+    volume = grid.compute_cell_sizes(length=False, area=False)["Volume"].sum()
+    assert motet.as_mesh(grid).summary().volume == pytest.approx(volume)
+
+
+def test_verbs_take_what_users_have(tmp_path):
+    path = tmp_path / "box.vtu"
+    mesh = shapes.box()
+    mesh.save(path)
+    meshes = [mesh, path, str(path), mesh.to_meshio(), mesh.to_pyvista()]
+    assert len({motet.as_mesh(one).summary().points for one in meshes}) == 1
+    surface = pyvista.Sphere()
+    assert motet.as_mesh(surface).summary().surface.closed
+    flat = meshio.Mesh([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], [("triangle", [[0, 1, 2]])])
+    assert motet.as_mesh(flat).points.shape == (3, 3)
+
+
+def test_single_precision_of_pyvista_becomes_double():
+    assert pyvista.Sphere().points.dtype == np.float32
+    assert motet.as_mesh(pyvista.Sphere()).points.dtype == np.float64
+
+
+def test_polyhedra_come_from_pyvista_and_go_into_files(tmp_path):
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float)
+    faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]]
+    stream = [6] + [v for face in faces for v in [4, *face]]
+    grid = pyvista.UnstructuredGrid(np.array([len(stream), *stream]), [42], corners)
+    mesh = motet.Mesh.from_pyvista(grid)
+    assert mesh.summary().volume == pytest.approx(1.0)
+    mesh.save(tmp_path / "cube.vtu")
+    same(mesh, motet.read(tmp_path / "cube.vtu"))
+    with pytest.raises(motet.InputError, match="polyhedra"):
+        mesh.to_pyvista()
+
+
+def test_the_readme_has_the_example():
+    from pathlib import Path
+
+    folder = Path(__file__).parents[1]
+    assert (folder / "examples" / "story.py").read_text() in (folder / "README.md").read_text()
+
+
+def test_the_example_runs(monkeypatch, capsys):
+    from pathlib import Path
+
+    monkeypatch.setattr(pyvista.UnstructuredGrid, "plot", lambda grid, **words: grid["eas"])
+    exec((Path(__file__).parents[1] / "examples" / "story.py").read_text(), {})
+    assert "0 after the repair" in capsys.readouterr().out

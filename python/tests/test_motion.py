@@ -1,0 +1,150 @@
+"""Motion: what a mover does, and that no array is copied on the way."""
+import tracemalloc
+
+import numpy as np
+import pytest
+
+import motet
+from motet import shapes
+
+
+def shifted(mover, by=(0.5, 0.0, 0.0)):
+    """The sphere of radius 1 shifted, the box held."""
+    at = mover.reference[mover.boundary]
+    return np.where((np.linalg.norm(at, axis=1) < 1.01)[:, None], by, 0.0)
+
+
+@pytest.mark.parametrize("method", ["delaunay", "bodies", "guided", "elastic", "laplace", "idw", "rbf"])
+def test_every_method_moves_the_boundary_to_the_bit(method):
+    mesh = shapes.sphere_in_box()
+    mover = motet.Mover(mesh, method=method)
+    displacement = shifted(mover)
+    points, certificate = mover.advance(displacement)
+    assert certificate.complete and certificate.inverted == 0
+    np.testing.assert_array_equal(points[mover.boundary], mesh.points[mover.boundary] + displacement)
+
+
+def test_an_affine_motion_moves_every_vertex_by_the_same_map():
+    mesh = shapes.sphere_in_box()
+    mover = motet.Mover(mesh)
+    a = np.array([[1.1, 0.2, 0.0], [0.0, 0.9, 0.1], [0.0, 0.0, 1.2]])
+    points = mover.step((mesh.points @ a.T + 3 - mesh.points)[mover.boundary])
+    np.testing.assert_allclose(points, mesh.points @ a.T + 3, atol=1e-12)
+
+
+def test_vertices_follow_their_weights():
+    mesh = shapes.sphere_in_box()
+    mover = motet.Mover(mesh)
+    displacement = np.zeros((mesh.n_points, 3))
+    displacement[mover.boundary] = shifted(mover)
+    points = mover.step(displacement[mover.boundary])
+    inside = np.setdiff1d(np.arange(mesh.n_points), mover.boundary)
+    for vertex in inside[::50]:
+        vertices, weights = mover.weights(int(vertex))
+        np.testing.assert_allclose(points[vertex], mesh.points[vertex] + np.array(weights) @ displacement[list(vertices)], atol=1e-13)
+    assert mover.weights(int(mover.boundary[0])) is None
+
+
+def test_a_step_copies_no_array():
+    mesh = shapes.sphere_in_box(16, 12)
+    mover = motet.Mover(mesh)
+    displacement, out = shifted(mover), np.empty_like(mesh.points)
+    mover.step(displacement, out)
+    place = out.ctypes.data
+    tracemalloc.start()
+    for _ in range(10):
+        assert mover.step(displacement, out) is out
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert out.ctypes.data == place
+    # numpy tells tracemalloc of its arrays: the smallest of these would be far larger.
+    assert peak < displacement.nbytes / 4
+
+
+def test_displacements_of_any_kind_are_taken():
+    mover = motet.Mover(shapes.sphere_in_box())
+    displacement = shifted(mover)
+    first = mover.step(displacement)
+    displacement.flags.writeable = False
+    for same in (displacement, displacement.tolist(), np.asfortranarray(displacement), displacement.astype(np.float32)):
+        np.testing.assert_array_equal(mover.step(same), first)
+
+
+@pytest.mark.parametrize("threads", [2, 0])
+def test_threads_change_no_bit(threads):
+    mesh = shapes.sphere_in_box(16, 12)
+    one, more = motet.Mover(mesh, smooth=2), motet.Mover(mesh, smooth=2, threads=threads)
+    displacement = shifted(one, (1.5, 0.3, 0.0))
+    np.testing.assert_array_equal(one.advance(displacement)[0], more.advance(displacement)[0])
+
+
+def test_words_of_a_mover():
+    mesh = shapes.tube(wall_layers=3)
+    turned = motet.Mover(mesh, slide=["inlet", 3], rigid_layer_cells=3, rigid_layer_at=["wall"], within_walls=True, smooth=1)
+    assert turned.setup.sliding > 0 and turned.setup.layer > 0
+    by_facets = motet.Mover(mesh, slide=[mesh.triangles[mesh.cell_data["patch"][mesh.cell_ids("triangle")] == 2], "outlet"])
+    by_name = motet.Mover(mesh, slide=["inlet", "outlet"])
+    displacement = np.zeros((len(by_name.boundary), 3))
+    displacement[:, 2] = 0.1 * by_name.reference[by_name.boundary, 0] ** 2
+    np.testing.assert_array_equal(by_facets.step(displacement), by_name.step(displacement))
+    inside = np.setdiff1d(np.arange(mesh.n_points), by_name.boundary)[:5]
+    assert set(inside) <= set(motet.Mover(mesh, also_moved=inside).boundary)
+
+
+def test_move_by_words():
+    mesh = shapes.sphere_in_box()
+    moved = motet.move(mesh, translate={"sphere": (1.0, 0.0, 0.0)}, smooth=2)
+    assert moved.complete and moved.mesh.cell_data.keys() == mesh.cell_data.keys()
+    sphere = mesh.patch_vertices("sphere")
+    np.testing.assert_allclose(moved.mesh.point_data["displacement"][sphere], [[1.0, 0.0, 0.0]] * len(sphere), atol=1e-15)
+    turned = motet.move(mesh, rotate={"sphere": ((0, 0, 1), 90)}, method="bodies", steps=3).mesh
+    x, y, z = mesh.points[sphere].T
+    np.testing.assert_allclose(turned.points[sphere], np.column_stack([-y, x, z]), atol=1e-14)
+    mesh.point_data["u"] = np.where(np.isin(np.arange(mesh.n_points), sphere)[:, None], (1.0, 0.0, 0.0), 0.0)
+    np.testing.assert_array_equal(motet.move(mesh, displacement="u", smooth=2).mesh.points, moved.mesh.points)
+
+
+def test_auto_tells_what_it_tried():
+    moved = motet.move(shapes.sphere_in_box(), rotate={"sphere": ((0, 0, 1), 60)}, method="auto", least=0.1)
+    assert moved.choice.tried[0].method == "delaunay" and not moved.choice.tried[0].kept
+    assert moved.choice.method != "delaunay" and moved.certificate.worst_eas.value >= 0.1
+
+
+def test_a_motion_that_does_not_get_there_is_told_and_not_raised():
+    moved = motet.move(shapes.sphere_in_box(), translate={"sphere": (9.0, 0.0, 0.0)})
+    assert not moved.complete and 0 < moved.certificate.fraction < 1 and moved.certificate.inverted == 0
+
+
+def test_velocity():
+    points = shapes.box().points
+    np.testing.assert_allclose(motet.mesh_velocity(points, points + 0.5, 0.25), 2.0)
+
+
+@pytest.mark.parametrize(
+    "call, told",
+    [
+        (lambda mesh: motet.Mover(mesh, method="magic"), "guided"),
+        (lambda mesh: motet.Mover(mesh, slide=["door"]), "sphere, box"),
+        (lambda mesh: motet.Mover(mesh, slide="box"), "['box']"),
+        (lambda mesh: motet.Mover(mesh, slide=[[[0, 1]]]), "three vertices"),
+        (lambda mesh: motet.Mover(mesh, rigid_layer=0.1, rigid_layer_cells=1), "one of them"),
+        (lambda mesh: motet.Mover(mesh, also_moved=[99999]), "vertex 99999"),
+        (lambda mesh: motet.Mover(shapes.aneurysm()), "volume"),
+        (lambda mesh: motet.Mover(mesh).step(np.zeros((3, 3))), "expected ("),
+        (lambda mesh: motet.Mover(mesh).step(np.full((len(motet.Mover(mesh).boundary), 3), np.nan)), "finite"),
+        (lambda mesh: motet.Mover(mesh).step(shifted(motet.Mover(mesh)), np.zeros((3, 3))), "float64"),
+        (lambda mesh: motet.Mover(mesh).step(shifted(motet.Mover(mesh)), mesh.points.astype("f4")), "float64"),
+        (lambda mesh: motet.Mover(mesh).weights(99999), "99999"),
+        (lambda mesh: motet.move(mesh), "nothing moves"),
+        (lambda mesh: motet.move(mesh, displacement="u"), "'u'"),
+        (lambda mesh: motet.move(mesh, translate={"sphere": (1, 2)}), "three numbers"),
+        (lambda mesh: motet.move(mesh, translate={"door": (1, 2, 3)}), "door"),
+        (lambda mesh: motet.move(mesh, translate={"box": (1, 2, 3)}, steps=0), "1 or more"),
+    ],
+)
+def test_what_means_nothing_is_told(call, told):
+    with pytest.raises(ValueError) as error:
+        call(shapes.sphere_in_box())
+    assert isinstance(error.value, motet.Error) and told in str(error.value)
+    with pytest.raises(TypeError):
+        motet.Mover(shapes.box(), speed=1)
