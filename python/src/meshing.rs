@@ -81,10 +81,7 @@ pub(crate) fn mesh<'py>(
     let options = asked.options(by_array, &joined)?;
     let filled = py.detach(|| fill(&joined, &preflight, &options, &threads)).or_raise()?;
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
-    let is_complete = filled.report.points_on_edges == 0
-        && filled.report.not_positive == 0
-        && improved.is_none_or(remesh::Report::is_complete)
-        && layers.is_none_or(|layers| layers.prisms > 0);
+    let is_complete = filled.is_complete(&options);
     let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
     Ok((parts(py, filled.mesh)?, told, is_complete))
 }

@@ -37,7 +37,7 @@ impl Asked<'_> {
             Some(array) => vertices(array, mesh.points.len())?,
             None => Vec::new(),
         };
-        let wall = joined(all_facets(mesh, &self.rigid_layer_at)?);
+        let wall = FacetSet::joined(all_facets(mesh, &self.rigid_layer_at)?);
         let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
         let rigid_layer = extent.map(|extent| RigidLayer { extent, wall: wall.clone() });
         Ok(Options {
@@ -73,18 +73,6 @@ impl Asked<'_> {
             raised(Error::options(format!("method={:?} means nothing", self.method)).remedy(remedy))
         })
     }
-}
-
-/// All of these as one; `None` where there is none.
-fn joined(sets: Vec<FacetSet>) -> Option<FacetSet> {
-    sets.into_iter().reduce(|mut all, set| {
-        all.name = format!("{}, {}", all.name, set.name);
-        set.rings.iter().for_each(|ring| all.rings.push(ring.iter().copied()));
-        all.vertices.extend(set.vertices);
-        all.vertices.sort_unstable();
-        all.vertices.dedup();
-        all
-    })
 }
 
 /// Moves the vertices of one mesh after its boundary.

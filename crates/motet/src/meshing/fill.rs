@@ -51,6 +51,17 @@ pub struct Filled {
     pub layers: Option<layers::Report>,
 }
 
+impl Filled {
+    /// Whether all that `options` ask for is reached: triangles are whole, tets have a volume and none is left bad, layers found room.
+    pub fn is_complete(&self, options: &Options) -> bool {
+        let are_whole = options.edge_points == EdgePoints::Stay || self.report.points_on_edges == 0;
+        are_whole
+            && self.report.not_positive == 0
+            && self.improved.as_ref().is_none_or(remesh::Report::is_complete)
+            && self.layers.as_ref().is_none_or(|layers| layers.prisms > 0)
+    }
+}
+
 /// How filling went.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {

@@ -226,6 +226,18 @@ impl FacetSet {
         Self::collect(name.into(), polygon, |v| v)
     }
 
+    /// All of these as one, with all their names; `None` where there is none.
+    pub fn joined(sets: impl IntoIterator<Item = Self>) -> Option<Self> {
+        sets.into_iter().reduce(|mut all, set| {
+            all.name = format!("{}, {}", all.name, set.name);
+            set.rings.iter().for_each(|ring| all.rings.push(ring.iter().copied()));
+            all.vertices.extend(set.vertices);
+            all.vertices.sort_unstable();
+            all.vertices.dedup();
+            all
+        })
+    }
+
     /// The cells of another mesh, a surface, whose points are these vertices.
     ///
     /// Panics when a cell names a point that has no entry in `point_to_vertex`.

@@ -52,7 +52,8 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         return Err(refused(args, &surfaces, &report, &preflight, console));
     }
     let filling = Instant::now();
-    let filled = fill(&surfaces, &preflight, &args.options(sizes, &surfaces)?, &threads)?;
+    let options = args.options(sizes, &surfaces)?;
+    let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     bar.inc(1);
     let writing = Instant::now();
@@ -61,10 +62,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     bar.finish_and_clear();
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
-    let is_reached = args.delaunay || filled.report.points_on_edges == 0;
-    let is_good = filled.improved.as_ref().is_none_or(motet::remesh::Report::is_complete);
-    let has_layers = filled.layers.as_ref().is_none_or(|layers| layers.prisms > 0);
-    let is_complete = is_reached && is_good && has_layers && filled.report.not_positive == 0;
+    let is_complete = filled.is_complete(&options);
     report.end(
         filled.report,
         filled.improved,

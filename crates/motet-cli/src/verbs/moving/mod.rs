@@ -173,15 +173,9 @@ fn wall(
             within(&plan.moving, i) && !sliding.iter().any(|slide| within(&slide.vertices, i))
         }));
     }
-    let mut all = FacetSet { name: args.rigid_layer_at.join(", "), ..FacetSet::default() };
-    for word in &args.rigid_layer_at {
-        let patch = patches.find(word)?;
-        patch.rings.iter().for_each(|ring| all.rings.push(ring.iter().copied()));
-        all.vertices.extend(patch.vertices);
-    }
-    all.vertices.sort_unstable();
-    all.vertices.dedup();
-    Ok(all)
+    let named =
+        args.rigid_layer_at.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
+    Ok(FacetSet::joined(named).unwrap_or_default())
 }
 
 /// Goes through the frames; `false` where one was not reached, which is the last one then.

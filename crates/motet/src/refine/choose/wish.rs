@@ -32,6 +32,14 @@ impl Wish {
         if is_marked { Self::Divided(1) } else { Self::Coarser }
     }
 
+    /// How often it is to be divided.
+    pub fn divisions(self) -> u8 {
+        match self {
+            Self::Divided(n) => n,
+            Self::Coarser | Self::Kept => 0,
+        }
+    }
+
     /// Whether it is to be divided.
     pub fn is_divided(self) -> bool {
         self >= Self::Divided(0)
@@ -55,11 +63,7 @@ fn those(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
 /// About how many tets there are once all wishes come true: eight to the power of how often each is divided. Those that are divided or cut
 /// since their neighbours are do not count.
 pub fn expected_tets(wishes: &[Wish]) -> f64 {
-    let tets = |wish: &Wish| match wish {
-        Wish::Divided(n) => 8f64.powi(i32::from(*n)),
-        _ => 1.0,
-    };
-    wishes.iter().map(tets).sum()
+    wishes.iter().map(|wish| 8f64.powi(wish.divisions().into())).sum()
 }
 
 /// Refuses wishes for more tets than there can be, before any work.

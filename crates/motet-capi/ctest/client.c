@@ -1,0 +1,391 @@
+/* What motet.h promises, as a program of C99 sees it. Prints one line, or the first thing that is not so. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "motet.h"
+
+#define CHECK(so)                                                                    \
+    do {                                                                             \
+        if (!(so)) {                                                                 \
+            fprintf(stderr, "%s:%d: not so: %s\n", __FILE__, __LINE__, #so);         \
+            exit(1);                                                                 \
+        }                                                                            \
+    } while (0)
+
+/* A call that has to succeed. */
+static void ok(motet_status status, motet_error **error, int line)
+{
+    if (status != MOTET_OK) {
+        fprintf(stderr, "line %d: %s\n", line, motet_error_message(*error));
+        exit(1);
+    }
+    CHECK(*error == NULL);
+}
+#define OK(call) ok((call), &error, __LINE__)
+
+/* A call that has to fail in this way, with these words. */
+static void refused(motet_status status, motet_error **error, motet_status expected, const char *words, int line)
+{
+    if (status != expected || *error == NULL || strstr(motet_error_message(*error), words) == NULL) {
+        fprintf(stderr, "line %d: status %d, %s\n", line, (int)status, *error ? motet_error_message(*error) : "no error");
+        exit(1);
+    }
+    CHECK(motet_error_status(*error) == expected && motet_error_what(*error) != NULL);
+    motet_error_free(*error);
+    *error = NULL;
+}
+#define REFUSED(call, expected, words) refused((call), &error, expected, words, __LINE__)
+
+enum { N = 6, N_POINTS = (N + 1) * (N + 1) * (N + 1), N_TETS = 6 * N * N * N };
+
+static int corner(int i, int j, int k) { return (k * (N + 1) + j) * (N + 1) + i; }
+
+/* The unit cube: each cell of a grid cut into six tets round its diagonal. */
+static motet_mesh *cube(void)
+{
+    static const int paths[6][2][3] = {
+        {{1, 0, 0}, {1, 1, 0}}, {{1, 1, 0}, {0, 1, 0}}, {{0, 1, 0}, {0, 1, 1}}, {{0, 1, 1}, {0, 0, 1}}, {{0, 0, 1}, {1, 0, 1}}, {{1, 0, 1}, {1, 0, 0}}};
+    static double points[N_POINTS][3];
+    static int32_t tets[N_TETS][4];
+    motet_error *error = NULL;
+    motet_mesh *mesh = NULL;
+    int i, j, k, p, n = 0;
+    for (k = 0; k <= N; k++)
+        for (j = 0; j <= N; j++)
+            for (i = 0; i <= N; i++) {
+                double *point = points[corner(i, j, k)];
+                point[0] = (double)i / N, point[1] = (double)j / N, point[2] = (double)k / N;
+            }
+    for (k = 0; k < N; k++)
+        for (j = 0; j < N; j++)
+            for (i = 0; i < N; i++)
+                for (p = 0; p < 6; p++, n++) {
+                    const int *a = paths[p][0], *b = paths[p][1];
+                    tets[n][0] = corner(i, j, k);
+                    tets[n][1] = corner(i + a[0], j + a[1], k + a[2]);
+                    tets[n][2] = corner(i + b[0], j + b[1], k + b[2]);
+                    tets[n][3] = corner(i + 1, j + 1, k + 1);
+                }
+    OK(motet_mesh_new(&points[0][0], N_POINTS, 3, &mesh, &error));
+    OK(motet_mesh_add_cells(mesh, MOTET_TETRA, &tets[0][0], N_TETS, &error));
+    return mesh;
+}
+
+/* The surface of an octahedron. */
+static motet_mesh *octahedron(double x, double y, double z, double radius)
+{
+    static const int32_t triangles[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    double points[6][3];
+    motet_error *error = NULL;
+    motet_mesh *mesh = NULL;
+    int i;
+    for (i = 0; i < 6; i++) {
+        points[i][0] = x, points[i][1] = y, points[i][2] = z;
+        points[i][i / 2] += i % 2 ? -radius : radius;
+    }
+    OK(motet_mesh_new(&points[0][0], 6, 3, &mesh, &error));
+    OK(motet_mesh_add_cells(mesh, MOTET_TRIANGLE, &triangles[0][0], 8, &error));
+    return mesh;
+}
+
+static void meshes(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube(), *copy = NULL, *none = NULL;
+    motet_text *summary = NULL;
+    double *points = malloc(sizeof(double) * 4 * N_POINTS), *eas = malloc(sizeof(double) * N_TETS);
+    int32_t *tets = malloc(sizeof(int32_t) * 4 * N_TETS), *kinds = malloc(sizeof(int32_t) * N_TETS), *labels = malloc(sizeof(int32_t) * N_TETS);
+    int64_t *offsets = malloc(sizeof(int64_t) * (N_TETS + 1));
+    const int32_t wrong[4] = {0, 1, 2, N_POINTS};
+    int i;
+    CHECK(points && eas && tets && kinds && labels && offsets);
+    CHECK(motet_mesh_n_points(mesh) == N_POINTS && motet_mesh_n_cells(mesh) == N_TETS);
+    CHECK(motet_mesh_n_of_kind(mesh, MOTET_TETRA) == N_TETS && motet_mesh_n_of_kind(mesh, MOTET_HEXAHEDRON) == 0);
+    for (i = 0; i < 4 * N_POINTS; i++) points[i] = -7;
+    OK(motet_mesh_points(mesh, points, N_POINTS, 4, &error));
+    for (i = 0; i < N_POINTS - 1; i++) CHECK(points[4 * i] >= 0 && points[4 * i + 3] == -7);
+    OK(motet_mesh_of_kind(mesh, MOTET_TETRA, tets, 4 * N_TETS, &error));
+    OK(motet_mesh_cells(mesh, kinds, N_TETS, offsets, tets, motet_mesh_n_vertices_of_cells(mesh), &error));
+    CHECK(kinds[0] == MOTET_TETRA && offsets[N_TETS] == 4 * N_TETS && tets[0] == 0);
+    OK(motet_mesh_eas(mesh, eas, N_TETS, &error));
+    for (i = 0; i < N_TETS; i++) CHECK(eas[i] > 0.3 && eas[i] <= 1);
+
+    for (i = 0; i < N_TETS; i++) labels[i] = 1 + (i >= N_TETS / 2);
+    OK(motet_mesh_set_labels(mesh, labels, N_TETS, &error));
+    OK(motet_mesh_name_region(mesh, 2, "upper half", &error));
+    CHECK(motet_mesh_region(mesh, "upper half") == 2 && motet_mesh_region(mesh, "1") == 1 && motet_mesh_region(mesh, "none") == -1);
+    OK(motet_mesh_labels(mesh, tets, N_TETS, &error));
+    CHECK(memcmp(tets, labels, sizeof(int32_t) * N_TETS) == 0);
+    OK(motet_mesh_set_array(mesh, MOTET_ON_CELLS, "eas", eas, N_TETS, 1, &error));
+    CHECK(motet_mesh_array_components(mesh, MOTET_ON_CELLS, "eas") == 1 && motet_mesh_array_components(mesh, MOTET_ON_POINTS, "eas") == 0);
+    OK(motet_mesh_copy(mesh, &copy, &error));
+    OK(motet_mesh_array(copy, MOTET_ON_CELLS, "eas", eas, N_TETS, &error));
+    OK(motet_mesh_summary(copy, &summary, &error));
+    CHECK(strstr(motet_text_get(summary), "\"upper half\"") != NULL);
+    motet_text_free(summary);
+
+    REFUSED(motet_mesh_add_cells(copy, MOTET_TETRA, wrong, 1, &error), MOTET_ERROR_OPTIONS, "arrays on cells");
+    motet_mesh_free(copy);
+    copy = cube();
+    REFUSED(motet_mesh_add_cells(copy, MOTET_TETRA, wrong, 1, &error), MOTET_ERROR_INPUT, "343");
+    REFUSED(motet_mesh_add_cells(copy, MOTET_TETRA, wrong, -1, &error), MOTET_ERROR_OPTIONS, "-1 cells");
+    REFUSED(motet_mesh_add_cells(copy, MOTET_TETRA, NULL, 1, &error), MOTET_ERROR_OPTIONS, "vertices is NULL");
+    REFUSED(motet_mesh_add_cells(copy, 1000, wrong, 1, &error), MOTET_ERROR_OPTIONS, "1000");
+    REFUSED(motet_mesh_add_cells(copy, 7, wrong, 1, &error), MOTET_ERROR_OPTIONS, "differ");
+    CHECK(motet_mesh_n_cells(copy) == N_TETS);
+    REFUSED(motet_mesh_new(NULL, 5, 3, &none, &error), MOTET_ERROR_OPTIONS, "points is NULL");
+    REFUSED(motet_mesh_new(points, 5, 2, &none, &error), MOTET_ERROR_OPTIONS, "stride of 2");
+    REFUSED(motet_mesh_new(points, 5, 3, NULL, &error), MOTET_ERROR_OPTIONS, "mesh is NULL");
+    REFUSED(motet_mesh_points(copy, points, 5, 3, &error), MOTET_ERROR_OPTIONS, "expected 343");
+    REFUSED(motet_mesh_read("/nowhere/mesh.vtu", &none, &error), MOTET_ERROR_IO, "/nowhere/mesh.vtu");
+    REFUSED(motet_mesh_read(NULL, &none, &error), MOTET_ERROR_OPTIONS, "path is NULL");
+    REFUSED(motet_mesh_array(copy, MOTET_ON_POINTS, "p", points, 1, &error), MOTET_ERROR_OPTIONS, "no array p");
+    CHECK(none == NULL && motet_mesh_n_points(NULL) == 0 && motet_mesh_region(NULL, "x") == -1);
+    CHECK(motet_mesh_points(copy, points, 5, 3, NULL) == MOTET_ERROR_OPTIONS); /* nobody asked for the error */
+    CHECK(motet_error_message(NULL) == NULL && motet_error_status(NULL) == MOTET_OK);
+    motet_mesh_free(NULL);
+    motet_error_free(NULL);
+    motet_mesh_free(copy);
+    motet_mesh_free(mesh);
+    free(points), free(eas), free(tets), free(kinds), free(labels), free(offsets);
+}
+
+static void motion(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube();
+    motet_mover *mover = NULL;
+    motet_mover_options options;
+    motet_certificate certificate;
+    double *first = malloc(sizeof(double) * 3 * N_POINTS), *points = malloc(sizeof(double) * 3 * N_POINTS), *apart = malloc(sizeof(double) * 5 * N_POINTS);
+    double *displacement, *strided, weights[4];
+    int32_t *boundary, four[4], is_hanging;
+    const char *slide[1] = {"door"};
+    int64_t n, i, k;
+    CHECK(first && points && apart);
+    OK(motet_mesh_points(mesh, first, N_POINTS, 3, &error));
+    motet_mover_options_init(&options, sizeof options);
+    CHECK(options.size == sizeof options && options.substeps == 50 && options.residual == 1e-6);
+    options.threads = 2;
+    OK(motet_mover_new(mesh, &options, &mover, &error));
+    motet_mesh_free(mesh); /* not needed any longer */
+    n = motet_mover_n_boundary(mover);
+    CHECK(n == N_POINTS - (N - 1) * (N - 1) * (N - 1) && motet_mover_n_points(mover) == N_POINTS);
+    boundary = malloc(sizeof(int32_t) * n), displacement = malloc(sizeof(double) * 3 * n), strided = malloc(sizeof(double) * 4 * n);
+    CHECK(boundary && displacement && strided);
+    OK(motet_mover_boundary(mover, boundary, n, &error));
+    /* An affine motion of the boundary moves every vertex by the same map. */
+    for (i = 0; i < n; i++) {
+        const double *x = first + 3 * boundary[i];
+        displacement[3 * i] = 0.1 * x[1], displacement[3 * i + 1] = -0.2 * x[0] + 0.5, displacement[3 * i + 2] = 0.3 * x[2];
+        for (k = 0; k < 3; k++) strided[4 * i + k] = displacement[3 * i + k];
+    }
+    OK(motet_mover_step(mover, displacement, n, 3, points, N_POINTS, 3, &error));
+    for (i = 0; i < N_POINTS; i++) {
+        const double *x = first + 3 * i, *y = points + 3 * i;
+        CHECK(fabs(y[0] - x[0] - 0.1 * x[1]) < 1e-12 && fabs(y[1] - x[1] + 0.2 * x[0] - 0.5) < 1e-12 && fabs(y[2] - 1.3 * x[2]) < 1e-12);
+    }
+    /* With strides the same, and nothing written between the rows. */
+    for (i = 0; i < 5 * N_POINTS; i++) apart[i] = -7;
+    OK(motet_mover_step(mover, strided, n, 4, apart, N_POINTS, 5, &error));
+    for (i = 0; i < N_POINTS; i++)
+        CHECK(memcmp(apart + 5 * i, points + 3 * i, 3 * sizeof(double)) == 0 && apart[5 * i + 3] == -7 && apart[5 * i + 4] == -7);
+    motet_certificate_init(&certificate, sizeof certificate);
+    OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, &certificate, &error));
+    CHECK(certificate.complete == 1 && certificate.fraction == 1 && certificate.inverted == 0 && certificate.worst_eas > 0.2 && certificate.size == sizeof certificate);
+    OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, NULL, &error));
+    /* A program that knows the first members alone gets these alone. */
+    memset(&certificate, 0x55, sizeof certificate);
+    certificate.size = offsetof(motet_certificate, fraction);
+    OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, &certificate, &error));
+    CHECK(certificate.complete == 1 && certificate.bad == 0x5555555555555555 && certificate.size == offsetof(motet_certificate, fraction));
+
+    OK(motet_mover_weights(mover, corner(1, 1, 1), four, weights, &is_hanging, &error));
+    CHECK(is_hanging == 1 && fabs(weights[0] + weights[1] + weights[2] + weights[3] - 1) < 1e-14);
+    OK(motet_mover_weights(mover, 0, four, weights, &is_hanging, &error));
+    CHECK(is_hanging == 0);
+    REFUSED(motet_mover_weights(mover, -1, four, weights, &is_hanging, &error), MOTET_ERROR_INPUT, "vertex -1");
+    REFUSED(motet_mover_step(mover, displacement, n - 1, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "expected");
+    REFUSED(motet_mover_step(mover, displacement, n, 3, points, N_POINTS - 1, 3, &error), MOTET_ERROR_OPTIONS, "expected 343");
+    REFUSED(motet_mover_step(NULL, displacement, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "mover is NULL");
+    REFUSED(motet_mover_step(mover, displacement, n, 3, NULL, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "points is NULL");
+    displacement[0] = NAN;
+    REFUSED(motet_mover_step(mover, displacement, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_INPUT, "finite");
+    motet_mover_free(mover);
+
+    mesh = cube();
+    options.slide = slide, options.n_slide = 1;
+    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "door");
+    CHECK(mover == NULL);
+    motet_mover_options_init(&options, sizeof options);
+    options.method = 99;
+    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "99");
+    memset(&options, 0, sizeof options);
+    REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "_init");
+    for (i = MOTET_DELAUNAY; i <= MOTET_RBF; i++) {
+        motet_mover_options_init(&options, sizeof options);
+        options.method = (int32_t)i;
+        if (i == MOTET_BODIES) {
+            REFUSED(motet_mover_new(mesh, &options, &mover, &error), MOTET_ERROR_OPTIONS, "no part of it is a body");
+            continue;
+        }
+        OK(motet_mover_new(mesh, i == MOTET_DELAUNAY ? NULL : &options, &mover, &error));
+        motet_mover_free(mover);
+    }
+    motet_mesh_free(mesh);
+    free(first), free(points), free(apart), free(boundary), free(displacement), free(strided);
+}
+
+static void changing(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube(), *device = octahedron(0.5, 0.5, 0.5, 0.2);
+    const motet_mesh *const devices[1] = {device};
+    const char *names[1] = {"seed"};
+    motet_outcome *outcome = NULL;
+    motet_remesh_options repair;
+    motet_implant_options implant;
+    motet_fill_options fill;
+    double *points = malloc(sizeof(double) * 3 * N_POINTS), *x, volume = 0;
+    int32_t *old;
+    int64_t i, n;
+    CHECK(points != NULL);
+    /* A cube whose middle vertex lies almost on its neighbour. */
+    OK(motet_mesh_points(mesh, points, N_POINTS, 3, &error));
+    points[3 * corner(3, 3, 3)] += 0.98 / N;
+    OK(motet_mesh_set_points(mesh, points, N_POINTS, 3, &error));
+    motet_remesh_options_init(&repair, sizeof repair);
+    OK(motet_remesh(mesh, &repair, &outcome, &error));
+    CHECK(motet_outcome_complete(outcome) == 1 && strstr(motet_outcome_report(outcome), "\"after\"") != NULL);
+    n = motet_mesh_n_points(motet_outcome_mesh(outcome));
+    old = malloc(sizeof(int32_t) * n), x = malloc(sizeof(double) * n);
+    CHECK(old && x);
+    OK(motet_outcome_to_old(outcome, MOTET_ON_POINTS, old, n, &error));
+    CHECK(old[0] == 0);
+    OK(motet_outcome_transfer(outcome, MOTET_ON_POINTS, MOTET_RULE_MEAN, points, N_POINTS, 1, x, n, &error));
+    for (i = 0; i < n; i++) CHECK(old[i] < 0 || x[i] == points[old[i]]);
+    REFUSED(motet_outcome_transfer(outcome, MOTET_ON_POINTS, MOTET_RULE_MEAN, points, 5, 1, x, n, &error), MOTET_ERROR_INPUT, "343");
+    REFUSED(motet_outcome_transfer(outcome, MOTET_ON_POINTS, 7, points, N_POINTS, 1, x, n, &error), MOTET_ERROR_OPTIONS, "rule");
+    motet_outcome_free(outcome);
+    free(old), free(x), free(points);
+    motet_mesh_free(mesh);
+
+    mesh = cube();
+    motet_implant_options_init(&implant, sizeof implant);
+    OK(motet_implant(mesh, devices, names, 1, &implant, &outcome, &error));
+    CHECK(motet_outcome_complete(outcome) == 1 && motet_mesh_region(motet_outcome_mesh(outcome), "seed") > 0);
+    motet_outcome_free(outcome);
+    implant.growth = -1;
+    REFUSED(motet_implant(mesh, devices, names, 1, &implant, &outcome, &error), MOTET_ERROR_OPTIONS, "grow");
+    REFUSED(motet_implant(mesh, devices, names, 0, NULL, &outcome, &error), MOTET_ERROR_OPTIONS, "no device");
+    CHECK(outcome == NULL && motet_outcome_mesh(outcome) == NULL);
+
+    motet_fill_options_init(&fill, sizeof fill);
+    fill.edge_length = 0.1;
+    OK(motet_fill(devices, names, NULL, 1, &fill, &outcome, &error));
+    {
+        const motet_mesh *filled = motet_outcome_mesh(outcome);
+        int64_t n_tets = motet_mesh_n_of_kind(filled, MOTET_TETRA), n_points = motet_mesh_n_points(filled);
+        int32_t *tets = malloc(sizeof(int32_t) * 4 * n_tets);
+        double *p = malloc(sizeof(double) * 3 * n_points);
+        CHECK(tets && p);
+        OK(motet_mesh_of_kind(filled, MOTET_TETRA, tets, 4 * n_tets, &error));
+        OK(motet_mesh_points(filled, p, n_points, 3, &error));
+        for (i = 0; i < n_tets; i++) {
+            const double *a = p + 3 * tets[4 * i], *b = p + 3 * tets[4 * i + 1], *c = p + 3 * tets[4 * i + 2], *d = p + 3 * tets[4 * i + 3];
+            double u[3], v[3], w[3];
+            int k;
+            for (k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = d[k] - a[k];
+            volume += (u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+        }
+        free(tets), free(p);
+    }
+    CHECK(fabs(volume - 4.0 / 3.0 * 0.2 * 0.2 * 0.2) < 1e-12);
+    REFUSED(motet_outcome_to_old(outcome, MOTET_ON_POINTS, NULL, 0, &error), MOTET_ERROR_OPTIONS, "history");
+    motet_outcome_free(outcome);
+    motet_mesh_free(mesh);
+    motet_mesh_free(device);
+}
+
+static void refinement(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube(), *device = octahedron(0.5, 0.5, 0.5, 0.1);
+    motet_refinement *refinement = NULL;
+    motet_outcome *outcome = NULL;
+    int32_t *marks, *generations;
+    int64_t i, n;
+    OK(motet_refinement_new(mesh, 1, &refinement, &error));
+    OK(motet_refinement_near(refinement, device, 0.05, 0.5, &outcome, &error));
+    CHECK(motet_outcome_complete(outcome) == 1);
+    motet_outcome_free(outcome);
+    n = motet_mesh_n_cells(motet_refinement_mesh(refinement));
+    CHECK(n > N_TETS);
+    while (n > N_TETS) {
+        int64_t before = n;
+        marks = malloc(sizeof(int32_t) * n), generations = malloc(sizeof(int32_t) * n);
+        CHECK(marks && generations);
+        OK(motet_refinement_generations(refinement, generations, n, &error));
+        for (i = 0; i < n; i++) marks[i] = generations[i] > 0;
+        OK(motet_refinement_coarsen(refinement, marks, n, NULL, &error));
+        free(marks), free(generations);
+        n = motet_mesh_n_cells(motet_refinement_mesh(refinement));
+        CHECK(n < before);
+    }
+    REFUSED(motet_refinement_divide(refinement, NULL, 3, &outcome, &error), MOTET_ERROR_OPTIONS, "expected");
+    motet_refinement_free(refinement);
+    motet_mesh_free(mesh);
+    motet_mesh_free(device);
+}
+
+static void contact(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *bodies[2];
+    motet_contact *contact = NULL;
+    double points[12][3], gaps[12], least, distance, places[6], time, velocity[12][3] = {{0}};
+    int32_t triangles[16][3], nearest[2];
+    int64_t counts[2] = {8, 8};
+    int i, k;
+    bodies[0] = octahedron(0, 0, 0, 1), bodies[1] = octahedron(2.5, 0, 0, 1);
+    for (i = 0; i < 2; i++) {
+        OK(motet_mesh_points(bodies[i], points[6 * i], 6, 3, &error));
+        OK(motet_mesh_of_kind(bodies[i], MOTET_TRIANGLE, triangles[8 * i], 24, &error));
+        motet_mesh_free(bodies[i]);
+    }
+    for (i = 8; i < 16; i++)
+        for (k = 0; k < 3; k++) triangles[i][k] += 6;
+    OK(motet_contact_new(points[0], 12, 3, triangles[0], counts, NULL, 2, NULL, &contact, &error));
+    OK(motet_contact_measure(contact, gaps, 12, &least, &error));
+    CHECK(fabs(least - 0.5) < 1e-15 && fabs(gaps[0] - 0.5) < 1e-15 && fabs(gaps[7] - 0.5) < 1e-15);
+    OK(motet_contact_nearest(contact, 1, 0, &distance, places, nearest, &error));
+    CHECK(distance == least && fabs(places[0] - 1.5) < 1e-15 && fabs(places[3] - 1) < 1e-15);
+    for (i = 6; i < 12; i++) velocity[i][0] = -1;
+    OK(motet_contact_ahead(contact, velocity[0], 12, 3, 0, &time, &error));
+    CHECK(fabs(time - 0.5) < 1e-6 && time <= 0.5);
+    for (i = 6; i < 12; i++) points[i][0] -= 0.25;
+    OK(motet_contact_refit(contact, points[0], 12, 3, &error));
+    OK(motet_contact_measure(contact, gaps, 12, NULL, &error));
+    CHECK(fabs(gaps[0] - 0.25) < 1e-15);
+    REFUSED(motet_contact_nearest(contact, 0, 5, &distance, NULL, NULL, &error), MOTET_ERROR_OPTIONS, "there are 2");
+    motet_contact_free(contact);
+    triangles[15][2] = 12;
+    REFUSED(motet_contact_new(points[0], 12, 3, triangles[0], counts, NULL, 2, NULL, &contact, &error), MOTET_ERROR_INPUT, "triangle 15");
+    counts[0] = -8;
+    REFUSED(motet_contact_new(points[0], 12, 3, triangles[0], counts, NULL, 2, NULL, &contact, &error), MOTET_ERROR_OPTIONS, "-8 triangles");
+    CHECK(contact == NULL);
+}
+
+int main(void)
+{
+    CHECK(motet_version() == MOTET_VERSION_MAJOR * 10000 + MOTET_VERSION_MINOR * 100 + MOTET_VERSION_PATCH);
+    meshes();
+    motion();
+    changing();
+    refinement();
+    contact();
+    printf("all is as motet.h says\n");
+    return 0;
+}

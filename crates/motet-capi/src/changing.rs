@@ -1,0 +1,436 @@
+//! What changes a mesh: repair, implantation, filling; and what came of it.
+
+use std::collections::BTreeMap;
+use std::ffi::{CString, c_char};
+
+use motet::delaunay::EdgePoints;
+use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Outside, implant};
+use motet::mesh::history::{History, Rule, Rules};
+use motet::meshing::layers::{Layers, Stack};
+use motet::meshing::{self, Grading, Surfaces, fill};
+use motet::preflight::{Repairs, Role};
+use motet::remesh::{Goal, MeshOutcome, SurfaceRule, remesh_mesh};
+use motet::{Error, Mesh, Result, implant, remesh};
+use serde_json::json;
+
+use crate::guard::{MotetError, guarded, quiet};
+use crate::memory::{
+    Versioned, count, expect, free, give, handle, place, put, room, sized, text, texts, threads, values,
+};
+use crate::mesh::{MotetMesh, field, json, on_points};
+
+/// A new mesh, where it came from, and what was done.
+pub(crate) struct MotetOutcome {
+    mesh: MotetMesh,
+    history: Option<History>,
+    report: CString,
+    is_complete: bool,
+}
+
+impl MotetOutcome {
+    pub(crate) fn new(
+        mesh: Mesh,
+        history: Option<History>,
+        report: &impl serde::Serialize,
+        is_complete: bool,
+    ) -> Result<Self> {
+        Ok(Self { mesh: MotetMesh(mesh), history, report: json(report)?, is_complete })
+    }
+
+    fn history(&self) -> Result<&History> {
+        self.history.as_ref().ok_or_else(|| Error::options("a mesh that was made of surfaces has no history"))
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_complete(outcome: *const MotetOutcome) -> i32 {
+    quiet(0, || Some(handle(outcome, "outcome").ok()?.is_complete.into()))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_mesh(outcome: *const MotetOutcome) -> *const MotetMesh {
+    handle(outcome, "outcome").map_or(std::ptr::null(), |outcome| &raw const outcome.mesh)
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_report(outcome: *const MotetOutcome) -> *const c_char {
+    handle(outcome, "outcome").map_or(std::ptr::null(), |outcome| outcome.report.as_ptr())
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_to_old(
+    outcome: *const MotetOutcome,
+    on: i32,
+    old: *mut i32,
+    n: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let history = handle(outcome, "outcome")?.history()?;
+        let kept: Vec<u32> = match on_points(on)? {
+            true => history.vertices.kept().iter().map(|v| v.0).collect(),
+            false => history.cells.kept().iter().map(|c| c.0).collect(),
+        };
+        expect(n, kept.len(), "ids")?;
+        let out = room(old, kept.len(), "old")?;
+        out.iter_mut().zip(kept).for_each(|(out, old)| *out = crate::memory::id(old));
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_transfer(
+    outcome: *const MotetOutcome,
+    on: i32,
+    rule: i32,
+    values: *const f64,
+    n: i64,
+    components: i32,
+    out: *mut f64,
+    n_out: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let history = handle(outcome, "outcome")?.history()?;
+        let field = field("values", values, n, components)?;
+        let is_on_points = on_points(on)?;
+        let rule = match (rule, is_on_points) {
+            (0, true) => Rule::Interpolate,
+            (0, false) => Rule::Conserve,
+            (1, _) => Rule::Inherit,
+            _ => return Err(Error::options(format!("there is no rule {rule}"))),
+        };
+        let new = match is_on_points {
+            true => history.transfer_points_by(&field, rule)?,
+            false => history.transfer_cells_by(&field, rule)?,
+        };
+        let new = new.and_then(|field| field.values.to_f64()).unwrap_or_default();
+        expect(n_out, new.len() / field.components, "rows")?;
+        room(out, new.len(), "out")?.copy_from_slice(&new);
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_free(outcome: *mut MotetOutcome) {
+    free(outcome);
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetRemeshOptions {
+    size: usize,
+    min_eas: f64,
+    min_dihedral_deg: f64,
+    best: i32,
+    surface: i32,
+    distance: f64,
+    repair_layers: i32,
+    rounds: i32,
+    threads: i32,
+    edge_length: f64,
+    sizes: *const f64,
+    n_sizes: i64,
+}
+
+// SAFETY: numbers and pointers, in C's order.
+unsafe impl Versioned for MotetRemeshOptions {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>(),
+        min_eas: 0.2,
+        min_dihedral_deg: 0.0,
+        best: 0,
+        surface: 0,
+        distance: 0.0,
+        repair_layers: 0,
+        rounds: 20,
+        threads: 0,
+        edge_length: 0.0,
+        sizes: std::ptr::null(),
+        n_sizes: 0,
+    };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_remesh_options_init(options: *mut MotetRemeshOptions, size: usize) {
+    put(&MotetRemeshOptions::DEFAULT, options, size);
+}
+
+/// A number that is left to motet where it is not above 0.
+fn given(x: f64) -> Option<f64> {
+    (x != 0.0).then_some(x)
+}
+
+impl MotetRemeshOptions {
+    fn options(&self) -> Result<remesh::Options> {
+        let distance = given(self.distance);
+        Ok(remesh::Options {
+            min_eas: self.min_eas,
+            min_dihedral_deg: self.min_dihedral_deg,
+            goal: if self.best != 0 { Goal::Best } else { Goal::Repair },
+            surface: match self.surface {
+                0 => SurfaceRule::Keep,
+                1 => SurfaceRule::Adapt { distance },
+                2 => SurfaceRule::Loose { distance },
+                other => return Err(Error::options(format!("there is no rule {other} for surfaces"))),
+            },
+            keep_layers: self.repair_layers == 0,
+            sizes: match (self.sizes.is_null(), given(self.edge_length)) {
+                (true, length) => length.map(remesh::Sizes::Uniform),
+                (false, _) => {
+                    let sizes = values(self.sizes, count(self.n_sizes, "sizes")?, "sizes")?;
+                    Some(remesh::Sizes::Vertices(sizes.to_vec()))
+                }
+            },
+            rounds: count(self.rounds.into(), "rounds")?,
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_remesh(
+    mesh: *const MotetMesh,
+    options: *const MotetRemeshOptions,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(outcome, "outcome")?;
+        let mesh = &handle(mesh, "mesh")?.0;
+        let asked = sized(options)?;
+        let done = remesh_mesh(mesh, &asked.options()?, &Rules::default(), &threads(asked.threads)?)?;
+        let MeshOutcome { mesh, history, report, .. } = done;
+        give(place, MotetOutcome::new(mesh, Some(history), &report, report.is_complete())?);
+        Ok(())
+    })
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetImplantOptions {
+    size: usize,
+    inside: i32,
+    conform: i32,
+    tolerance: f64,
+    keep_outside: i32,
+    adapt: i32,
+    stray: f64,
+    edge_length: f64,
+    growth: f64,
+    carve: f64,
+    reach: f64,
+    min_eas: f64,
+    threads: i32,
+}
+
+// SAFETY: numbers, in C's order.
+unsafe impl Versioned for MotetImplantOptions {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>(),
+        inside: 0,
+        conform: 0,
+        tolerance: 0.0,
+        keep_outside: 0,
+        adapt: 1,
+        stray: -1.0,
+        edge_length: 0.0,
+        growth: 0.5,
+        carve: 1.0,
+        reach: 3.0,
+        min_eas: 0.2,
+        threads: 0,
+    };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_implant_options_init(options: *mut MotetImplantOptions, size: usize) {
+    put(&MotetImplantOptions::DEFAULT, options, size);
+}
+
+impl MotetImplantOptions {
+    fn options(&self) -> Result<implant::Options> {
+        Ok(implant::Options {
+            interface: match self.conform {
+                0 => Interface::Match,
+                _ => Interface::Conform { tolerance: given(self.tolerance) },
+            },
+            outside: if self.keep_outside != 0 { Outside::Keep } else { Outside::Cut },
+            stray: (self.stray >= 0.0).then_some(self.stray),
+            size: given(self.edge_length),
+            growth: self.growth,
+            adapt: match self.adapt {
+                0 => Adapt::No,
+                1 => Adapt::Walls,
+                2 => Adapt::All,
+                other => return Err(Error::options(format!("adapt is {other}, expected 0, 1 or 2"))),
+            },
+            carve: self.carve,
+            reach: self.reach,
+            starts: BTreeMap::new(),
+            improve: remesh::Options { min_eas: self.min_eas, ..remesh::Options::default() },
+        })
+    }
+
+    fn device(&self, mesh: &Mesh, name: &str) -> Result<Device> {
+        let device = Device::new(mesh.clone(), name);
+        let inside = match self.inside {
+            0 => device.inside,
+            1 => Inside::Filled,
+            2 => Inside::Hollow,
+            other => return Err(Error::options(format!("inside is {other}, expected 0, 1 or 2"))),
+        };
+        Ok(Device { inside, ..device })
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_implant(
+    host: *const MotetMesh,
+    devices: *const *const MotetMesh,
+    names: *const *const c_char,
+    n_devices: i64,
+    options: *const MotetImplantOptions,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(outcome, "outcome")?;
+        let host = &handle(host, "host")?.0;
+        let asked = sized(options)?;
+        let meshes = values(devices, count(n_devices, "devices")?, "devices")?;
+        let names = texts(names, n_devices, "names")?;
+        let device =
+            |(mesh, name): (&*const MotetMesh, &str)| asked.device(&handle(*mesh, "device")?.0, name);
+        let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
+        let made = implant(host, &devices, &asked.options()?, &Rules::default(), &threads(asked.threads)?)?;
+        let Implanted { mesh, history, report } = made;
+        give(place, MotetOutcome::new(mesh, Some(history), &report, report.is_complete())?);
+        Ok(())
+    })
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetFillOptions {
+    size: usize,
+    edge_length: f64,
+    graded: i32,
+    growth: f64,
+    min_eas: f64,
+    layers: i32,
+    first_layer: f64,
+    layer_growth: f64,
+    keep_prisms: i32,
+    repair: i32,
+    threads: i32,
+}
+
+// SAFETY: numbers, in C's order.
+unsafe impl Versioned for MotetFillOptions {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>(),
+        edge_length: 0.0,
+        graded: 0,
+        growth: 0.0,
+        min_eas: 0.0,
+        layers: 0,
+        first_layer: 0.0,
+        layer_growth: 1.2,
+        keep_prisms: 0,
+        repair: 0,
+        threads: 0,
+    };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_fill_options_init(options: *mut MotetFillOptions, size: usize) {
+    put(&MotetFillOptions::DEFAULT, options, size);
+}
+
+impl MotetFillOptions {
+    fn options(&self) -> Result<meshing::Options> {
+        let largest = given(self.edge_length);
+        let growth = given(self.growth);
+        let sizes = match self.graded != 0 || growth.is_some() {
+            true => Some(meshing::Sizes::Graded(Grading {
+                at_points: None,
+                growth: growth.unwrap_or(Grading::default().growth),
+                largest,
+            })),
+            false => largest.map(meshing::Sizes::Uniform),
+        };
+        let improve = given(self.min_eas).or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
+        Ok(meshing::Options {
+            edge_points: EdgePoints::MoveInside,
+            sizes,
+            seeds: Vec::new(),
+            holes: Vec::new(),
+            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
+            layers: self.layers()?,
+        })
+    }
+
+    fn layers(&self) -> Result<Option<Layers>> {
+        let count = u32::try_from(self.layers)
+            .map_err(|_| Error::options(format!("{} layers, expected 0 or more", self.layers)))?;
+        if count == 0 {
+            return Ok(None);
+        }
+        let stack = Stack { count, first: self.first_layer, growth: self.layer_growth };
+        stack.check()?;
+        Ok(Some(Layers { everywhere: Some(stack), keep_prisms: self.keep_prisms != 0, ..Layers::default() }))
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_fill(
+    surfaces: *const *const MotetMesh,
+    names: *const *const c_char,
+    is_membrane: *const i32,
+    n_surfaces: i64,
+    options: *const MotetFillOptions,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(outcome, "outcome")?;
+        let asked = sized(options)?;
+        let threads = threads(asked.threads)?;
+        let n = count(n_surfaces, "surfaces")?;
+        let (meshes, names) = (values(surfaces, n, "surfaces")?, values(names, n, "names")?);
+        let membranes =
+            if is_membrane.is_null() { vec![0; n] } else { values(is_membrane, n, "is_membrane")?.to_vec() };
+        let one = |i: usize| {
+            let role = if membranes[i] != 0 { Role::Membrane } else { Role::Boundary };
+            Ok((&handle(meshes[i], "surface")?.0, role, text(names[i], "name")?))
+        };
+        let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
+        let mut surfaces = Surfaces::new(&all)?;
+        if asked.repair != 0 {
+            let repairs = Repairs {
+                merge: Some(0.0),
+                drop_degenerate: true,
+                drop_duplicates: true,
+                orient: true,
+                close_holes: Some(MOST_HOLE_EDGES),
+            };
+            surfaces.repair(&repairs, &threads)?;
+        }
+        let preflight = surfaces.preflight(&threads);
+        if !preflight.is_fit() {
+            return Err(preflight.first_error().unwrap_or_else(|| Error::input("the surfaces are not fit")));
+        }
+        let options = asked.options()?;
+        let filled = fill(&surfaces, &preflight, &options, &threads)?;
+        let is_complete = filled.is_complete(&options);
+        let report = json!({ "filled": filled.report, "improved": filled.improved, "layers": filled.layers });
+        give(place, MotetOutcome::new(filled.mesh, None, &report, is_complete)?);
+        Ok(())
+    })
+}
+
+/// A hole of more edges is no small one.
+const MOST_HOLE_EDGES: usize = 32;

@@ -1,0 +1,206 @@
+//! How far apart surfaces are, and when they will touch.
+
+use motet::base::{Threads, VertexId};
+use motet::contact::{Body, Contact, Options};
+use motet::{Error, Result};
+
+use crate::guard::{MotetError, guarded};
+use crate::memory::{
+    Versioned, count, expect, free, give, handle, handle_mut, id, place, put, room, rows, sized, threads,
+    values, vertex,
+};
+
+/// Surfaces and the threads that measure them.
+pub(crate) struct MotetContact {
+    contact: Contact,
+    threads: Threads,
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetContactOptions {
+    size: usize,
+    warn: f64,
+    within: f64,
+    fold: f64,
+    own: i32,
+    facing: i32,
+    threads: i32,
+}
+
+// SAFETY: numbers, in C's order.
+unsafe impl Versioned for MotetContactOptions {
+    const DEFAULT: Self =
+        Self { size: size_of::<Self>(), warn: 0.0, within: 0.0, fold: 3.0, own: 0, facing: 0, threads: 0 };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_options_init(options: *mut MotetContactOptions, size: usize) {
+    put(&MotetContactOptions::DEFAULT, options, size);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_new(
+    points: *const f64,
+    n_points: i64,
+    stride: i64,
+    triangles: *const i32,
+    counts: *const i64,
+    is_room: *const i32,
+    n_bodies: i64,
+    options: *const MotetContactOptions,
+    contact: *mut *mut MotetContact,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(contact, "contact")?;
+        let asked = sized(options)?;
+        let threads = threads(asked.threads)?;
+        let points = rows(points, n_points, stride, "points")?.into_owned();
+        let bodies = bodies(points.len(), triangles, counts, is_room, n_bodies)?;
+        let options = Options {
+            warn: (asked.warn > 0.0).then_some(asked.warn),
+            own: asked.own != 0,
+            within: if asked.within > 0.0 { asked.within } else { f64::INFINITY },
+            facing: asked.facing != 0,
+            fold: asked.fold,
+        };
+        let contact = Contact::new(points, bodies, options, &threads)?;
+        give(place, MotetContact { contact, threads });
+        Ok(())
+    })
+}
+
+fn bodies(
+    n_points: usize,
+    triangles: *const i32,
+    counts: *const i64,
+    is_room: *const i32,
+    n_bodies: i64,
+) -> Result<Vec<Body>> {
+    let n = count(n_bodies, "bodies")?;
+    let counts = values(counts, n, "counts")?.iter().map(|&k| count(k, "triangles"));
+    let counts: Vec<usize> = counts.collect::<Result<_>>()?;
+    let rooms = if is_room.is_null() { vec![0; n] } else { values(is_room, n, "is_room")?.to_vec() };
+    let all = counts.iter().try_fold(0usize, |sum, &k| sum.checked_add(k)).and_then(|k| k.checked_mul(3));
+    let all = values(triangles, all.ok_or_else(|| Error::options("more triangles than ids"))?, "triangles")?;
+    let mut rest = all.as_chunks::<3>().0.iter().enumerate();
+    let body = |(i, (&k, &is_room)): (usize, (&usize, &i32))| {
+        let triangle = |(t, corners): (usize, &[i32; 3])| {
+            let [a, b, c] = corners.map(|v| vertex(v, n_points, &format!("triangle {t}")));
+            Ok([a?, b?, c?])
+        };
+        let triangles: Vec<[VertexId; 3]> = rest.by_ref().take(k).map(triangle).collect::<Result<_>>()?;
+        Ok(Body { name: format!("body {i}"), triangles, is_room: is_room != 0 })
+    };
+    counts.iter().zip(&rooms).enumerate().map(body).collect()
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_free(contact: *mut MotetContact) {
+    free(contact);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_refit(
+    contact: *mut MotetContact,
+    points: *const f64,
+    n_points: i64,
+    stride: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetContact { contact, threads } = handle_mut(contact, "contact")?;
+        contact.refit(&rows(points, n_points, stride, "points")?, threads)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_measure(
+    contact: *mut MotetContact,
+    gaps: *mut f64,
+    n_points: i64,
+    least: *mut f64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetContact { contact, threads } = handle_mut(contact, "contact")?;
+        expect(n_points, contact.points().len(), "gaps")?;
+        let out = room(gaps, contact.points().len(), "gaps")?;
+        let measured = contact.measure(threads);
+        out.fill(f64::INFINITY);
+        for body in &measured.bodies {
+            for (v, gap) in body.vertices.iter().zip(&body.gap) {
+                out[v.index()] = out[v.index()].min(*gap);
+            }
+        }
+        // SAFETY: the header asks for NULL or a place for a number.
+        if let Some(place) = unsafe { least.as_mut() } {
+            *place = measured.least();
+        }
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_nearest(
+    contact: *mut MotetContact,
+    first: i32,
+    second: i32,
+    distance: *mut f64,
+    places: *mut f64,
+    triangles: *mut i32,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetContact { contact, threads } = handle_mut(contact, "contact")?;
+        let distance = handle_mut(distance, "distance")?;
+        let asked = [first, second].map(i64::from);
+        let found = contact.nearest(threads).into_iter();
+        let mut found = found.map(|(bodies, nearest)| (bodies.map(i64::from), nearest));
+        let Some((bodies, nearest)) =
+            found.find(|(bodies, _)| *bodies == asked || [bodies[1], bodies[0]] == asked)
+        else {
+            return Err(Error::options(format!(
+                "bodies {first} and {second} are not measured against each other"
+            ))
+            .remedy(format!("there are {}, from 0", contact.n_bodies())));
+        };
+        *distance = nearest.map_or(f64::INFINITY, |nearest| nearest.distance);
+        let Some(nearest) = nearest else { return Ok(()) };
+        let is_turned = bodies != asked;
+        let order = |[a, b]: [usize; 2]| if is_turned { [b, a] } else { [a, b] };
+        if !places.is_null() {
+            let out = room(places, 6, "places")?;
+            for (k, of) in order([0, 1]).into_iter().enumerate() {
+                out[3 * k..][..3].copy_from_slice(&nearest.points[of]);
+            }
+        }
+        if !triangles.is_null() {
+            let out = room(triangles, 2, "triangles")?;
+            out.copy_from_slice(&order([0, 1]).map(|of| id(nearest.triangles[of])));
+        }
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_contact_ahead(
+    contact: *const MotetContact,
+    velocity: *const f64,
+    n_points: i64,
+    stride: i64,
+    horizon: f64,
+    time: *mut f64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetContact { contact, threads } = handle(contact, "contact")?;
+        let time = handle_mut(time, "time")?;
+        let horizon = if horizon == 0.0 { f64::INFINITY } else { horizon };
+        let ahead = contact.look_ahead(&rows(velocity, n_points, stride, "velocity")?, horizon, threads)?;
+        *time = ahead.first.map_or(f64::INFINITY, |first| first.time);
+        Ok(())
+    })
+}

@@ -1,0 +1,194 @@
+//! What comes by pointer, looked at once: arrays with strides, texts, handles, structs that say their size.
+
+use std::borrow::Cow;
+use std::ffi::{CStr, c_char};
+use std::slice;
+
+use motet::base::{Point, Threads, VertexId};
+use motet::{Error, Result};
+
+fn missing(what: &str) -> Error {
+    Error::options(format!("{what} is NULL")).remedy("motet.h says what each call needs")
+}
+
+/// A count that C gives.
+pub(crate) fn count(n: i64, what: &str) -> Result<usize> {
+    usize::try_from(n).map_err(|_| Error::options(format!("{n} {what}, expected 0 or more")))
+}
+
+/// Fails where a count is not what it has to be.
+pub(crate) fn expect(n: i64, expected: usize, what: &str) -> Result<()> {
+    match usize::try_from(n) == Ok(expected) {
+        true => Ok(()),
+        false => Err(Error::options(format!("room for {n} {what} is given, expected {expected}"))),
+    }
+}
+
+/// `n` values.
+pub(crate) fn values<'a, T>(start: *const T, n: usize, what: &str) -> Result<&'a [T]> {
+    match (start.is_null(), n) {
+        (_, 0) => Ok(&[]),
+        (true, _) => Err(missing(what)),
+        // SAFETY: the header asks for so many values behind the pointer.
+        (false, _) => Ok(unsafe { slice::from_raw_parts(start, n) }),
+    }
+}
+
+/// Room for `n` values.
+pub(crate) fn room<'a, T>(start: *mut T, n: usize, what: &str) -> Result<&'a mut [T]> {
+    match (start.is_null(), n) {
+        (_, 0) => Ok(&mut []),
+        (true, _) => Err(missing(what)),
+        // SAFETY: the header asks for memory for so many values, which nothing else uses during the call.
+        (false, _) => Ok(unsafe { slice::from_raw_parts_mut(start, n) }),
+    }
+}
+
+fn stride(stride: i64, what: &str) -> Result<usize> {
+    match usize::try_from(stride) {
+        Ok(stride) if stride >= 3 => Ok(stride),
+        _ => Err(Error::options(format!("{what}: a stride of {stride}, expected 3 or more"))
+            .remedy("3 where rows lie end to end")),
+    }
+}
+
+/// How many doubles `n` rows take.
+fn extent(n: usize, stride: usize) -> usize {
+    if n == 0 { 0 } else { (n - 1) * stride + 3 }
+}
+
+/// Rows of three; where they lie if they lie end to end, else copied.
+pub(crate) fn rows<'a>(start: *const f64, n: i64, step: i64, what: &str) -> Result<Cow<'a, [Point]>> {
+    let (n, step) = (count(n, what)?, stride(step, what)?);
+    let flat = values(start, extent(n, step), what)?;
+    Ok(match step {
+        3 => Cow::Borrowed(flat.as_chunks::<3>().0),
+        _ => Cow::Owned((0..n).map(|i| [0, 1, 2].map(|k| flat[i * step + k])).collect()),
+    })
+}
+
+/// Fills rows of three: where they lie if they lie end to end, else by a copy. Where `fill` fails, strided rows stay as they were.
+pub(crate) fn fill_rows<T>(
+    start: *mut f64,
+    n: i64,
+    step: i64,
+    what: &str,
+    fill: impl FnOnce(&mut [Point]) -> Result<T>,
+) -> Result<T> {
+    let (n, step) = (count(n, what)?, stride(step, what)?);
+    let flat = room(start, extent(n, step), what)?;
+    if step == 3 {
+        return fill(flat.as_chunks_mut::<3>().0);
+    }
+    let mut rows: Vec<Point> = (0..n).map(|i| [0, 1, 2].map(|k| flat[i * step + k])).collect();
+    let done = fill(&mut rows)?;
+    rows.iter().enumerate().for_each(|(i, row)| flat[i * step..][..3].copy_from_slice(row));
+    Ok(done)
+}
+
+/// A text.
+pub(crate) fn text<'a>(start: *const c_char, what: &str) -> Result<&'a str> {
+    if start.is_null() {
+        return Err(missing(what));
+    }
+    // SAFETY: the header asks for a text that ends with a zero.
+    let text = unsafe { CStr::from_ptr(start) }.to_str();
+    text.map_err(|_| Error::options(format!("{what} is no UTF-8")))
+}
+
+/// Several texts.
+pub(crate) fn texts<'a>(start: *const *const c_char, n: i64, what: &str) -> Result<Vec<&'a str>> {
+    values(start, count(n, what)?, what)?.iter().map(|&one| text(one, what)).collect()
+}
+
+/// A handle that is read.
+pub(crate) fn handle<'a, T>(handle: *const T, what: &str) -> Result<&'a T> {
+    // SAFETY: the header asks for a handle that was made by this library and has not been freed.
+    unsafe { handle.as_ref() }.ok_or_else(|| missing(what))
+}
+
+/// A handle that is changed.
+pub(crate) fn handle_mut<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T> {
+    // SAFETY: as above, and that nobody else uses it during the call.
+    unsafe { handle.as_mut() }.ok_or_else(|| missing(what))
+}
+
+/// Where a new handle goes: NULL until there is one.
+pub(crate) fn place<'a, T>(place: *mut *mut T, what: &str) -> Result<&'a mut *mut T> {
+    let place = handle_mut(place, what)?;
+    *place = std::ptr::null_mut();
+    Ok(place)
+}
+
+/// Hands a new thing to the caller.
+pub(crate) fn give<T>(place: &mut *mut T, thing: T) {
+    *place = Box::into_raw(Box::new(thing));
+}
+
+/// Takes a thing back.
+pub(crate) fn free<T>(handle: *mut T) {
+    if !handle.is_null() {
+        // SAFETY: the header asks for a handle that was made by this library and has not been freed.
+        drop(unsafe { Box::from_raw(handle) });
+    }
+}
+
+/// A struct whose first member is its size, and whose members may be copied as bytes.
+///
+/// # Safety
+/// `repr(C)`, and every member means something for any bytes that a C program can put there: numbers and pointers.
+pub(crate) unsafe trait Versioned: Copy {
+    /// What members are where nobody says otherwise.
+    const DEFAULT: Self;
+}
+
+/// What a program gives, which may know fewer members: the others have their defaults. NULL: all have.
+pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
+    let mut all = T::DEFAULT;
+    if given.is_null() {
+        return Ok(all);
+    }
+    // SAFETY: the size is the first member of each of these structs.
+    let size = unsafe { given.cast::<usize>().read() };
+    if size < size_of::<usize>() {
+        return Err(Error::options("a struct of options without its size").remedy("call its _init first"));
+    }
+    // SAFETY: the program says that so many bytes are there; the trait says that they may be copied.
+    unsafe {
+        given.cast::<u8>().copy_to_nonoverlapping((&raw mut all).cast::<u8>(), size.min(size_of::<T>()));
+    }
+    Ok(all)
+}
+
+/// Puts a struct where a program has room for it, as far as it knows its members.
+pub(crate) fn put<T: Versioned>(value: &T, place: *mut T, size: usize) {
+    if place.is_null() {
+        return;
+    }
+    let n = size.min(size_of::<T>());
+    // SAFETY: the program says that there is room for so many bytes.
+    unsafe {
+        (&raw const *value).cast::<u8>().copy_to_nonoverlapping(place.cast::<u8>(), n);
+        if n >= size_of::<usize>() {
+            place.cast::<usize>().write(n);
+        }
+    }
+}
+
+pub(crate) fn threads(n: i32) -> Result<Threads> {
+    let n = usize::try_from(n).map_err(|_| Error::options(format!("{n} threads, expected 0 or more")))?;
+    Threads::new(n)
+}
+
+/// A vertex by its number.
+pub(crate) fn vertex(id: i32, n_points: usize, what: &str) -> Result<VertexId> {
+    match usize::try_from(id) {
+        Ok(v) if v < n_points => Ok(VertexId::new(v)),
+        _ => Err(Error::input(format!("vertex {id} is named, but there are {n_points} points")).at(what)),
+    }
+}
+
+/// An id as C has it; -1 for none.
+pub(crate) fn id(v: u32) -> i32 {
+    i32::try_from(v).unwrap_or(-1)
+}

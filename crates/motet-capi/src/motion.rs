@@ -1,0 +1,310 @@
+//! Motion: boundary displacement in, volume mesh out.
+
+use std::ffi::c_char;
+use std::ptr;
+
+use motet::base::Threads;
+use motet::motion::{
+    Certificate, Elastic, Extent, FacetSet, Laplace, Limits, Method, Mover, Options, RigidLayer,
+};
+use motet::{Error, Mesh, Result};
+
+use crate::guard::{MotetError, guarded, quiet};
+use crate::memory::{
+    Versioned, count, expect, fill_rows, free, give, handle, handle_mut, id, place, put, room, rows, sized,
+    texts, threads, values, vertex,
+};
+use crate::mesh::MotetMesh;
+
+/// A mover and the threads that it uses.
+pub(crate) struct MotetMover {
+    mover: Mover,
+    threads: Threads,
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetMoverOptions {
+    size: usize,
+    method: i32,
+    within_walls: i32,
+    smooth: i32,
+    substeps: i32,
+    threads: i32,
+    rigid_layer_cells: i32,
+    rigid_layer: f64,
+    residual: f64,
+    factor_gib: f64,
+    slide: *const *const c_char,
+    n_slide: i64,
+    bodies: *const *const c_char,
+    n_bodies: i64,
+    wall: *const *const c_char,
+    n_wall: i64,
+    also_moved: *const i32,
+    n_also_moved: i64,
+}
+
+// SAFETY: numbers and pointers, in C's order.
+unsafe impl Versioned for MotetMoverOptions {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>(),
+        method: 0,
+        within_walls: 0,
+        smooth: 0,
+        substeps: 50,
+        threads: 1,
+        rigid_layer_cells: 0,
+        rigid_layer: 0.0,
+        residual: 1e-6,
+        factor_gib: 0.0,
+        slide: ptr::null(),
+        n_slide: 0,
+        bodies: ptr::null(),
+        n_bodies: 0,
+        wall: ptr::null(),
+        n_wall: 0,
+        also_moved: ptr::null(),
+        n_also_moved: 0,
+    };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_options_init(options: *mut MotetMoverOptions, size: usize) {
+    put(&MotetMoverOptions::DEFAULT, options, size);
+}
+
+impl MotetMoverOptions {
+    fn options(&self, mesh: &Mesh) -> Result<Options> {
+        let find = |names, n, what: &str| {
+            texts(names, n, what)?
+                .into_iter()
+                .map(|name| FacetSet::find(mesh, name))
+                .collect::<Result<Vec<_>>>()
+        };
+        let natural = |n: i32, what: &str| count(n.into(), what);
+        let wall = FacetSet::joined(find(self.wall, self.n_wall, "wall")?);
+        let cells = natural(self.rigid_layer_cells, "cells of the rigid layer")?;
+        let extent = match (self.rigid_layer > 0.0, cells > 0) {
+            (true, true) => {
+                return Err(
+                    Error::options("a rigid layer by a distance and by cells").remedy("give one of them")
+                );
+            }
+            (true, false) => Some(Extent::Distance(self.rigid_layer)),
+            (false, true) => Some(Extent::Cells(cells)),
+            (false, false) => None,
+        };
+        let moved = values(self.also_moved, count(self.n_also_moved, "also_moved")?, "also_moved")?;
+        let moved = moved.iter().map(|&v| vertex(v, mesh.points.len(), "also_moved"));
+        Ok(Options {
+            method: self.method(wall.clone(), find(self.bodies, self.n_bodies, "bodies")?)?,
+            within_walls: self.within_walls != 0,
+            smoothing: natural(self.smooth, "sweeps")?,
+            also_moved: moved.collect::<Result<_>>()?,
+            rigid_layer: extent.map(|extent| RigidLayer { extent, wall }),
+            sliding: find(self.slide, self.n_slide, "slide")?,
+            limits: Limits { substeps: natural(self.substeps, "sub-steps")?, ..Limits::default() },
+        })
+    }
+
+    fn method(&self, wall: Option<FacetSet>, bodies: Vec<FacetSet>) -> Result<Method> {
+        let factor_bytes = (self.factor_gib * (1u64 << 30) as f64) as u64;
+        let mut elastic = Elastic { factor_bytes, ..Elastic::default() };
+        elastic.tolerance.residual = self.residual;
+        let laplace = Laplace { wall, tolerance: elastic.tolerance, factor_bytes, ..Laplace::default() };
+        Ok(match self.method {
+            0 => Method::Delaunay,
+            1 => Method::Bodies(bodies),
+            2 => Method::Guided,
+            3 => Method::Elastic(elastic),
+            4 => Method::Laplace(laplace),
+            5 => Method::InverseDistance,
+            6 => Method::Radial,
+            other => {
+                return Err(
+                    Error::options(format!("there is no method {other}")).remedy("MOTET_DELAUNAY is 0")
+                );
+            }
+        })
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_new(
+    mesh: *const MotetMesh,
+    options: *const MotetMoverOptions,
+    mover: *mut *mut MotetMover,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(mover, "mover")?;
+        let mesh = &handle(mesh, "mesh")?.0;
+        mesh.validate()?;
+        let asked = sized(options)?;
+        let threads = threads(asked.threads)?;
+        let mover = Mover::new(mesh, &asked.options(mesh)?, &threads)?;
+        give(place, MotetMover { mover, threads });
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_free(mover: *mut MotetMover) {
+    free(mover);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_n_points(mover: *const MotetMover) -> i64 {
+    quiet(0, || Some(handle(mover, "mover").ok()?.mover.reference().len() as i64))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_n_boundary(mover: *const MotetMover) -> i64 {
+    quiet(0, || Some(handle(mover, "mover").ok()?.mover.boundary().len() as i64))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_boundary(
+    mover: *const MotetMover,
+    vertices: *mut i32,
+    n: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let boundary = handle(mover, "mover")?.mover.boundary();
+        expect(n, boundary.len(), "vertices")?;
+        let out = room(vertices, boundary.len(), "vertices")?;
+        out.iter_mut().zip(boundary).for_each(|(out, v)| *out = id(v.0));
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_weights(
+    mover: *const MotetMover,
+    vertex: i32,
+    vertices: *mut i32,
+    weights: *mut f64,
+    is_hanging: *mut i32,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let mover = &handle(mover, "mover")?.mover;
+        let vertex = self::vertex(vertex, mover.reference().len(), "vertex")?;
+        let found = mover.weights(vertex);
+        *handle_mut(is_hanging, "is_hanging")? = found.is_some().into();
+        if let Some((of, with)) = found {
+            room(vertices, 4, "vertices")?.copy_from_slice(&of.map(|v| id(v.0)));
+            room(weights, 4, "weights")?.copy_from_slice(&with);
+        }
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_step(
+    mover: *const MotetMover,
+    displacement: *const f64,
+    n_boundary: i64,
+    displacement_stride: i64,
+    points: *mut f64,
+    n_points: i64,
+    points_stride: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetMover { mover, threads } = handle(mover, "mover")?;
+        expect(n_boundary, mover.boundary().len(), "displacements")?;
+        expect(n_points, mover.reference().len(), "points")?;
+        let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
+        fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
+    })
+}
+
+/// As in the header.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotetCertificate {
+    size: usize,
+    complete: i32,
+    substeps: i32,
+    fraction: f64,
+    inverted: i64,
+    inverted_before: i64,
+    bad: i64,
+    worst_cell: i64,
+    worst_eas: f64,
+    worst_place: [f64; 3],
+    seconds: f64,
+}
+
+// SAFETY: numbers, in C's order.
+unsafe impl Versioned for MotetCertificate {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>(),
+        complete: 0,
+        substeps: 0,
+        fraction: 0.0,
+        inverted: 0,
+        inverted_before: 0,
+        bad: 0,
+        worst_cell: -1,
+        worst_eas: f64::NAN,
+        worst_place: [f64::NAN; 3],
+        seconds: 0.0,
+    };
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_certificate_init(certificate: *mut MotetCertificate, size: usize) {
+    put(&MotetCertificate::DEFAULT, certificate, size);
+}
+
+impl MotetCertificate {
+    fn of(certificate: &Certificate) -> Self {
+        let worst = certificate.quality.worst_eas;
+        Self {
+            size: size_of::<Self>(),
+            complete: certificate.complete.into(),
+            substeps: certificate.substeps as i32,
+            fraction: certificate.fraction,
+            inverted: certificate.inverted as i64,
+            inverted_before: certificate.inverted_before as i64,
+            bad: certificate.quality.bad as i64,
+            worst_cell: worst.map_or(-1, |worst| worst.cell.0.into()),
+            worst_eas: worst.map_or(f64::NAN, |worst| worst.value),
+            worst_place: worst.map_or([f64::NAN; 3], |worst| worst.place),
+            seconds: certificate.seconds.total,
+        }
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_mover_advance(
+    mover: *mut MotetMover,
+    displacement: *const f64,
+    n_boundary: i64,
+    displacement_stride: i64,
+    points: *mut f64,
+    n_points: i64,
+    points_stride: i64,
+    certificate: *mut MotetCertificate,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetMover { mover, threads } = handle_mut(mover, "mover")?;
+        expect(n_boundary, mover.boundary().len(), "displacements")?;
+        expect(n_points, mover.reference().len(), "points")?;
+        let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
+        let reached = fill_rows(points, n_points, points_stride, "points", |out| {
+            mover.advance(&displacement, out, threads)
+        })?;
+        if !certificate.is_null() {
+            let size = sized(certificate.cast_const())?.size;
+            put(&MotetCertificate::of(&reached), certificate, size);
+        }
+        Ok(())
+    })
+}

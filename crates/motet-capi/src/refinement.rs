@@ -1,0 +1,158 @@
+//! Tets divided, step after step, and taken back.
+
+use motet::base::{TetId, Threads};
+use motet::mesh::history::{History, Rules};
+use motet::refine::{Criterion, MeshRefinement, Options, Target, Wanted};
+use motet::{Error, Result};
+use serde_json::json;
+
+use crate::changing::MotetOutcome;
+use crate::guard::{MotetError, guarded};
+use crate::memory::{expect, free, give, handle, handle_mut, place, room, threads, values};
+use crate::mesh::MotetMesh;
+
+/// A refinement, its mesh as it can be borrowed, and the threads that it uses.
+pub(crate) struct MotetRefinement {
+    refinement: MeshRefinement,
+    mesh: MotetMesh,
+    threads: Threads,
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_new(
+    mesh: *const MotetMesh,
+    n_threads: i32,
+    refinement: *mut *mut MotetRefinement,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(refinement, "refinement")?;
+        let threads = threads(n_threads)?;
+        let refinement = MeshRefinement::new(&handle(mesh, "mesh")?.0, Options::default(), &threads)?;
+        let mesh = MotetMesh(refinement.mesh().clone());
+        give(place, MotetRefinement { refinement, mesh, threads });
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_free(refinement: *mut MotetRefinement) {
+    free(refinement);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_mesh(
+    refinement: *const MotetRefinement,
+) -> *const MotetMesh {
+    handle(refinement, "refinement").map_or(std::ptr::null(), |refinement| &raw const refinement.mesh)
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_generations(
+    refinement: *const MotetRefinement,
+    generations: *mut i32,
+    n: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetRefinement { refinement, .. } = handle(refinement, "refinement")?;
+        let n_cells = refinement.mesh().cells.len();
+        expect(n, n_cells, "cells")?;
+        let out = room(generations, n_cells, "generations")?;
+        out.fill(-1);
+        let cells = refinement.part().tet_to_cell;
+        let all = cells.iter().zip(refinement.refinement().generations());
+        all.for_each(|(cell, generation)| out[cell.index()] = generation.into());
+        Ok(())
+    })
+}
+
+/// Puts what came of a change where the caller wants it.
+fn done(
+    refinement: &mut MotetRefinement,
+    history: History,
+    is_complete: bool,
+    outcome: *mut *mut MotetOutcome,
+) -> Result<()> {
+    refinement.mesh = MotetMesh(refinement.refinement.mesh().clone());
+    if outcome.is_null() {
+        return Ok(());
+    }
+    let place = place(outcome, "outcome")?;
+    let mesh = refinement.mesh.0.clone();
+    let report = json!({ "tets": refinement.refinement.refinement().summary().n_tets });
+    give(place, MotetOutcome::new(mesh, Some(history), &report, is_complete)?);
+    Ok(())
+}
+
+fn change(
+    refinement: *mut MotetRefinement,
+    marks: *const i32,
+    n: i64,
+    is_back: bool,
+    outcome: *mut *mut MotetOutcome,
+) -> Result<()> {
+    if !outcome.is_null() {
+        place(outcome, "outcome")?;
+    }
+    let handle = handle_mut(refinement, "refinement")?;
+    let MotetRefinement { refinement, threads, .. } = handle;
+    expect(n, refinement.mesh().cells.len(), "marks")?;
+    let marks = values(marks, refinement.mesh().cells.len(), "marks")?;
+    let cells = refinement.part().tet_to_cell;
+    let marked: Vec<TetId> =
+        (0..cells.len()).filter(|&t| marks[cells[t].index()] != 0).map(TetId::new).collect();
+    let rules = Rules::default();
+    let (summary, history) = match is_back {
+        false => refinement.refine(&marked, &rules, threads)?,
+        true => refinement.coarsen(&marked, &rules, threads)?,
+    };
+    done(handle, history, summary.n_held == 0, outcome)
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_divide(
+    refinement: *mut MotetRefinement,
+    marks: *const i32,
+    n: i64,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || change(refinement, marks, n, false, outcome))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_coarsen(
+    refinement: *mut MotetRefinement,
+    marks: *const i32,
+    n: i64,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || change(refinement, marks, n, true, outcome))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_refinement_near(
+    refinement: *mut MotetRefinement,
+    surface: *const MotetMesh,
+    at: f64,
+    growth: f64,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        if !outcome.is_null() {
+            place(outcome, "outcome")?;
+        }
+        let whole = handle_mut(refinement, "refinement")?;
+        let MotetRefinement { refinement, threads, .. } = whole;
+        let target = Target::of_mesh(&handle(surface, "surface")?.0, threads)?.into();
+        let criterion = Criterion::NearSize { target, size: at, growth };
+        criterion.check()?;
+        let wanted = Wanted { criteria: vec![criterion], keeps_history: true, ..Wanted::default() };
+        let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
+        let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;
+        done(whole, history, reached.is_reached, outcome)
+    })
+}

@@ -1,0 +1,102 @@
+//! The small cases of `testdata`, by the library: prints a name and a number a line.
+//!
+//! ```text
+//! cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is carried along
+//! cases implant HOST DEVICE NAME
+//! cases contact SURFACE SURFACE
+//! ```
+
+use motet::base::{Point, Threads, VertexId};
+use motet::contact::{self, Body, Contact};
+use motet::geometry::quality::eas;
+use motet::implant::{self, Device};
+use motet::mesh::history::Rules;
+use motet::mesh::{CellKind, Field};
+use motet::motion::{self, FacetSet, Mover};
+use motet::{Error, Mesh, Result, io, remesh};
+
+fn main() -> Result<()> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match words[..] {
+        ["repair", mesh, patch, dx, dy, dz, smooth] => repair(mesh, patch, [dx, dy, dz], smooth),
+        ["implant", host, device, name] => put_in(host, device, name),
+        ["contact", first, second] => measure(first, second),
+        _ => Err(Error::options("the head of this file says what is expected")),
+    }
+}
+
+fn told(name: &str, value: f64) {
+    println!("{name} {value:?}");
+}
+
+fn number(text: &str) -> Result<f64> {
+    text.parse().map_err(|_| Error::options(format!("{text} is no number")))
+}
+
+fn tell(mesh: &Mesh) {
+    let [x, y, z] = mesh.points.iter().fold([0.0; 3], |sum, p| [0, 1, 2].map(|k| sum[k] + p[k]));
+    let tets = mesh.cells.tets().map(|(_, tet)| eas(tet.map(|v| mesh.points[v.index()])));
+    told("points", mesh.points.len() as f64);
+    told("tets", tets.clone().count() as f64);
+    told("sum_x", x);
+    told("sum_y", y);
+    told("sum_z", z);
+    told("worst_eas", tets.fold(1.0, f64::min));
+}
+
+fn repair(mesh: &str, patch: &str, by: [&str; 3], smooth: &str) -> Result<()> {
+    let threads = Threads::single();
+    let mut mesh = io::read(mesh)?;
+    let patch = FacetSet::find(&mesh, patch)?;
+    let by: Point = [number(by[0])?, number(by[1])?, number(by[2])?];
+    let options = motion::Options { smoothing: number(smooth)? as usize, ..motion::Options::default() };
+    let mut mover = Mover::new(&mesh, &options, &threads)?;
+    let is_shifted = |v: &VertexId| patch.vertices.binary_search(v).is_ok();
+    let displacement: Vec<Point> =
+        mover.boundary().iter().map(|v| if is_shifted(v) { by } else { [0.0; 3] }).collect();
+    let certificate = mover.advance(&displacement, &mut mesh.points, &threads)?;
+    told("complete", f64::from(certificate.complete));
+    told("bad_after_motion", certificate.quality.bad as f64);
+    told("worst_after_motion", certificate.quality.worst_eas.map_or(1.0, |worst| worst.value));
+    let options = remesh::Options::default();
+    let done = remesh::remesh_mesh(&mesh, &options, &Rules::default(), &threads)?;
+    told("repaired", f64::from(done.report.is_complete()));
+    tell(&done.mesh);
+    let x = Field::scalars("x", mesh.points.iter().map(|p| p[0]).collect::<Vec<f64>>());
+    let carried = done.history.transfer_points(&x)?.values.to_f64().unwrap_or_default();
+    told("sum_carried", carried.iter().sum());
+    Ok(())
+}
+
+fn put_in(host: &str, device: &str, name: &str) -> Result<()> {
+    let devices = [Device::new(io::read(device)?, name)];
+    let (options, rules) = (implant::Options::default(), Rules::default());
+    let done = implant::implant(&io::read(host)?, &devices, &options, &rules, &Threads::single())?;
+    told("complete", f64::from(done.report.is_complete()));
+    let region = done.mesh.regions().and_then(|regions| regions.find(name));
+    told("region", region.map_or(-1.0, f64::from));
+    tell(&done.mesh);
+    Ok(())
+}
+
+fn measure(first: &str, second: &str) -> Result<()> {
+    let mut points = Vec::new();
+    let mut bodies = Vec::new();
+    for file in [first, second] {
+        let mesh = io::read(file)?;
+        let cells = mesh.cells.iter().filter(|(_, kind, _)| *kind == CellKind::TRIANGLE);
+        let shifted = |v: VertexId| VertexId::new(points.len() + v.index());
+        let triangles = cells.map(|(_, _, t)| [t[0], t[1], t[2]].map(shifted)).collect();
+        bodies.push(Body { name: file.to_owned(), triangles, is_room: false });
+        points.extend(mesh.points);
+    }
+    let threads = Threads::single();
+    let mut contact = Contact::new(points, bodies, contact::Options::default(), &threads)?;
+    let gaps = contact.measure(&threads);
+    told("least", gaps.least());
+    let mut sum = 0.0;
+    gaps.bodies.iter().flat_map(|body| &body.gap).filter(|gap| gap.is_finite()).for_each(|gap| sum += gap);
+    told("sum_of_gaps", sum);
+    Ok(())
+}

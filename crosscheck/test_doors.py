@@ -1,0 +1,89 @@
+"""The cases of testdata through every door: Rust, Python, C and Fortran give the same numbers."""
+import os
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, Program
+
+motet = pytest.importorskip("motet", reason="the package is not installed: ./test does it")
+CLIENTS = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target") / "capi" / "clients"
+CASES = sorted((ROOT / "testdata").glob("*.toml"))
+
+
+def made(shape, scale=1.0, **words):
+    mesh = getattr(motet.shapes, shape)(**words)
+    mesh.points = mesh.points * scale
+    return mesh
+
+
+def numbers(lines):
+    return {name: float(value) for name, value in (line.split() for line in lines.splitlines())}
+
+
+def tell(mesh):
+    # One after the other, as the other languages add.
+    x, y, z = (np.cumsum(column)[-1] for column in mesh.points.T)
+    worst = np.nanmin(mesh.quality())
+    return {"points": mesh.n_points, "tets": len(mesh.tets), "sum_x": x, "sum_y": y, "sum_z": z, "worst_eas": worst}
+
+
+def repair(path, patch, dx, dy, dz, smooth):
+    mesh = motet.read(path)
+    moved = motet.move(mesh, translate={patch: [float(dx), float(dy), float(dz)]}, smooth=int(smooth))
+    certificate = moved.certificate
+    done = motet.remesh(moved.mesh)
+    carried = done.history.transfer(moved.mesh.points[:, 0], on="points")
+    return {
+        "complete": certificate.complete, "bad_after_motion": certificate.bad, "worst_after_motion": certificate.worst_eas.value,
+        "repaired": done.complete, **tell(done.mesh), "sum_carried": np.cumsum(carried)[-1],
+    }  # fmt: skip
+
+
+def implant(host, device, name):
+    done = motet.implant(host, {name: device})
+    labels = {label: name for name, label in done.mesh.region_names.items()}
+    return {"complete": done.complete, "region": labels[name], **tell(done.mesh)}
+
+
+def contact(first, second):
+    gaps = motet.Contact({"first": surface(first), "second": surface(second)}).measure()
+    gap = np.concatenate([body.gap for body in gaps.bodies.values()])
+    return {"least": gaps.least, "sum_of_gaps": np.cumsum(gap[np.isfinite(gap)])[-1]}
+
+
+def surface(path):
+    mesh = motet.read(path)
+    return motet.Mesh(mesh.points, {"triangle": mesh.triangles})
+
+
+PYTHON = {"repair": repair, "implant": implant, "contact": contact}
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_every_door_gives_the_same(path, tmp_path, example):
+    case = tomllib.loads(path.read_text())
+    files = []
+    for k, words in enumerate(case["meshes"]):
+        files.append(tmp_path / f"{k}.vtu")
+        made(**words).save(files[-1])
+    words = [*files, *case["words"]]
+    told = {"Rust": numbers(example("cases")(case["program"], *words).stdout)}
+    told["Python"] = {name: float(value) for name, value in PYTHON[case["program"]](*map(str, words)).items()}
+    for door in ("cases_c", "cases_f"):
+        if (CLIENTS / door).exists():
+            told[door] = numbers(Program(CLIENTS / door)(case["program"], *words).stdout)
+    for door, values in told.items():
+        assert values == told["Rust"], door
+    for name, value in case["expected"].items():
+        assert told["Rust"][name] == pytest.approx(value, rel=1e-9), name
+    for name, value in case["about"].items():
+        assert told["Rust"][name] == pytest.approx(value, rel=0.02), name
+
+
+def test_the_clients_of_c_and_fortran_are_there():
+    missing = [door for door in ("cases_c", "cases_f") if not (CLIENTS / door).exists()]
+    if missing and os.environ.get("MOTET_TEST_STRICT") != "1":
+        pytest.skip(f"{', '.join(missing)} not built: crates/motet-capi/check")
+    assert not missing
