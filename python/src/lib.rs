@@ -41,7 +41,7 @@ mod _motet {
     #[pymodule_export]
     use crate::meshing::mesh;
     #[pymodule_export]
-    use crate::motion::{Mover, choose, mesh_velocity, patch_vertices, prescribed};
+    use crate::motion::{Mover, PointMover, choose, mesh_velocity, patch_vertices, prescribed};
     #[pymodule_export]
     use crate::refine::{Criterion, Refinement, refined};
     #[pymodule_export]

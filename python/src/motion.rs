@@ -144,6 +144,41 @@ fn rows_mut<'a>(out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [Po
         .ok_or_else(|| input(format!("out of shape {shape:?}, expected (n, 3), contiguous and of float64")))
 }
 
+/// Moves points after nodes, without a mesh.
+#[pyclass(frozen, module = "motet._motet")]
+pub(crate) struct PointMover {
+    mover: motion::PointMover,
+    threads: Threads,
+}
+
+#[pymethods]
+impl PointMover {
+    #[new]
+    fn new(py: Python<'_>, nodes: Vectors<'_>, points: Vectors<'_>, threads: usize) -> PyResult<Self> {
+        let (nodes, points) = (rows(&nodes, "nodes")?, rows(&points, "points")?);
+        let threads = self::threads(threads)?;
+        let mover = py.detach(|| motion::PointMover::new(nodes, points, &threads)).or_raise()?;
+        Ok(Self { mover, threads })
+    }
+
+    /// How many points lie outside of the graph.
+    #[getter]
+    fn n_outside(&self) -> usize {
+        self.mover.n_outside()
+    }
+
+    /// Reads and writes where the arrays are.
+    fn step(
+        &self,
+        py: Python<'_>,
+        displacement: Vectors<'_>,
+        mut out: PyReadwriteArray2<'_, f64>,
+    ) -> PyResult<()> {
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
+        py.detach(|| self.mover.step(displacement, out, &self.threads)).or_raise()
+    }
+}
+
 /// One motion of some vertices.
 #[derive(FromPyObject)]
 pub(crate) enum Motion {

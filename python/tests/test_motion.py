@@ -61,6 +61,22 @@ def test_a_step_copies_no_array():
     assert peak < displacement.nbytes / 4
 
 
+def test_points_follow_nodes_whoever_has_them():
+    mesh = shapes.sphere_in_box()
+    mover = motet.Mover(mesh)
+    nodes, displacement = mesh.points[mover.boundary], shifted(mover)
+    whole = motet.PointMover(nodes, mesh.points)
+    moved = whole.step(displacement)
+    np.testing.assert_allclose(moved[mover.boundary], nodes + displacement, atol=1e-14)
+    part = motet.PointMover(nodes[::-1], mesh.points[:700], threads=2).step(displacement[::-1])
+    np.testing.assert_allclose(part, moved[:700], atol=1e-14)
+    assert whole.n_outside == 0
+    with pytest.raises(motet.InputError, match="span"):
+        motet.PointMover(nodes[:3], mesh.points)
+    with pytest.raises(motet.InputError, match="displacement"):
+        whole.step(displacement[:-1])
+
+
 def test_displacements_of_any_kind_are_taken():
     mover = motet.Mover(shapes.sphere_in_box())
     displacement = shifted(mover)

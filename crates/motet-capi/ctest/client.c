@@ -238,6 +238,32 @@ static void motion(void)
     free(first), free(points), free(apart), free(boundary), free(displacement), free(strided);
 }
 
+/* Two processes, each with half of the points, get what one gets. */
+static void parts(void)
+{
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube();
+    motet_point_mover *one = NULL, *half = NULL;
+    double *points = malloc(sizeof(double) * 3 * N_POINTS), *whole = malloc(sizeof(double) * 3 * N_POINTS), *part = malloc(sizeof(double) * 3 * N_POINTS);
+    double corners[8][3], turned[8][3], moved[8][3], moved_turned[8][3];
+    int i, k;
+    CHECK(points && whole && part);
+    OK(motet_mesh_points(mesh, points, N_POINTS, 3, &error));
+    for (i = 0; i < 8; i++)
+        for (k = 0; k < 3; k++) corners[i][k] = turned[7 - i][k] = (i >> k) & 1, moved[i][k] = moved_turned[7 - i][k] = 0.01 * i * (k + 1);
+    OK(motet_point_mover_new(corners[0], 8, 3, points, N_POINTS, 3, 1, &one, &error));
+    OK(motet_point_mover_step(one, moved[0], 8, 3, whole, N_POINTS, 3, &error));
+    OK(motet_point_mover_new(turned[0], 8, 3, points + 3 * 100, N_POINTS - 100, 3, 2, &half, &error));
+    OK(motet_point_mover_step(half, moved_turned[0], 8, 3, part, N_POINTS - 100, 3, &error));
+    CHECK(memcmp(part, whole + 3 * 100, sizeof(double) * 3 * (N_POINTS - 100)) == 0 && whole[3 * (N_POINTS - 1)] == 1 + 0.07);
+    REFUSED(motet_point_mover_step(half, moved[0], 7, 3, part, N_POINTS - 100, 3, &error), MOTET_ERROR_OPTIONS, "expected 8");
+    motet_point_mover_free(half);
+    REFUSED(motet_point_mover_new(corners[0], 3, 3, points, N_POINTS, 3, 1, &half, &error), MOTET_ERROR_INPUT, "span");
+    motet_point_mover_free(one);
+    motet_mesh_free(mesh);
+    free(points), free(whole), free(part);
+}
+
 static void changing(void)
 {
     motet_error *error = NULL;
@@ -383,6 +409,7 @@ int main(void)
     CHECK(motet_version() == MOTET_VERSION_MAJOR * 10000 + MOTET_VERSION_MINOR * 100 + MOTET_VERSION_PATCH);
     meshes();
     motion();
+    parts();
     changing();
     refinement();
     contact();

@@ -108,6 +108,17 @@ module motet
     final :: mover_final
   end type
 
+  ! Points after nodes, without a mesh.
+  type, public :: point_mover
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  contains
+    procedure :: new => point_mover_new
+    procedure :: step => point_mover_step
+    procedure :: free => point_mover_free
+    final :: point_mover_final
+  end type
+
   ! What remesh and implant give: the new mesh by `mesh`, a copy.
   type, public :: outcome
     private
@@ -328,6 +339,29 @@ module motet
       type(c_ptr) :: error
       integer(c_int32_t) :: c_mover_advance
     end function
+    function c_point_mover_new(nodes, n_nodes, node_stride, points, n_points, point_stride, threads, mover, error) &
+        bind(c, name='motet_point_mover_new')
+      import
+      real(c_double), intent(in) :: nodes(*), points(*)
+      integer(c_int64_t), value :: n_nodes, node_stride, n_points, point_stride
+      integer(c_int32_t), value :: threads
+      type(c_ptr) :: mover, error
+      integer(c_int32_t) :: c_point_mover_new
+    end function
+    function c_point_mover_step(mover, displacement, n_nodes, displacement_stride, points, n_points, points_stride, error) &
+        bind(c, name='motet_point_mover_step')
+      import
+      type(c_ptr), value :: mover
+      real(c_double), intent(in) :: displacement(*)
+      integer(c_int64_t), value :: n_nodes, displacement_stride, n_points, points_stride
+      real(c_double), intent(inout) :: points(*)
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_point_mover_step
+    end function
+    subroutine c_point_mover_free(mover) bind(c, name='motet_point_mover_free')
+      import
+      type(c_ptr), value :: mover
+    end subroutine
     function c_remesh(mesh, options, outcome, error) bind(c, name='motet_remesh')
       import
       type(c_ptr), value :: mesh
@@ -692,6 +726,47 @@ contains
 
   subroutine mover_final(self)
     type(mover), intent(inout) :: self
+    call self%free()
+  end subroutine
+
+  ! nodes (3, n_nodes): those of the whole boundary, wherever it is; points (3, n_points): those that follow.
+  subroutine point_mover_new(self, nodes, points, threads, status, message)
+    class(point_mover), intent(inout) :: self
+    real(c_double), contiguous, intent(in) :: nodes(:, :), points(:, :)
+    integer(c_int32_t), intent(in), optional :: threads
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code, n
+    call self%free()
+    n = 1
+    if (present(threads)) n = threads
+    code = c_point_mover_new(nodes, size(nodes, 2, c_int64_t), size(nodes, 1, c_int64_t), points, size(points, 2, c_int64_t), &
+        size(points, 1, c_int64_t), n, self%handle, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine point_mover_step(self, displacement, points, status, message)
+    class(point_mover), intent(in) :: self
+    real(c_double), contiguous, intent(in) :: displacement(:, :)
+    real(c_double), contiguous, intent(inout) :: points(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_point_mover_step(self%handle, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
+        points, size(points, 2, c_int64_t), size(points, 1, c_int64_t), error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine point_mover_free(self)
+    class(point_mover), intent(inout) :: self
+    call c_point_mover_free(self%handle)
+    self%handle = c_null_ptr
+  end subroutine
+
+  subroutine point_mover_final(self)
+    type(point_mover), intent(inout) :: self
     call self%free()
   end subroutine
 

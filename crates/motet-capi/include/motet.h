@@ -202,6 +202,19 @@ motet_status motet_mover_advance(
     motet_mover *mover, const double *displacement, int64_t n_boundary, int64_t displacement_stride, double *points, int64_t n_points,
     int64_t points_stride, motet_certificate *certificate, motet_error **error);
 
+/* Points after nodes, without a mesh: for processes that have a part of it each. All give the nodes of the whole boundary, in any order, and their own points; cells
+ * are not known, so nothing is certified. By the Delaunay graph of the nodes; processes that have the same point may place it apart by its last digits. */
+typedef struct motet_point_mover motet_point_mover;
+
+motet_status motet_point_mover_new(
+    const double *nodes, int64_t n_nodes, int64_t node_stride, const double *points, int64_t n_points, int64_t point_stride, int32_t threads,
+    motet_point_mover **mover, motet_error **error);
+void motet_point_mover_free(motet_point_mover *mover);
+/* Moves the points from their first place; of several nodes at one place the displacement of the first counts. */
+motet_status motet_point_mover_step(
+    const motet_point_mover *mover, const double *displacement, int64_t n_nodes, int64_t displacement_stride, double *points, int64_t n_points,
+    int64_t points_stride, motet_error **error);
+
 /* ---- What changes a mesh ---------------------------------------------------------------------------------------------------------------- */
 
 /* A new mesh, where everything in it came from, and what was done. */

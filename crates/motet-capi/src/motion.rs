@@ -5,7 +5,7 @@ use std::ptr;
 
 use motet::base::Threads;
 use motet::motion::{
-    Certificate, Elastic, Extent, FacetSet, Laplace, Limits, Method, Mover, Options, RigidLayer,
+    Certificate, Elastic, Extent, FacetSet, Laplace, Limits, Method, Mover, Options, PointMover, RigidLayer,
 };
 use motet::{Error, Mesh, Result};
 
@@ -306,5 +306,58 @@ pub(crate) unsafe extern "C" fn motet_mover_advance(
             put(&MotetCertificate::of(&reached), certificate, size);
         }
         Ok(())
+    })
+}
+
+/// Points, the nodes that they follow, and the threads.
+pub(crate) struct MotetPointMover {
+    mover: PointMover,
+    threads: Threads,
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_point_mover_new(
+    nodes: *const f64,
+    n_nodes: i64,
+    node_stride: i64,
+    points: *const f64,
+    n_points: i64,
+    point_stride: i64,
+    n_threads: i32,
+    mover: *mut *mut MotetPointMover,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(mover, "mover")?;
+        let threads = threads(n_threads)?;
+        let nodes = rows(nodes, n_nodes, node_stride, "nodes")?;
+        let mover = PointMover::new(&nodes, &rows(points, n_points, point_stride, "points")?, &threads)?;
+        give(place, MotetPointMover { mover, threads });
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_point_mover_free(mover: *mut MotetPointMover) {
+    free(mover);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_point_mover_step(
+    mover: *const MotetPointMover,
+    displacement: *const f64,
+    n_nodes: i64,
+    displacement_stride: i64,
+    points: *mut f64,
+    n_points: i64,
+    points_stride: i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetPointMover { mover, threads } = handle(mover, "mover")?;
+        expect(n_nodes, mover.n_nodes(), "displacements")?;
+        expect(n_points, mover.reference().len(), "points")?;
+        let displacement = rows(displacement, n_nodes, displacement_stride, "displacement")?;
+        fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
     })
 }

@@ -6,8 +6,10 @@ use common::data_meshes;
 use motet::Mesh;
 use motet::base::{Csr, Point, Threads, VertexId};
 use motet::geometry::vector::{add, distance, norm, scale, sub};
-use motet::mesh::{Boundary, CellKind, Cells};
-use motet::motion::{BAD_EAS, Extent, FacetSet, Mover, Options, Prescribed, RigidLayer, mesh_velocity};
+use motet::mesh::{Boundary, CellKind, Cells, shapes};
+use motet::motion::{
+    BAD_EAS, Extent, FacetSet, Mover, Options, PointMover, Prescribed, RigidLayer, mesh_velocity,
+};
 use proptest::prelude::*;
 
 // ---------------------------------------------------------------- meshes
@@ -740,4 +742,51 @@ fn cells_whose_facets_are_not_known_are_refused() {
         error.to_string().starts_with("1 volume cells are of a kind whose facets are not known"),
         "{error}"
     );
+}
+
+#[test]
+fn points_follow_nodes_as_vertices_follow_the_boundary() {
+    let mesh = shapes::sphere_in_box(8, 4);
+    let threads = Threads::single();
+    let mover = Mover::new(&mesh, &Options::default(), &threads).unwrap();
+    let nodes: Vec<Point> = mover.boundary().iter().map(|v| mesh.points[v.index()]).collect();
+    let displacement: Vec<Point> = nodes.iter().map(|p| [0.1 * p[1], p[0] * p[2] / 50.0, -0.2]).collect();
+    let mut expected = mesh.points.clone();
+    mover.step(&displacement, &mut expected, &threads).unwrap();
+    let step = |nodes: &[Point], displacement: &[Point]| {
+        let points = PointMover::new(nodes, &mesh.points, &threads).unwrap();
+        let mut out = mesh.points.clone();
+        points.step(displacement, &mut out, &threads).unwrap();
+        out
+    };
+    // Given the other way round, and half of them twice, nodes make the same graph: a process that has them in another order gets the same bits.
+    let first = step(&nodes, &displacement);
+    let turned =
+        |list: &[Point]| list.iter().rev().chain(&list[..list.len() / 2]).copied().collect::<Vec<_>>();
+    assert_eq!(step(&turned(&nodes), &turned(&displacement)), first);
+    // The boundary goes where it is told, and an affine motion moves all by the same map, whatever the graph.
+    for (v, d) in mover.boundary().iter().zip(&displacement) {
+        let expected = add(mesh.points[v.index()], *d);
+        assert!(distance(first[v.index()], expected) < 1e-14);
+    }
+    let affine: Vec<Point> = nodes.iter().map(|p| [0.1 * p[1], 0.3 - p[0], 2.0 * p[2]]).collect();
+    for (p, q) in mesh.points.iter().zip(step(&nodes, &affine)) {
+        assert!(distance(q, [p[0] + 0.1 * p[1], p[1] + 0.3 - p[0], 3.0 * p[2]]) < 1e-12);
+    }
+}
+
+#[test]
+fn points_and_nodes_that_do_not_fit_are_told() {
+    let threads = Threads::single();
+    let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mover = PointMover::new(&corners, &[[0.1; 3]], &threads).unwrap();
+    let refused = |n: usize, d: f64, m: usize| {
+        mover.step(&vec![[d; 3]; n], &mut vec![[0.0; 3]; m], &threads).unwrap_err().to_string()
+    };
+    assert!(refused(3, 0.0, 1).contains("3 displacements"));
+    assert!(refused(4, 0.0, 2).contains("2 places"));
+    assert!(refused(4, f64::NAN, 1).contains("displacement 0"));
+    assert!(PointMover::new(&corners[..3], &[[0.1; 3]], &threads).is_err());
+    assert!(PointMover::new(&corners, &[[f64::INFINITY; 3]], &threads).is_err());
+    assert_eq!(PointMover::new(&corners, &[[9.0; 3]], &threads).unwrap().n_outside(), 1);
 }

@@ -14,12 +14,12 @@ from ._changing import Changed, History, implant, mesh, remesh
 from ._contact import Ahead, Body, Contact, Gaps
 from .errors import Error, FileError, InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, read
-from ._motion import Moved, Mover, mesh_velocity, move
+from ._motion import Moved, Mover, PointMover, mesh_velocity, move
 from ._refinement import Refinement, refine
 from ._report import Report
 
 __all__ = [
     "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "Mesh", "MeshLike", "Moved", "Mover",
-    "OptionsError", "Refinement", "Report", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_series", "refine",
+    "OptionsError", "PointMover", "Refinement", "Report", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_series", "refine",
     "remesh", "shapes", "__version__",
 ]  # fmt: skip

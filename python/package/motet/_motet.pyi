@@ -6,7 +6,7 @@ from numpy import float64, int16, uint32
 from numpy.typing import NDArray
 
 __all__ = [
-    "Contact", "surface", "formats", "quality", "read", "read_series", "summary", "write", "History", "implant", "mesh", "Mover", "choose",
+    "Contact", "surface", "formats", "quality", "read", "read_series", "summary", "write", "History", "implant", "mesh", "Mover", "PointMover", "choose",
     "mesh_velocity", "patch_vertices", "prescribed", "Criterion", "Refinement", "refined", "remesh", "aneurysm", "ball", "box_grid", "coil", "mixed",
     "sphere_in_box", "stent", "tube", "__version__",
 ]  # fmt: skip
@@ -83,6 +83,13 @@ class Mover:
     def weights(self, vertex: int) -> tuple[list[int], list[float]] | None: ...
     def step(self, displacement: _Vectors, out: _Vectors) -> None: ...
     def advance(self, displacement: _Vectors, out: _Vectors) -> Any: ...
+
+@final
+class PointMover:
+    def __new__(cls, nodes: _Vectors, points: _Vectors, threads: int) -> PointMover: ...
+    @property
+    def n_outside(self) -> int: ...
+    def step(self, displacement: _Vectors, out: _Vectors) -> None: ...
 
 @final
 class Contact:

@@ -165,7 +165,7 @@ class Mover:
         -------
         The points, ``out`` itself where it was given.
         """
-        out = self._out(out)
+        out = _checked_out(out, self._reference.shape)
         self._mover.step(self._displacement(displacement), out)
         return out
 
@@ -180,20 +180,56 @@ class Mover:
         certificate : Report
             ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``.
         """
-        out = self._out(out)
+        out = _checked_out(out, self._reference.shape)
         certificate = self._mover.advance(self._displacement(displacement), out)
         return out, report(certificate)
 
     def _displacement(self, displacement: ArrayLike) -> NDArray[np.float64]:
         return _vectors(displacement, len(self._boundary), "displacement")
 
-    def _out(self, out: NDArray[np.float64] | None) -> NDArray[np.float64]:
-        if out is None:
-            return np.empty_like(self._reference)
-        fits = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == self._reference.shape
-        if not fits or not out.flags.c_contiguous or not out.flags.writeable:
-            raise InputError(f"out is to be a contiguous, writeable array of float64 of shape {self._reference.shape}")
+
+class PointMover:
+    """Moves any points after nodes by their Delaunay graph, without a mesh: for processes that have a part of it each.
+
+    All give the nodes of the whole boundary, in any order, and their own points. Cells are not known, so nothing is certified.
+
+    Parameters
+    ----------
+    nodes : array (m, 3)
+    points : array (n, 3)
+    threads : int
+        0 for all cores.
+
+    Raises
+    ------
+    InputError
+        The nodes do not span space.
+    """
+
+    def __init__(self, nodes: ArrayLike, points: ArrayLike, *, threads: int = 1):
+        self._n_nodes = len(np.asarray(nodes))
+        self._n_points = len(np.asarray(points))
+        self._native = _motet.PointMover(_vectors(nodes, self._n_nodes, "nodes"), _vectors(points, self._n_points, "points"), threads)
+
+    @property
+    def n_outside(self) -> int:
+        """How many points lie outside of the graph: they follow the nearest place of it."""
+        return self._native.n_outside
+
+    def step(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        """Moves the points from their first place; parameters as for :meth:`Mover.step`."""
+        out = _checked_out(out, (self._n_points, 3))
+        self._native.step(_vectors(displacement, self._n_nodes, "displacement"), out)
         return out
+
+
+def _checked_out(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    if out is None:
+        return np.empty(shape)
+    fits = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == shape
+    if not fits or not out.flags.c_contiguous or not out.flags.writeable:
+        raise InputError(f"out is to be a contiguous, writeable array of float64 of shape {shape}")
+    return out
 
 
 @dataclass

@@ -63,7 +63,9 @@ fn those(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
 /// About how many tets there are once all wishes come true: eight to the power of how often each is divided. Those that are divided or cut
 /// since their neighbours are do not count.
 pub fn expected_tets(wishes: &[Wish]) -> f64 {
-    wishes.iter().map(|wish| 8f64.powi(wish.divisions().into())).sum()
+    let mut counts = [0usize; 1 + u8::MAX as usize];
+    wishes.iter().for_each(|wish| counts[usize::from(wish.divisions())] += 1);
+    (0..).zip(counts).map(|(n, count)| count as f64 * 8f64.powi(n)).sum()
 }
 
 /// Refuses wishes for more tets than there can be, before any work.

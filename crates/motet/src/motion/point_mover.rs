@@ -1,0 +1,99 @@
+//! Points after nodes, without a mesh: for solvers that have a part of the mesh each.
+
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::is_finite;
+use crate::motion::graph::{hang, triangulate};
+use crate::motion::update::{Displacements, Update};
+
+/// Moves any points by the Delaunay graph of some nodes: a weighted sum of four displacements each.
+///
+/// It is what [`Mover`](crate::motion::Mover) does with [`Method::Delaunay`](crate::motion::Method::Delaunay), but for the mesh: cells are not known, so nothing is
+/// checked and certified. Processes that have a part of a mesh each give all nodes of the boundary, and their own points. Nodes are taken in the order of their
+/// coordinates, one for each place, so that the graph does not depend on the order in which they are given. A point that lies on a facet of it is found in either tet, as
+/// the points before it lead there: processes that have the same point may place it apart by its last digits.
+#[derive(Debug)]
+pub struct PointMover {
+    reference: Vec<Point>,
+    n_nodes: usize,
+    /// The given node that stands for each place of the graph.
+    firsts: Vec<u32>,
+    update: Update,
+    n_outside: usize,
+}
+
+impl PointMover {
+    /// Sets up the motion of `points` after `nodes`.
+    ///
+    /// # Errors
+    /// When nodes do not span space; when a coordinate is not finite.
+    pub fn new(nodes: &[Point], points: &[Point], threads: &Threads) -> Result<Self> {
+        check_finite(nodes, "node")?;
+        check_finite(points, "point")?;
+        if nodes.len().max(points.len()) > VertexId::MAX_COUNT {
+            return Err(Error::input(format!("{} points are more than there are ids", points.len())));
+        }
+        let mut firsts: Vec<u32> = (0..nodes.len() as u32).collect();
+        // -0.0 is the place of 0.0.
+        let place = |&i: &u32| nodes[i as usize].map(|x| x + 0.0);
+        firsts.sort_by(|a, b| {
+            let (p, q) = (place(a), place(b));
+            p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])).then(p[2].total_cmp(&q[2])).then(a.cmp(b))
+        });
+        firsts.dedup_by(|b, a| place(a) == place(b));
+        let graph: Vec<Point> = firsts.iter().map(place).collect();
+        let triangulation = triangulate(&graph, threads)?;
+        let found = hang(&triangulation, points, threads);
+        let mut update = Update::never(graph.len() as u32, points.len());
+        for (i, (&tet, w)) in found.tet.iter().zip(&found.weights).enumerate() {
+            update.hang(VertexId::new(i), found.tets[tet as usize], *w);
+        }
+        Ok(Self {
+            reference: points.to_vec(),
+            n_nodes: nodes.len(),
+            firsts,
+            update,
+            n_outside: found.outside.len(),
+        })
+    }
+
+    /// How many nodes were given.
+    pub fn n_nodes(&self) -> usize {
+        self.n_nodes
+    }
+
+    /// The points in their first place.
+    pub fn reference(&self) -> &[Point] {
+        &self.reference
+    }
+
+    /// How many points lie outside of the graph: they follow the nearest place of it.
+    pub fn n_outside(&self) -> usize {
+        self.n_outside
+    }
+
+    /// Moves the points from their first place: `displacement` has an entry for each node as they were given; of several nodes at one place that of the first counts.
+    ///
+    /// # Errors
+    /// When a length does not fit, or a displacement is not finite.
+    pub fn step(&self, displacement: &[Point], out: &mut [Point], threads: &Threads) -> Result<()> {
+        for (given, expected, what) in [
+            (displacement.len(), self.n_nodes, "displacements of nodes"),
+            (out.len(), self.reference.len(), "places for points"),
+        ] {
+            if given != expected {
+                return Err(Error::input(format!("{given} {what} are given, expected {expected}")));
+            }
+        }
+        check_finite(displacement, "displacement")?;
+        let driven: Vec<Point> = self.firsts.iter().map(|&i| displacement[i as usize]).collect();
+        self.update.apply(&self.reference, &Displacements::Driven(&driven), out, threads);
+        Ok(())
+    }
+}
+
+fn check_finite(points: &[Point], what: &str) -> Result<()> {
+    match points.iter().position(|&p| !is_finite(p)) {
+        None => Ok(()),
+        Some(i) => Err(Error::input(format!("{:?} is not finite", points[i])).at(format!("{what} {i}"))),
+    }
+}

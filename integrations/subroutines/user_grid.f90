@@ -1,0 +1,29 @@
+! A user's subroutine in Fortran, as solvers call it once a step: the coordinates of all nodes come in and go out, `on_walls` are
+! those on walls, from 1.
+!
+! The motion of the walls is known: here a sphere at the origin swings. The first call sets the graph up. It was run in
+! stand-in/solver.f90, in no solver that is sold; names and lists of arguments are to be made those of yours.
+subroutine user_grid(n_points, x, n_walls, on_walls, time)
+  use, intrinsic :: iso_c_binding
+  use motet, only: point_mover
+  implicit none
+  integer, intent(in) :: n_points, n_walls
+  real(c_double), intent(inout) :: x(3, n_points)
+  integer, intent(in) :: on_walls(n_walls)
+  real(c_double), intent(in) :: time
+
+  type(point_mover), save :: mover
+  real(c_double), allocatable, save :: first(:, :)
+  real(c_double) :: displacement(3, n_walls)
+  integer :: i
+
+  if (.not. allocated(first)) then
+    first = x(:, on_walls)
+    call mover%new(first, x)
+  end if
+  displacement = 0
+  do i = 1, n_walls
+    if (sum(first(:, i)**2) < 1.01) displacement(1, i) = 0.5 * sin(6.2832 * time)
+  end do
+  call mover%step(displacement, x)
+end subroutine
