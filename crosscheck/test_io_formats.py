@@ -411,16 +411,28 @@ def test_tetgen_of_meshio(motet, tmp_path):
         assert_same_mesh(found, expected, cell_data=["tetgen:ref"])
 
 
-@pytest.mark.parametrize("ending", ["stl", "obj"])
+@pytest.mark.parametrize("ending", ["stl", "obj", "ply", "off"])
 @pytest.mark.parametrize("binary", [False, True])
 def test_surfaces_of_meshio(motet, tmp_path, ending, binary):
     mesh = mixed_mesh(["triangle"])
     mesh.points = mesh.points.astype(np.float32).astype(float)
     source, copy = tmp_path / f"source.{ending}", tmp_path / f"copy.{ending}"
-    mesh.write(source, **({"binary": binary} if ending == "stl" else {}))
+    mesh.write(source, **({"binary": binary} if ending in ("stl", "ply") else {}))
     motet("convert", source, copy, "--encoding", "binary" if binary else "ascii")
     ours, theirs = meshio.read(copy), meshio.read(source)
     assert_same_array(corners(ours), corners(theirs), "corners of triangles")
+
+
+@pytest.mark.parametrize("binary", [False, True])
+def test_ply_of_meshio_with_arrays(motet, tmp_path, binary):
+    mesh = mixed_mesh(["triangle", "quad"])
+    random = np.random.default_rng(5)
+    mesh.point_data = {"p": random.normal(size=len(mesh.points)), "q": random.integers(-9, 9, len(mesh.points)).astype(np.int32)}
+    source, copy = tmp_path / "source.ply", tmp_path / "copy.ply"
+    mesh.write(source, binary=binary)
+    motet("convert", source, copy, "--encoding", "binary" if binary else "ascii")
+    found, expected = meshio.read(copy), meshio.read(source)
+    assert_same_mesh(found, expected, point_data=["p", "q"])
 
 
 def corners(mesh):
@@ -430,14 +442,15 @@ def corners(mesh):
 # ---- VTK
 
 
-def test_vtk_reads_our_stl_and_obj(motet, gmsh_session, tmp_path):
+def test_vtk_reads_our_surfaces(motet, gmsh_session, tmp_path):
     tet_box(1)
     source = tmp_path / "source.msh"
     gmsh_write(source, "4.1", "binary")
     expected = meshio.read(source)
     triangles = np.asarray(expected.points)[cells_of(expected)["triangle"]]
     for name, reader, options in [("a.stl", vtk.vtkSTLReader(), ["--ascii"]), ("b.stl", vtk.vtkSTLReader(), []),
-                                  ("c.obj", vtk.vtkOBJReader(), [])]:
+                                  ("c.obj", vtk.vtkOBJReader(), []), ("d.ply", vtk.vtkPLYReader(), ["--ascii"]),
+                                  ("e.ply", vtk.vtkPLYReader(), []), ("f.off", vtk.vtkOFFReader(), [])]:
         motet("convert", source, tmp_path / name, *options)
         reader.SetFileName(str(tmp_path / name))
         reader.Update()
@@ -454,7 +467,7 @@ def real_files():
     folder = data_folder()
     if folder is None:
         return []
-    endings = (".msh", ".stl", ".obj", ".mesh", ".node", ".ele", ".xml.gz")
+    endings = (".msh", ".stl", ".obj", ".ply", ".off", ".mesh", ".node", ".ele", ".xml.gz")
     return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.name.lower().endswith(endings))
 
 

@@ -589,7 +589,7 @@ fn a_volume_becomes_its_boundary_in_formats_of_surfaces() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
     let tets = [0, 1, 2, 3, 1, 3, 2, 4].map(VertexId).to_vec();
     let mesh = Mesh::new(corners.to_vec(), Cells::uniform(CellKind::TETRA, tets).unwrap());
-    for ending in [".stl", ".obj"] {
+    for ending in [".stl", ".obj", ".ply", ".off"] {
         let (bytes, lost) = print(ending, &mesh, &WriteOptions::default());
         assert!(lost.iter().any(|l| l.contains("boundary")), "{lost:?}");
         let surface = parse(ending, &bytes).unwrap();
@@ -646,7 +646,7 @@ fn every_real_file_is_read_or_refused_with_a_remedy() {
                 continue;
             }
             let name = path.file_name().unwrap().to_string_lossy().to_lowercase();
-            if ![".msh", ".stl", ".obj", ".mesh", ".node", ".ele", ".xml.gz"]
+            if ![".msh", ".stl", ".obj", ".ply", ".off", ".mesh", ".node", ".ele", ".xml.gz"]
                 .iter()
                 .any(|e| name.ends_with(e))
             {

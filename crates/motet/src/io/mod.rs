@@ -10,6 +10,8 @@ mod medit;
 mod msh;
 mod node_order;
 mod obj;
+mod off;
+mod ply;
 mod polygonal;
 mod polyhedra;
 mod reading;
