@@ -8,6 +8,7 @@ use std::io::Write as _;
 use crate::base::{Error, Result, VertexId};
 use crate::io::cell_labels::{cell_labels, lost_cell_arrays, lost_names};
 use crate::io::format::{Format, Input, WriteOptions, Written};
+use crate::io::polygonal::kind_of_face;
 use crate::io::select::{keep_cells, lost_arrays, surface_of};
 use crate::io::text::{Text, parse_int, push_floats};
 use crate::mesh::{CellKind, Cells, Mesh};
@@ -85,21 +86,10 @@ fn faces(text: &mut Text<'_>, n: usize, n_points: usize) -> Result<(Cells, usize
             })?;
             vertices.push(VertexId::new(v));
         }
-        cells.push(kind(k), vertices);
+        cells.push(kind_of_face(k), vertices);
         n_colours += usize::from(rest_of_line(text) > 0);
     }
     Ok((cells, n_colours))
-}
-
-fn kind(n: usize) -> CellKind {
-    match n {
-        0 => CellKind::EMPTY,
-        1 => CellKind::VERTEX,
-        2 => CellKind::LINE,
-        3 => CellKind::TRIANGLE,
-        4 => CellKind::QUAD,
-        _ => CellKind::POLYGON,
-    }
 }
 
 fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {

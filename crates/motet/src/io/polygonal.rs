@@ -1,4 +1,4 @@
-//! The four sections of VTK's polygonal data.
+//! Kinds of faces, and the four sections of VTK's polygonal data.
 
 use crate::mesh::CellKind;
 
@@ -6,6 +6,18 @@ use crate::mesh::CellKind;
 /// which VTK counts the cells.
 pub(super) const SECTIONS: [(&str, &str); 4] =
     [("Verts", "VERTICES"), ("Lines", "LINES"), ("Polys", "POLYGONS"), ("Strips", "TRIANGLE_STRIPS")];
+
+/// The kind of a face of a surface, by how many corners it has.
+pub(super) fn kind_of_face(n_vertices: usize) -> CellKind {
+    match n_vertices {
+        0 => CellKind::EMPTY,
+        1 => CellKind::VERTEX,
+        2 => CellKind::LINE,
+        3 => CellKind::TRIANGLE,
+        4 => CellKind::QUAD,
+        _ => CellKind::POLYGON,
+    }
+}
 
 /// The kind of a cell of a section, as VTK tells it.
 pub(super) fn kind_in_section(section: usize, n_vertices: usize) -> CellKind {

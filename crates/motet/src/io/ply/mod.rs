@@ -19,8 +19,9 @@ use crate::base::{Error, Result, VertexId};
 use crate::io::format::{Format, Input};
 use crate::io::ply::body::Table;
 use crate::io::ply::header::{Element, Header};
+use crate::io::polygonal::kind_of_face;
 use crate::io::scalar::Scalar;
-use crate::mesh::{CellKind, Field, Mesh, Values};
+use crate::mesh::{Field, Mesh, Values};
 
 pub(super) const FORMAT: Format =
     Format { name: "PLY", endings: &[".ply"], read: Some(read), write: Some(write::write) };
@@ -80,24 +81,13 @@ fn cells(mesh: &mut Mesh, mut table: Table, input: &Input<'_>) -> Result<()> {
             })
         };
         let vertices = list.iter().map(vertex).collect::<Result<Vec<_>>>()?;
-        mesh.cells.push(kind(vertices.len()), vertices);
+        mesh.cells.push(kind_of_face(vertices.len()), vertices);
     }
     for name in table.lists() {
         input.notes.add(format!("the lists `{name}` of faces are passed over"));
     }
     mesh.cell_data = fields(table);
     Ok(())
-}
-
-fn kind(n: usize) -> CellKind {
-    match n {
-        0 => CellKind::EMPTY,
-        1 => CellKind::VERTEX,
-        2 => CellKind::LINE,
-        3 => CellKind::TRIANGLE,
-        4 => CellKind::QUAD,
-        _ => CellKind::POLYGON,
-    }
 }
 
 /// Columns as arrays: neighbours that belong together as one.
@@ -157,7 +147,7 @@ fn fits(element: &Element, bytes_left: usize, is_text: bool) -> bool {
 mod tests {
     use super::*;
     use crate::io::format::{Encoding, Notes, WriteOptions};
-    use crate::mesh::shapes;
+    use crate::mesh::{CellKind, shapes};
 
     fn parse(bytes: &[u8]) -> (Result<Mesh>, Vec<String>) {
         let notes = Notes::default();
