@@ -1,6 +1,6 @@
 //! OFF surfaces: points and polygons, in text.
 //!
-//! Written here, since no crate was found that is kept. Of `COFF`, `NOFF` and their kin the numbers behind the coordinates, of faces colours, are passed over with a
+//! Written here, because `off-rs` (2.0) has coordinates in single precision only. Of `COFF`, `NOFF` and their kin the numbers behind the coordinates, of faces colours, are passed over with a
 //! note; binary and four-dimensional files are refused.
 
 use std::io::Write as _;

@@ -9,9 +9,9 @@
 //!
 //! | p | rounds | one size of cells, 18,502 vertices, 1, 2, 3 radii | 90 degrees | growing cells, 31,736 vertices, 1, 2, 3 radii | 90 degrees | seconds |
 //! |---|---|---|---|---|---|---|
-//! | 4 | 6, by half | 1, 9, 432 [20] | 26 | 0, 1, 529 | 96 | 0.67 |
-//! | 6 | 12, by a third | 1, 3, 209 | 26 | 0, 1, 514 | 92 | 0.95 |
-//! | 8 | 16, by a quarter | 1, 1, 153 | 31 | 0, 1, 509 | 91 | 1.20 |
+//! | 4 | 6, by half | 1, 9, 431 [17] | 25 | 0, 0, 493 | 102 | 0.71 |
+//! | 6 | 12, by a third | 1, 2, 202 | 25 | 0, 0, 425 | 94 | 1.04 |
+//! | 8 | 16, by a quarter | 1, 1, 145 | 31 | 0, 0, 413 | 93 | 1.31 |
 //!
 //! All bodies share the conductivities: where several move alike, the shares between them add up to 1.
 
