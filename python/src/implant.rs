@@ -2,21 +2,22 @@
 
 use std::collections::BTreeMap;
 
+use motet::base::Threads;
 use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside};
 use motet::remesh;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::border::{Given, parts};
-use crate::error::OrRaise;
 use crate::history::History;
 use crate::report::report;
-use crate::words::{one_of, rules, threads};
+use crate::watch::watched;
+use crate::words::{one_of, rules};
 
 /// The new mesh, its history, what was done, and whether all that was asked is reached.
 #[pyfunction]
 #[pyo3(signature = (
-    host, devices, *, inside, interface, tolerance, outside, stray, adapt, size, growth, carve, reach, min_eas, values, carry, threads
+    host, devices, *, inside, interface, tolerance, outside, stray, adapt, size, growth, carve, reach, min_eas, values, carry, threads, progress
 ))]
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
 pub(crate) fn implant<'py>(
@@ -37,6 +38,7 @@ pub(crate) fn implant<'py>(
     values: BTreeMap<String, Vec<f64>>,
     carry: BTreeMap<String, String>,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
     let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
     let inside = one_of("inside", inside, &insides)?;
@@ -59,9 +61,8 @@ pub(crate) fn implant<'py>(
         improve: remesh::Options { min_eas, ..remesh::Options::default() },
     };
     let rules = rules(&host.0, &carry)?;
-    let threads = self::threads(threads)?;
-    let made =
-        py.detach(|| motet::implant::implant(&host.0, &devices, &options, &rules, &threads)).or_raise()?;
+    let put = |threads: &Threads| motet::implant::implant(&host.0, &devices, &options, &rules, threads);
+    let made = watched(py, threads, progress, put)?;
     let Implanted { mesh, history, report: told } = made;
     let is_complete = told.is_complete();
     Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))

@@ -5,6 +5,7 @@
 //! | `arrays` | numpy arrays from lists of the library, and lists from arrays |
 //! | `border` | whole meshes across the border |
 //! | `error` | errors as Python's exceptions |
+//! | `watch` | long calls: Ctrl-C and progress |
 //! | `words` | what a call may say: patches, rules of arrays, threads |
 //! | `shapes` | meshes of the library's own |
 //! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact` | a verb or a handle each |
@@ -22,6 +23,7 @@ mod refine;
 mod remesh;
 mod report;
 mod shapes;
+mod watch;
 mod words;
 
 use pyo3::prelude::*;

@@ -13,9 +13,9 @@ use pyo3::types::PyDict;
 use serde::Serialize;
 
 use crate::border::{Given, parts};
-use crate::error::{OrRaise, input, raised};
+use crate::error::OrRaise;
 use crate::report::report;
-use crate::words::threads;
+use crate::watch::watched;
 
 /// What a call asks for; a class with these attributes on Python's side.
 #[derive(FromPyObject)]
@@ -53,8 +53,8 @@ pub(crate) fn mesh<'py>(
     surfaces: Vec<(Given, String, bool)>,
     asked: Asked,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyAny>, bool)> {
-    let threads = self::threads(threads)?;
     let role = |is_membrane| if is_membrane { Role::Membrane } else { Role::Boundary };
     let meshes: Vec<(&Mesh, Role, &str)> = surfaces
         .iter()
@@ -69,17 +69,15 @@ pub(crate) fn mesh<'py>(
             Some(joined.sizes(&each))
         }
     };
-    let repaired = match asked.repairs() {
-        Some(repairs) => py.detach(|| joined.repair(&repairs, &threads)).or_raise()?.done,
-        None => Vec::new(),
-    };
-    let preflight = py.detach(|| joined.preflight(&threads));
-    if !preflight.is_fit() {
-        let error = preflight.first_error();
-        return Err(error.map_or_else(|| input("the surfaces are not fit"), raised));
-    }
-    let options = asked.options(by_array, &joined)?;
-    let filled = py.detach(|| fill(&joined, &preflight, &options, &threads)).or_raise()?;
+    let (repaired, options, filled) = watched(py, threads, progress, |threads| {
+        let repaired = match asked.repairs() {
+            Some(repairs) => joined.repair(&repairs, threads)?.done,
+            None => Vec::new(),
+        };
+        let options = asked.options(by_array, &joined)?;
+        let filled = fill(&joined, &joined.preflight(threads), &options, threads)?;
+        Ok((repaired, options, filled))
+    })?;
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
     let is_complete = filled.is_complete(&options);
     let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
@@ -87,7 +85,7 @@ pub(crate) fn mesh<'py>(
 }
 
 impl Asked {
-    fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> PyResult<Options> {
+    fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
         let sizes = if self.is_graded || self.growth.is_some() || at_points.is_some() {
             let growth = self.growth.unwrap_or(Grading::default().growth);
             Some(Sizes::Graded(Grading { at_points, growth, largest: self.size }))
@@ -109,18 +107,18 @@ impl Asked {
         })
     }
 
-    fn layers(&self, surfaces: &Surfaces) -> PyResult<Option<Layers>> {
+    fn layers(&self, surfaces: &Surfaces) -> motet::Result<Option<Layers>> {
         if self.layers.is_none() && self.layers_on.is_empty() {
             return Ok(None);
         }
         let stack = |&(count, first, growth): &(u32, f64, f64)| {
             let stack = Stack { count, first, growth };
-            stack.check().or_raise().map(|()| stack)
+            stack.check().map(|()| stack)
         };
         let mut all = Layers { keep_prisms: self.keep_prisms, ..Layers::default() };
         all.everywhere = self.layers.as_ref().map(stack).transpose()?;
         for (patch, layers) in &self.layers_on {
-            let id = surfaces.find_patch(patch).or_raise()?;
+            let id = surfaces.find_patch(patch)?;
             all.by_patch.insert(id, stack(layers)?);
         }
         Ok(Some(all))

@@ -1,6 +1,6 @@
 //! Boundary displacement in, volume mesh out.
 
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Point, Threads, VertexId, Watch};
 use motet::motion::{
     self, BoundaryMotion, Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, Prescribed, RigidLayer,
 };
@@ -12,6 +12,7 @@ use crate::arrays::{Ids, Vectors, ids, rows, vectors, vertices};
 use crate::border::Given;
 use crate::error::{OrRaise, input, raised};
 use crate::report::report;
+use crate::watch::{beside, watched};
 use crate::words::{Facets, all_facets, threads};
 
 /// What a mover is told; a class with these attributes on Python's side.
@@ -85,11 +86,16 @@ pub(crate) struct Mover {
 #[pymethods]
 impl Mover {
     #[new]
-    fn new(py: Python<'_>, mesh: Given, asked: Asked<'_>, threads: usize) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        mesh: Given,
+        asked: Asked<'_>,
+        threads: usize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
         let options = asked.options(&mesh.0)?;
-        let threads = self::threads(threads)?;
-        let mover = py.detach(|| motion::Mover::new(&mesh.0, &options, &threads)).or_raise()?;
-        Ok(Self { mover, threads })
+        let new = |threads: &Threads| motion::Mover::new(&mesh.0, &options, threads);
+        Ok(Self { mover: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
 
     #[getter]
@@ -132,8 +138,12 @@ impl Mover {
         mut out: PyReadwriteArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
-        let certificate = py.detach(|| self.mover.advance(displacement, out, &self.threads)).or_raise()?;
-        report(py, &certificate)
+        let watch = Watch::new();
+        let threads = std::mem::take(&mut self.threads).watched(&watch);
+        let advance = |threads: &Threads| self.mover.advance(displacement, out, threads);
+        let (threads, certificate) = beside(py, &watch, threads, None, advance);
+        self.threads = threads;
+        report(py, &certificate?)
     }
 }
 
@@ -236,13 +246,14 @@ pub(crate) fn choose<'py>(
     least: Option<f64>,
     frames: Vec<Vectors<'_>>,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(String, f64, Bound<'py, PyAny>)> {
     let options = asked.options(&mesh.0)?;
     let frames: Vec<Vec<Point>> =
         frames.iter().map(|frame| Ok(rows(frame, "displacement")?.to_vec())).collect::<PyResult<_>>()?;
-    let threads = self::threads(threads)?;
     let all = || Ok(frames.iter().map(|frame| Ok(frame.clone())));
-    let choice = py.detach(|| motion::choose(&mesh.0, &options, least, all, &threads)).or_raise()?;
+    let choice =
+        watched(py, threads, progress, |threads| motion::choose(&mesh.0, &options, least, all, threads))?;
     Ok((choice.method.name().to_owned(), choice.least, report(py, &choice.tried)?))
 }
 

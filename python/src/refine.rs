@@ -20,6 +20,7 @@ use crate::border::{Given, parts};
 use crate::error::{OrRaise, input, options};
 use crate::history::History;
 use crate::report::report;
+use crate::watch::watched;
 use crate::words::{rules, threads};
 
 /// What is to be divided.
@@ -202,16 +203,14 @@ pub(crate) fn refined<'py>(
     mesh: Given,
     asked: Asked,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
-    let threads = self::threads(threads)?;
     let mut mesh = if asked.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
     let rules = rules(&mesh, &asked.carry)?;
     let conditions =
         asked.coarsen_where.iter().map(|text| text.parse().or_raise()).collect::<PyResult<_>>()?;
-    let mut criteria: Vec<refine::Criterion> = asked.criteria.into_iter().map(|c| c.0).collect();
-    let sizes = fix_sizes(&mut criteria, &mut mesh, &threads).or_raise()?;
-    let wanted = Wanted {
-        criteria,
+    let mut wanted = Wanted {
+        criteria: asked.criteria.into_iter().map(|c| c.0).collect(),
         coarsen: asked.coarsen,
         coarsen_where: conditions,
         generations: asked.generations,
@@ -223,15 +222,14 @@ pub(crate) fn refined<'py>(
         surface: asked.surface.as_ref().map(target).transpose()?,
         keeps_history: true,
     };
-    let (refinement, done) = py
-        .detach(|| {
-            let mut refinement = MeshRefinement::new(&mesh, Options::default(), &threads)?;
-            let done = refinement.reach(&wanted, &rules, &threads, |_| ())?;
-            Ok((refinement, done))
-        })
-        .or_raise()?;
-    let mut new = refinement.with_memory(&threads);
-    new.point_data.retain(|field| !sizes.contains(&field.name));
+    let (new, done) = watched(py, threads, progress, |threads| {
+        let sizes = fix_sizes(&mut wanted.criteria, &mut mesh, threads)?;
+        let mut refinement = MeshRefinement::new(&mesh, Options::default(), threads)?;
+        let done = refinement.reach(&wanted, &rules, threads, |_| ())?;
+        let mut new = refinement.with_memory(threads);
+        new.point_data.retain(|field| !sizes.contains(&field.name));
+        Ok((new, done))
+    })?;
     let told = report(py, &Told { complete: done.is_reached, steps: done.steps })?;
     let history = done.history.ok_or_else(|| input("no history was kept"))?;
     Ok((parts(py, new)?, History(history), told, done.is_reached))

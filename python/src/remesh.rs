@@ -7,10 +7,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::border::{Given, parts};
-use crate::error::OrRaise;
 use crate::history::History;
 use crate::report::report;
-use crate::words::{one_of, rules, threads};
+use crate::watch::watched;
+use crate::words::{one_of, rules};
 
 /// How long edges are to be: everywhere, or at each point.
 #[derive(FromPyObject)]
@@ -21,7 +21,7 @@ pub(crate) enum AskedSizes {
 
 /// The new mesh, its history, what was done, and whether nothing bad is left.
 #[pyfunction]
-#[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, sizes, rounds, carry, threads))]
+#[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, sizes, rounds, carry, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
 pub(crate) fn remesh<'py>(
     py: Python<'py>,
@@ -36,6 +36,7 @@ pub(crate) fn remesh<'py>(
     rounds: usize,
     carry: BTreeMap<String, String>,
     threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
     let known = [
         ("keep", SurfaceRule::Keep),
@@ -55,8 +56,7 @@ pub(crate) fn remesh<'py>(
         rounds,
     };
     let rules = rules(&mesh.0, &carry)?;
-    let threads = self::threads(threads)?;
-    let outcome = py.detach(|| remesh_mesh(&mesh.0, &options, &rules, &threads)).or_raise()?;
+    let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
     let MeshOutcome { mesh, history, report: told, .. } = outcome;
     let is_complete = told.is_complete();
     Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))

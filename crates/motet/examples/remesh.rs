@@ -5,6 +5,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use motet::base::Threads;
 use motet::geometry::quality::eas;
 use motet::kernel::Complex;
 use motet::mesh::{CellKind, Cells, Mesh, TetMesh, TetPart};
@@ -49,7 +50,7 @@ fn run(arguments: &[String]) -> motet::Result<()> {
         let [join, measure] = ground(&mesh);
         joins.push(join);
         measures.push(measure);
-        let (time, outcome) = timed(|| remesh(&mesh, &options));
+        let (time, outcome) = timed(|| remesh(&mesh, &options, &Threads::single()));
         seconds.push(time);
         last = Some(outcome?);
     }

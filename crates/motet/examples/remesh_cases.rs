@@ -12,6 +12,7 @@ mod moving_cases;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use motet::base::Threads;
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, Sizes, remesh};
 use moving_cases::channel::{repaired_as_it_moves, stretched};
@@ -61,7 +62,7 @@ fn channel(n_steps: usize) {
         "shift  paper   bad inverted    worst |   bad    worst   kept    tets  surface   volume  seconds"
     );
     for (i, state) in stretched(&mesh, &shifts).iter().enumerate() {
-        let outcome = remesh(&state.mesh, &keep()).expect("it is a mesh");
+        let outcome = remesh(&state.mesh, &keep(), &Threads::single()).expect("it is a mesh");
         let after = &outcome.extract.mesh;
         let q = quality(after);
         let is_same = boundary(&state.mesh) == boundary(after) && labelled(&state.mesh) == labelled(after);

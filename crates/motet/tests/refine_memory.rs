@@ -195,7 +195,7 @@ fn a_moved_and_remeshed_mesh_is_coarsened_where_it_was_not_touched() {
         }
     }
     fine.set_points(&bent).unwrap();
-    let outcome = remesh::remesh(fine.mesh(), &options).unwrap();
+    let outcome = remesh::remesh(fine.mesh(), &options, &Threads::single()).unwrap();
     let n_came = outcome.extract.came.len();
     println!("{} tets, {n_came} came, {:?}", fine.mesh().tets.len(), fine.summary());
     assert!(n_came > 0);

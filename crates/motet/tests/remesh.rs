@@ -125,9 +125,9 @@ proptest! {
         };
         let keep = rule > 1;
         let options = Options { surface, ..Options::default() };
-        let outcome = remesh(&mesh, &options).unwrap();
+        let outcome = remesh(&mesh, &options, &Threads::single()).unwrap();
         hold_to_the_promise(&mesh, &outcome, keep)?;
-        let again = remesh(&mesh, &options).unwrap();
+        let again = remesh(&mesh, &options, &Threads::single()).unwrap();
         prop_assert_eq!(&again.extract.mesh, &outcome.extract.mesh);
     }
 }
@@ -136,7 +136,7 @@ proptest! {
 fn a_tangle_is_untangled() {
     let mut mesh = TetPart::of(&sphere_in_box(10, 8)).unwrap().mesh;
     shake(&mut mesh, 0.5, 7);
-    let outcome = remesh(&mesh, &Options::default()).unwrap();
+    let outcome = remesh(&mesh, &Options::default(), &Threads::single()).unwrap();
     let (before, after) = (&outcome.report.before, &outcome.report.after);
     println!("{before:?}\n{after:?}\nkept {:.3}", outcome.report.kept_share);
     assert!(before.inverted > 100);
@@ -161,7 +161,7 @@ fn the_four_types_are_what_the_paper_draws() {
 fn thin_layers_stay_unless_asked() {
     for (name, mesh) in data_meshes().into_iter().filter(|(name, _)| name.contains("boundary_layer")) {
         let part = TetPart::of(&mesh).unwrap().mesh;
-        let spared = remesh(&part, &Options::default()).unwrap().report;
+        let spared = remesh(&part, &Options::default(), &Threads::single()).unwrap().report;
         println!(
             "{name}: {} thin tets stay; {} bad found, {} left",
             spared.layers, spared.before.bad, spared.after.bad
@@ -176,7 +176,7 @@ fn real_meshes_are_repaired_or_what_is_left_is_explained() {
     for (name, mesh) in data_meshes() {
         let mut part = TetPart::of(&mesh).unwrap().mesh;
         shake(&mut part, 0.45, 3);
-        let outcome = remesh(&part, &Options::default()).unwrap();
+        let outcome = remesh(&part, &Options::default(), &Threads::single()).unwrap();
         let report = &outcome.report;
         let (before, after) = (&report.before, &report.after);
         println!(
@@ -222,7 +222,7 @@ fn bad_surfaces_give_way_within_the_distance() {
         let [low, high] = motet::mesh::bounds(&part.points).unwrap();
         let allowed = 0.01 * (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
         let surface = SurfaceRule::Loose { distance: Some(allowed) };
-        let outcome = remesh(&part, &Options { surface, ..Options::default() }).unwrap();
+        let outcome = remesh(&part, &Options { surface, ..Options::default() }, &Threads::single()).unwrap();
         let (report, new) = (&outcome.report, &outcome.extract.mesh);
         let [before, after] = [&part, new].map(walls);
         let trees = [(&part, &before), (new, &after)]
@@ -247,7 +247,7 @@ fn a_narrow_gap_is_told_as_the_cause() {
     for (height, is_narrow) in [(0.01, true), (0.02, true), (0.5, false)] {
         let mesh = box_grid([4, 4, 1], [[0.0; 3], [2.0, 2.0, height]]);
         let part = TetPart::of(&mesh).unwrap();
-        let report = remesh(&part.mesh, &Options::default()).unwrap().report;
+        let report = remesh(&part.mesh, &Options::default(), &Threads::single()).unwrap().report;
         let near = report.left.iter().filter_map(|left| match left.reason {
             Reason::WallNear { degrees, best_eas } => Some((left.eas, degrees, best_eas)),
             _ => None,

@@ -3,6 +3,7 @@
 #[allow(dead_code, unreachable_pub, reason = "the example shares it, and uses other parts of it")]
 mod moving_cases;
 
+use motet::base::Threads;
 use motet::mesh::TetMesh;
 use motet::remesh::remesh;
 use moving_cases::channel::{repaired_as_it_moves, stretched};
@@ -90,7 +91,7 @@ fn a_sphere_moved_along_a_channel_leaves_no_bad_tet() {
     assert!(states.windows(2).all(|two| two[0].quality.bad < two[1].quality.bad));
     assert!(states[2].quality.bad > 100, "{}", states[2].quality.bad);
     for state in states {
-        let outcome = remesh(&state.mesh, &keep()).unwrap();
+        let outcome = remesh(&state.mesh, &keep(), &Threads::single()).unwrap();
         assert_repaired(&state.mesh, &outcome.extract.mesh);
         assert!(outcome.report.is_complete());
         assert!(outcome.report.kept_share > 0.8, "{}", outcome.report.kept_share);

@@ -6,7 +6,7 @@ mod moving_cases;
 
 use common::{data_meshes, random_mesh};
 use motet::ErrorKind;
-use motet::base::{Point, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::tet::EDGES;
 use motet::geometry::vector::distance;
 use motet::kernel::Complex;
@@ -90,7 +90,7 @@ fn tell(what: &str, outcome: &Outcome) -> Lengths {
 fn a_box_is_made_finer_and_coarser() {
     for (n, size) in [(3, 0.09), (4, 0.2), (16, 0.2), (12, 0.5)] {
         let mesh = cube(n);
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT)).unwrap();
+        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("cube of {n} to {size}"), &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -103,8 +103,8 @@ fn a_box_is_made_finer_and_coarser() {
 fn what_has_its_sizes_stays() {
     for (n, size) in [(6, 0.12), (6, 0.3), (14, 0.25)] {
         let options = asked(Sizes::Uniform(size), ADAPT);
-        let first = remesh(&cube(n), &options).unwrap();
-        let second = remesh(&first.extract.mesh, &options).unwrap();
+        let first = remesh(&cube(n), &options, &Threads::single()).unwrap();
+        let second = remesh(&first.extract.mesh, &options, &Threads::single()).unwrap();
         let after = tell("second time", &second);
         println!("    kept {:.4}", second.report.kept_share);
         // Where short edges are left, it is tried once more to make their surroundings better.
@@ -118,7 +118,7 @@ fn what_has_its_sizes_stays() {
 fn an_interface_between_regions_stays_where_it_is() {
     let mesh = membrane_mesh(0.2, 1);
     for size in [0.1, 0.45] {
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT)).unwrap();
+        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("membrane to {size}"), &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -137,7 +137,7 @@ fn sizes_may_differ_from_vertex_to_vertex() {
     // Linear, as it is between the vertices: known everywhere.
     let size = |p: Point| 0.06 + 0.3 * p[0];
     let sizes = mesh.points.iter().map(|p| size(*p)).collect();
-    let outcome = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT)).unwrap();
+    let outcome = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap();
     let after = tell("graded", &outcome);
     assert_kept(&mesh, &outcome, size);
     assert_eq!((outcome.report.after.bad, after.too_long), (0, 0));
@@ -148,7 +148,8 @@ fn sizes_may_differ_from_vertex_to_vertex() {
 fn a_surface_that_is_kept_is_kept_to_the_bit() {
     for (n, size) in [(4, 0.12), (10, 0.4)] {
         let mesh = cube(n);
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), SurfaceRule::Keep)).unwrap();
+        let outcome =
+            remesh(&mesh, &asked(Sizes::Uniform(size), SurfaceRule::Keep), &Threads::single()).unwrap();
         let after = tell("kept", &outcome);
         assert_kept(&mesh, &outcome, |_| size);
         assert_eq!(boundary(&outcome.extract.mesh), boundary(&mesh));
@@ -165,10 +166,10 @@ proptest! {
     fn any_mesh_keeps_every_invariant(seed in any::<u64>(), n in 10usize..40, size in 0.2f64..1.0, adapt in any::<bool>()) {
         let mesh = random_mesh(n, seed);
         let surface = if adapt { ADAPT } else { SurfaceRule::Keep };
-        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), surface)).unwrap();
+        let outcome = remesh(&mesh, &asked(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
         Complex::new(&outcome.extract.mesh).unwrap().verify().map_err(TestCaseError::fail)?;
         prop_assert!(quality(&outcome.extract.mesh).inverted == 0);
-        let again = remesh(&mesh, &asked(Sizes::Uniform(size), surface)).unwrap();
+        let again = remesh(&mesh, &asked(Sizes::Uniform(size), surface), &Threads::single()).unwrap();
         prop_assert_eq!(again.extract.mesh, outcome.extract.mesh);
     }
 }
@@ -177,15 +178,15 @@ proptest! {
 fn what_is_no_size_is_told_with_its_place() {
     let mesh = cube(2);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let error = remesh(&mesh, &asked(Sizes::Uniform(bad), ADAPT)).unwrap_err();
+        let error = remesh(&mesh, &asked(Sizes::Uniform(bad), ADAPT), &Threads::single()).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Options);
         assert!(error.remedy_text().is_some());
         let mut sizes = vec![0.5; mesh.points.len()];
         sizes[17] = bad;
-        let error = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT)).unwrap_err();
+        let error = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap_err();
         assert_eq!((error.kind(), error.place()), (ErrorKind::Input, Some("point 17")));
     }
-    let error = remesh(&mesh, &asked(Sizes::Vertices(vec![0.5; 3]), ADAPT)).unwrap_err();
+    let error = remesh(&mesh, &asked(Sizes::Vertices(vec![0.5; 3]), ADAPT), &Threads::single()).unwrap_err();
     assert!(error.to_string().starts_with("3 sizes for 27 points"), "{error}");
 }
 
@@ -193,7 +194,7 @@ fn what_is_no_size_is_told_with_its_place() {
 fn sizes_that_no_memory_can_hold_are_refused_at_once() {
     let mesh = cube(2);
     for size in [1e-3, 1e-9, 1e-200, f64::MIN_POSITIVE] {
-        let error = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT)).unwrap_err();
+        let error = remesh(&mesh, &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap_err();
         println!("{error}");
         assert_eq!(error.kind(), ErrorKind::Input);
         assert!(error.what().contains("at most 1.0e7"));
@@ -209,7 +210,8 @@ fn real_meshes_come_to_their_sizes() {
         let lengths = ratios(&mesh, |_| 1.0);
         let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
         for part in [0.75, 2.0] {
-            let outcome = remesh(&mesh, &asked(Sizes::Uniform(part * mean), ADAPT)).unwrap();
+            let outcome =
+                remesh(&mesh, &asked(Sizes::Uniform(part * mean), ADAPT), &Threads::single()).unwrap();
             let after = tell(&format!("{name} to {part}"), &outcome);
             assert_valid(&outcome.extract.mesh);
             assert_eq!(after.too_long, after.too_long_held);

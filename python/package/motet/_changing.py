@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from .errors import OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, point
-from ._report import Report, report
+from ._report import Progress, Report, report
 
 Carry = Literal["mean", "inherit", "drop"]
 
@@ -109,6 +109,7 @@ def remesh(
     rounds: int = 20,
     carry: Mapping[str, Carry] | None = None,
     threads: int = 0,
+    progress: Progress | None = None,
 ) -> Changed:
     """Finds the bad tets of a mesh and repairs them, and only them (after Moyle and Ventikos 2008).
 
@@ -131,6 +132,9 @@ def remesh(
         How long edges are to be.
     carry : mapping from array to {"mean", "inherit", "drop"}
         What becomes of arrays where the mesh changes.
+    progress : callable
+        Gets what is being done, how much of it is done and how much there is (0 where that is not known), some times a second. What it raises ends the
+        call and comes out of it, as Ctrl-C does; the mesh stays as it was.
 
     Returns
     -------
@@ -145,7 +149,7 @@ def remesh(
         sizes = np.asarray(sizes, np.float64).ravel().tolist()
     native = _motet.remesh(
         given, min_eas=min_eas, min_dihedral_deg=min_dihedral_deg, goal=goal, surface=surface, distance=distance, keep_layers=keep_layers,
-        sizes=sizes, rounds=rounds, carry=dict(carry or {}), threads=threads,
+        sizes=sizes, rounds=rounds, carry=dict(carry or {}), threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)
 
@@ -168,6 +172,7 @@ def implant(
     values: Mapping[str, ArrayLike] | None = None,
     carry: Mapping[str, Carry] | None = None,
     threads: int = 0,
+    progress: Progress | None = None,
 ) -> Changed:
     """Puts devices into a mesh of tets: one conforming mesh, whose regions and patches are named after the devices.
 
@@ -191,6 +196,8 @@ def implant(
         What is nearer than ``carve`` edges is replaced, what is farther than ``reach`` stays to the bit.
     values : mapping from array to its components
         What arrays begin with in the devices; what the host had there if not named.
+    progress : callable
+        As of :func:`remesh`.
 
     Returns
     -------
@@ -201,7 +208,7 @@ def implant(
         as_mesh(host), [(as_mesh(device), name) for name, device in named.items()], inside=inside, interface=interface, tolerance=tolerance,
         outside=outside, stray=stray, adapt=adapt, size=size, growth=growth, carve=carve, reach=reach, min_eas=min_eas,
         values={name: np.atleast_1d(np.asarray(value, np.float64)).tolist() for name, value in (values or {}).items()},
-        carry=dict(carry or {}), threads=threads,
+        carry=dict(carry or {}), threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)
 
@@ -256,6 +263,7 @@ def mesh(
     merge: float = 0.0,
     hole_edges: int = 32,
     threads: int = 0,
+    progress: Progress | None = None,
 ) -> Changed:
     """Fills closed surfaces with tets: every triangle is a facet of the mesh.
 
@@ -283,6 +291,8 @@ def mesh(
         Whether layers stay wedges and pyramids.
     repair, merge, hole_edges : bool, float, int
         Mends the surfaces first: duplicates, orientation, points nearer than ``merge``, holes of at most so many edges.
+    progress : callable
+        As of :func:`remesh`.
 
     Returns
     -------
@@ -305,5 +315,5 @@ def mesh(
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
         keep_prisms=keep_prisms, repair=repair, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
-    parts, told, complete = _motet.mesh(given, asked, threads)
+    parts, told, complete = _motet.mesh(given, asked, threads, progress)
     return Changed(Mesh._of(parts), None, report(told), complete)

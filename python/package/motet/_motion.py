@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
-from ._report import Report, report
+from ._report import Progress, Report, report
 
 Patch = Union[str, int, ArrayLike]
 """A patch by its name or label, or facets as an array of vertex ids, a row each."""
@@ -116,6 +116,8 @@ class Mover:
         At most so many sub-steps in :meth:`advance`.
     threads : int
         0 for all cores. The outcome does not depend on it.
+    progress : callable
+        As of :func:`remesh`, while it is set up.
 
     Raises
     ------
@@ -125,8 +127,8 @@ class Mover:
         A patch that is not there, a method that is none.
     """
 
-    def __init__(self, mesh: MeshLike, *, threads: int = 1, **options: Any):
-        self._mover = _motet.Mover(as_mesh(mesh), _asked(**options), threads)
+    def __init__(self, mesh: MeshLike, *, threads: int = 1, progress: Progress | None = None, **options: Any):
+        self._mover = _motet.Mover(as_mesh(mesh), _asked(**options), threads, progress)
         self._boundary = self._mover.boundary
         self._reference = self._mover.reference
         self._boundary.flags.writeable = self._reference.flags.writeable = False
@@ -262,6 +264,7 @@ def move(
     method: str = "delaunay",
     least: float | None = None,
     threads: int = 0,
+    progress: Progress | None = None,
     **options: Any,
 ) -> Moved:
     """Moves a mesh after its boundary, once. For motion step after step keep a :class:`Mover`.
@@ -283,6 +286,8 @@ def move(
         The bound of ``auto``: the EAS that no tet may be below. Half of the worst one that came, at most 0.1, if None.
     threads : int
         0 for all cores.
+    progress : callable
+        As of :func:`remesh`.
     **options
         As for :class:`Mover`.
 
@@ -301,17 +306,19 @@ def move(
     auto = method == "auto"
     if least is not None and not auto:
         raise OptionsError("least is a bound to choose a method by, but one is given: method='auto'")
-    first = Mover(given, method="delaunay" if auto else method, threads=threads, **options)
+    first = Mover(given, method="delaunay" if auto else method, threads=threads, progress=progress, **options)
     frames = _frames(given, first.boundary, displacement, translate, rotate, steps)
     choice = None
     if auto:
-        name, bound, tried = _motet.choose(given, _asked(method="bodies", **options), least, frames, threads)
+        name, bound, tried = _motet.choose(given, _asked(method="bodies", **options), least, frames, threads, progress)
         choice = report({"method": name, "least": bound, "tried": tried})
         if name != "delaunay":
-            first = Mover(given, method=name, threads=threads, **options)
+            first = Mover(given, method=name, threads=threads, progress=progress, **options)
     points = first.reference.copy()
     certificate = Report()
-    for frame in frames:
+    for k, frame in enumerate(frames):
+        if progress is not None:
+            progress("moving in steps", k, len(frames))
         points, certificate = first.advance(frame, points)
         if not certificate.complete:
             break

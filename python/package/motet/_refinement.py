@@ -12,7 +12,7 @@ from . import _motet
 from ._changing import Carry, Changed, History, _changed
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, point
-from ._report import Report, report
+from ._report import Progress, Report, report
 
 
 @dataclass
@@ -57,6 +57,7 @@ def refine(
     carry: Mapping[str, Carry] | None = None,
     forget: bool = False,
     threads: int = 0,
+    progress: Progress | None = None,
 ) -> Changed:
     """Divides whole tets, many generations deep, without loss of shape; and takes divisions back.
 
@@ -88,6 +89,8 @@ def refine(
         The true surface: new points of the boundary are put on it.
     forget : bool
         The mesh as it is counts as the first one.
+    progress : callable
+        As of :func:`remesh`; it is heard between generations.
 
     Returns
     -------
@@ -117,7 +120,7 @@ def refine(
         criteria, coarsen, _several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
         dict(carry or {}), forget,
     )  # fmt: skip
-    return _changed(_motet.refined(as_mesh(mesh), asked, threads))
+    return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
 
 
 def _several(words: Any) -> list:

@@ -2,7 +2,11 @@
 from __future__ import annotations
 
 import html
+from collections.abc import Callable
 from typing import Any
+
+Progress = Callable[[str, int, int], object]
+"""Gets what is being done, how much of it is done and how much there is."""
 
 
 class Report(dict):

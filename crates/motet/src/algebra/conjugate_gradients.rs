@@ -120,7 +120,7 @@ impl<B: Block> Preconditioner<B> for Sgs<B> {
 /// The same bits with any number of threads.
 ///
 /// # Errors
-/// When the tolerance is not reached within the iterations; `x` holds what was.
+/// When the tolerance is not reached within the iterations, or who watches ends it; `x` holds what was.
 pub fn conjugate_gradients<B: Block>(
     matrix: &SparseMatrix<B>,
     before: &impl Preconditioner<B>,
@@ -148,6 +148,7 @@ pub fn conjugate_gradients<B: Block>(
     let mut along = z.clone();
     let mut solved = Solved { iterations: 0, residual: (rz / of_right).sqrt() };
     while solved.residual > tolerance.residual {
+        threads.watch().go_on("solving a system", solved.iterations, 0)?;
         if solved.iterations == tolerance.iterations || !solved.residual.is_finite() {
             return Err(Error::input(format!(
                 "{} iterations left a residual of {:.1e} where {:.1e} is asked for",

@@ -17,6 +17,8 @@ pub enum ErrorKind {
     Io,
     /// A combination of options that means nothing.
     Options,
+    /// Whoever [watched](crate::base::Watch) the call ended it.
+    Stopped,
 }
 
 /// A failure, told in up to four parts.

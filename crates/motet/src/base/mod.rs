@@ -9,6 +9,7 @@ mod lanewise;
 mod mixed;
 mod sets;
 mod threads;
+mod watch;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
@@ -18,6 +19,7 @@ pub(crate) use lanewise::lanewise;
 pub(crate) use mixed::mixed;
 pub(crate) use sets::Sets;
 pub use threads::Threads;
+pub use watch::{Progress, Watch};
 
 /// Coordinates of a point, or any other vector in space.
 pub type Point = [f64; 3];

@@ -1,10 +1,10 @@
-//! How many threads a call may use: always the caller's choice, never a global pool.
+//! How many threads a call may use: always the caller's choice, never a global pool; and who watches it.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Watch};
 
 /// What a thread takes at least in one go: less is done sooner than shared out.
 const SMALLEST_PART: usize = 4096;
@@ -13,12 +13,13 @@ const SMALLEST_PART: usize = 4096;
 #[derive(Debug, Default)]
 pub struct Threads {
     pool: Option<rayon::ThreadPool>,
+    watch: Watch,
 }
 
 impl Threads {
     /// Everything runs on the calling thread.
     pub fn single() -> Self {
-        Self { pool: None }
+        Self::default()
     }
 
     /// `n` threads; 0 means one for each core that the machine offers.
@@ -31,9 +32,20 @@ impl Threads {
             return Ok(Self::single());
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build();
-        pool.map(|pool| Self { pool: Some(pool) }).map_err(|e| {
+        pool.map(|pool| Self { pool: Some(pool), ..Self::default() }).map_err(|e| {
             Error::options(format!("{n} threads could not be started: {e}")).remedy("ask for fewer")
         })
+    }
+
+    /// The same, watched: what runs on them says how far it is, and ends when the other side asks for it.
+    #[must_use]
+    pub fn watched(self, watch: &Watch) -> Self {
+        Self { watch: watch.clone(), ..self }
+    }
+
+    /// Who watches.
+    pub fn watch(&self) -> &Watch {
+        &self.watch
     }
 
     /// How many threads work.

@@ -1,6 +1,6 @@
 //! The insertion loop: find a tet in conflict, dig the cavity, fill it (Bowyer 1981; Watson 1981).
 //!
-//! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once:
+//! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once for thousands of points:
 //! everything it calls is inlined or dispatched with it. The signs are exact either way, so the results agree.
 
 use super::cavity::Cavity;
@@ -11,26 +11,26 @@ use super::input::sides;
 use super::start::first_tet;
 use super::store::{MAX_TETS, Store};
 use super::walk::walk;
-use crate::base::{Error, Point, Result};
+use crate::base::{Error, Point, Result, Watch};
 use crate::geometry::predicates::pair::U;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Triangulates distinct points. Point 0 is not used: vertex 0 is the one at infinity. The first four points span a tet. `filtered` tells
 /// whether floating-point filters may be trusted.
-pub(super) fn triangulate(points: &[Point], filtered: bool) -> Result<Store> {
+pub(super) fn triangulate(points: &[Point], filtered: bool, watch: &Watch) -> Result<Store> {
     let least = if filtered { LEAST } else { f32::INFINITY };
     // A million uniform points end with 6.77 tets a point, and 1.01 ghosts a hull facet.
     let mut store = Store::with_capacity(7 * points.len() + 64);
     first_tet(&mut store, points, least);
     let sure = if filtered { static_bound(points) } else { f64::INFINITY };
-    let fill = Fill::new(points.len(), least);
-    Arch::new().dispatch(Insertion {
-        store: &mut store,
-        points,
-        sure,
-        fill,
-        vertices: 5..points.len() as u32,
-    })?;
+    let mut fill = Fill::new(points.len(), least);
+    let (n, mut hint, arch) = (points.len() as u32, 0, Arch::new());
+    for from in (5..n).step_by(RUN as usize) {
+        watch.go_on("triangulating points", from as usize, points.len())?;
+        let vertices = from..n.min(from.saturating_add(RUN));
+        hint =
+            arch.dispatch(Insertion { store: &mut store, points, sure, fill: &mut fill, vertices, hint })?;
+    }
     Ok(store)
 }
 
@@ -40,23 +40,28 @@ fn static_bound(points: &[Point]) -> f64 {
     16.0 * U * 6.0 * (x * y * z) + f64::MIN_POSITIVE
 }
 
+/// Whoever watches is asked after so many points.
+const RUN: u32 = 8192;
+
 /// The loop and what it works on.
 struct Insertion<'a> {
     store: &'a mut Store,
     points: &'a [Point],
     sure: f64,
-    fill: Fill,
+    fill: &'a mut Fill,
     vertices: std::ops::Range<u32>,
+    /// Where to begin to look.
+    hint: u32,
 }
 
 impl WithSimd for Insertion<'_> {
-    type Output = Result<()>;
+    type Output = Result<u32>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Result<()> {
+    fn with_simd<S: Simd>(self, simd: S) -> Result<u32> {
         let mut cavity = Cavity::default();
-        let mut hint = 0;
-        for vertex in self.vertices.clone() {
+        let mut hint = self.hint;
+        for vertex in self.vertices {
             let new = Newcomer { vertex, point: self.points[vertex as usize] };
             let Some(first) = walk(simd, self.store, self.points, hint, new, self.sure) else {
                 unreachable!("the points are distinct, so each is in conflict with the tet that holds it");
@@ -67,6 +72,6 @@ impl WithSimd for Insertion<'_> {
             }
             hint = self.fill.fill(simd, self.store, self.points, &mut cavity, new);
         }
-        Ok(())
+        Ok(hint)
     }
 }

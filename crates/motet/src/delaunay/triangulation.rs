@@ -51,7 +51,7 @@ impl Triangulation {
         // Vertex 0 is the one at infinity; its point is never used but may be read.
         let vertex_to_id: Vec<u32> = std::iter::once(0).chain(order.ids.iter().copied()).collect();
         let sorted: Vec<Point> = vertex_to_id.iter().map(|&id| scaled.points[id as usize]).collect();
-        let store = triangulate(&sorted, scaled.filtered)?;
+        let store = triangulate(&sorted, scaled.filtered, threads.watch())?;
         let Finished { tets, neighbors, hull } = finish(store, &vertex_to_id, threads);
         let duplicates = order.duplicates.iter().map(|&(d, kept)| (VertexId(d), VertexId(kept))).collect();
         Ok((Self { points: points.to_vec(), tets, neighbors, hull, duplicates }, vertex_to_id))

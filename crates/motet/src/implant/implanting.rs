@@ -84,7 +84,7 @@ pub fn implant(
 
     let mut draft = Draft::new(&part.mesh, &carved, &gap);
     let stray = options.stray.unwrap_or_else(|| STRAY * joined.size());
-    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray)?;
+    report.improved = draft.improve(&part.mesh, &carved, &gap, &options.improve, stray, threads)?;
     report.kept = draft.is_gone.iter().filter(|is_gone| !**is_gone).count();
     report.host_tets = part.mesh.tets.len();
     report.kept_share = report.kept as f64 / report.host_tets.max(1) as f64;
@@ -140,6 +140,7 @@ fn room(
     let nearest = NearestTriangle::new(&devices.points, &devices.triangles, threads);
     let mut carve = options.carve;
     for _ in 0..=RETRIES {
+        threads.watch().go_on("making room for devices", 0, 0)?;
         let carved = Carved::new(&part.mesh, devices, &nearest, carve, options, threads);
         report.seconds.carve += lap();
         let gap = Gap::fill(&part.mesh, devices, &carved, options, threads)?;

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashSet};
 
 use super::carve::{Carved, Fate};
 use super::gap::{Gap, Owner, Patch};
-use crate::base::{Id, Point, Result, VertexId, rising};
+use crate::base::{Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -60,6 +60,7 @@ impl Draft {
         gap: &Gap,
         options: &Options,
         stray: f64,
+        threads: &Threads,
     ) -> Result<remesh::Report> {
         let near: Vec<usize> = (0..host.tets.len()).filter(|&t| carved.fates[t] == Fate::Near).collect();
         let regions: Vec<Owner> = regions(&self.owners, host, &near);
@@ -79,7 +80,7 @@ impl Draft {
             }
         };
         let options = Options { surface, sizes: None, ..options.clone() };
-        let outcome = remesh(&zone.mesh, &options)?;
+        let outcome = remesh(&zone.mesh, &options, threads)?;
         let (extract, n_came) = (outcome.extract, self.tets.len());
         let mut to_result = Vec::with_capacity(extract.mesh.points.len());
         for (point, &old) in extract.mesh.points.iter().zip(&extract.vertex_to_old) {

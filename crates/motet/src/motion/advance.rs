@@ -27,6 +27,12 @@ pub(crate) struct State {
     map: Option<Map>,
 }
 
+impl State {
+    fn without_map(&self) -> Self {
+        Self { points: self.points.clone(), driven: self.driven.clone(), map: None }
+    }
+}
+
 /// Halvings of the part of the way that is still admissible: 1/4096 of it.
 const HALVINGS: usize = 12;
 
@@ -39,8 +45,8 @@ impl Mover {
     /// call could not move at all from a start that has such cells.
     ///
     /// # Errors
-    /// As [`Self::step`]. A motion that does not get all the way is no error: see
-    /// [`Certificate::complete`].
+    /// As [`Self::step`], and the next call begins where this one began. A motion that does not
+    /// get all the way is no error: see [`Certificate::complete`].
     pub fn advance(
         &mut self,
         displacement: &[Point],
@@ -65,21 +71,12 @@ impl Mover {
         } else {
             certificate.blocked_by = self.check.cells_of(&turned);
             certificate.blocked_by.truncate(10);
-            certificate.admissible_fraction = self.admissible_in_one_step(
-                displacement,
-                out,
-                threads,
-                &mut certificate.iterations,
-                &mut seconds,
-            )?;
-            let from_reference = self.state.is_none();
-            self.go_on(displacement, out, threads, &mut certificate, &mut seconds)?;
-            if from_reference && certificate.fraction < certificate.admissible_fraction {
-                certificate.fraction = certificate.admissible_fraction;
-                let work = self.go_in_one_step(displacement, certificate.fraction, out, threads)?;
-                certificate.iterations += work.iterations;
-                certificate.smoothed = work.smoothed;
+            let before = self.state.as_ref().map(State::without_map);
+            let gone = self.go_as_far_as_can_be(displacement, out, threads, &mut certificate, &mut seconds);
+            if gone.is_err() {
+                self.state = before;
             }
+            gone?;
         }
         self.certify(out, &mut certificate, threads, &mut seconds);
         seconds.total = begin.elapsed().as_secs_f64();
@@ -138,6 +135,27 @@ impl Mover {
         })
     }
 
+    fn go_as_far_as_can_be(
+        &mut self,
+        target: &[Point],
+        out: &mut [Point],
+        threads: &Threads,
+        certificate: &mut Certificate,
+        seconds: &mut Seconds,
+    ) -> Result<()> {
+        certificate.admissible_fraction =
+            self.admissible_in_one_step(target, out, threads, &mut certificate.iterations, seconds)?;
+        let from_reference = self.state.is_none();
+        self.go_on(target, out, threads, certificate, seconds)?;
+        if from_reference && certificate.fraction < certificate.admissible_fraction {
+            certificate.fraction = certificate.admissible_fraction;
+            let work = self.go_in_one_step(target, certificate.fraction, out, threads)?;
+            certificate.iterations += work.iterations;
+            certificate.smoothed = work.smoothed;
+        }
+        Ok(())
+    }
+
     fn go_on(
         &mut self,
         target: &[Point],
@@ -154,6 +172,7 @@ impl Mover {
         let mut left = 1.0;
         certificate.complete = false;
         while certificate.substeps < self.limits.substeps {
+            threads.watch().go_on("moving in parts", certificate.substeps, self.limits.substeps)?;
             if state.map.is_none() {
                 state.map = Some(timed(&mut seconds.graph, || self.rebuild(&state.points, threads))?);
             }

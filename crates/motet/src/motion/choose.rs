@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::base::{Point, Result, Threads};
+use crate::base::{ErrorKind, Point, Result, Threads};
 use crate::mesh::Mesh;
 use crate::motion::certificate::{Certificate, Worst};
 use crate::motion::mover::Mover;
@@ -64,11 +64,14 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     let mut choice = Choice { method: Method::Delaunay, least: least.unwrap_or(LEAST), tried: Vec::new() };
     let mut best: Option<f64> = None;
     let mut refusal = None;
-    for method in ladder {
+    let n_methods = ladder.len();
+    for (k, method) in ladder.into_iter().enumerate() {
+        threads.watch().go_on("trying methods", k, n_methods)?;
         let begin = Instant::now();
         let mut tried =
             Tried { method: method.name(), kept: false, frames: 0, worst: None, refused: None, seconds: 0.0 };
         match Mover::new(mesh, &Options { method: method.clone(), ..options.clone() }, threads) {
+            Err(error) if error.kind() == ErrorKind::Stopped => return Err(error),
             Err(error) => {
                 tried.refused = Some(error.what().to_string());
                 refusal = Some(error);
@@ -112,6 +115,7 @@ impl Tried {
         for displacement in frames {
             let certificate = match mover.advance(&displacement?, &mut points, threads) {
                 Ok(certificate) => certificate,
+                Err(error) if error.kind() == ErrorKind::Stopped => return Err(error),
                 Err(error) => {
                     (self.kept, self.refused) = (false, Some(error.what().to_string()));
                     break;

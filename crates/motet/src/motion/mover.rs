@@ -154,6 +154,7 @@ impl Mover {
             state: None,
             setup,
         };
+        threads.watch().go_on("setting a motion up", 0, 0)?;
         match mover.method {
             Method::Delaunay | Method::Bodies(_) | Method::Guided => {
                 mover.hang_reference(&is_used, threads)?;

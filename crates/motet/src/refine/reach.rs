@@ -100,7 +100,8 @@ impl MeshRefinement {
     /// Takes back what is no longer wanted, then divides, generation after generation; `told` gets each step as it is done.
     ///
     /// # Errors
-    /// When nothing is marked at all, a criterion names what the mesh has not, or more tets are wanted than there are ids. What was done before stays done.
+    /// When nothing is marked at all, a criterion names what the mesh has not, more tets are wanted than there are ids, or who watches ends it. What was done
+    /// before stays done.
     pub fn reach(
         &mut self,
         wanted: &Wanted,
@@ -136,6 +137,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         }
         for generation in 0.. {
             let Some(active) = self.active(generation) else { break };
+            let most = if active.iter().any(Criterion::lasts) { 0 } else { wanted.most_generations() };
+            self.threads.watch().go_on("refining", generation as usize, most as usize)?;
             let wishes = self.wishes(&active)?;
             let (n_wished, marks) = (marked(&wishes[0]).len(), marked(&wishes[1]));
             if generation == 0 && n_wished == 0 && !wanted.goes_back() {
@@ -185,6 +188,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
     /// Takes back, level after level, what no criterion needs; one level where nothing says how far.
     fn take_back(&mut self) -> Result<()> {
         loop {
+            self.threads.watch().go_on("taking divisions back", 0, 0)?;
             let free = self.free(&self.refinement.part())?;
             let before = self.refinement.mesh().cells.len();
             let begin = Instant::now();

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::base::{Result, TetId};
+use crate::base::{Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds};
 use crate::remesh::layers::Layers;
@@ -23,41 +23,43 @@ pub struct Outcome {
     pub report: Report,
 }
 
-/// Repairs the bad tets of a mesh, and only those; where [`Options::sizes`] are asked for, edges are brought to them, too.
+/// Repairs the bad tets of a mesh, and only those; where [`Options::sizes`] are asked for, edges are brought to them, too. One thread works.
 ///
 /// # Errors
 /// When the mesh is not one (see [`Complex::new`]), when a size is none, and when a mesh of the sizes would have far too many tets: more than ten million and
 /// more than 100 times as many as `mesh`, or more than 2^28.
-pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
-    let mut watch = Watch(Instant::now());
+pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Outcome> {
+    let mut clock = Clock(Instant::now());
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
     let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     let mut complex = Complex::new(mesh)?;
     let surface = adaptable(&mut complex, mesh, options);
-    report.seconds.join = watch.lap();
+    report.seconds.join = clock.lap();
 
     let mut bad = complex.below(min_eas);
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
     let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh));
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
-    let mut repair = Repair::new(complex, surface, min_eas);
+    let mut repair = Repair::new(complex, surface, min_eas, threads.watch());
     let mut left = match (field, most_tets) {
-        (Some(field), Some(most_tets)) => repair.bring_to_sizes(Sizing { field, most_tets }, options.rounds),
-        _ => repair.run(bad, options.rounds),
+        (Some(field), Some(most_tets)) => {
+            repair.bring_to_sizes(Sizing { field, most_tets }, options.rounds)?
+        }
+        _ => repair.run(bad, options.rounds)?,
     };
     for pass in passes(options.surface) {
         if !left.is_empty() {
-            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds));
+            left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
         }
     }
     // With sizes it is they that say which vertices are close.
-    if repair.sizing.is_none() && repair.thin() {
+    if repair.sizing.is_none() && repair.thin()? {
         left = repair.below(min_eas);
     }
     if options.goal == Goal::Best {
-        repair.best(options.rounds);
+        repair.best(options.rounds)?;
         left = repair.below(min_eas);
     }
     report.operations = repair.operations;
@@ -65,14 +67,14 @@ pub fn remesh(mesh: &TetMesh, options: &Options) -> Result<Outcome> {
     report.sizes = lengths_before
         .zip(sizing)
         .map(|(before, mut sizing)| SizesReport { before, after: Lengths::of(&complex, &mut sizing.field) });
-    report.seconds.repair = watch.lap();
+    report.seconds.repair = clock.lap();
 
     let extract = complex.extract(mesh);
     report.after = State::of(&complex, &left, |t| extract.tet(t));
     report.kept = mesh.tets.len() - extract.gone_tets.len();
     report.kept_share = report.kept as f64 / mesh.tets.len().max(1) as f64;
     report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
-    report.seconds.extract = watch.lap();
+    report.seconds.extract = clock.lap();
     Ok(Outcome { extract, report })
 }
 
@@ -105,9 +107,9 @@ fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option
 }
 
 /// Tells the time since it was last asked.
-struct Watch(Instant);
+struct Clock(Instant);
 
-impl Watch {
+impl Clock {
     fn lap(&mut self) -> f64 {
         let now = Instant::now();
         now.duration_since(std::mem::replace(&mut self.0, now)).as_secs_f64()

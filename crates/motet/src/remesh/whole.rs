@@ -34,7 +34,7 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
     let taken_out = begin.elapsed().as_secs_f64();
-    let outcome = remesh(&part.mesh, options).map_err(|error| part.at_cell(error))?;
+    let outcome = remesh(&part.mesh, options, threads).map_err(|error| part.at_cell(error))?;
     let mut report = outcome.report;
 
     let begin = Instant::now();

@@ -1,6 +1,6 @@
 //! Figure 11 of the paper: a sphere moves along a channel.
 
-use motet::base::Point;
+use motet::base::{Point, Threads};
 use motet::geometry::vector::{add, scale};
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, Report, remesh};
@@ -61,7 +61,7 @@ pub fn repaired_as_it_moves(
     for i in 1..=n {
         let displacement = harmonic(&mesh, &told(&mesh, [step, 0.0, 0.0]));
         let moved = moved(&mesh, &displacement, 1.0);
-        let outcome = remesh(&moved, options).expect("it is a mesh");
+        let outcome = remesh(&moved, options, &Threads::single()).expect("it is a mesh");
         let step =
             Step { shift: i as f64 * step, moved, repaired: outcome.extract.mesh, report: outcome.report };
         see(&step);

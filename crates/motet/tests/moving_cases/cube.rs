@@ -1,6 +1,6 @@
 //! A cube that is distorted and brought back, again and again: every vertex goes where the map of the cube takes it.
 
-use motet::base::{Point, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, Reason, Report, remesh};
 
@@ -115,7 +115,7 @@ pub fn cycle(
             *p = distortion.map(distortion.back(*p, old), part);
         }
         let before = quality(mesh);
-        let outcome = remesh(mesh, adapt).expect("it is a mesh");
+        let outcome = remesh(mesh, adapt, &Threads::single()).expect("it is a mesh");
         *mesh = outcome.extract.mesh;
         let after = quality(mesh);
         let mut reasons = [0; 3];

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use motet::base::{Point, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::add;
 use motet::mesh::TetMesh;
 use motet::remesh::{Options, SurfaceRule, remesh};
@@ -127,10 +127,10 @@ pub fn cycle(
         let before = quality(&moved);
         cycle.most_bad = cycle.most_bad.max(before.bad);
         cycle.most_inverted = cycle.most_inverted.max(before.inverted);
-        *mesh = remesh(&moved, keep).expect("it is a mesh").extract.mesh;
+        *mesh = remesh(&moved, keep, &Threads::single()).expect("it is a mesh").extract.mesh;
         if quality(mesh).bad > 0 {
             cycle.n_adapted += 1;
-            *mesh = remesh(mesh, &adapt).expect("it is a mesh").extract.mesh;
+            *mesh = remesh(mesh, &adapt, &Threads::single()).expect("it is a mesh").extract.mesh;
         }
         let after = quality(mesh);
         cycle.n_left += after.bad;

@@ -164,5 +164,5 @@ fn divide(scatter: &mut Scatter, size: &dyn Fn(Point) -> f64, from: Point, to: P
 
 /// Rid of slivers, and no more: what any generator of meshes does before it hands one out.
 pub fn prepared(mesh: &TetMesh) -> TetMesh {
-    remesh(mesh, &super::keep()).expect("it is a mesh").extract.mesh
+    remesh(mesh, &super::keep(), &Threads::single()).expect("it is a mesh").extract.mesh
 }

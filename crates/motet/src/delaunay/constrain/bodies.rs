@@ -86,5 +86,5 @@ fn lost(triangle: u32) -> Unmade {
     let error = Error::input("a part of the surface is no facet of tets")
         .at(format!("triangle {triangle}"))
         .remedy("look for triangles that cross or touch it");
-    Unmade { what: Part::Triangle(triangle), error }
+    Unmade { what: Some(Part::Triangle(triangle)), error }
 }

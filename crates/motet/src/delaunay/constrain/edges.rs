@@ -94,7 +94,10 @@ impl<'a> Edges<'a> {
         let mut missing = self.segments.missing(self.tets);
         missing.sort_by_key(|&edge| order.rank(|part| part == Part::Edge(edge)));
         let mut queue = VecDeque::from(missing);
+        let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
+            order.watch.go_on("making edges of the surface", n_made, n_made + queue.len())?;
+            n_made += 1;
             let mut spare = None;
             while self.way.find(self.tets, self.sites, piece) {
                 let n = self.way.facets.len();

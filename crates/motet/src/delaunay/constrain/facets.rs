@@ -34,7 +34,8 @@ pub(super) fn recover(
     let mut all_parts = vec![Vec::new(); flats.triangles.len()];
     let mut in_line: Vec<usize> = (0..flats.triangles.len()).collect();
     in_line.sort_by_key(|&i| order.rank(|part| flats.has(i, part)));
-    for i in in_line {
+    for (n_made, i) in in_line.into_iter().enumerate() {
+        order.watch.go_on("making facets of the surface", n_made, all_parts.len())?;
         let flat = flats.triangles.list(i);
         let first = triangles[flat[0] as usize];
         let all = flat.iter().map(|&i| triangles[i as usize]);
@@ -66,7 +67,7 @@ fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unmade {
         Error::input(format!("the triangle of points {a}, {b} and {c} could not be made facets of tets"))
             .at(format!("triangle {i}, at {:?}", corners[0]))
             .remedy("look for triangles that cross or touch it");
-    Unmade { what: Part::Triangle(i), error }
+    Unmade { what: Some(Part::Triangle(i)), error }
 }
 
 /// The edges and facets of the surface that are there.

@@ -13,7 +13,7 @@ use super::recone::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
 use super::tets::Tets;
-use crate::base::{Csr, Point, TetId, VertexId, rising};
+use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, rising};
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
@@ -52,7 +52,7 @@ impl<'a> Keep<'a> {
     }
 
     /// Puts all right that can be; answers the facets of each flat facet, and whether all of those have their triangles.
-    pub(super) fn run(mut self, segments: &Segments) -> (Csr<[VertexId; 3]>, bool) {
+    pub(super) fn run(mut self, segments: &Segments, watch: &Watch) -> Result<(Csr<[VertexId; 3]>, bool)> {
         let on_segments = segments.points(self.sites);
         let mut chains: Vec<(u32, Vec<VertexId>)> = (0..on_segments.len() as u32)
             .map(|s| (s, on_segments.list(s as usize).to_vec()))
@@ -63,7 +63,9 @@ impl<'a> Keep<'a> {
         // What has no room at first may have some once its neighbours have moved.
         for _ in 0..ROUNDS {
             in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
-            for (segment, points) in &mut chains {
+            let n_chains = chains.len();
+            for (i, (segment, points)) in chains.iter_mut().enumerate() {
+                watch.go_on("moving points off edges", i, n_chains)?;
                 self.free_all(segments.ends(SegmentId(*segment)), points);
             }
             chains.retain(|(_, points)| !points.is_empty());
@@ -75,7 +77,7 @@ impl<'a> Keep<'a> {
         }
         let mut csr = Csr::default();
         lists.into_iter().for_each(|list| csr.push(list));
-        (csr, is_whole)
+        Ok((csr, is_whole))
     }
 
     /// Moves the points of a segment inside, those that can be; the others are left in the list.

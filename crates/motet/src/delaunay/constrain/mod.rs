@@ -140,7 +140,7 @@ pub fn constrain(
         let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &sorted));
         Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
-    let fill = |flats: &Flats| Order::retried(moves, |order| fill(flats, order));
+    let fill = |flats: &Flats| Order::retried(moves, threads.watch(), |order| fill(flats, order));
     let sites = Sites::new(given.clone(), &sorted);
     let flats = Flats::find(&sites, triangles, moves);
     let has_merged = flats.triangles.len() < triangles.len();
@@ -255,14 +255,14 @@ impl Filled {
         if is_kept {
             Edges::new(&mut tets, &mut sites, &mut segments).recover(order)?;
         } else {
-            segments.recover(&mut tets, &mut sites)?;
+            segments.recover(&mut tets, &mut sites, &order.watch)?;
         }
         let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept, order)?;
         let mut bodies = Bodies::find(&mut tets, &flats, &parts, VertexId::new(n_points))?;
         let mut is_whole = true;
         if is_kept {
             let keep = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
-            (parts, is_whole) = keep.run(&segments);
+            (parts, is_whole) = keep.run(&segments, &order.watch)?;
         }
         Ok(Self { tets, sites, segments, flats, bodies, parts, is_whole })
     }

@@ -19,7 +19,7 @@ use super::share::Share;
 use super::sites::{OnSegment, Place, SegmentId, Sites};
 use super::tets::Tets;
 use super::unmade::{Part, Unmade};
-use crate::base::{Csr, Error, TetId, VertexId, rising};
+use crate::base::{Csr, Error, TetId, VertexId, Watch, rising};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
@@ -113,11 +113,19 @@ impl Segments {
     }
 
     /// Divides segments until all pieces are edges of tets.
-    pub(super) fn recover(&mut self, tets: &mut Tets, sites: &mut Sites) -> Result<(), Unmade> {
+    pub(super) fn recover(
+        &mut self,
+        tets: &mut Tets,
+        sites: &mut Sites,
+        watch: &Watch,
+    ) -> Result<(), Unmade> {
         let mut queue: VecDeque<[VertexId; 2]> = self.missing(tets).into();
         let most = SPARE_POINTS + POINTS_A_SEGMENT * self.ends.len();
         let (mut insertion, mut star) = (Insertion::default(), Vec::new());
+        let mut n_made = 0;
         while let Some(piece) = queue.pop_front() {
+            watch.go_on("making edges of the surface", n_made, n_made + queue.len())?;
+            n_made += 1;
             let Some(&segment) = self.pieces.get(&piece) else { continue };
             if tets.find_edge(piece, &mut star).is_some() {
                 continue;
@@ -146,7 +154,7 @@ impl Segments {
         let error = Error::input(format!("the edge of points {a} and {b} {why}"))
             .at(format!("the edge from {:?} to {:?}", sites.near(a), sites.near(b)))
             .remedy("make the triangles there less stretched, or the surface keep farther from itself");
-        Unmade { what: Part::Edge([a, b]), error }
+        Unmade { what: Some(Part::Edge([a, b])), error }
     }
 
     /// The segments that are no edges of tets; rising.

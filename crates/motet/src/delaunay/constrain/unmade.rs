@@ -1,7 +1,7 @@
 //! What could not be made is made first the next time, or last: what stands in its way may do so only because it came before, or does not
 //! stand there yet.
 
-use crate::base::{Error, VertexId};
+use crate::base::{Error, VertexId, Watch};
 
 /// So often it is begun anew.
 const MOST: usize = 8;
@@ -9,8 +9,15 @@ const MOST: usize = 8;
 /// An edge or a triangle of the surface that could not be made, and why.
 #[derive(Debug)]
 pub(super) struct Unmade {
-    pub(super) what: Part,
+    /// `None` where nothing stands in the way but the word of who watches.
+    pub(super) what: Option<Part>,
     pub(super) error: Error,
+}
+
+impl From<Error> for Unmade {
+    fn from(error: Error) -> Self {
+        Self { what: None, error }
+    }
 }
 
 /// A part of the surface.
@@ -22,13 +29,14 @@ pub(super) enum Part {
     Triangle(u32),
 }
 
-/// What is made out of line.
+/// What is made out of line, and who watches.
 #[derive(Debug, Default)]
 pub(super) struct Order {
     /// Before all else, latest failure first.
     first: Vec<Part>,
     /// After all else.
     last: Vec<Part>,
+    pub(super) watch: Watch,
 }
 
 impl Order {
@@ -36,18 +44,18 @@ impl Order {
     /// only where the order does not matter.
     pub(super) fn retried<T>(
         matters: bool,
+        watch: &Watch,
         mut work: impl FnMut(&Self) -> Result<T, Unmade>,
     ) -> Result<T, Error> {
-        let mut order = Self::default();
+        let mut order = Self { watch: watch.clone(), ..Self::default() };
         let mut n_retries = 0;
         loop {
             let Unmade { what, error } = match work(&order) {
                 Ok(done) => return Ok(done),
                 Err(unmade) => unmade,
             };
-            if !matters || n_retries == MOST || order.last.contains(&what) {
-                return Err(error);
-            }
+            let is_hopeless = |what: &Part| !matters || n_retries == MOST || order.last.contains(what);
+            let Some(what) = what.filter(|what| !is_hopeless(what)) else { return Err(error) };
             let was_first = order.first.first() == Some(&what);
             order.first.retain(|part| *part != what);
             if was_first {

@@ -75,7 +75,8 @@ pub(super) fn resurface(
         return Err(Error::input(what).at("its surface").remedy(remedy));
     }
     let mut best: Option<(Skin, Fit)> = None;
-    for _ in 0..TRIES {
+    for k in 0..TRIES {
+        threads.watch().go_on("making a surface anew", k, TRIES)?;
         let lattice = Cubes::near(&old.surface, edge).lattice();
         let skin = Skin::new(lattice, &old, threads);
         let fit = old.fit(&skin, tolerance, threads);

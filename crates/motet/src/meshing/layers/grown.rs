@@ -67,7 +67,7 @@ impl<'a> Grown<'a> {
         let core = build(surfaces, &sides, &skin, &heights, &slide);
         let blames = vec![0; skin.points.len()];
         let mut grown = Self { surfaces, sides, skin, around, slide, rims, heights, blames, rounds: 0, core };
-        grown.settle(threads);
+        grown.settle(threads)?;
         Ok(grown)
     }
 
@@ -76,11 +76,12 @@ impl<'a> Grown<'a> {
     }
 
     /// Makes layers thinner until nothing is off.
-    fn settle(&mut self, threads: &Threads) {
+    fn settle(&mut self, threads: &Threads) -> Result<()> {
         loop {
+            threads.watch().go_on("finding room for layers", self.rounds, 0)?;
             let blamed = tangles(&self.skin, &self.columns(), &self.core, &self.rims, threads);
             if blamed.is_empty() {
-                return;
+                return Ok(());
             }
             self.give_way(&blamed);
         }
@@ -124,7 +125,7 @@ impl<'a> Grown<'a> {
                 return Ok((filled, told));
             }
             self.give_way(&blamed);
-            self.settle(threads);
+            self.settle(threads)?;
         }
     }
 

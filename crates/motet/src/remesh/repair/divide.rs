@@ -1,6 +1,6 @@
 //! Tets that nothing else helps are divided, as long as that leaves fewer of them.
 
-use crate::base::{TetId, VertexId};
+use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
 use crate::ops::split_edge;
@@ -19,7 +19,7 @@ impl Repair {
     /// Divides what nothing else helps: the longest edge in the neighbourhood of each of `left` is split, again and again, with repairs between, as long as
     /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
     /// of the surface, which are too long for where they are.
-    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+    pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         let mut best = (left.clone(), self.complex.mark(), self.operations);
         let mut n_in_vain = 0;
         let most_tets = MOST_GROWTH * self.complex.n_tets();
@@ -32,7 +32,7 @@ impl Repair {
                 bad.append(&mut self.came_bad);
             }
             bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
-            left = self.run(bad, rounds);
+            left = self.run(bad, rounds)?;
             n_in_vain += 1;
             if left.len() < best.0.len() {
                 if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
@@ -44,7 +44,7 @@ impl Repair {
         self.complex.undo(best.1);
         self.operations = best.2;
         self.complex.forget();
-        best.0
+        Ok(best.0)
     }
 
     /// Splits the edge that the path of longest edges from a tet leads to: one that is the longest of every tet round it (Rivara 1984 and

@@ -10,7 +10,7 @@ mod tried;
 
 pub(super) use sizing::Sizing;
 
-use crate::base::TetId;
+use crate::base::{Result, TetId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Smoothing};
 use crate::remesh::left::{forced, is_forced};
@@ -69,10 +69,11 @@ pub(super) struct Repair {
     came_bad: Vec<TetId>,
     /// What this run has tried in vain.
     tried: Tried,
+    watch: Watch,
 }
 
 impl Repair {
-    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64) -> Self {
+    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64, watch: &Watch) -> Self {
         Self {
             complex,
             operations: Counts::default(),
@@ -89,6 +90,7 @@ impl Repair {
             shells: Default::default(),
             came_bad: Vec::new(),
             tried: Tried::nothing(),
+            watch: watch.clone(),
         }
     }
 
@@ -96,11 +98,11 @@ impl Repair {
     ///
     /// Where it does not get on, what lies round those that are left is made better first: a change that would repair one
     /// is often held up by a neighbour that is hardly better.
-    pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+    pub(super) fn run(&mut self, mut bad: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         self.tried = Tried::of(self.target);
         let (mut asked, mut before) = (WIDER.iter(), None);
         for _ in 0..rounds {
-            let is_on = self.round(&mut bad);
+            let is_on = self.round(&mut bad)?;
             if bad.is_empty() {
                 break;
             }
@@ -116,22 +118,22 @@ impl Repair {
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
             before = Some(bad.len());
-            self.improve_around(&bad, self.target + more);
+            self.improve_around(&bad, self.target + more)?;
         }
         self.tried = Tried::nothing();
         bad.append(&mut self.came_bad);
         bad.retain(|&t| self.is_bad(t));
         self.sort(&mut bad);
-        bad
+        Ok(bad)
     }
 
     /// Makes one pass over the bad tets that are left; those that are left then.
-    pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Vec<TetId> {
+    pub(super) fn pass(&mut self, pass: Pass, left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
         if let (Some(surface), Pass::Soften(crease)) = (&mut self.surface, pass) {
             surface.hold_features(&mut self.complex, crease);
         }
-        let left = if pass == Pass::Divide { left } else { self.run(left, rounds) };
-        if pass == Pass::Again { left } else { self.divide(left, rounds) }
+        let left = if pass == Pass::Divide { left } else { self.run(left, rounds)? };
+        if pass == Pass::Again { Ok(left) } else { self.divide(left, rounds) }
     }
 
     /// Makes a pass over what is left while tets that are as good as the walls at them allow count as good: these can get no better, and
@@ -139,45 +141,47 @@ impl Repair {
     pub(super) fn beside_forced(
         &mut self,
         left: &[TetId],
-        pass: impl Fn(&mut Self, Vec<TetId>) -> Vec<TetId>,
-    ) -> Vec<TetId> {
+        pass: impl Fn(&mut Self, Vec<TetId>) -> Result<Vec<TetId>>,
+    ) -> Result<Vec<TetId>> {
         let forced = forced(&self.complex, self.surface.as_ref(), left);
         if forced.is_empty() {
             return pass(self, left.to_vec());
         }
         self.complex.spare(forced);
-        pass(self, left.to_vec());
+        pass(self, left.to_vec())?;
         self.complex.spare(Vec::new());
-        self.below(self.target)
+        Ok(self.below(self.target))
     }
 
     /// Makes the worst tets as good as they get: the target rises until it is out of reach everywhere.
-    pub(super) fn best(&mut self, rounds: usize) {
+    pub(super) fn best(&mut self, rounds: usize) -> Result<()> {
         for target in BEST {
             self.target = target.max(self.target);
             self.n_stages = FIRST_STAGES;
             let bad = self.below(self.target);
-            self.run(bad, rounds);
+            self.run(bad, rounds)?;
         }
+        Ok(())
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
-    fn round(&mut self, bad: &mut Vec<TetId>) -> bool {
+    fn round(&mut self, bad: &mut Vec<TetId>) -> Result<bool> {
         bad.retain(|&t| self.is_bad(t));
         self.sort(bad);
         let mut is_on = false;
-        for &tet in bad.iter() {
+        for (i, &tet) in bad.iter().enumerate() {
             if self.is_bad(tet) {
+                self.watch.go_on("repairing tets", i, bad.len())?;
                 is_on |= self.repair(tet);
             }
         }
         bad.append(&mut self.came_bad);
         bad.retain(|&t| self.is_bad(t));
-        is_on
+        Ok(is_on)
     }
 
     /// Improves the tets that share a vertex with a bad one, up to a higher target.
-    fn improve_around(&mut self, bad: &[TetId], target: f64) {
+    fn improve_around(&mut self, bad: &[TetId], target: f64) -> Result<()> {
         let mut around = Vec::new();
         for &tet in bad {
             for vertex in self.complex.vertices(tet) {
@@ -187,10 +191,11 @@ impl Repair {
         }
         let usual = std::mem::replace(&mut self.target, target);
         around.retain(|&t| self.is_bad(t));
-        self.round(&mut around);
+        self.round(&mut around)?;
         self.target = usual;
         around.retain(|&t| self.is_bad(t));
         self.came_bad.append(&mut around);
+        Ok(())
     }
 
     fn sort(&self, bad: &mut Vec<TetId>) {

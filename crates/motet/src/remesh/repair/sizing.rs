@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{TetId, VertexId};
+use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
@@ -52,17 +52,17 @@ impl Repair {
     ///
     /// A short edge is often kept by a neighbour that is hardly better than bad: where no more can be collapsed, what lies round the short ones is made
     /// better.
-    pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Vec<TetId> {
+    pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
         self.sizing = Some(sizing);
         let (mut asked, mut before) = (WIDER.iter(), usize::MAX);
         for _ in 0..rounds {
-            let n_made = self.with_sizing(Self::split_long) + self.with_sizing(Self::collapse_short);
+            let n_made = self.with_sizing(Self::split_long)? + self.with_sizing(Self::collapse_short)?;
             let mut bad = self.below(self.target);
             for n_stages in [FIRST_STAGES, STAGES.len()] {
                 self.n_stages = n_stages;
-                self.round(&mut bad);
+                self.round(&mut bad)?;
             }
-            let short = self.with_sizing(|repair, sizing| repair.short_edges(&mut sizing.field));
+            let short = self.with_sizing(|repair, sizing| Ok(repair.short_edges(&mut sizing.field)))?;
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
             }
@@ -71,32 +71,36 @@ impl Repair {
             }
             let Some(more) = asked.next().filter(|_| !short.is_empty()) else { break };
             let tets: Vec<TetId> = short.iter().map(|edge| edge.tet).collect();
-            self.improve_around(&tets, self.target + more);
+            self.improve_around(&tets, self.target + more)?;
         }
-        let mut left = self.run(self.below(self.target), rounds);
+        let mut left = self.run(self.below(self.target), rounds)?;
         // To be bad is worse than to be short.
         if !left.is_empty() {
             self.sizing.iter_mut().for_each(|sizing| sizing.field.may_shorten = true);
-            left = self.run(left, rounds);
+            left = self.run(left, rounds)?;
         }
-        left
+        Ok(left)
     }
 
-    fn with_sizing<T: Default>(&mut self, work: impl FnOnce(&mut Self, &mut Sizing) -> T) -> T {
-        let Some(mut sizing) = self.sizing.take() else { return T::default() };
+    fn with_sizing<T: Default>(
+        &mut self,
+        work: impl FnOnce(&mut Self, &mut Sizing) -> Result<T>,
+    ) -> Result<T> {
+        let Some(mut sizing) = self.sizing.take() else { return Ok(T::default()) };
         let done = work(self, &mut sizing);
         self.sizing = Some(sizing);
         done
     }
 
     /// Splits edges that are too long in their middles, the longest first, until none is left that may be; how many there were.
-    fn split_long(&mut self, sizing: &mut Sizing) -> usize {
+    fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio| ratio > LONG));
         let (mut n_split, mut change, mut came) = (0, Change::default(), Vec::new());
         while let Some(edge) = long.pop() {
             if self.complex.n_tets() > sizing.most_tets {
                 break;
             }
+            self.watch.go_on("splitting long edges", n_split, n_split + long.len())?;
             // Nothing but its own split takes an edge away.
             let Some(tet) = self.tet_at(edge) else { continue };
             let Some(middle) = self.split(tet, edge.ends, &mut change, &mut came) else { continue };
@@ -111,7 +115,7 @@ impl Repair {
                 }
             }
         }
-        n_split
+        Ok(n_split)
     }
 
     /// Splits an edge in its middle if the tets that come are good enough; the new vertex.
@@ -145,7 +149,7 @@ impl Repair {
 
     /// Collapses edges that are too short, the shortest first, where that brings no edge that is too long and no tet that is bad and worse than
     /// the worst that was there; how many there were.
-    fn collapse_short(&mut self, sizing: &mut Sizing) -> usize {
+    fn collapse_short(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let (mut n_collapsed, mut came) = (0, Vec::new());
         // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
         let mut has_news = vec![true; self.complex.n_vertex_slots()];
@@ -153,7 +157,11 @@ impl Repair {
             let short = self.short_edges(&mut sizing.field);
             let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
-            for &edge in short.iter().filter(|edge| edge.ends.iter().any(|v| had_news[v.index()])) {
+            for (i, &edge) in short.iter().enumerate() {
+                if !edge.ends.iter().any(|v| had_news[v.index()]) {
+                    continue;
+                }
+                self.watch.go_on("collapsing short edges", i, short.len())?;
                 // One that was collapsed has taken others with it.
                 let Some(tet) = self.tet_at(edge) else { continue };
                 if self.collapse_to_size(tet, edge.ends, &mut sizing.field, &mut came) {
@@ -164,7 +172,7 @@ impl Repair {
             }
             n_collapsed += n_now;
             if n_now as f64 <= ENOUGH * short.len() as f64 {
-                return n_collapsed;
+                return Ok(n_collapsed);
             }
         }
     }

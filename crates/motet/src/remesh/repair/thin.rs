@@ -3,7 +3,7 @@
 //! A repair may split an edge that a later one could have done without. Were such vertices left, a mesh that is moved and repaired again and again
 //! would grow faster than need be.
 
-use crate::base::{TetId, VertexId};
+use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::kernel::Change;
@@ -17,15 +17,17 @@ const CLOSE: f64 = 0.7;
 
 impl Repair {
     /// Collapses each vertex that came and is close to others, latest first, where that leaves no bad tet; whether there were any.
-    pub(in crate::remesh) fn thin(&mut self) -> bool {
+    pub(in crate::remesh) fn thin(&mut self) -> Result<bool> {
         let mut came = Vec::new();
-        for vertex in (0..self.complex.n_vertex_slots()).rev().map(VertexId::new) {
+        let n_slots = self.complex.n_vertex_slots();
+        for vertex in (0..n_slots).rev().map(VertexId::new) {
+            self.watch.go_on("taking vertices out", n_slots - vertex.index(), n_slots)?;
             if self.complex.has_come(vertex) && self.complex.is_used(vertex) && self.closeness(vertex) < CLOSE
             {
                 self.take_out(vertex, &mut came);
             }
         }
-        !came.is_empty()
+        Ok(!came.is_empty())
     }
 
     /// The mean length of the edges at a vertex, as a part of that of the edges round it.

@@ -1,0 +1,68 @@
+//! Long calls: work goes on beside, on a thread of its own, while the one that called listens for Ctrl-C and tells how far it is.
+
+use std::panic::resume_unwind;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
+
+use motet::base::{Progress, Threads, Watch};
+use pyo3::prelude::*;
+
+use crate::error::OrRaise;
+use crate::words::threads;
+
+/// How often it listens.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// What comes of `work`, which gets `n_threads` that are watched. Meanwhile other threads of Python go on, and `progress` is called with the stage, what is
+/// done and what there is to do. What `progress` raises, or a handler of a signal, ends the work and is raised.
+pub(crate) fn watched<T: Send>(
+    py: Python<'_>,
+    n_threads: usize,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Threads) -> motet::Result<T> + Send,
+) -> PyResult<T> {
+    let watch = Watch::new();
+    beside(py, &watch, threads(n_threads)?.watched(&watch), progress, |threads| work(threads)).1
+}
+
+/// The same with threads that are handed back.
+pub(crate) fn beside<T: Send>(
+    py: Python<'_>,
+    watch: &Watch,
+    threads: Threads,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(&Threads) -> motet::Result<T> + Send,
+) -> (Threads, PyResult<T>) {
+    let progress = progress.map(|progress| progress.clone().unbind());
+    py.detach(|| {
+        thread::scope(|scope| {
+            let (done, is_done) = channel::<()>();
+            let worker = scope.spawn(move || {
+                let _done = done;
+                let outcome = work(&threads);
+                (threads, outcome)
+            });
+            let (mut raised, mut told) = (None, Progress::default());
+            while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+                if raised.is_none() {
+                    raised = Python::attach(|py| listen(py, progress.as_ref(), watch, &mut told)).err();
+                    raised.iter().for_each(|_| watch.stop());
+                }
+            }
+            let (threads, outcome) = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
+            (threads, raised.map_or_else(|| outcome.or_raise(), Err))
+        })
+    })
+}
+
+/// Handles signals, and tells how far the work is, if it has got on since.
+fn listen(py: Python<'_>, progress: Option<&Py<PyAny>>, watch: &Watch, told: &mut Progress) -> PyResult<()> {
+    py.check_signals()?;
+    let now = watch.progress();
+    if let Some(progress) = progress.filter(|_| now != *told) {
+        *told = now;
+        progress.call1(py, (now.stage, now.done, now.of))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+"""Long calls: what they are at is told, what is raised meanwhile ends them, other threads go on."""
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import motet
+from motet import shapes
+
+BOX = shapes.box((8, 8, 8))
+BALL = shapes.sphere_in_box(16)
+STENT = shapes.stent(radius=0.2, length=1.0, rings=3)
+STENT.points = STENT.points + [0.5, 0.5, 0.2]
+
+LONG = {
+    "remesh": (motet.remesh, BOX, {"sizes": 0.03}),
+    "mesh": (motet.mesh, shapes.aneurysm(around=64), {"size": 0.05}),
+    "implant": (motet.implant, shapes.box((24, 24, 24), high=(1, 1, 1.4)), {"devices": STENT}),
+    "refine": (motet.refine, BOX, {"size": 0.02}),
+    "mover": (motet.Mover, BALL, {"method": "elastic", "factor_gib": 1.0}),
+    "choose": (motet.move, BALL, {"method": "auto", "displacement": 0.4 * np.sin(7 * BALL.points[:, [1, 2, 0]]), "steps": 4}),
+}
+
+
+class Enough(Exception):
+    pass
+
+
+@pytest.mark.parametrize("verb", LONG)
+def test_what_it_is_at_is_told_and_may_end_it(verb):
+    call, mesh, words = LONG[verb]
+    came, told = mesh.copy(), []
+
+    def enough(stage, done, of):
+        told.append((stage, done, of))
+        raise Enough
+
+    with pytest.raises(Enough):
+        call(mesh, **words, progress=enough)
+    [(stage, done, of)] = told
+    assert stage and done >= 0 and (of == 0 or done <= of)
+    np.testing.assert_array_equal(mesh.points, came.points)
+    np.testing.assert_array_equal(mesh.connectivity, came.connectivity)
+
+
+def test_what_comes_out_does_not_depend_on_who_looks():
+    told = []
+    watched = motet.remesh(BOX, sizes=0.06, progress=lambda *words: told.append(words))
+    assert {stage for stage, *_ in told} <= {"splitting long edges", "collapsing short edges", "repairing tets", "taking vertices out"} and told
+    np.testing.assert_array_equal(watched.mesh.points, motet.remesh(BOX, sizes=0.06).mesh.points)
+
+
+def test_other_threads_go_on():
+    is_over, n = threading.Event(), 0
+
+    def count():
+        nonlocal n
+        while not is_over.wait(0.01):
+            n += 1
+
+    other = threading.Thread(target=count)
+    other.start()
+    begin = time.perf_counter()
+    motet.remesh(BOX, sizes=0.06)
+    seconds = time.perf_counter() - begin
+    is_over.set()
+    other.join()
+    assert n > 20 * seconds
+
+
+def test_ctrl_c_ends_it():
+    script = "import motet\nprint('here', flush=True)\nmotet.remesh(motet.shapes.box((8, 8, 8)), sizes=0.012)"
+    running = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    running.stdout.readline()
+    time.sleep(0.5)
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=20)
+    assert running.returncode != 0 and "KeyboardInterrupt" in told
+
+
+def test_a_mover_that_was_stopped_goes_on_where_it_was():
+    mover = motet.Mover(BALL, method="laplace", residual=1e-13)
+    far = np.zeros((len(mover.boundary), 3))
+    size = np.abs(BALL.points).max()
+    far[np.linalg.norm(BALL.points[mover.boundary], axis=1) < 0.9 * size, 0] = 0.9 * size
+
+    def stop(*_):
+        raise Enough
+
+    before = signal.signal(signal.SIGALRM, stop)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.15)
+        with pytest.raises(Enough):
+            while True:
+                mover.advance(far)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    near = 0.1 * far
+    points, certificate = mover.advance(near)
+    assert certificate.complete
+    # An iterated solution depends on where it began, within its residual.
+    np.testing.assert_allclose(points, mover.step(near), atol=1e-11)
