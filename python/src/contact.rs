@@ -2,13 +2,12 @@
 
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{self, Body, Gaps, NONE, Options};
-use motet::mesh::Surface;
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyDict;
 use serde::Serialize;
 
-use crate::arrays::{Vectors, ids, rows, vectors};
+use crate::arrays::{Vectors, ids, rows, table, vectors};
 use crate::border::Given;
 use crate::error::{OrRaise, input};
 use crate::report::report;
@@ -158,20 +157,20 @@ fn signed<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyArray1<i64>> {
     PyArray1::from_vec(py, ids.iter().map(|&id| if id == NONE { -1 } else { id.into() }).collect())
 }
 
-/// The triangles of a mesh's surface cells; of a mesh without any those of its boundary. With each the cell that it is of and its patch.
+/// The surfaces of a mesh by their names: patches, or all of it. Points of the mesh begin at `first`.
 #[pyfunction]
-pub(crate) fn surface<'py>(py: Python<'py>, mesh: Given) -> PyResult<Bound<'py, PyDict>> {
-    let mut surface = Surface::of(&mesh.0);
-    if surface.triangles.is_empty() {
-        surface = Surface::boundary_of(&mesh.0);
-    }
-    let all = PyDict::new(py);
-    let flat: Vec<u32> = surface.triangles.as_flattened().iter().map(|v| v.0).collect();
-    all.set_item("triangles", crate::arrays::table(py, flat, 3)?)?;
-    all.set_item("cells", ids(py, surface.triangle_to_cell))?;
-    all.set_item("patches", PyArray1::from_vec(py, surface.patches))?;
-    let labels = mesh.0.patches();
-    let names = labels.iter().flat_map(|labels| labels.used().into_iter().map(|id| (labels.name(id), id)));
-    all.set_item("names", PyList::new(py, names.collect::<Vec<_>>())?)?;
-    Ok(all)
+pub(crate) fn bodies<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    name: &str,
+    patches: Vec<String>,
+    first: usize,
+) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    let bodies = Body::of_mesh(&mesh.0, name, &patches, first);
+    let bodies = bodies.map_err(|error| error.at(format!("surface {name}"))).or_raise()?;
+    let one = |(body, _): (Body, _)| {
+        let flat: Vec<u32> = body.triangles.as_flattened().iter().map(|v| v.0).collect();
+        Ok((body.name, table(py, flat, 3)?.into_any()))
+    };
+    bodies.into_iter().map(one).collect()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
 use motet::io::{self, WriteOptions};
-use motet::mesh::Summary;
+use motet::mesh::{CellKind, Summary};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -26,6 +26,12 @@ pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>
 #[pyfunction]
 pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: Given) -> PyResult<Vec<String>> {
     py.detach(|| io::write(&path, &mesh.0, &WriteOptions::default())).or_raise()
+}
+
+/// The names of kinds of cells, and VTK's numbers of them.
+#[pyfunction]
+pub(crate) fn cell_kinds() -> BTreeMap<&'static str, u8> {
+    CellKind::NAMED.iter().filter_map(|kind| Some((kind.name()?, kind.0))).collect()
 }
 
 /// The times and files of a series.

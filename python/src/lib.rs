@@ -33,9 +33,9 @@ mod _motet {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use crate::contact::{Contact, surface};
+    use crate::contact::{Contact, bodies};
     #[pymodule_export]
-    use crate::files::{formats, quality, read, read_series, summary, write};
+    use crate::files::{cell_kinds, formats, quality, read, read_series, summary, write};
     #[pymodule_export]
     use crate::history::History;
     #[pymodule_export]

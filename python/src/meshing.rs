@@ -3,9 +3,8 @@
 use std::collections::BTreeMap;
 
 use motet::base::Point;
-use motet::delaunay::EdgePoints;
 use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{Grading, Options, Seed, Sizes, Surfaces, fill, sizes_by};
+use motet::meshing::{Options, Seed, Sizes, Surfaces, fill, sizes_by};
 use motet::preflight::{Repair, Repairs, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;
@@ -86,24 +85,13 @@ pub(crate) fn mesh<'py>(
 
 impl Asked {
     fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
-        let sizes = if self.is_graded || self.growth.is_some() || at_points.is_some() {
-            let growth = self.growth.unwrap_or(Grading::default().growth);
-            Some(Sizes::Graded(Grading { at_points, growth, largest: self.size }))
-        } else {
-            self.size.map(Sizes::Uniform)
-        };
-        let improve = self.min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
+        let sizes = Sizes::of(self.size, self.is_graded, self.growth, at_points);
+        let seed = |(place, name): &(Point, String)| Seed { place: *place, name: name.clone() };
         Ok(Options {
-            edge_points: EdgePoints::MoveInside,
-            sizes,
-            seeds: self
-                .seeds
-                .iter()
-                .map(|(place, name)| Seed { place: *place, name: name.clone() })
-                .collect(),
+            seeds: self.seeds.iter().map(seed).collect(),
             holes: self.holes.clone(),
-            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
             layers: self.layers(surfaces)?,
+            ..Options::with_sizes(sizes, self.min_eas)
         })
     }
 
@@ -125,12 +113,6 @@ impl Asked {
     }
 
     fn repairs(&self) -> Option<Repairs> {
-        self.repair.then_some(Repairs {
-            merge: Some(self.merge),
-            drop_degenerate: true,
-            drop_duplicates: true,
-            orient: true,
-            close_holes: Some(self.hole_edges),
-        })
+        self.repair.then(|| Repairs::all(self.merge, self.hole_edges))
     }
 }

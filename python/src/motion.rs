@@ -1,16 +1,16 @@
 //! Boundary displacement in, volume mesh out.
 
+use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::motion::{
-    self, BoundaryMotion, Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, Prescribed, RigidLayer,
+    self, BoundaryMotion, Extent, FacetSet, Limits, Method, MethodWords, Options, Prescribed, RigidLayer,
 };
-use motet::{Error, Mesh};
 use numpy::{PyArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays::{Ids, Vectors, ids, rows, vectors, vertices};
 use crate::border::Given;
-use crate::error::{OrRaise, input, raised};
+use crate::error::{OrRaise, input};
 use crate::report::report;
 use crate::watch::{beside, watched};
 use crate::words::{Facets, all_facets, threads};
@@ -54,25 +54,8 @@ impl Asked<'_> {
 
     fn method(&self, mesh: &Mesh, wall: Option<FacetSet>) -> PyResult<Method> {
         let bodies = all_facets(mesh, &self.bodies)?;
-        let factor_bytes = (self.factor_gib * (1u64 << 30) as f64) as u64;
-        let mut elastic = Elastic { factor_bytes, ..Elastic::default() };
-        elastic.tolerance.residual = self.residual;
-        let laplace = Laplace { wall, tolerance: elastic.tolerance, factor_bytes, ..Laplace::default() };
-        let known = [
-            Method::Delaunay,
-            Method::Bodies(bodies),
-            Method::Guided,
-            Method::Elastic(elastic),
-            Method::Laplace(laplace),
-            Method::InverseDistance,
-            Method::Radial,
-        ];
-        let names: Vec<&str> = known.iter().map(Method::name).collect();
-        let remedy = format!("give one of {}", names.join(", "));
-        let asked = known.into_iter().find(|method| method.name() == self.method);
-        asked.ok_or_else(|| {
-            raised(Error::options(format!("method={:?} means nothing", self.method)).remedy(remedy))
-        })
+        let (residual, factor_gib) = (self.residual, self.factor_gib);
+        Method::of_name(&self.method, MethodWords { bodies, wall, residual, factor_gib }).or_raise()
     }
 }
 
@@ -211,10 +194,8 @@ pub(crate) fn prescribed<'py>(
     let mut asked = BoundaryMotion::still(&boundary);
     for (word, motions) in &motions {
         let set = crate::words::facets(&mesh, word)?;
-        let mut all: Vec<Prescribed> =
-            motions.iter().map(|motion| of(motion, &mesh, &set.vertices)).collect();
-        let motion = if all.len() == 1 { all.remove(0) } else { Prescribed::Sequence(all) };
-        asked.follow(&set.vertices, motion).or_raise()?;
+        let all = motions.iter().map(|motion| of(motion, &mesh, &set.vertices)).collect();
+        asked.follow(&set.vertices, Prescribed::sequence(all)).or_raise()?;
     }
     fractions.iter().map(|&f| Ok(vectors(py, asked.displacements(&mesh.points, f))?.into_any())).collect()
 }
@@ -225,16 +206,9 @@ fn of(motion: &Motion, mesh: &Mesh, vertices: &[VertexId]) -> Prescribed {
         Motion::Turn((axis, degrees, centre)) => Prescribed::Turn {
             axis,
             angle: degrees.to_radians(),
-            centre: centre.unwrap_or_else(|| middle(mesh, vertices)),
+            centre: centre.unwrap_or_else(|| Prescribed::middle(&mesh.points, vertices)),
         },
     }
-}
-
-/// The middle of the box around some vertices.
-fn middle(mesh: &Mesh, vertices: &[VertexId]) -> Point {
-    let points: Vec<Point> = vertices.iter().map(|v| mesh.points[v.index()]).collect();
-    let [low, high] = motet::mesh::bounds(&points).unwrap_or_default();
-    [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
 }
 
 /// The cheapest method that keeps the worst cell at a bound on all of these displacements, and what was tried.
@@ -270,12 +244,13 @@ pub(crate) fn mesh_velocity<'py>(
     Ok(vectors(py, velocity)?.into_any())
 }
 
-/// The vertices of the boundary, of patches or of all of it.
+/// The vertices of patches, rising.
 #[pyfunction]
 pub(crate) fn patch_vertices<'py>(
     py: Python<'py>,
     mesh: Given,
-    patch: Facets<'_>,
+    patches: Vec<Facets<'_>>,
 ) -> PyResult<Bound<'py, PyArray1<u32>>> {
-    Ok(ids(py, crate::words::facets(&mesh.0, &patch)?.vertices))
+    let joined = FacetSet::joined(all_facets(&mesh.0, &patches)?);
+    Ok(ids(py, joined.map_or_else(Vec::new, |set| set.vertices)))
 }

@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 
-use motet::delaunay::EdgePoints;
 use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Outside, implant};
 use motet::mesh::history::{History, Rule, Rules};
 use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{self, Grading, Surfaces, fill};
+use motet::meshing::{self, Surfaces, fill};
 use motet::preflight::{Repairs, Role};
 use motet::remesh::{Goal, MeshOutcome, SurfaceRule, remesh_mesh};
 use motet::{Error, Mesh, Result, implant, remesh};
@@ -352,25 +351,10 @@ pub(crate) unsafe extern "C" fn motet_fill_options_init(options: *mut MotetFillO
 
 impl MotetFillOptions {
     fn options(&self) -> Result<meshing::Options> {
-        let largest = given(self.edge_length);
-        let growth = given(self.growth);
-        let sizes = match self.graded != 0 || growth.is_some() {
-            true => Some(meshing::Sizes::Graded(Grading {
-                at_points: None,
-                growth: growth.unwrap_or(Grading::default().growth),
-                largest,
-            })),
-            false => largest.map(meshing::Sizes::Uniform),
-        };
-        let improve = given(self.min_eas).or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
-        Ok(meshing::Options {
-            edge_points: EdgePoints::MoveInside,
-            sizes,
-            seeds: Vec::new(),
-            holes: Vec::new(),
-            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
-            layers: self.layers()?,
-        })
+        let (largest, growth) = (given(self.edge_length), given(self.growth));
+        let sizes = meshing::Sizes::of(largest, self.graded != 0, growth, None);
+        let layers = self.layers()?;
+        Ok(meshing::Options { layers, ..meshing::Options::with_sizes(sizes, given(self.min_eas)) })
     }
 
     fn layers(&self) -> Result<Option<Layers>> {
@@ -410,14 +394,7 @@ pub(crate) unsafe extern "C" fn motet_fill(
         let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
         let mut surfaces = Surfaces::new(&all)?;
         if asked.repair != 0 {
-            let repairs = Repairs {
-                merge: Some(0.0),
-                drop_degenerate: true,
-                drop_duplicates: true,
-                orient: true,
-                close_holes: Some(MOST_HOLE_EDGES),
-            };
-            surfaces.repair(&repairs, &threads)?;
+            surfaces.repair(&Repairs::all(0.0, MOST_HOLE_EDGES), &threads)?;
         }
         let preflight = surfaces.preflight(&threads);
         if !preflight.is_fit() {

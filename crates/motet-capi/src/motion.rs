@@ -5,7 +5,7 @@ use std::ptr;
 
 use motet::base::Threads;
 use motet::motion::{
-    Certificate, Elastic, Extent, FacetSet, Laplace, Limits, Method, Mover, Options, PointMover, RigidLayer,
+    Certificate, Extent, FacetSet, Limits, Method, MethodWords, Mover, Options, PointMover, RigidLayer,
 };
 use motet::{Error, Mesh, Result};
 
@@ -110,24 +110,12 @@ impl MotetMoverOptions {
     }
 
     fn method(&self, wall: Option<FacetSet>, bodies: Vec<FacetSet>) -> Result<Method> {
-        let factor_bytes = (self.factor_gib * (1u64 << 30) as f64) as u64;
-        let mut elastic = Elastic { factor_bytes, ..Elastic::default() };
-        elastic.tolerance.residual = self.residual;
-        let laplace = Laplace { wall, tolerance: elastic.tolerance, factor_bytes, ..Laplace::default() };
-        Ok(match self.method {
-            0 => Method::Delaunay,
-            1 => Method::Bodies(bodies),
-            2 => Method::Guided,
-            3 => Method::Elastic(elastic),
-            4 => Method::Laplace(laplace),
-            5 => Method::InverseDistance,
-            6 => Method::Radial,
-            other => {
-                return Err(
-                    Error::options(format!("there is no method {other}")).remedy("MOTET_DELAUNAY is 0")
-                );
-            }
-        })
+        let (residual, factor_gib) = (self.residual, self.factor_gib);
+        let all = Method::all(MethodWords { bodies, wall, residual, factor_gib });
+        // The header numbers them in this order.
+        let asked = usize::try_from(self.method).ok().and_then(|k| all.into_iter().nth(k));
+        let what = || format!("there is no method {}", self.method);
+        asked.ok_or_else(|| Error::options(what()).remedy("MOTET_DELAUNAY is 0"))
     }
 }
 

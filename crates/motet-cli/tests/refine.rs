@@ -171,7 +171,7 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused(&["--size", "1e-9"], 3, "ids suffice");
     refused(&["--near", "absent.stl=1"], 3, "absent.stl");
     refused(&["--ball", "1,2,3"], 2, "--ball");
-    refused(&["--region", "nowhere"], 3, "nowhere");
+    refused(&["--region", "nowhere"], 2, "nowhere");
     refused(&["--all", "--history", "lumen.vtu"], 2, "lumen.vtu");
     // Arrays of a memory that is of another mesh.
     let mut wrong = lumen();

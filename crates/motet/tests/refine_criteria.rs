@@ -199,8 +199,10 @@ fn what_is_not_there_is_told_with_what_is() {
         (hessian(&["p", "nothing"], Aim::RangePart(0.1)), ["no array `nothing`", "point arrays"]),
         (hessian(&[], Aim::Error(1.0)), ["need an array", "second derivatives"]),
     ] {
-        // Numbers are words of the call; what is in the mesh is not.
-        let kind = if criterion.check().is_err() { ErrorKind::Options } else { ErrorKind::Input };
+        // Numbers and patches are words of the call; what arrays hold is not.
+        let is_place = matches!(criterion, Criterion::Region(_) | Criterion::Patch { .. });
+        let is_word = is_place || criterion.check().is_err();
+        let kind = if is_word { ErrorKind::Options } else { ErrorKind::Input };
         let error = refused(criterion);
         let told = error.to_string();
         assert!(parts.iter().all(|part| told.contains(part)), "{told}");

@@ -1,10 +1,8 @@
 """Verbs that change a mesh: bad tets repaired, devices implanted, surfaces filled."""
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -12,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
 from .errors import OptionsError
-from ._mesh import Mesh, MeshLike, as_mesh, point
+from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._report import Progress, Report, report
 
 Carry = Literal["mean", "inherit", "drop"]
@@ -203,27 +201,14 @@ def implant(
     -------
     Changed
     """
-    named = devices if isinstance(devices, Mapping) else _named(devices)
+    by_name = named(devices, "device")
     native = _motet.implant(
-        as_mesh(host), [(as_mesh(device), name) for name, device in named.items()], inside=inside, interface=interface, tolerance=tolerance,
+        as_mesh(host), [(as_mesh(device), name) for name, device in by_name.items()], inside=inside, interface=interface, tolerance=tolerance,
         outside=outside, stray=stray, adapt=adapt, size=size, growth=growth, carve=carve, reach=reach, min_eas=min_eas,
         values={name: np.atleast_1d(np.asarray(value, np.float64)).tolist() for name, value in (values or {}).items()},
         carry=dict(carry or {}), threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)
-
-
-def _named(meshes: Any, word: str = "device") -> dict[str, Any]:
-    """Meshes by names, each once: those of files, else the word."""
-    several = meshes if isinstance(meshes, (list, tuple)) else [meshes]
-    named: dict[str, Any] = {}
-    for mesh in several:
-        base = Path(mesh).stem if isinstance(mesh, (str, os.PathLike)) else word
-        name, k = base, 2
-        while name in named:
-            name, k = f"{base}_{k}", k + 1
-        named[name] = mesh
-    return named
 
 
 Layers = tuple[int, float, float]
@@ -306,9 +291,8 @@ def mesh(
     """
     if isinstance(size, str) and size != "auto":
         raise OptionsError(f"size={size!r} means nothing: a length is expected, or 'auto'")
-    named = surfaces if isinstance(surfaces, Mapping) else _named(surfaces, "surface")
-    given = [(as_mesh(one), name, False) for name, one in named.items()]
-    given += [(as_mesh(one), name, True) for name, one in _named(list(membranes), "membrane").items()]
+    given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
+    given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
     asked = _Filling(
         size=None if size == "auto" else size, is_graded=size == "auto", growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,

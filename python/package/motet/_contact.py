@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
-from ._changing import _named
 from .errors import OptionsError
-from ._mesh import Mesh, MeshLike, as_mesh
+from ._mesh import MeshLike, as_mesh, named
 from ._report import Report, report
 
 
@@ -93,12 +92,11 @@ class Contact:
         fold: float = 3.0,
         threads: int = 0,
     ):
-        named = surfaces if isinstance(surfaces, Mapping) else _named(surfaces, "surface")
         points, bodies = [], []
         shift = 0
-        for name, one in named.items():
+        for name, one in named(surfaces, "surface").items():
             mesh = as_mesh(one)
-            bodies += _bodies(mesh, name, patches, shift)
+            bodies += _motet.bodies(mesh, name, [str(patch) for patch in patches], shift)
             points.append(mesh.points)
             shift += mesh.n_points
         strange = set(room) - {name for name, _ in bodies}
@@ -132,21 +130,3 @@ class Contact:
 
 def _ahead(told: dict) -> Ahead:
     return Ahead(report(told["first"]), told["times"])
-
-
-def _bodies(mesh: Mesh, name: str, patches: Sequence[str | int], shift: int) -> list[tuple[str, NDArray[np.uint32]]]:
-    surface = _motet.surface(mesh)
-    triangles = surface["triangles"] + np.uint32(shift)
-    if not len(triangles):
-        raise OptionsError(f"{name} has no surface: neither surface cells nor volume cells with a boundary")
-    if not patches:
-        return [(name, triangles)]
-    labels = dict(surface["names"])
-    bodies = []
-    for patch in patches:
-        label = labels.get(patch, patch)
-        chosen = surface["patches"] == label if isinstance(label, (int, np.integer)) else np.zeros(len(triangles), bool)
-        if not chosen.any():
-            raise OptionsError(f"{name} has no patch {patch!r}; it has {', '.join(labels) or 'none'}")
-        bodies.append((str(patch), np.ascontiguousarray(triangles[chosen])))
-    return bodies

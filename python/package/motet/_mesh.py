@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Union
 
 import numpy as np
@@ -12,12 +13,8 @@ from . import _motet
 from .errors import InputError
 from ._report import Report, report
 
-# Names of kinds of cells, as meshio has them, by VTK's numbers.
-KINDS = {
-    "vertex": 1, "line": 3, "triangle": 5, "polygon": 7, "quad": 9, "tetra": 10, "hexahedron": 12, "wedge": 13, "pyramid": 14,
-    "line3": 21, "triangle6": 22, "quad8": 23, "tetra10": 24, "hexahedron20": 25, "wedge15": 26, "pyramid13": 27, "quad9": 28,
-    "hexahedron27": 29, "polyhedron": 42,
-}  # fmt: skip
+# Names of kinds of cells, as meshio has them, and VTK's numbers.
+KINDS = _motet.cell_kinds()
 NAMES = {number: name for name, number in KINDS.items()}
 # Kinds by how many vertices a row has, where only an array is given.
 BY_COLUMNS = {2: "line", 3: "triangle", 4: "tetra"}
@@ -156,7 +153,7 @@ class Mesh:
 
     def patch_vertices(self, patch: str | int) -> NDArray[np.uint32]:
         """The vertices of a patch, by its name or label, rising."""
-        return _motet.patch_vertices(self, patch)
+        return _motet.patch_vertices(self, [patch])
 
     @classmethod
     def from_meshio(cls, mesh: Any) -> Mesh:
@@ -222,6 +219,21 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     if hasattr(mesh, "points") and hasattr(mesh, "cells_dict"):
         return from_meshio(mesh)
     raise InputError(f"{type(mesh).__name__} is no mesh: a motet.Mesh, a path, a meshio.Mesh or a data set of PyVista is expected")
+
+
+def named(meshes: Any, word: str) -> Mapping[str, Any]:
+    """Meshes by names, each once: those that they come with, those of files, else the word."""
+    if isinstance(meshes, Mapping):
+        return meshes
+    several = meshes if isinstance(meshes, (list, tuple)) else [meshes]
+    by_name: dict[str, Any] = {}
+    for mesh in several:
+        base = Path(mesh).stem if isinstance(mesh, (str, os.PathLike)) else word
+        name, k = base, 2
+        while name in by_name:
+            name, k = f"{base}_{k}", k + 1
+        by_name[name] = mesh
+    return by_name
 
 
 def ids(array: ArrayLike, what: str) -> NDArray[np.uint32]:

@@ -299,10 +299,10 @@ def move(
     given = as_mesh(mesh)
     if steps < 1:
         raise OptionsError(f"{steps} steps, expected 1 or more")
-    named = [_motet.patch_vertices(given, _facet(patch)) for patch in {**(translate or {}), **(rotate or {})}]
-    inside = [*named, *([] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")])]
-    if inside:
-        options["also_moved"] = np.unique(np.concatenate(inside))
+    told = {**(translate or {}), **(rotate or {})}
+    if told:
+        also = [] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")]
+        options["also_moved"] = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(told))), *also]))
     auto = method == "auto"
     if least is not None and not auto:
         raise OptionsError("least is a bound to choose a method by, but one is given: method='auto'")

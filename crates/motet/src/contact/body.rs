@@ -2,10 +2,10 @@
 
 use super::input::{check_finite, vertices_of};
 use super::side::Side;
-use crate::base::{Csr, Point, Result, Threads, VertexId};
+use crate::base::{CellId, Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::dot;
-use crate::mesh::cone_volume;
+use crate::mesh::{Mesh, Surface, cone_volume};
 use crate::spatial::NearestTriangle;
 
 /// A surface by its triangles over the points that all bodies share. Open or closed, in one piece or many.
@@ -17,6 +17,41 @@ pub struct Body {
     pub triangles: Vec<[VertexId; 3]>,
     /// The body is the wall of a room, such as a vessel, and others are within: the sign of its distances is turned.
     pub is_room: bool,
+}
+
+impl Body {
+    /// Surfaces of a mesh, each with the cells that its triangles are of: the patches that `patches` name, else all its surface cells as one that is called
+    /// `name`; of a mesh without surface cells its boundary. Where points of several meshes are one list, those of this one begin at `first`.
+    ///
+    /// # Errors
+    /// When there is no such patch, no surface at all, or a point of it without a finite place.
+    pub fn of_mesh(
+        mesh: &Mesh,
+        name: &str,
+        patches: &[String],
+        first: usize,
+    ) -> Result<Vec<(Self, Vec<CellId>)>> {
+        let surface = Surface::own_or_boundary_of(mesh);
+        if surface.triangles.is_empty() {
+            return Err(Error::input(
+                "has no surface: neither surface cells nor volume cells with a boundary",
+            )
+            .remedy("give triangles or other surface cells"));
+        }
+        check_finite(name, surface.triangles.as_flattened().iter().copied(), &mesh.points)?;
+        let body = |name: &str, patch: Option<i32>| {
+            let of =
+                (0..surface.triangles.len()).filter(|&t| patch.is_none_or(|id| surface.patches[t] == id));
+            let triangles =
+                of.clone().map(|t| surface.triangles[t].map(|v| VertexId::new(first + v.index())));
+            let body = Self { name: name.to_owned(), triangles: triangles.collect(), is_room: false };
+            (body, of.map(|t| surface.triangle_to_cell[t]).collect())
+        };
+        if patches.is_empty() {
+            return Ok(vec![body(name, None)]);
+        }
+        patches.iter().map(|patch| Ok(body(patch, Some(mesh.find_patch(patch)?)))).collect()
+    }
 }
 
 /// A body with all that does not change when points move, and its tree.

@@ -128,11 +128,10 @@ impl Devices {
 
 /// The boundary of a device that keeps its tets or has no surface cells, else its surface cells.
 pub(super) fn surface(device: &Device) -> Surface {
-    let surface = Surface::of(&device.mesh);
-    if device.inside == Inside::Own || surface.triangles.is_empty() {
-        return Surface::boundary_of(&device.mesh);
+    match device.inside {
+        Inside::Own => Surface::boundary_of(&device.mesh),
+        _ => Surface::own_or_boundary_of(&device.mesh),
     }
-    surface
 }
 
 /// The regions of a device, rising, and what each is called in the result.

@@ -14,6 +14,9 @@ macro_rules! kinds {
             $(#[doc = concat!("VTK's number ", $number, ": ", $name, ".")]
             pub const $constant: Self = Self($number);)*
 
+            /// All kinds that have a name, by their numbers.
+            pub const NAMED: &[Self] = &[$(Self($number),)*];
+
             /// The name, as meshio has it; `None` for a number that has no row here.
             pub fn name(self) -> Option<&'static str> {
                 match self.0 {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh, Values};
 
 /// Names of labels; a label without a name is known by its number.
@@ -86,6 +87,22 @@ impl Mesh {
         self.labels_of(2, PATCH_ARRAYS, &self.label_names.patches)
     }
 
+    /// The region that a word means: its name, or its number.
+    ///
+    /// # Errors
+    /// When the mesh has no such region; it says which there are.
+    pub fn find_region(&self, word: &str) -> Result<i32> {
+        find(self.regions(), word, ["region", "regions"])
+    }
+
+    /// The patch that a word means: its name, or its number.
+    ///
+    /// # Errors
+    /// When the mesh has no such patch; it says which there are.
+    pub fn find_patch(&self, word: &str) -> Result<i32> {
+        find(self.patches(), word, ["patch", "patches"])
+    }
+
     fn labels_of(&self, dim: usize, arrays: &[&str], names: &BTreeMap<i32, String>) -> Option<Labels> {
         let on_dim: Vec<bool> = self.cells.kinds().iter().map(|k| k.dim() == Some(dim)).collect();
         arrays.iter().find_map(|array| {
@@ -93,6 +110,15 @@ impl Mesh {
             Some(Labels { ids, names: names.clone(), array: (*array).to_owned() })
         })
     }
+}
+
+fn find(labels: Option<Labels>, word: &str, [what, several]: [&str; 2]) -> Result<i32> {
+    let labels = labels.unwrap_or_default();
+    labels.find(word).ok_or_else(|| {
+        let names: Vec<String> = labels.used().into_iter().map(|id| labels.name(id)).collect();
+        let known = if names.is_empty() { format!("no {several}") } else { names.join(", ") };
+        Error::options(format!("the mesh has no {what} `{word}`")).remedy(format!("it has {known}"))
+    })
 }
 
 /// The labels that `field` gives to the cells where `on_dim` holds; `None` when

@@ -39,6 +39,12 @@ impl Surface {
         Self::from_cells(mesh, None, facets.map(|((&cell, &kind), vertices)| (cell, kind, vertices)))
     }
 
+    /// The surface cells of a mesh; where it has none, its boundary.
+    pub fn own_or_boundary_of(mesh: &Mesh) -> Self {
+        let surface = Self::of(mesh);
+        if surface.triangles.is_empty() { Self::boundary_of(mesh) } else { surface }
+    }
+
     fn from_cells<'a>(
         mesh: &Mesh,
         labels: Option<&Labels>,

@@ -38,6 +38,15 @@ pub struct Options {
     pub layers: Option<Layers>,
 }
 
+impl Options {
+    /// Points inside by `sizes`, if any; tets below `min_eas` repaired, below the usual bound where there are sizes and it is not told.
+    pub fn with_sizes(sizes: Option<Sizes>, min_eas: Option<f64>) -> Self {
+        let min_eas = min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
+        let improve = min_eas.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() });
+        Self { sizes, improve, ..Self::default() }
+    }
+}
+
 /// What came of filling surfaces.
 #[derive(Clone, Debug)]
 pub struct Filled {

@@ -38,6 +38,21 @@ impl Default for Grading {
 }
 
 impl Sizes {
+    /// As far as they are told: with `growth`, sizes at points, or where it `is_graded` they grow from the surface, up to `largest`; else they are `largest`
+    /// everywhere. `None` where nothing is told.
+    pub fn of(
+        largest: Option<f64>,
+        is_graded: bool,
+        growth: Option<f64>,
+        at_points: Option<Vec<f64>>,
+    ) -> Option<Self> {
+        if !is_graded && growth.is_none() && at_points.is_none() {
+            return largest.map(Self::Uniform);
+        }
+        let growth = growth.unwrap_or(Grading::default().growth);
+        Some(Self::Graded(Grading { at_points, growth, largest }))
+    }
+
     /// # Errors
     /// When a size is no length, or sizes grow in a way that means nothing.
     pub(super) fn check(&self, surfaces: &Surfaces) -> Result<()> {
@@ -115,10 +130,7 @@ fn no_length(size: f64) -> Error {
 /// # Errors
 /// When there is no such array, when it has more than a number a row, or when a number is no length: the place is the point or cell.
 pub fn sizes_by(mesh: &Mesh, array: &str) -> Result<Vec<f64>> {
-    let mut surface = Surface::of(mesh);
-    if surface.triangles.is_empty() {
-        surface = Surface::boundary_of(mesh);
-    }
+    let surface = Surface::own_or_boundary_of(mesh);
     let mut sizes = vec![f64::INFINITY; mesh.points.len()];
     if let Some(field) = mesh.point_field(array) {
         let values = scalars(field)?;

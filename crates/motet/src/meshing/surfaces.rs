@@ -97,10 +97,7 @@ impl Surfaces {
     }
 
     fn add(&mut self, mesh: &Mesh, number: u32, name: &str) -> Result<()> {
-        let mut surface = Surface::of(mesh);
-        if surface.triangles.is_empty() {
-            surface = Surface::boundary_of(mesh);
-        }
+        let surface = Surface::own_or_boundary_of(mesh);
         let first = self.points.len();
         if first + surface.points.len() > VertexId::MAX_COUNT {
             return Err(

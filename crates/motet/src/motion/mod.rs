@@ -103,6 +103,6 @@ pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
 pub use matching::{Matching, SurfaceMotion, match_patch};
 pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
-pub use options::{Elastic, Extent, FacetSet, Laplace, Limits, Method, Options, RigidLayer};
+pub use options::{Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer};
 pub use point_mover::PointMover;
 pub use prescribed::Prescribed;

@@ -63,7 +63,54 @@ impl Default for Laplace {
     }
 }
 
+/// What may be said about methods, whichever it is that is asked for.
+#[derive(Clone, Debug)]
+pub struct MethodWords {
+    /// The patches of [`Method::Bodies`].
+    pub bodies: Vec<FacetSet>,
+    /// [`Laplace::wall`].
+    pub wall: Option<FacetSet>,
+    /// When a step is solved that is iterated. Default: 1e-6.
+    pub residual: f64,
+    /// Gibibytes that a factor may take. Default: 0.
+    pub factor_gib: f64,
+}
+
+impl Default for MethodWords {
+    fn default() -> Self {
+        Self { bodies: Vec::new(), wall: None, residual: SOLVED.residual, factor_gib: 0.0 }
+    }
+}
+
 impl Method {
+    /// All methods, with what is said about each of them.
+    pub fn all(words: MethodWords) -> [Self; 7] {
+        let MethodWords { bodies, wall, residual, factor_gib } = words;
+        let factor_bytes = (factor_gib * (1u64 << 30) as f64) as u64;
+        let tolerance = Tolerance { residual, ..SOLVED };
+        [
+            Self::Delaunay,
+            Self::Bodies(bodies),
+            Self::Guided,
+            Self::Elastic(Elastic { tolerance, factor_bytes, ..Elastic::default() }),
+            Self::Laplace(Laplace { wall, tolerance, factor_bytes, ..Laplace::default() }),
+            Self::InverseDistance,
+            Self::Radial,
+        ]
+    }
+
+    /// The method of a [name](Self::name).
+    ///
+    /// # Errors
+    /// When none is called that; it says what they are called.
+    pub fn of_name(name: &str, words: MethodWords) -> Result<Self> {
+        let all = Self::all(words);
+        let known = all.iter().map(Self::name).collect::<Vec<_>>().join(", ");
+        all.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            Error::options(format!("there is no method `{name}`")).remedy(format!("give one of {known}"))
+        })
+    }
+
     /// As the command line has it.
     pub fn name(&self) -> &'static str {
         match self {
@@ -210,14 +257,7 @@ impl FacetSet {
     /// # Errors
     /// When the mesh has no such patch.
     pub fn find(mesh: &Mesh, word: &str) -> Result<Self> {
-        let labels = mesh.patches();
-        if let Some(label) = labels.as_ref().and_then(|labels| labels.find(word)) {
-            return Ok(Self::of_patch(mesh, label));
-        }
-        let names = labels.iter().flat_map(|labels| labels.used().into_iter().map(|id| labels.name(id)));
-        let names: Vec<String> = names.collect();
-        let known = if names.is_empty() { "none at all".to_owned() } else { names.join(", ") };
-        Err(Error::options(format!("the mesh has no patch `{word}`")).remedy(format!("it has {known}")))
+        Ok(Self::of_patch(mesh, mesh.find_patch(word)?))
     }
 
     /// Facets by their corners, in the order in which they follow each other.

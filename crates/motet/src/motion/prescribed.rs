@@ -1,7 +1,8 @@
 //! Motions told in words: turns, shifts, affine maps; each also part of the way.
 
-use crate::base::{Error, Point, Result};
+use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::mesh::bounds;
 
 /// A motion of space, of which any fraction can be asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,18 @@ pub enum Prescribed {
 }
 
 impl Prescribed {
+    /// One after the other; one alone is itself, since a shift alone is exact and as one of a sequence would round.
+    pub fn sequence(mut motions: Vec<Self>) -> Self {
+        if motions.len() == 1 { motions.remove(0) } else { Self::Sequence(motions) }
+    }
+
+    /// The middle of the box around some vertices, about which they turn where nobody names a centre.
+    pub fn middle(points: &[Point], vertices: &[VertexId]) -> Point {
+        let around: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+        let [low, high] = bounds(&around).unwrap_or_default();
+        [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
+    }
+
     /// Checks that all numbers are finite and axes point somewhere.
     ///
     /// # Errors

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use motet::base::{CellId, Point, VertexId};
+use motet::base::{CellId, Point};
 use motet::contact::Body;
-use motet::geometry::vector::is_finite;
-use motet::mesh::Surface;
 use motet::{Error, Mesh, Result, io};
 
 use super::args::ContactArgs;
@@ -117,47 +115,11 @@ impl Frame {
     }
 
     fn add_bodies(&mut self, mesh: &Mesh, file: &Path, given: &Path, patches: &[String]) -> Result<()> {
-        let mut surface = Surface::of(mesh);
-        if surface.triangles.is_empty() {
-            surface = Surface::boundary_of(mesh);
-        }
-        if surface.triangles.is_empty() {
-            return Err(Error::input(
-                "has no surface: neither surface cells nor volume cells with a boundary",
-            )
-            .remedy("give triangles or other surface cells"));
-        }
-        let is_astray = |v: &&VertexId| !is_finite(mesh.points[v.index()]);
-        if let Some(v) = surface.triangles.as_flattened().iter().find(is_astray) {
-            return Err(Error::input(format!(
-                "a coordinate that is no finite number: {:?}",
-                mesh.points[v.index()]
-            ))
-            .at(format!("point {v}"))
-            .remedy("remove the point and its cells, or give it a place"));
-        }
-        let shift = VertexId::new(self.points.len());
-        let mut add = |name: String, is_of: &dyn Fn(usize) -> bool| {
-            let of = (0..surface.triangles.len()).filter(|&t| is_of(t));
-            let triangles = of.clone().map(|t| surface.triangles[t].map(|v| VertexId(v.0 + shift.0)));
-            self.bodies.push(Body { name, triangles: triangles.collect(), is_room: false });
-            let cells = of.map(|t| surface.triangle_to_cell[t]).collect();
-            self.sources.push(Source { file: file.to_owned(), first_point: shift.index(), cells });
-        };
-        if patches.is_empty() {
-            add(stem(given).unwrap_or_else(|| "surface".into()), &|_| true);
-        }
-        let labels = mesh.patches();
-        for word in patches {
-            let Some(id) = labels.as_ref().and_then(|labels| labels.find(word)) else {
-                let known =
-                    labels.as_ref().map(|l| l.used().into_iter().map(|id| l.name(id)).collect::<Vec<_>>());
-                let known =
-                    known.filter(|known| !known.is_empty()).map_or("none".into(), |known| known.join(", "));
-                return Err(Error::options(format!("the mesh has no patch `{word}`"))
-                    .remedy(format!("it has {known}")));
-            };
-            add(word.clone(), &|t| surface.patches[t] == id);
+        let name = stem(given).unwrap_or_else(|| "surface".into());
+        let first_point = self.points.len();
+        for (body, cells) in Body::of_mesh(mesh, &name, patches, first_point)? {
+            self.bodies.push(body);
+            self.sources.push(Source { file: file.to_owned(), first_point, cells });
         }
         Ok(())
     }

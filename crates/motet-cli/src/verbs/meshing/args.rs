@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use motet::base::Point;
 use motet::delaunay::EdgePoints;
-use motet::meshing::{Grading, Options, Seed, Sizes, Surfaces};
+use motet::meshing::{Options, Seed, Sizes, Surfaces};
 use motet::preflight::Repairs;
-use motet::remesh;
 
 use super::layer_words::{LayersWord, layers, stacks};
 use super::words::{self, Size};
@@ -113,38 +112,21 @@ impl MeshArgs {
     /// # Errors
     /// When layers are asked for on a patch that is not there, or twice.
     pub(super) fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
-        let sizes = self.sizes(at_points);
-        let improve = self.min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
-        Ok(Options {
-            edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
-            sizes,
-            seeds: self.seed.clone(),
-            holes: self.hole.clone(),
-            improve: improve.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() }),
-            layers: stacks(&self.layers, &self.layers_on, self.keep_prisms, surfaces)?,
-        })
-    }
-
-    fn sizes(&self, at_points: Option<Vec<f64>>) -> Option<Sizes> {
         let largest = match self.size {
             Some(Size::Length(h)) => Some(h),
             _ => None,
         };
-        let is_graded = self.growth.is_some() || at_points.is_some() || self.size == Some(Size::Auto);
-        if !is_graded {
-            return largest.map(Sizes::Uniform);
-        }
-        let growth = self.growth.unwrap_or(Grading::default().growth);
-        Some(Sizes::Graded(Grading { at_points, growth, largest }))
+        let sizes = Sizes::of(largest, self.size == Some(Size::Auto), self.growth, at_points);
+        Ok(Options {
+            edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
+            seeds: self.seed.clone(),
+            holes: self.hole.clone(),
+            layers: stacks(&self.layers, &self.layers_on, self.keep_prisms, surfaces)?,
+            ..Options::with_sizes(sizes, self.min_eas)
+        })
     }
 
     pub(super) fn repairs(&self) -> Option<Repairs> {
-        self.repair.then(|| Repairs {
-            merge: Some(self.merge.unwrap_or(0.0)),
-            drop_degenerate: true,
-            drop_duplicates: true,
-            orient: true,
-            close_holes: Some(self.hole_edges),
-        })
+        self.repair.then(|| Repairs::all(self.merge.unwrap_or(0.0), self.hole_edges))
     }
 }

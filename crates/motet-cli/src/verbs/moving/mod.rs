@@ -9,13 +9,12 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
-use motet::algebra::Tolerance;
 use motet::base::{Point, Threads};
 use motet::geometry::quality::eas;
 use motet::io::{self, SeriesWriter, WriteOptions};
 use motet::mesh::{Boundary, Field};
 use motet::motion::{
-    self, Certificate, Elastic, Extent, FacetSet, Laplace, Mover, Options, RigidLayer, mesh_velocity,
+    self, Certificate, Extent, FacetSet, MethodWords, Mover, Options, RigidLayer, mesh_velocity,
 };
 use motet::{Error, Mesh};
 
@@ -135,25 +134,22 @@ fn method(
         return Err(Error::options("--factor keeps a factor of a system, but the method has no system")
             .remedy("add --method elastic"));
     }
-    let within = |tolerance: Tolerance| Tolerance { residual: args.residual, ..tolerance };
-    let factor_bytes = args.factor.map_or(0, |gib| (gib * (1u64 << 30) as f64) as u64);
+    let words = MethodWords {
+        bodies,
+        wall: if args.method == Method::Laplace { Some(wall()?) } else { None },
+        residual: args.residual,
+        factor_gib: args.factor.unwrap_or(0.0),
+    };
+    let [delaunay, bodies, guided, elastic, laplace, idw, rbf] = motion::Method::all(words);
     Ok(match args.method {
-        Method::Delaunay => motion::Method::Delaunay,
+        Method::Delaunay => delaunay,
         // To choose, the graph comes first; bodies are kept for their turn.
-        Method::Bodies | Method::Auto => motion::Method::Bodies(bodies),
-        Method::Guided => motion::Method::Guided,
-        Method::Idw => motion::Method::InverseDistance,
-        Method::Rbf => motion::Method::Radial,
-        Method::Elastic => {
-            let law = Elastic::default();
-            let tolerance = within(law.tolerance);
-            motion::Method::Elastic(Elastic { tolerance, factor_bytes, ..law })
-        }
-        Method::Laplace => {
-            let law = Laplace::default();
-            let tolerance = within(law.tolerance);
-            motion::Method::Laplace(Laplace { wall: Some(wall()?), tolerance, factor_bytes, ..law })
-        }
+        Method::Bodies | Method::Auto => bodies,
+        Method::Guided => guided,
+        Method::Elastic => elastic,
+        Method::Laplace => laplace,
+        Method::Idw => idw,
+        Method::Rbf => rbf,
     })
 }
 

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use motet::base::{Point, VertexId};
 use motet::geometry::vector::{distance, norm};
-use motet::mesh::bounds;
 use motet::motion::{BoundaryMotion, Matching, Prescribed, SurfaceMotion};
 use motet::{Error, Mesh, io};
 
@@ -204,19 +203,10 @@ impl<'a> Asked<'a, '_> {
         let turns = self.args.rotate.iter().filter(|turn| turn.patch == word).map(|turn| Prescribed::Turn {
             axis: turn.axis,
             angle: turn.degrees.to_radians(),
-            centre: turn.centre.unwrap_or_else(|| self.middle(vertices)),
+            centre: turn.centre.unwrap_or_else(|| Prescribed::middle(&self.mesh.points, vertices)),
         });
         let shifts = self.args.translate.iter().filter(|shift| shift.patch == word);
-        let mut all: Vec<_> = turns.chain(shifts.map(|shift| Prescribed::Shift(shift.by))).collect();
-        // A shift alone is exact; as one of a sequence it would round.
-        if all.len() == 1 { all.remove(0) } else { Prescribed::Sequence(all) }
-    }
-
-    /// The middle of the box around some vertices.
-    fn middle(&self, vertices: &[VertexId]) -> Point {
-        let points: Vec<Point> = vertices.iter().map(|v| self.mesh.points[v.index()]).collect();
-        let [low, high] = bounds(&points).unwrap_or_default();
-        [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]))
+        Prescribed::sequence(turns.chain(shifts.map(|shift| Prescribed::Shift(shift.by))).collect())
     }
 
     /// Nothing moves yet, of the boundary and of the `named` vertices inside.

@@ -35,6 +35,19 @@ pub struct Repairs {
     pub close_holes: Option<usize>,
 }
 
+impl Repairs {
+    /// All of them: points nearer than `merge` become one, holes of at most so many edges are closed.
+    pub fn all(merge: f64, hole_edges: usize) -> Self {
+        Self {
+            merge: Some(merge),
+            drop_degenerate: true,
+            drop_duplicates: true,
+            orient: true,
+            close_holes: Some(hole_edges),
+        }
+    }
+}
+
 /// Repairs surfaces; whether they are fit then is for [`preflight`](super::preflight) to say.
 ///
 /// Takes what [`preflight`](super::preflight) takes. Points stay as they are: those that nothing uses any more are orphans.

@@ -3,7 +3,7 @@
 use super::{Criterion, Target, finite};
 use crate::base::{Error, Point, Result, TetId, Threads};
 use crate::geometry::tet;
-use crate::mesh::{Labels, Mesh, Surface, TetMesh, TetPart};
+use crate::mesh::{Mesh, Surface, TetMesh, TetPart};
 use crate::refine::estimate::{corners, longest_edge};
 use crate::refine::mark;
 use crate::refine::wish::Wish;
@@ -38,7 +38,7 @@ pub(super) fn wishes(
         Criterion::Near { target, within } => near(tets, target, *within, threads),
         Criterion::NearSize { target, size, growth } => near_size(tets, target, [*size, *growth], threads),
         Criterion::Region(word) => {
-            let id = find(mesh.regions(), word, "region")?;
+            let id = mesh.find_region(word)?;
             tets.regions.iter().map(|region| Wish::of_mark(*region == id)).collect()
         }
         Criterion::Patch { patch, within } => at_patch(patch, *within, mesh, part, threads)?,
@@ -87,7 +87,7 @@ fn at_patch(
     part: &TetPart,
     threads: &Threads,
 ) -> Result<Vec<Wish>> {
-    let id = find(mesh.patches(), word, "patch")?;
+    let id = mesh.find_patch(word)?;
     let surface = Surface::of(mesh);
     let of_patch = surface.triangles.iter().zip(&surface.patches).filter(|(_, patch)| **patch == id);
     let triangles: Vec<_> = of_patch.map(|(triangle, _)| *triangle).collect();
@@ -99,18 +99,4 @@ fn at_patch(
     triangles.as_flattened().iter().for_each(|v| is_at[v.index()] = true);
     let touches = |tet: usize| part.mesh.tets[tet].iter().any(|v| is_at[v.index()]);
     Ok(threads.map(part.mesh.tets.len(), |tet| Wish::of_mark(touches(tet))))
-}
-
-/// The number of a region or patch.
-fn find(labels: Option<Labels>, word: &str, what: &str) -> Result<i32> {
-    if let Some(id) = labels.as_ref().and_then(|labels| labels.find(word)) {
-        return Ok(id);
-    }
-    let plural = if what == "patch" { "patches" } else { "regions" };
-    let known = |labels: &Labels| labels.used().into_iter().map(|id| labels.name(id)).collect::<Vec<_>>();
-    let remedy = match labels.as_ref().map(known) {
-        Some(known) if !known.is_empty() => format!("it has {}", known.join(", ")),
-        _ => format!("it has no {plural}"),
-    };
-    Err(Error::input(format!("the mesh has no {what} `{word}`")).remedy(remedy))
 }

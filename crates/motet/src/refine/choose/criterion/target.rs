@@ -42,10 +42,7 @@ impl Target {
     /// # Errors
     /// As for [`new`](Self::new).
     pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Result<Self> {
-        let mut surface = Surface::of(mesh);
-        if surface.triangles.is_empty() {
-            surface = Surface::boundary_of(mesh);
-        }
+        let surface = Surface::own_or_boundary_of(mesh);
         Self::new(surface.points, surface.triangles, threads)
     }
 
