@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    Versioned, count, expect, free, give, handle, place, put, room, sized, text, texts, threads, values,
+    count, expect, free, give, handle, place, room, sized, text, texts, threads, values, versioned,
 };
 use crate::mesh::{MotetMesh, field, json, on_points};
 
@@ -115,45 +115,21 @@ pub(crate) unsafe extern "C" fn motet_outcome_free(outcome: *mut MotetOutcome) {
     free(outcome);
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetRemeshOptions {
-    size: usize,
-    min_eas: f64,
-    min_dihedral_deg: f64,
-    best: i32,
-    surface: i32,
-    distance: f64,
-    repair_layers: i32,
-    rounds: i32,
-    threads: i32,
-    edge_length: f64,
-    sizes: *const f64,
-    n_sizes: i64,
-}
-
-// SAFETY: numbers and pointers, in C's order.
-unsafe impl Versioned for MotetRemeshOptions {
-    const DEFAULT: Self = Self {
-        size: size_of::<Self>(),
-        min_eas: 0.2,
-        min_dihedral_deg: 0.0,
-        best: 0,
-        surface: 0,
-        distance: 0.0,
-        repair_layers: 0,
-        rounds: 20,
-        threads: 0,
-        edge_length: 0.0,
-        sizes: std::ptr::null(),
-        n_sizes: 0,
-    };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_remesh_options_init(options: *mut MotetRemeshOptions, size: usize) {
-    put(&MotetRemeshOptions::DEFAULT, options, size);
+versioned! {
+    /// As in the header.
+    MotetRemeshOptions, motet_remesh_options_init {
+        min_eas: f64 = 0.2,
+        min_dihedral_deg: f64 = 0.0,
+        best: i32 = 0,
+        surface: i32 = 0,
+        distance: f64 = 0.0,
+        repair_layers: i32 = 0,
+        rounds: i32 = 20,
+        threads: i32 = 0,
+        edge_length: f64 = 0.0,
+        sizes: *const f64 = std::ptr::null(),
+        n_sizes: i64 = 0,
+    }
 }
 
 /// A number that is left to motet where it is not above 0.
@@ -205,47 +181,22 @@ pub(crate) unsafe extern "C" fn motet_remesh(
     })
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetImplantOptions {
-    size: usize,
-    inside: i32,
-    conform: i32,
-    tolerance: f64,
-    keep_outside: i32,
-    adapt: i32,
-    stray: f64,
-    edge_length: f64,
-    growth: f64,
-    carve: f64,
-    reach: f64,
-    min_eas: f64,
-    threads: i32,
-}
-
-// SAFETY: numbers, in C's order.
-unsafe impl Versioned for MotetImplantOptions {
-    const DEFAULT: Self = Self {
-        size: size_of::<Self>(),
-        inside: 0,
-        conform: 0,
-        tolerance: 0.0,
-        keep_outside: 0,
-        adapt: 1,
-        stray: -1.0,
-        edge_length: 0.0,
-        growth: 0.5,
-        carve: 1.0,
-        reach: 3.0,
-        min_eas: 0.2,
-        threads: 0,
-    };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_implant_options_init(options: *mut MotetImplantOptions, size: usize) {
-    put(&MotetImplantOptions::DEFAULT, options, size);
+versioned! {
+    /// As in the header.
+    MotetImplantOptions, motet_implant_options_init {
+        inside: i32 = 0,
+        conform: i32 = 0,
+        tolerance: f64 = 0.0,
+        keep_outside: i32 = 0,
+        adapt: i32 = 1,
+        stray: f64 = -1.0,
+        edge_length: f64 = 0.0,
+        growth: f64 = 0.5,
+        carve: f64 = 1.0,
+        reach: f64 = 3.0,
+        min_eas: f64 = 0.2,
+        threads: i32 = 0,
+    }
 }
 
 impl MotetImplantOptions {
@@ -310,43 +261,20 @@ pub(crate) unsafe extern "C" fn motet_implant(
     })
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetFillOptions {
-    size: usize,
-    edge_length: f64,
-    graded: i32,
-    growth: f64,
-    min_eas: f64,
-    layers: i32,
-    first_layer: f64,
-    layer_growth: f64,
-    keep_prisms: i32,
-    repair: i32,
-    threads: i32,
-}
-
-// SAFETY: numbers, in C's order.
-unsafe impl Versioned for MotetFillOptions {
-    const DEFAULT: Self = Self {
-        size: size_of::<Self>(),
-        edge_length: 0.0,
-        graded: 0,
-        growth: 0.0,
-        min_eas: 0.0,
-        layers: 0,
-        first_layer: 0.0,
-        layer_growth: 1.2,
-        keep_prisms: 0,
-        repair: 0,
-        threads: 0,
-    };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_fill_options_init(options: *mut MotetFillOptions, size: usize) {
-    put(&MotetFillOptions::DEFAULT, options, size);
+versioned! {
+    /// As in the header.
+    MotetFillOptions, motet_fill_options_init {
+        edge_length: f64 = 0.0,
+        graded: i32 = 0,
+        growth: f64 = 0.0,
+        min_eas: f64 = 0.0,
+        layers: i32 = 0,
+        first_layer: f64 = 0.0,
+        layer_growth: f64 = 1.2,
+        keep_prisms: i32 = 0,
+        repair: i32 = 0,
+        threads: i32 = 0,
+    }
 }
 
 impl MotetFillOptions {
@@ -397,9 +325,6 @@ pub(crate) unsafe extern "C" fn motet_fill(
             surfaces.repair(&Repairs::all(0.0, MOST_HOLE_EDGES), &threads)?;
         }
         let preflight = surfaces.preflight(&threads);
-        if !preflight.is_fit() {
-            return Err(preflight.first_error().unwrap_or_else(|| Error::input("the surfaces are not fit")));
-        }
         let options = asked.options()?;
         let filled = fill(&surfaces, &preflight, &options, &threads)?;
         let is_complete = filled.is_complete(&options);

@@ -6,8 +6,8 @@ use motet::{Error, Result};
 
 use crate::guard::{MotetError, guarded};
 use crate::memory::{
-    Versioned, count, expect, free, give, handle, handle_mut, id, place, put, room, rows, sized, threads,
-    values, vertex,
+    count, expect, free, give, handle, handle_mut, id, place, room, rows, sized, threads, values, versioned,
+    vertex,
 };
 
 /// Surfaces and the threads that measure them.
@@ -16,28 +16,16 @@ pub(crate) struct MotetContact {
     threads: Threads,
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetContactOptions {
-    size: usize,
-    warn: f64,
-    within: f64,
-    fold: f64,
-    own: i32,
-    facing: i32,
-    threads: i32,
-}
-
-// SAFETY: numbers, in C's order.
-unsafe impl Versioned for MotetContactOptions {
-    const DEFAULT: Self =
-        Self { size: size_of::<Self>(), warn: 0.0, within: 0.0, fold: 3.0, own: 0, facing: 0, threads: 0 };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_contact_options_init(options: *mut MotetContactOptions, size: usize) {
-    put(&MotetContactOptions::DEFAULT, options, size);
+versioned! {
+    /// As in the header.
+    MotetContactOptions, motet_contact_options_init {
+        warn: f64 = 0.0,
+        within: f64 = 0.0,
+        fold: f64 = 3.0,
+        own: i32 = 0,
+        facing: i32 = 0,
+        threads: i32 = 0,
+    }
 }
 
 #[unsafe(no_mangle)]

@@ -142,6 +142,31 @@ pub(crate) unsafe trait Versioned: Copy {
     const DEFAULT: Self;
 }
 
+/// A struct of the header: its members with their defaults, and the function that sets them all to these.
+macro_rules! versioned {
+    ($(#[$doc:meta])* $name:ident, $init:ident { $($member:ident: $type:ty = $default:expr,)* }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug)]
+        pub(crate) struct $name {
+            size: usize,
+            $($member: $type,)*
+        }
+
+        // SAFETY: the header has numbers and pointers, in this order.
+        unsafe impl crate::memory::Versioned for $name {
+            const DEFAULT: Self = Self { size: size_of::<Self>(), $($member: $default,)* };
+        }
+
+        #[unsafe(no_mangle)]
+        pub(crate) unsafe extern "C" fn $init(place: *mut $name, size: usize) {
+            let default: $name = crate::memory::Versioned::DEFAULT;
+            crate::memory::put(&default, place, size);
+        }
+    };
+}
+pub(crate) use versioned;
+
 /// What a program gives, which may know fewer members: the others have their defaults. NULL: all have.
 pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
     let mut all = T::DEFAULT;

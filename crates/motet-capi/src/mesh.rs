@@ -15,7 +15,15 @@ use crate::memory::{
 };
 
 /// A mesh.
+#[repr(transparent)]
 pub(crate) struct MotetMesh(pub(crate) Mesh);
+
+impl MotetMesh {
+    /// A mesh that is part of something, as C sees one.
+    pub(crate) fn of(mesh: &Mesh) -> *const Self {
+        std::ptr::from_ref(mesh).cast()
+    }
+}
 
 /// A text that belongs to the caller.
 pub(crate) struct MotetText(CString);

@@ -11,8 +11,8 @@ use motet::{Error, Mesh, Result};
 
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    Versioned, count, expect, fill_rows, free, give, handle, handle_mut, id, place, put, room, rows, sized,
-    texts, threads, values, vertex,
+    count, expect, fill_rows, free, give, handle, handle_mut, id, place, put, room, rows, sized, texts,
+    threads, values, versioned, vertex,
 };
 use crate::mesh::MotetMesh;
 
@@ -22,57 +22,27 @@ pub(crate) struct MotetMover {
     threads: Threads,
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetMoverOptions {
-    size: usize,
-    method: i32,
-    within_walls: i32,
-    smooth: i32,
-    substeps: i32,
-    threads: i32,
-    rigid_layer_cells: i32,
-    rigid_layer: f64,
-    residual: f64,
-    factor_gib: f64,
-    slide: *const *const c_char,
-    n_slide: i64,
-    bodies: *const *const c_char,
-    n_bodies: i64,
-    wall: *const *const c_char,
-    n_wall: i64,
-    also_moved: *const i32,
-    n_also_moved: i64,
-}
-
-// SAFETY: numbers and pointers, in C's order.
-unsafe impl Versioned for MotetMoverOptions {
-    const DEFAULT: Self = Self {
-        size: size_of::<Self>(),
-        method: 0,
-        within_walls: 0,
-        smooth: 0,
-        substeps: 50,
-        threads: 1,
-        rigid_layer_cells: 0,
-        rigid_layer: 0.0,
-        residual: 1e-6,
-        factor_gib: 0.0,
-        slide: ptr::null(),
-        n_slide: 0,
-        bodies: ptr::null(),
-        n_bodies: 0,
-        wall: ptr::null(),
-        n_wall: 0,
-        also_moved: ptr::null(),
-        n_also_moved: 0,
-    };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_mover_options_init(options: *mut MotetMoverOptions, size: usize) {
-    put(&MotetMoverOptions::DEFAULT, options, size);
+versioned! {
+    /// As in the header.
+    MotetMoverOptions, motet_mover_options_init {
+        method: i32 = 0,
+        within_walls: i32 = 0,
+        smooth: i32 = 0,
+        substeps: i32 = 50,
+        threads: i32 = 1,
+        rigid_layer_cells: i32 = 0,
+        rigid_layer: f64 = 0.0,
+        residual: f64 = 1e-6,
+        factor_gib: f64 = 0.0,
+        slide: *const *const c_char = ptr::null(),
+        n_slide: i64 = 0,
+        bodies: *const *const c_char = ptr::null(),
+        n_bodies: i64 = 0,
+        wall: *const *const c_char = ptr::null(),
+        n_wall: i64 = 0,
+        also_moved: *const i32 = ptr::null(),
+        n_also_moved: i64 = 0,
+    }
 }
 
 impl MotetMoverOptions {
@@ -211,43 +181,20 @@ pub(crate) unsafe extern "C" fn motet_mover_step(
     })
 }
 
-/// As in the header.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct MotetCertificate {
-    size: usize,
-    complete: i32,
-    substeps: i32,
-    fraction: f64,
-    inverted: i64,
-    inverted_before: i64,
-    bad: i64,
-    worst_cell: i64,
-    worst_eas: f64,
-    worst_place: [f64; 3],
-    seconds: f64,
-}
-
-// SAFETY: numbers, in C's order.
-unsafe impl Versioned for MotetCertificate {
-    const DEFAULT: Self = Self {
-        size: size_of::<Self>(),
-        complete: 0,
-        substeps: 0,
-        fraction: 0.0,
-        inverted: 0,
-        inverted_before: 0,
-        bad: 0,
-        worst_cell: -1,
-        worst_eas: f64::NAN,
-        worst_place: [f64::NAN; 3],
-        seconds: 0.0,
-    };
-}
-
-#[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn motet_certificate_init(certificate: *mut MotetCertificate, size: usize) {
-    put(&MotetCertificate::DEFAULT, certificate, size);
+versioned! {
+    /// As in the header.
+    MotetCertificate, motet_certificate_init {
+        complete: i32 = 0,
+        substeps: i32 = 0,
+        fraction: f64 = 0.0,
+        inverted: i64 = 0,
+        inverted_before: i64 = 0,
+        bad: i64 = 0,
+        worst_cell: i64 = -1,
+        worst_eas: f64 = f64::NAN,
+        worst_place: [f64; 3] = [f64::NAN; 3],
+        seconds: f64 = 0.0,
+    }
 }
 
 impl MotetCertificate {

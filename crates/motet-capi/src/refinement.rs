@@ -11,10 +11,9 @@ use crate::guard::{MotetError, guarded};
 use crate::memory::{expect, free, give, handle, handle_mut, place, room, threads, values};
 use crate::mesh::MotetMesh;
 
-/// A refinement, its mesh as it can be borrowed, and the threads that it uses.
+/// A refinement and the threads that it uses.
 pub(crate) struct MotetRefinement {
     refinement: MeshRefinement,
-    mesh: MotetMesh,
     threads: Threads,
 }
 
@@ -29,8 +28,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_new(
         let place = place(refinement, "refinement")?;
         let threads = threads(n_threads)?;
         let refinement = MeshRefinement::new(&handle(mesh, "mesh")?.0, Options::default(), &threads)?;
-        let mesh = MotetMesh(refinement.mesh().clone());
-        give(place, MotetRefinement { refinement, mesh, threads });
+        give(place, MotetRefinement { refinement, threads });
         Ok(())
     })
 }
@@ -44,7 +42,8 @@ pub(crate) unsafe extern "C" fn motet_refinement_free(refinement: *mut MotetRefi
 pub(crate) unsafe extern "C" fn motet_refinement_mesh(
     refinement: *const MotetRefinement,
 ) -> *const MotetMesh {
-    handle(refinement, "refinement").map_or(std::ptr::null(), |refinement| &raw const refinement.mesh)
+    handle(refinement, "refinement")
+        .map_or(std::ptr::null(), |handle| MotetMesh::of(handle.refinement.mesh()))
 }
 
 #[unsafe(no_mangle)]
@@ -69,18 +68,17 @@ pub(crate) unsafe extern "C" fn motet_refinement_generations(
 
 /// Puts what came of a change where the caller wants it.
 fn done(
-    refinement: &mut MotetRefinement,
+    refinement: &MeshRefinement,
     history: History,
     is_complete: bool,
     outcome: *mut *mut MotetOutcome,
 ) -> Result<()> {
-    refinement.mesh = MotetMesh(refinement.refinement.mesh().clone());
     if outcome.is_null() {
         return Ok(());
     }
     let place = place(outcome, "outcome")?;
-    let mesh = refinement.mesh.0.clone();
-    let report = json!({ "tets": refinement.refinement.refinement().summary().n_tets });
+    let mesh = refinement.mesh().clone();
+    let report = json!({ "tets": refinement.refinement().summary().n_tets });
     give(place, MotetOutcome::new(mesh, Some(history), &report, is_complete)?);
     Ok(())
 }
@@ -95,8 +93,7 @@ fn change(
     if !outcome.is_null() {
         place(outcome, "outcome")?;
     }
-    let handle = handle_mut(refinement, "refinement")?;
-    let MotetRefinement { refinement, threads, .. } = handle;
+    let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
     expect(n, refinement.mesh().cells.len(), "marks")?;
     let marks = values(marks, refinement.mesh().cells.len(), "marks")?;
     let cells = refinement.part().tet_to_cell;
@@ -107,7 +104,7 @@ fn change(
         false => refinement.refine(&marked, &rules, threads)?,
         true => refinement.coarsen(&marked, &rules, threads)?,
     };
-    done(handle, history, summary.n_held == 0, outcome)
+    done(refinement, history, summary.n_held == 0, outcome)
 }
 
 #[unsafe(no_mangle)]
@@ -145,14 +142,13 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         if !outcome.is_null() {
             place(outcome, "outcome")?;
         }
-        let whole = handle_mut(refinement, "refinement")?;
-        let MotetRefinement { refinement, threads, .. } = whole;
+        let MotetRefinement { refinement, threads } = handle_mut(refinement, "refinement")?;
         let target = Target::of_mesh(&handle(surface, "surface")?.0, threads)?.into();
         let criterion = Criterion::NearSize { target, size: at, growth };
         criterion.check()?;
         let wanted = Wanted { criteria: vec![criterion], keeps_history: true, ..Wanted::default() };
         let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
         let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;
-        done(whole, history, reached.is_reached, outcome)
+        done(refinement, history, reached.is_reached, outcome)
     })
 }
