@@ -34,12 +34,6 @@ pub(crate) fn cell_kinds() -> BTreeMap<&'static str, u8> {
     CellKind::NAMED.iter().filter_map(|kind| Some((kind.name()?, kind.0))).collect()
 }
 
-/// The times and files of a series.
-#[pyfunction]
-pub(crate) fn read_series(path: PathBuf) -> PyResult<Vec<(f64, PathBuf)>> {
-    io::read_series(path).or_raise()
-}
-
 /// Endings of files that can be read, and whether they can be written.
 #[pyfunction]
 pub(crate) fn formats() -> BTreeMap<String, bool> {

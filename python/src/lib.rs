@@ -22,6 +22,7 @@ mod motion;
 mod refine;
 mod remesh;
 mod report;
+mod series;
 mod shapes;
 mod watch;
 mod words;
@@ -35,7 +36,7 @@ mod _motet {
     #[pymodule_export]
     use crate::contact::{Contact, bodies};
     #[pymodule_export]
-    use crate::files::{cell_kinds, formats, quality, read, read_series, summary, write};
+    use crate::files::{cell_kinds, formats, quality, read, summary, write};
     #[pymodule_export]
     use crate::history::History;
     #[pymodule_export]
@@ -48,6 +49,8 @@ mod _motet {
     use crate::refine::{Criterion, Refinement, refined};
     #[pymodule_export]
     use crate::remesh::remesh;
+    #[pymodule_export]
+    use crate::series::{SeriesWriter, read_nodal, read_series, write_nodal};
 
     #[pymodule_export]
     use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};

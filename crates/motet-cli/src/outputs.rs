@@ -26,17 +26,25 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
 /// Refuses an output that cannot be written, and a place for the history that would overwrite a mesh or lies in no folder.
 pub(crate) fn check_with_history(output: &Path, mesh: &Path, history: Option<&Path>) -> Result<()> {
     io::can_write(output)?;
-    let Some(history) = history else { return Ok(()) };
-    if history == output || history == mesh {
-        return Err(Error::options("the history would overwrite a mesh")
-            .in_file(history)
-            .remedy("give --history a file of its own"));
+    history.map_or(Ok(()), |history| check_beside(history, [output, mesh], "history"))
+}
+
+/// Refuses a place for what is written beside a result, which `what` names: one that would overwrite one of the `others`, or lies in no folder.
+pub(crate) fn check_beside<'a>(
+    path: &Path,
+    others: impl IntoIterator<Item = &'a Path>,
+    what: &str,
+) -> Result<()> {
+    if others.into_iter().any(|other| other == path) {
+        return Err(Error::options(format!("the {what} would overwrite a file of the call"))
+            .in_file(path)
+            .remedy(format!("give the {what} a file of its own")));
     }
-    let folder = history.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     match folder.filter(|folder| !folder.is_dir()) {
         None => Ok(()),
         Some(_) => Err(Error::new(ErrorKind::Io, "its folder does not exist")
-            .in_file(history)
+            .in_file(path)
             .remedy("make the folder first")),
     }
 }

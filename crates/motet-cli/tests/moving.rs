@@ -183,6 +183,47 @@ fn a_wall_follows_its_surfaces_while_the_ends_slide() {
 }
 
 #[test]
+fn displacements_of_nodes_over_time_are_written_and_read() {
+    let folder = Folder::new();
+    let mut mesh = cube(3);
+    // Ids of its own, as a part of a larger model has them.
+    let ids: Vec<i64> = (0..mesh.points.len() as i64).map(|v| 1000 - v).collect();
+    mesh.set_point_field(Field::scalars("GlobalNodeID", ids));
+    folder.mesh("cube.vtu", &mesh);
+    let (lid, vertices) = face(&mesh, |p| p[2] == 1.0);
+    folder.mesh("lid.vtp", &lid);
+    let lift = ["--patch", "lid=lid.vtp", "--translate", "lid=0,0.1,0.25", "--dt", "0.5", "--steps", "2"];
+    let words = ["move", "cube.vtu", "-o", "lifted.vtu", "--nodal", "lid=lid.dat"];
+    folder.motet(words.iter().chain(&lift)).assert().code(0);
+    let series = motet::io::NodalSeries::read(folder.path("lid.dat")).unwrap();
+    assert_eq!(series.times, [0.0, 0.5, 1.0]);
+    assert_eq!(series.ids, vertices.iter().map(|v| 1000 - v.index() as i64).collect::<Vec<_>>());
+    assert!(series.vectors(0).unwrap().iter().all(|d| *d == [0.0; 3]));
+    assert!(series.vectors(2).unwrap().iter().all(|d| (d[1] - 0.1).abs() + (d[2] - 0.25).abs() < 1e-15));
+    folder.motet(["move", "cube.vtu", "-o", "again.pvd", "--displacement", "lid.dat"]).assert().code(0);
+    let frames = read_series(folder.path("again.pvd")).unwrap();
+    assert_eq!(frames.iter().map(|(time, _)| *time).collect::<Vec<_>>(), [0.0, 0.5, 1.0]);
+    let (lifted, again) = (read(folder.path("lifted.vtu")).unwrap(), read(&frames[2].1).unwrap());
+    for (p, q) in lifted.points.iter().zip(&again.points) {
+        assert!((0..3).all(|i| (p[i] - q[i]).abs() < 1e-15), "{p:?} {q:?}");
+    }
+    for (words, code, told) in [
+        (["--displacement", "lid.dat", "--steps", "3"], 2, "leave --steps away"),
+        (["--displacement", "lid.dat", "--nodal", "lid=lid.dat"], 2, "would overwrite a file of the call"),
+        (["--displacement", "lid.dat", "--nodal", "no=no.dat"], 2, "no patch `no`"),
+        (["--displacement", "lid.dat", "--nodal", "lid=no/no.dat"], 3, "folder does not exist"),
+    ] {
+        let call =
+            folder.motet(["move", "cube.vtu", "-o", "no.vtu"].iter().chain(&words)).assert().code(code);
+        assert!(stderr(&call).contains(told), "{}", stderr(&call));
+    }
+    folder.write("strange.dat", b"3 1 1\n0\n17\n0 0 1\n");
+    let call =
+        folder.motet(["move", "cube.vtu", "-o", "no.vtu", "--displacement", "strange.dat"]).assert().code(3);
+    assert!(stderr(&call).starts_with("error: strange.dat: point 0: GlobalNodeID 17"), "{}", stderr(&call));
+}
+
+#[test]
 fn a_surface_without_ids_is_matched_by_position_or_refused_with_numbers() {
     let folder = Folder::new();
     let mesh = cube(3);

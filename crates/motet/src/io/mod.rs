@@ -8,6 +8,7 @@ mod latin;
 mod legacy;
 mod medit;
 mod msh;
+mod nodal;
 mod node_order;
 mod obj;
 mod off;
@@ -29,6 +30,7 @@ mod text;
 mod vtkxml;
 
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
+pub use nodal::NodalSeries;
 pub use reading::read_as;
 pub use registry::{can_write, formats, read, read_noted, write};
 pub use replace::{replace, replace_all};

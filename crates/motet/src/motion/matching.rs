@@ -10,9 +10,16 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{norm, sub};
 use crate::mesh::{Mesh, bounds};
 
-/// Arrays that name vertices of the mesh, and the id of the first one where the
-/// mesh itself does not say.
-const ID_ARRAYS: &[(&str, i64)] = &[("GlobalNodeID", 1), ("vtkOriginalPointIds", 0)];
+/// An array that names vertices of the mesh, and the id of the first one where the mesh itself does not say.
+struct IdArray {
+    name: &'static str,
+    first: i64,
+}
+
+const GLOBAL_NODE_ID: IdArray = IdArray { name: "GlobalNodeID", first: 1 };
+
+/// In the order in which they are looked for.
+const ID_ARRAYS: [IdArray; 2] = [GLOBAL_NODE_ID, IdArray { name: "vtkOriginalPointIds", first: 0 }];
 
 /// Vector arrays on a surface that are taken for its displacement, first choice first.
 const DISPLACEMENT_ARRAYS: &[&str] = &["displacement", "Displacement", "u", "U", "disp"];
@@ -33,23 +40,49 @@ pub fn match_patch(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {
 
 /// The vertices that the surface's own ids name; `None` where it carries none.
 fn match_by_id(mesh: &Mesh, surface: &Mesh) -> Result<Option<Vec<VertexId>>> {
-    for &(name, first) in ID_ARRAYS {
-        let Some(ids) = surface.point_field(name).filter(|f| f.components == 1) else { continue };
-        let Some(ids) = ids.values.to_i64() else { continue };
-        let own = mesh.point_field(name).filter(|f| f.components == 1).and_then(|f| f.values.to_i64());
-        let id_to_vertex: HashMap<i64, usize> = match own {
+    for array in &ID_ARRAYS {
+        let Some(ids) = array.of(surface) else { continue };
+        return array.vertices(mesh, &ids).map(Some);
+    }
+    Ok(None)
+}
+
+/// The vertices that nodes with these ids are: by the mesh's own `GlobalNodeID`, counted from 1 where it has none.
+///
+/// # Errors
+/// When an id is that of no vertex: says which.
+pub fn match_ids(mesh: &Mesh, ids: &[i64]) -> Result<Vec<VertexId>> {
+    GLOBAL_NODE_ID.vertices(mesh, ids)
+}
+
+/// The ids by which [`match_ids`] finds the vertices.
+pub fn node_ids(mesh: &Mesh) -> Vec<i64> {
+    GLOBAL_NODE_ID.of(mesh).unwrap_or_else(|| GLOBAL_NODE_ID.counted(mesh).collect())
+}
+
+impl IdArray {
+    fn of(&self, mesh: &Mesh) -> Option<Vec<i64>> {
+        mesh.point_field(self.name).filter(|f| f.components == 1)?.values.to_i64()
+    }
+
+    fn counted(&self, mesh: &Mesh) -> impl Iterator<Item = i64> {
+        let first = self.first;
+        (0..mesh.points.len()).map(move |vertex| vertex as i64 + first)
+    }
+
+    fn vertices(&self, mesh: &Mesh, ids: &[i64]) -> Result<Vec<VertexId>> {
+        let own: HashMap<i64, usize> = match self.of(mesh) {
             Some(own) => own.into_iter().enumerate().map(|(vertex, id)| (id, vertex)).collect(),
-            None => (0..mesh.points.len()).map(|vertex| (vertex as i64 + first, vertex)).collect(),
+            None => self.counted(mesh).enumerate().map(|(vertex, id)| (id, vertex)).collect(),
         };
-        let vertices = ids.iter().enumerate().map(|(point, id)| match id_to_vertex.get(id) {
+        let vertices = ids.iter().enumerate().map(|(point, id)| match own.get(id) {
             Some(&vertex) => Ok(VertexId::new(vertex)),
-            None => Err(Error::input(format!("{name} {id} is that of no point of the mesh"))
+            None => Err(Error::input(format!("{} {id} is that of no point of the mesh", self.name))
                 .at(format!("point {point}"))
                 .remedy("give the surface that belongs to this mesh")),
         });
-        return vertices.collect::<Result<_>>().map(Some);
+        vertices.collect()
     }
-    Ok(None)
 }
 
 fn match_by_position(mesh: &Mesh, surface: &Mesh) -> Result<Vec<VertexId>> {

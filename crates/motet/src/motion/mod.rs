@@ -101,7 +101,7 @@ mod weights;
 pub use boundary_motion::{BoundaryMotion, Taken};
 pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
-pub use matching::{Matching, SurfaceMotion, match_patch};
+pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};
 pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
 pub use options::{Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer};
 pub use point_mover::PointMover;

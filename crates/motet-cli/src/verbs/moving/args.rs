@@ -18,7 +18,7 @@ use crate::words::positive;
 #[command(group = ArgGroup::new("motion").required(true).multiple(true)
     .args(["displacement", "translate", "rotate", "affine"]))]
 #[command(override_usage = "\
-motet move MESH -o OUT --displacement ARRAY|FILE.vtp|FILE.pvd [OPTIONS]
+motet move MESH -o OUT --displacement ARRAY|FILE.vtp|FILE.pvd|FILE.dat [OPTIONS]
        motet move MESH -o OUT --translate PATCH=dx,dy,dz --rotate PATCH=ax,ay,az,deg ... [OPTIONS]
        motet move MESH -o OUT --affine A11,A12,..,A34 [OPTIONS]")]
 #[command(after_help = "\
@@ -47,7 +47,8 @@ pub(crate) struct MoveArgs {
     pub(crate) output: PathBuf,
 
     /// A vector point array of MESH (its values inside are ignored), or a displaced surface, or a
-    /// .pvd series of them (points matched by GlobalNodeID, else by position)
+    /// .pvd series of them (points matched by GlobalNodeID, else by position), or a .dat file of
+    /// displacements over time, as svMultiPhysics has them (nodes by GlobalNodeID)
     #[arg(long, value_name = "ARRAY|FILE", help_heading = "Motion",
         conflicts_with_all = ["translate", "rotate", "affine"])]
     pub(crate) displacement: Option<String>,
@@ -75,6 +76,10 @@ pub(crate) struct MoveArgs {
     #[arg(long, value_name = "SECONDS", value_parser = positive, help_heading = "Motion")]
     pub(crate) dt: Option<f64>,
 
+    /// Also write where the vertices of a patch went at all steps, as a .dat file that svMultiPhysics
+    /// reads (temporal and spatial values). Repeatable
+    #[arg(long, value_name = "PATCH=FILE", value_parser = words::patch_file, help_heading = "Motion")]
+    pub(crate) nodal: Vec<PatchFile>,
     /// Add the cell array `eas` (equi-angle quality of tets: 1 regular, 0 flat, bad below 0.2)
     #[arg(long, help_heading = "Motion")]
     pub(crate) quality: bool,

@@ -4,15 +4,15 @@ mod args;
 mod patches;
 mod plan;
 mod report;
+mod sink;
 mod words;
 
 use std::path::Path;
 use std::time::Instant;
 
 use motet::base::{Point, Threads};
-use motet::geometry::quality::eas;
-use motet::io::{self, SeriesWriter, WriteOptions};
-use motet::mesh::{Boundary, Field};
+use motet::io;
+use motet::mesh::Boundary;
 use motet::motion::{
     self, Certificate, Extent, FacetSet, MethodWords, Mover, Options, RigidLayer, mesh_velocity,
 };
@@ -24,6 +24,7 @@ use self::args::Method;
 use self::patches::Patches;
 use self::plan::Plan;
 use self::report::{Chosen, Report, Step};
+use self::sink::Sink;
 use self::words::LayerWord;
 use crate::args::Common;
 use crate::console::Console;
@@ -32,7 +33,12 @@ use crate::outputs;
 
 pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
-    outputs::check(&args.output, args.displacement.as_ref().map(Path::new), "the motion")?;
+    let motion = args.displacement.as_ref().map(Path::new);
+    outputs::check(&args.output, motion, "the motion")?;
+    for nodal in &args.nodal {
+        let others = [args.output.as_path(), &args.mesh].into_iter().chain(motion);
+        outputs::check_beside(&nodal.file, others, "displacements")?;
+    }
     let threads = common.threads()?;
     let (mesh, notes) = io::read_noted(&args.mesh)?;
     notes.iter().for_each(|note| console.warn(note));
@@ -57,8 +63,9 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     report.begin(&mover, &threads);
     report.warn(console);
 
-    let mut sink = Sink::new(args, &mesh);
+    let mut sink = Sink::new(args, &mesh, &patches)?;
     let all_done = frames(&mut plan, &mut mover, &mut sink, &mut report, &threads, console)?;
+    sink.end()?;
     report.end(sink.moved(), begin.elapsed().as_secs_f64());
     report.tell(console);
     Ok(if all_done { Outcome::Done } else { Outcome::NotReached })
@@ -219,73 +226,6 @@ fn velocity(before: &(f64, Vec<Point>), time: f64, points: &[Point]) -> motet::R
         mesh_velocity(&before.1, points, time - before.0)
     } else {
         Ok(vec![[0.0; 3]; points.len()])
-    }
-}
-
-/// Where frames go: each into a series, or the last into one file.
-struct Sink<'a> {
-    path: &'a Path,
-    options: WriteOptions,
-    reference: &'a Mesh,
-    /// The mesh as it is written, everything of the input kept.
-    mesh: Mesh,
-    series: Option<SeriesWriter>,
-    with_quality: bool,
-    lost: Vec<String>,
-}
-
-impl<'a> Sink<'a> {
-    fn new(args: &'a MoveArgs, reference: &'a Mesh) -> Self {
-        let (path, options) = (args.output.as_path(), args.writing.options());
-        let series = io::is_series(path).then(|| SeriesWriter::new(path, options.clone()));
-        Self {
-            path,
-            options,
-            reference,
-            mesh: reference.clone(),
-            series,
-            with_quality: args.quality,
-            lost: Vec::new(),
-        }
-    }
-
-    /// Takes a frame, and returns its file where it was written.
-    fn take(
-        &mut self,
-        time: f64,
-        points: &[Point],
-        velocity: Option<Vec<Point>>,
-        is_last: bool,
-    ) -> motet::Result<Option<std::path::PathBuf>> {
-        if self.series.is_none() && !is_last {
-            return Ok(None);
-        }
-        let pairs = points.iter().zip(&self.reference.points);
-        let displacement: Vec<Point> = pairs.map(|(a, b)| [0, 1, 2].map(|i| a[i] - b[i])).collect();
-        self.mesh.points.copy_from_slice(points);
-        self.mesh.set_point_field(Field::vectors("displacement", &displacement));
-        if let Some(velocity) = velocity {
-            self.mesh.set_point_field(Field::vectors("velocity", &velocity));
-        }
-        if self.with_quality {
-            self.mesh.set_cell_field(self.mesh.tet_field("eas", eas));
-        }
-        match &mut self.series {
-            None => {
-                self.lost = io::write(self.path, &self.mesh, &self.options)?;
-                Ok(Some(self.path.to_owned()))
-            }
-            Some(series) => {
-                let (file, lost) = series.add(time, &self.mesh)?;
-                self.lost = lost;
-                Ok(Some(file))
-            }
-        }
-    }
-
-    /// How many vertices are not where they were.
-    fn moved(&self) -> usize {
-        self.mesh.points.iter().zip(&self.reference.points).filter(|(a, b)| a != b).count()
     }
 }
 

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use motet::base::{Point, VertexId};
 use motet::geometry::vector::{distance, norm};
-use motet::motion::{BoundaryMotion, Matching, Prescribed, SurfaceMotion};
+use motet::io::NodalSeries;
+use motet::motion::{BoundaryMotion, Matching, Prescribed, SurfaceMotion, match_ids};
 use motet::{Error, Mesh, io};
 
 use super::args::{Match, MoveArgs};
@@ -39,6 +40,13 @@ enum Source<'a> {
     Parts(BoundaryMotion),
     /// A surface for each frame.
     Surfaces { motion: SurfaceMotion<'a>, files: Vec<PathBuf> },
+    /// The displacements of these vertices for each frame.
+    Nodal { vertices: Vec<VertexId>, series: NodalSeries },
+}
+
+/// Whether a path is that of the displacements of nodes over time, by its ending.
+fn is_nodal(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("dat"))
 }
 
 impl<'a> Plan<'a> {
@@ -57,6 +65,7 @@ impl<'a> Plan<'a> {
         let Some(word) = &args.displacement else { return asked.words(patches) };
         match Path::new(word) {
             pvd if pvd.exists() && io::is_series(pvd) => asked.series(pvd),
+            nodal if nodal.exists() && is_nodal(nodal) => asked.nodal(nodal),
             surface if surface.exists() => asked.surface(surface),
             _ => asked.array(word),
         }
@@ -73,12 +82,21 @@ impl<'a> Plan<'a> {
             Source::Surfaces { motion, files } => {
                 let surface = io::read(&files[k])?;
                 let moved = motion.next(&surface).map_err(|e| e.in_file(&files[k]))?;
-                let mut all = BoundaryMotion::still(&self.nodes);
-                all.hold(&self.fixed);
-                all.go(&moved);
-                Ok(all.displacements(points, 1.0))
+                Ok(self.all_nodes(&moved))
+            }
+            Source::Nodal { vertices, series } => {
+                let moved: Vec<_> = vertices.iter().copied().zip(series.vectors(k)?).collect();
+                Ok(self.all_nodes(&moved))
             }
         }
+    }
+
+    /// The displacement of each node where some are told.
+    fn all_nodes(&self, moved: &[(VertexId, Point)]) -> Vec<Point> {
+        let mut all = BoundaryMotion::still(&self.nodes);
+        all.hold(&self.fixed);
+        all.go(moved);
+        all.displacements(&self.mesh.points, 1.0)
     }
 }
 
@@ -94,26 +112,48 @@ struct Asked<'a, 'c> {
 impl<'a> Asked<'a, '_> {
     /// `--displacement FILE.pvd`
     fn series(self, pvd: &Path) -> motet::Result<Plan<'a>> {
-        if self.args.steps.is_some() {
-            return Err(Error::options("--steps goes with one motion, not with a series of surfaces")
-                .remedy("leave --steps away: each surface is a step"));
-        }
+        self.refuse_steps()?;
         let frames = io::read_series(pvd)?;
         let moved = self.read_surface(&frames[0].1)?;
         let mut motion = self.still(moved.iter().map(|(v, _)| *v));
         motion.go(&moved);
         let (own_times, files): (Vec<f64>, Vec<PathBuf>) = frames.into_iter().unzip();
+        let source = Source::Surfaces { motion: SurfaceMotion::new(self.mesh, self.matching()), files };
+        Ok(self.in_time(&motion, own_times, pvd, source))
+    }
+
+    /// `--displacement FILE.dat`
+    fn nodal(self, file: &Path) -> motet::Result<Plan<'a>> {
+        self.refuse_steps()?;
+        let series = NodalSeries::read(file)?;
+        let vertices = match_ids(self.mesh, &series.ids).map_err(|e| e.in_file(file))?;
+        let first = series.vectors(0).map_err(|e| e.in_file(file))?;
+        let mut motion = self.still(vertices.iter().copied());
+        motion.go(&vertices.iter().copied().zip(first).collect::<Vec<_>>());
+        Ok(self.in_time(&motion, series.times.clone(), file, Source::Nodal { vertices, series }))
+    }
+
+    /// Where each time is a step.
+    fn refuse_steps(&self) -> motet::Result<()> {
+        match self.args.steps {
+            None => Ok(()),
+            Some(_) => Err(Error::options("--steps goes with one motion, not with a series")
+                .remedy("leave --steps away: each time of the series is a step")),
+        }
+    }
+
+    /// A step for each time of a series, whose first is `motion`.
+    fn in_time(self, motion: &BoundaryMotion, own: Vec<f64>, file: &Path, source: Source<'a>) -> Plan<'a> {
         let times = match self.args.dt {
-            Some(dt) => (0..files.len()).map(|k| k as f64 * dt).collect(),
-            None => own_times,
+            Some(dt) => (0..own.len()).map(|k| k as f64 * dt).collect(),
+            None => own,
         };
         let timed = times.is_sorted_by(|a, b| a < b);
         if !timed {
-            self.console.warn(format_args!("{}: its times do not rise: no velocities", pvd.display()));
+            self.console.warn(format_args!("{}: its times do not rise: no velocities", file.display()));
         }
         let (nodes, moving) = (motion.vertices().to_vec(), motion.told());
-        let source = Source::Surfaces { motion: SurfaceMotion::new(self.mesh, self.matching()), files };
-        Ok(Plan { mesh: self.mesh, nodes, moving, times, first: 0, timed, fixed: self.fixed, source })
+        Plan { mesh: self.mesh, nodes, moving, times, first: 0, timed, fixed: self.fixed, source }
     }
 
     /// `--displacement FILE`
@@ -222,7 +262,8 @@ impl<'a> Asked<'a, '_> {
     }
 
     fn parts(self, motion: BoundaryMotion) -> Plan<'a> {
-        let (default, first) = if io::is_series(&self.args.output) { (SERIES_STEPS, 0) } else { (1, 1) };
+        let default = if io::is_series(&self.args.output) { SERIES_STEPS } else { 1 };
+        let in_time = io::is_series(&self.args.output) || !self.args.nodal.is_empty();
         let n = self.args.steps.unwrap_or(default);
         let dt = self.args.dt.unwrap_or(1.0);
         Plan {
@@ -230,7 +271,7 @@ impl<'a> Asked<'a, '_> {
             nodes: motion.vertices().to_vec(),
             moving: motion.moving(&self.mesh.points),
             times: (0..=n).map(|k| f64::from(k) * dt).collect(),
-            first,
+            first: usize::from(!in_time),
             timed: self.args.dt.is_some(),
             fixed: self.fixed,
             source: Source::Parts(motion),

@@ -1,0 +1,53 @@
+"""What is over time: series of meshes, and of values of nodes."""
+from __future__ import annotations
+
+import os
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _motet
+from ._mesh import MeshLike, as_mesh
+from .errors import InputError
+
+
+def read_series(path: str | os.PathLike[str]) -> list[tuple[float, str]]:
+    """The times of a series (``.pvd``), and the file of each."""
+    return _motet.read_series(path)
+
+
+class SeriesWriter:
+    """Meshes over time, as ParaView plays them: a ``.pvd``, and a ``.vtu`` beside it for each time. Points and cells may differ from time to time.
+
+    After each :meth:`add` the series on the disk is whole.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]):
+        self._native = _motet.SeriesWriter(path)
+
+    def add(self, time: float, mesh: MeshLike) -> str:
+        """Writes a mesh and the series that ends with it; gives the mesh's file."""
+        file, _ = self._native.add(time, as_mesh(mesh))
+        return file
+
+
+def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
+    """Values of nodes over time, such as displacements of a wall, from the text that svMultiPhysics has them in ("temporal and spatial values").
+
+    Returns
+    -------
+    times : array (t,), rising
+    ids : array (n,)
+        The nodes' ``GlobalNodeID``, or their numbers in the mesh counted from 1.
+    values : array (n, t, c)
+    """
+    times, ids, values = _motet.read_nodal(path)
+    return np.array(times), np.array(ids, np.int64), values
+
+
+def write_nodal(path: str | os.PathLike[str], times: ArrayLike, ids: ArrayLike, values: ArrayLike) -> None:
+    """Writes what :func:`read_nodal` reads, with as many digits as bring each number back to the bit."""
+    shaped = np.asarray(values, np.float64)
+    if shaped.ndim != 3:
+        raise InputError(f"values of shape {shaped.shape}, expected (nodes, times, components)")
+    _motet.write_nodal(path, np.ravel(times).tolist(), np.ravel(ids).tolist(), shaped)

@@ -1,0 +1,66 @@
+//! What is over time: series of meshes, and of values of nodes.
+
+use std::path::PathBuf;
+
+use motet::io::{self, NodalSeries, WriteOptions};
+use numpy::{PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::border::Given;
+use crate::error::{OrRaise, input};
+
+/// The times and files of a series.
+#[pyfunction]
+pub(crate) fn read_series(path: PathBuf) -> PyResult<Vec<(f64, PathBuf)>> {
+    io::read_series(path).or_raise()
+}
+
+/// A series that is being written.
+#[pyclass(module = "motet._motet")]
+pub(crate) struct SeriesWriter(io::SeriesWriter);
+
+#[pymethods]
+impl SeriesWriter {
+    #[new]
+    fn new(path: PathBuf) -> Self {
+        Self(io::SeriesWriter::new(path, WriteOptions::default()))
+    }
+
+    /// Adds a mesh: its file, and what that cannot hold.
+    fn add(&mut self, py: Python<'_>, time: f64, mesh: Given) -> PyResult<(PathBuf, Vec<String>)> {
+        py.detach(|| self.0.add(time, &mesh.0)).or_raise()
+    }
+}
+
+/// Times, ids, and values by node and time.
+type Nodal<'py> = (Vec<f64>, Vec<i64>, Bound<'py, PyAny>);
+
+/// Values of nodes over time.
+#[pyfunction]
+pub(crate) fn read_nodal(py: Python<'_>, path: PathBuf) -> PyResult<Nodal<'_>> {
+    let series = py.detach(|| NodalSeries::read(path)).or_raise()?;
+    let shape = [series.ids.len(), series.times.len(), series.components];
+    let values = numpy::PyArray1::from_vec(py, series.values).reshape(shape)?;
+    Ok((series.times, series.ids, values.into_any()))
+}
+
+/// Writes values of nodes over time.
+#[pyfunction]
+pub(crate) fn write_nodal(
+    py: Python<'_>,
+    path: PathBuf,
+    times: Vec<f64>,
+    ids: Vec<i64>,
+    values: PyReadonlyArray3<'_, f64>,
+) -> PyResult<()> {
+    let &[n_nodes, n_times, components] = values.shape() else { unreachable!("three axes by its type") };
+    if (n_nodes, n_times) != (ids.len(), times.len()) {
+        return Err(input(format!(
+            "values of {n_nodes} nodes at {n_times} times, but {} ids and {} times",
+            ids.len(),
+            times.len()
+        )));
+    }
+    let series = NodalSeries { times, ids, components, values: values.as_array().iter().copied().collect() };
+    py.detach(|| series.write(path)).or_raise()
+}
