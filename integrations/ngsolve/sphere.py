@@ -1,152 +1,203 @@
-"""Incompressible flow round a sphere that swings across the stream, on a mesh that moves: by motet, or by NGSolve's own solution of a Laplace or an elasticity equation.
+"""Incompressible flow round a sphere that drifts along a channel and swings across it, on a mesh that moves.
 
     pip install ./python ngsolve
-    python integrations/ngsolve/sphere.py [--steps 100] [--size 0.9]
+    python integrations/ngsolve/sphere.py [--steps 100] [--size 1.0] [--swing 2.0] [--drift 4.0] [--worn 0.15] [--save end_{}.vtu]
 
-Navier-Stokes in arbitrary Lagrangian-Eulerian form (Donea, Giuliani, Halleux 1982), Taylor and Hood's elements, implicit Euler, convection by the velocity of the step before. The mesh is moved by
-`Mesh.SetDeformation` with a field of order 1, whose values are motet's displacements as they are. Prints what the steps of each motion took, and the drag and lift of both.
+The mesh is moved by motet, which repairs it when its worst tet is below `--worn`; by motet without repair; and by NGSolve's own solution of a
+Laplace and of an elasticity equation. The flow is that of `flow.py`. Prints what the steps of each motion took, how the mesh fared, what each
+repair did to the flow, and how far drag and lift are apart.
 """
 import argparse
-import math
+import functools
 import time
+from collections import defaultdict
 
 import numpy as np
 from netgen.occ import Box, OCCGeometry, Pnt, Sphere, X
-from ngsolve import (
-    H1, BilinearForm, CoefficientFunction, Grad, GridFunction, InnerProduct, LinearForm, Mesh, Sym, TaskManager, Trace, VectorH1, div, dx, specialcf,
-)  # fmt: skip
+from ngsolve import BilinearForm, Grad, GridFunction, InnerProduct, Sym, TaskManager, Trace, VectorH1, dx, specialcf
 
 import motet
+from flow import DT, RAMP, Flow, carried, ramp, to_ngsolve
 
-RADIUS, VISCOSITY, DT, AMPLITUDE, PERIOD = 0.5, 0.02, 0.02, 0.3, 2.0
+RADIUS, PERIOD = 0.5, 4.0
 
 
 def made(size):
+    """The channel round the sphere, meshed by netgen, as a `motet.Mesh` whose patches have names."""
     box = Box(Pnt(-2, -2, -2), Pnt(4, 2, 2))
     box.faces.name = "sides"
     ball = Sphere(Pnt(0, 0, 0), RADIUS)
     ball.faces.name, ball.faces.maxh = "sphere", size / 4
     fluid = box - ball
     fluid.faces.Min(X).name, fluid.faces.Max(X).name = "inlet", "outlet"
-    return Mesh(OCCGeometry(fluid).GenerateMesh(maxh=size))
+    mesh = OCCGeometry(fluid).GenerateMesh(maxh=size)
+    names = ["inlet", "outlet", "sides", "sphere"]
+    labels = np.array([names.index(face.bcname) + 1 for face in mesh.FaceDescriptors()])
+    tets, triangles = mesh.Elements3D().NumPy(), mesh.Elements2D().NumPy()
+    return motet.Mesh(
+        mesh.Coordinates(),
+        {"tetra": tets["nodes"][:, [0, 1, 3, 2]] - 1, "triangle": triangles["nodes"] - 1},
+        cell_data={"patch": np.concatenate([np.zeros(len(tets), int), labels[triangles["index"] - 1]])},
+        patch_names=dict(enumerate(names, 1)),
+    )
 
 
-def shift(t):
-    return AMPLITUDE * math.sin(2 * math.pi * t / PERIOD)
+def path(t, drift, swing):
+    """How far the sphere is from its first place."""
+    return RADIUS * ramp(t) * np.array([drift * t / PERIOD, swing * np.sin(2 * np.pi * t / PERIOD), 0])
 
 
 class ByMotet:
-    name = "motet"
+    """Certified steps from where the mesh was made or repaired last."""
 
-    def __init__(self, mesh, _space):
-        points = np.array([v.point for v in mesh.vertices])
-        tets = np.array([[v.nr for v in element.vertices] for element in mesh.Elements()])
-        # Which way round NGSolve's tets are is its own affair.
-        if motet.Mesh(points, tets).quality("volume").mean() < 0:
-            tets = tets[:, [0, 1, 3, 2]]
-        self.mesh = motet.Mesh(points, tets)
-        self.mover = motet.Mover(self.mesh, smooth=2)
-        self.is_sphere = np.linalg.norm(points[self.mover.boundary], axis=1) < RADIUS * 1.01
-        self.points = points.copy()
+    def __init__(self, mesh, worn=0.0, start=np.zeros(3)):
+        self.mesh, self.worn, self.start = mesh, worn, start
+        self.mover = motet.Mover(mesh, smooth=2)
+        self.is_sphere = np.isin(self.mover.boundary, mesh.patch_vertices("sphere"))
+        self.points = mesh.points.copy()
 
-    def move(self, y, field):
-        displacement = np.zeros((len(self.mover.boundary), 3))
-        displacement[self.is_sphere, 1] = y
-        _, certificate = self.mover.advance(displacement, self.points)
-        assert certificate.complete
-        field.vec.FV().NumPy()[:] = (self.points - self.mesh.points).T.ravel()
+    def move(self, shift):
+        self.shift = shift
+        displacement = np.zeros((len(self.is_sphere), 3))
+        displacement[self.is_sphere] = shift - self.start
+        _, self.certificate = self.mover.advance(displacement, self.points)
+        return self.points
+
+    def is_worn(self):
+        return self.certificate.worst_eas.value < self.worn
+
+    def repaired(self):
+        """The motion from here on, of the mesh repaired where it is, and what the repair changed. The boundary stays to the bit."""
+        here = self.mesh.copy()
+        here.points = self.points
+        changed = motet.remesh(here)
+        return ByMotet(changed.mesh, self.worn, self.shift), changed
 
 
 class BySystem:
-    """A factor of the system that is kept: the fastest that NGSolve has for this."""
+    """NGSolve's own: a linear system whose factor is kept, the fastest that it has for this."""
 
-    def __init__(self, name, mesh, space):
-        self.name = name
+    def __init__(self, mesh, kind):
+        self.mesh, self.sphere = mesh, mesh.patch_vertices("sphere")
+        space = VectorH1(to_ngsolve(mesh, mesh.points), order=1, dirichlet="inlet|outlet|sides|sphere")
         u, v = space.TnT()
         stiffness = 1 / specialcf.mesh_size**3
-        if name == "elasticity":
+        if kind == "elasticity":
             strain, test = Sym(Grad(u)), Sym(Grad(v))
             form = stiffness * (InnerProduct(strain, test) + 0.75 * Trace(strain) * Trace(test)) * dx
         else:
             form = stiffness * InnerProduct(Grad(u), Grad(v)) * dx
         self.matrix = BilinearForm(form).Assemble().mat
         self.inverse = self.matrix.Inverse(space.FreeDofs(), inverse="sparsecholesky")
-        self.mesh = mesh
+        self.field = GridFunction(space)
 
-    def move(self, y, field):
-        field.Set(CoefficientFunction((0, y, 0)), definedon=self.mesh.Boundaries("sphere"))
-        work = field.vec.CreateVector()
-        work.data = self.matrix * field.vec
-        field.vec.data -= self.inverse * work
+    def move(self, shift):
+        values = self.field.vec.FV().NumPy().reshape(3, -1)
+        values[:] = 0
+        values[:, self.sphere] = shift[:, None]
+        self.field.vec.data -= self.inverse * (self.matrix * self.field.vec).Evaluate()
+        return self.mesh.points + values.T
+
+    def is_worn(self):
+        return False
 
 
-def flow(mesh, motion_of, steps):
-    """Forces on the sphere, and the seconds of motion and of flow."""
-    space = VectorH1(mesh, order=1, dirichlet="inlet|outlet|sides|sphere")
-    now, before = GridFunction(space), GridFunction(space)
-    begin = time.perf_counter()
-    motion = motion_of(mesh, space)
-    setup = time.perf_counter() - begin
-    velocities = VectorH1(mesh, order=2, dirichlet="inlet|sides|sphere")
-    both = velocities * H1(mesh, order=1)
-    (u, p), (v, q) = both.TnT()
-    state, old = GridFunction(both), GridFunction(both)
-    state.components[0].Set(CoefficientFunction((1, 0, 0)), definedon=mesh.Boundaries("inlet|sides"))
-    grid = GridFunction(space)
-    forces, moving, solving = [], 0.0, 0.0
-    for k in range(1, steps + 1):
-        old.vec.data = state.vec
-        before.vec.data = now.vec
+class Run:
+    """The flow with one motion, to the end or to where the mesh tangles."""
+
+    def __init__(self, mesh, motion_of):
+        self.seconds, self.forces, self.worst_eas, self.tangled = defaultdict(list), [], 1.0, None
+        self.motion = self.clocked("set-up", motion_of, mesh)
+        self.flow = Flow(mesh)
+        self.repairs, self.unrepaired = [], None
+
+    def clocked(self, what, call, *given):
         begin = time.perf_counter()
-        motion.move(shift(k * DT), now)
-        moving += time.perf_counter() - begin
-        begin = time.perf_counter()
-        grid.vec.data = 1 / DT * (now.vec - before.vec)
-        mesh.SetDeformation(now)
-        stream = old.components[0] - grid
-        form = BilinearForm(both)
-        form += (1 / DT * u * v + VISCOSITY * InnerProduct(Grad(u), Grad(v)) + (Grad(u) * stream) * v - div(v) * p - div(u) * q - 1e-10 * p * q) * dx
-        form.Assemble()
-        right = LinearForm(1 / DT * old.components[0] * v * dx).Assemble()
-        wall = (shift(k * DT) - shift((k - 1) * DT)) / DT
-        state.components[0].Set(CoefficientFunction((1, 0, 0)), definedon=mesh.Boundaries("inlet|sides"))
-        fixed = GridFunction(velocities)
-        fixed.Set(mesh.BoundaryCF({"inlet": (1, 0, 0), "sides": (1, 0, 0), "sphere": (0, wall, 0)}, default=(0, 0, 0)), definedon=mesh.Boundaries("inlet|sides|sphere"))
-        state.components[0].vec.data = fixed.vec
-        residual = right.vec.CreateVector()
-        residual.data = right.vec - form.mat * state.vec
-        state.vec.data += form.mat.Inverse(both.FreeDofs(), inverse="pardiso") * residual
-        # The force is what the equation lacks at the sphere's degrees of freedom.
-        residual.data = right.vec - form.mat * state.vec
-        total = []
-        for axis in (0, 1):
-            test = GridFunction(velocities)
-            unit = tuple(float(axis == i) for i in range(3))
-            test.Set(CoefficientFunction(unit), definedon=mesh.Boundaries("sphere"))
-            whole = GridFunction(both)
-            whole.components[0].vec.data = test.vec
-            total.append(InnerProduct(residual, whole.vec))
-        forces.append(total)
-        mesh.UnsetDeformation()
-        solving += time.perf_counter() - begin
-    return np.array(forces), setup, moving / steps, solving / steps
+        result = call(*given)
+        self.seconds[what].append(time.perf_counter() - begin)
+        return result
+
+    def step(self, t, shift, wall):
+        """Goes on to the time `t`; false where the mesh tangles on the way."""
+        points = self.clocked("motion", self.motion.move, shift)
+        there = motet.Mesh(points, self.motion.mesh.tets)
+        self.worst_eas = min(self.worst_eas, there.quality().min())
+        if there.quality("volume").min() <= 0:
+            self.tangled = f"tangled at step {len(self.forces) + 1}, {(there.quality('volume') <= 0).sum()} tets inverted"
+            return False
+        self.forces.append(self.clocked("flow", self.flow.step, points, t, wall))
+        if self.unrepaired:
+            # The same step on the mesh that was not repaired says what the repair did to the drag.
+            motion, flow = self.unrepaired
+            self.repairs[-1]["drag"] = self.forces[-1][0] - flow.step(motion.move(shift), t, wall)[0]
+            self.unrepaired = None
+        if self.motion.is_worn():
+            self.repair()
+        return True
+
+    def repair(self):
+        self.unrepaired = self.motion, self.flow
+        divergence = self.flow.divergence()
+        self.motion, changed = self.clocked("repair", self.motion.repaired)
+        self.flow = self.clocked("transfer", carried, self.flow, changed.mesh, changed.history)
+        told = {"step": len(self.forces), "bad": changed.report.before.bad, "left": changed.report.after.bad, "kept": changed.report.kept_share}
+        self.repairs.append({**told, "divergence": self.flow.divergence() / divergence, "drag": np.nan})
+
+    def show(self, name):
+        ms = {what: 1e3 * np.median(each) for what, each in self.seconds.items()}
+        drag = np.array(self.forces)[:, 0]
+        print(f"{name}: {len(drag)} steps, {self.tangled or 'not tangled'}; worst EAS {self.worst_eas:.3f}; last drag {drag[-1]:.5f}")
+        print(f"  ms: {', '.join(f'{what} {each:.2f}' for what, each in ms.items())}; all flow steps {sum(self.seconds['flow']):.1f} s")
+        for one in self.repairs:
+            print(
+                f"  step {one['step']}: {one['bad']} bad tets, {one['left']} left, {100 * one['kept']:.1f} % of the tets kept;"
+                f" divergence times {one['divergence']:.4f}, next drag changed by {one['drag']:.5f}"
+            )
+
+
+def compare(first, other):
+    """How far drag and lift are apart, once the flow has started, while both meshes are valid: in parts of their mean size."""
+    n, begin = min(len(first.forces), len(other.forces)), round(RAMP / DT)
+    if n <= begin:
+        return "tangled before the flow has started"
+    ours, theirs = [np.array(run.forces)[begin:n, :2] for run in (first, other)]
+    apart = 100 * np.abs(ours - theirs) / np.abs(ours).mean(axis=0)
+    (drag, lift), (most_drag, most_lift) = apart.mean(axis=0), apart.max(axis=0)
+    return f"steps {begin + 1} to {n}: drag apart by {drag:.2f} % in the mean, {most_drag:.2f} % at most; lift by {lift:.2f} %, {most_lift:.2f} %"
 
 
 def main():
     words = argparse.ArgumentParser()
     words.add_argument("--steps", type=int, default=100)
-    words.add_argument("--size", type=float, default=1.0)
+    words.add_argument("--size", type=float, default=1.0, help="edges far from the sphere; a quarter of it at the sphere")
+    words.add_argument("--swing", type=float, default=2.0, help="to each side, in radii")
+    words.add_argument("--drift", type=float, default=4.0, help="along the channel in 100 steps, in radii")
+    words.add_argument("--worn", type=float, default=0.15, help="the EAS of the worst tet below which motet repairs")
+    words.add_argument("--save", help="where the last meshes go; {} is the motion's name")
     asked = words.parse_args()
     mesh = made(asked.size)
-    print(f"{mesh.nv} vertices, {mesh.ne} tets, {asked.steps} steps of {DT}")
-    results = {}
+    print(f"{mesh.n_points} vertices, {len(mesh.tets)} tets, {asked.steps} steps of {DT}")
+    motions = {
+        "motet": functools.partial(ByMotet, worn=asked.worn),
+        "unrepaired": ByMotet,
+        "Laplace": functools.partial(BySystem, kind="Laplace"),
+        "elasticity": functools.partial(BySystem, kind="elasticity"),
+    }
+    runs = {}
     with TaskManager():
-        for name, motion in [("motet", ByMotet), ("Laplace", lambda *w: BySystem("Laplace", *w)), ("elasticity", lambda *w: BySystem("elasticity", *w))]:
-            forces, setup, moving, solving = results[name] = flow(mesh, motion, asked.steps)
-            print(f"{name}: set-up {1e3 * setup:.1f} ms, a motion {1e3 * moving:.2f} ms, a flow step {1e3 * solving:.0f} ms; mean drag {forces[:, 0].mean():.5f}, last {forces[-1, 0]:.5f}", flush=True)
-    for name in ("Laplace", "elasticity"):
-        apart = np.abs(results["motet"][0] - results[name][0]).max(axis=0) / np.abs(results[name][0]).max(axis=0)
-        print(f"motet and {name}: drag apart by {100 * apart[0]:.2f} %, lift by {100 * apart[1]:.2f} % of the largest")
+        for name, motion_of in motions.items():
+            run = runs[name] = Run(mesh, motion_of)
+            for k in range(1, asked.steps + 1):
+                shift, before = [path(DT * i, asked.drift, asked.swing) for i in (k, k - 1)]
+                if not run.step(k * DT, shift, (shift - before) / DT):
+                    break
+            run.show(name)
+            if run is not runs["motet"]:
+                print(f"  beside motet, {compare(runs['motet'], run)}", flush=True)
+            if asked.save:
+                last = run.motion.mesh.copy()
+                last.points = run.flow.points()
+                last.save(asked.save.format(name))
 
 
 if __name__ == "__main__":
