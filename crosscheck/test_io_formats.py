@@ -388,14 +388,72 @@ def test_msh_of_meshio(motet, tmp_path, form, binary):
             assert list(found.field_data[name]) == list(value)
 
 
-def test_medit_of_meshio(motet, tmp_path):
+@pytest.mark.parametrize("ending", ["mesh", "meshb"])
+@pytest.mark.parametrize("source_ending", ["mesh", "meshb"])
+def test_medit_of_meshio(motet, tmp_path, source_ending, ending):
     mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "pyramid"])
     mesh.point_data = {"medit:ref": np.arange(60)}
     mesh.cell_data = {"medit:ref": [np.arange(4) + 10 * i for i in range(len(mesh.cells))]}
-    source, copy = tmp_path / "source.mesh", tmp_path / "copy.mesh"
+    source, copy = tmp_path / f"source.{source_ending}", tmp_path / f"copy.{ending}"
     mesh.write(source)
     motet("convert", source, copy)
     assert_same_mesh(meshio.read(copy), meshio.read(source))
+
+
+@pytest.mark.parametrize("type_", [np.int32, np.int64])
+def test_medit_binary_of_meshio_in_versions_3_and_4(motet, tmp_path, type_):
+    """meshio writes version 3 for ids of 32 bits, 4 for others."""
+    mesh = mixed_mesh(["tetra"])
+    for block in mesh.cells:
+        block.data = block.data.astype(type_)
+    source, copy = tmp_path / "source.meshb", tmp_path / "copy.meshb"
+    mesh.write(source)
+    assert source.read_bytes()[4] == (3 if type_ is np.int32 else 4)
+    motet("convert", source, copy)
+    assert_same_mesh(meshio.read(copy), meshio.read(source))
+
+
+@pytest.mark.parametrize("build", ["tets", "tets of second order", "hexahedra", "prisms"])
+def test_medit_of_gmsh_and_back(motet, gmsh_session, tmp_path, build):
+    """Gmsh writes the text form; what motet makes of it in binary and again in text is the same mesh to Gmsh."""
+    BUILDS[build]()
+    source, binary, copy = (tmp_path / name for name in ("source.mesh", "binary.meshb", "copy.mesh"))
+    gmsh.write(str(source))
+    motet("convert", source, binary)
+    motet("convert", binary, copy)
+    points, elements, _ = opened(source)
+    copy_points, copy_elements, _ = opened(copy)
+    assert_same_located(copy_points, copy_elements, points, elements)
+
+
+@pytest.mark.parametrize("ending", ["sol", "solb"])
+def test_a_solution_of_medit_as_the_manual_lays_it_out(motet, tmp_path, ending):
+    """What motet writes, read with numpy by the layout of RT-422: a scalar, a vector and a symmetric tensor."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    names = {"a": np.arange(4) / 3, "b": np.arange(12).reshape(4, 3) / 7, "c": np.arange(24).reshape(4, 6) / 11}
+    source = tmp_path / "source.vtu"
+    meshio.Mesh(points, [("tetra", [[0, 1, 2, 3]])], point_data=names).write(source)
+    out = tmp_path / f"out.{ending}"
+    motet("convert", source, out)
+    # VTK has xx yy zz xy yz xz, Medit the lower half row by row.
+    rows = np.hstack([names["a"][:, None], names["b"], names["c"][:, [0, 3, 1, 5, 4, 2]]])
+    if ending == "sol":
+        words = out.read_text().split()
+        assert words[:10] == ["MeshVersionFormatted", "2", "Dimension", "3", "SolAtVertices", "4", "3", "1", "2", "3"]
+        assert words[-1] == "End"
+        found = np.array(words[10:-1], float).reshape(4, 10)
+    else:
+        data = out.read_bytes()
+        head = np.frombuffer(data, "<i4", 12).tolist()
+        assert head == [1, 2, 3, 20, 3, 62, 48 + 4 * 80, 4, 3, 1, 2, 3]
+        found = np.frombuffer(data, "<f8", 40, 48).reshape(4, 10)
+        assert np.frombuffer(data, "<i4", 2, 48 + 320).tolist() == [54, 0]
+    assert_same_array(found, rows)
+    back = tmp_path / "back.vtu"
+    motet("convert", out, back)
+    arrays = meshio.read(back).point_data
+    for name, ours in zip("abc", ["medit:sol", "medit:sol_2", "medit:sol_3"]):
+        assert_same_array(arrays[ours], names[name])
 
 
 def test_tetgen_of_meshio(motet, tmp_path):

@@ -146,14 +146,16 @@ proptest! {
         let refs: Vec<i32> = (0..mesh.points.len() as i32).map(|i| i - 3).collect();
         mesh.set_point_field(Field::scalars("medit:ref", refs));
         mesh.set_cell_field(Field::scalars("medit:ref", labels));
-        let (bytes, lost) = print(".mesh", &mesh, &WriteOptions::default());
-        prop_assert!(lost.is_empty(), "{lost:?}");
-        let back = parse(".mesh", &bytes).unwrap();
-        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
-        prop_assert_eq!(&back.cells, &mesh.cells);
-        prop_assert_eq!(back.point_field("medit:ref"), mesh.point_field("medit:ref"));
-        let marked = mesh.cell_field("medit:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
-        prop_assert_eq!(back.cell_field("medit:ref"), marked);
+        for ending in [".mesh", ".meshb"] {
+            let (bytes, lost) = print(ending, &mesh, &WriteOptions::default());
+            prop_assert!(lost.is_empty(), "{lost:?}");
+            let back = parse(ending, &bytes).unwrap();
+            prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+            prop_assert_eq!(&back.cells, &mesh.cells);
+            prop_assert_eq!(back.point_field("medit:ref"), mesh.point_field("medit:ref"));
+            let marked = mesh.cell_field("medit:ref").filter(|f| f.values.to_i64().unwrap().iter().any(|&r| r != 0));
+            prop_assert_eq!(back.cell_field("medit:ref"), marked);
+        }
     }
 
     #[test]
@@ -233,6 +235,7 @@ proptest! {
             (".msh", options("4.1", Encoding::Ascii)),
             (".msh", options("4.1", Encoding::Binary)),
             (".mesh", WriteOptions::default()),
+            (".meshb", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
             (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),

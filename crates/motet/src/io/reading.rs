@@ -53,3 +53,12 @@ fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
     }
     Ok(())
 }
+
+/// The content of a file that may be missing, such as one that belongs to the file named.
+pub(super) fn read_beside(path: &Path) -> Result<Option<Vec<u8>>> {
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        Err(e) => Err(Error::io(path, &e)),
+    }
+}

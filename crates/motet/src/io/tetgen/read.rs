@@ -1,11 +1,10 @@
 //! Reading TetGen's files, all of one stem.
 
-use std::path::Path;
-
 use super::EDGE_NODES;
 use crate::base::{Error, Result, VertexId};
 use crate::io::Input;
 use crate::io::node_order::vtk_to_other;
+use crate::io::reading::read_beside;
 use crate::io::text::{Text, parse_float, parse_int};
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
@@ -79,14 +78,14 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     let node_path = if is_ele { path.with_extension("node") } else { path.to_owned() };
     let ele_path = if is_ele { path.to_owned() } else { path.with_extension("ele") };
     let (node_bytes, ele_bytes) = if is_ele {
-        let bytes = beside(&node_path)?.ok_or_else(|| {
+        let bytes = read_beside(&node_path)?.ok_or_else(|| {
             Error::input("there is no such file, which holds the points of the .ele file")
                 .in_file(&node_path)
                 .remedy("put the .node file of the same name beside it")
         })?;
         (Some(bytes), None)
     } else {
-        (None, beside(&ele_path)?)
+        (None, read_beside(&ele_path)?)
     };
     let nodes =
         read_nodes(node_bytes.as_deref().unwrap_or(input.bytes)).map_err(|e| e.in_file(&node_path))?;
@@ -97,20 +96,11 @@ pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
     }
     for (ending, kind, n) in [("face", CellKind::TRIANGLE, 3), ("edge", CellKind::LINE, 2)] {
         let side_path = path.with_extension(ending);
-        if let Some(bytes) = beside(&side_path)? {
+        if let Some(bytes) = read_beside(&side_path)? {
             elements.read_sides(&bytes, &nodes, kind, n).map_err(|e| e.in_file(&side_path))?;
         }
     }
     Ok(elements.into_mesh(nodes))
-}
-
-/// The content of a file that may be missing.
-fn beside(path: &Path) -> Result<Option<Vec<u8>>> {
-    match std::fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(Error::io(path, &e)),
-    }
 }
 
 /// `number of points, dimension, number of attributes, number of markers`.

@@ -1,0 +1,64 @@
+//! A mesh and the solution that lies beside it, whichever of the two is named.
+
+use std::path::{Path, PathBuf};
+
+use super::content::Content;
+use super::solution::attach;
+use super::source::is_medit;
+use crate::base::{Error, Result};
+use crate::io::format::{Input, Notes};
+use crate::io::reading::read_beside;
+use crate::mesh::Mesh;
+
+/// Reads a mesh, with the solution of the same name where there is one.
+pub(super) fn read_mesh(input: &Input<'_>) -> Result<Mesh> {
+    let mut mesh = Content::read(input.bytes, input.notes)?.into_mesh()?;
+    let Some((path, bytes)) = find_beside(input.path, "sol")? else { return Ok(mesh) };
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    if !is_medit(&bytes) {
+        input.notes.add(format!("{name} beside is passed over: it is no solution of Medit"));
+        return Ok(mesh);
+    }
+    let solutions = read_solutions(&path, &bytes, input.notes)?;
+    if let Err(misfit) = attach(&mut mesh, &solutions.solutions) {
+        input.notes.add(format!("{name} beside is passed over: it {}", misfit.what()));
+    }
+    Ok(mesh)
+}
+
+/// Reads a solution, and the mesh that it belongs to.
+pub(super) fn read_solution(input: &Input<'_>) -> Result<Mesh> {
+    let solutions = read_solutions(input.path, input.bytes, input.notes)?;
+    if solutions.solutions.is_empty() {
+        return Err(Error::input("there is no solution (SolAtVertices, SolAtTetrahedra, ...)")
+            .remedy("the file is damaged, or no solution: get it again"));
+    }
+    let (path, bytes) = find_beside(input.path, "mesh")?.ok_or_else(|| {
+        Error::input("there is no mesh of the same name beside it, which the solution belongs to")
+            .remedy("put the .mesh or .meshb file of the same name beside it")
+    })?;
+    let told = |e: Error| e.in_file(&path);
+    let mut mesh = Content::read(&bytes, input.notes).and_then(Content::into_mesh).map_err(told)?;
+    attach(&mut mesh, &solutions.solutions)?;
+    Ok(mesh)
+}
+
+fn read_solutions(path: &Path, bytes: &[u8], notes: &Notes) -> Result<Content> {
+    Content::read(bytes, notes).map_err(|e| e.in_file(path))
+}
+
+/// The file of the same name with ending `ending`, or with a `b` behind; first the one of the same form.
+fn find_beside(path: &Path, ending: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
+    let is_binary = path.extension().is_some_and(|e| e.to_string_lossy().to_lowercase().ends_with('b'));
+    let mut endings = [ending.to_owned(), format!("{ending}b")];
+    if is_binary {
+        endings.reverse();
+    }
+    for ending in endings {
+        let path = path.with_extension(ending);
+        if let Some(bytes) = read_beside(&path)? {
+            return Ok(Some((path, bytes)));
+        }
+    }
+    Ok(None)
+}

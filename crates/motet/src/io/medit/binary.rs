@@ -1,0 +1,150 @@
+//! The binary form: sections by number, each with the position where the next one begins.
+//!
+//! The number 1 in 32 bits tells the order of bytes; then comes the version. Real numbers have 32 bits in
+//! version 1, else 64; positions 64 from version 3 on, counts, vertices and references in version 4. Numbers of
+//! sections, the dimension, and the list of types of a solution have 32 bits in every version.
+
+use std::borrow::Cow;
+
+use super::{END, name_of};
+use crate::base::{Error, Result};
+
+/// A place in a binary file.
+pub(super) struct Binary<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    swapped: bool,
+    version: i64,
+    /// Where the next section begins: the end of the file where the section says that it is the last.
+    next: usize,
+}
+
+impl<'a> Binary<'a> {
+    /// The binary form, behind its version; `None` where the bytes are none.
+    pub(super) fn new(bytes: &'a [u8]) -> Result<Option<Self>> {
+        let swapped = match bytes.first_chunk::<4>().map(|&first| i32::from_ne_bytes(first)) {
+            Some(1) => false,
+            Some(0x0100_0000) => true,
+            _ => return Ok(None),
+        };
+        let mut binary = Self { bytes, at: 4, swapped, version: 0, next: bytes.len() };
+        binary.version = binary.small("the version")?;
+        if !(1..=4).contains(&binary.version) {
+            return Err(binary
+                .error(format!("version {} of the format; 1 to 4 are read", binary.version))
+                .remedy("the file is damaged, or of another format: get it again"));
+        }
+        Ok(Some(binary))
+    }
+
+    pub(super) fn section(&mut self) -> Result<Option<Cow<'static, str>>> {
+        self.next = self.bytes.len();
+        if self.at == self.bytes.len() {
+            return Ok(None);
+        }
+        let number = self.small("the number of a section")?;
+        if number == i64::from(END.number) {
+            return Ok(Some(Cow::Borrowed(END.name)));
+        }
+        let next = if self.version < 3 {
+            self.small("where the next section begins")?
+        } else {
+            self.long("where the next section begins")?
+        };
+        self.next = match usize::try_from(next) {
+            // What says so is the last.
+            Ok(0) => self.bytes.len(),
+            Ok(next) if (self.at..=self.bytes.len()).contains(&next) => next,
+            _ => {
+                return Err(self
+                    .error(format!(
+                        "section {number} says that the next begins at byte {next}, but that lies not between here and the end of the file, {}",
+                        self.bytes.len()
+                    ))
+                    .remedy("the file is cut off or damaged: get it again"));
+            }
+        };
+        let name = i32::try_from(number).ok().and_then(name_of);
+        Ok(Some(name.map_or_else(|| Cow::Owned(format!("number {number}")), Cow::Borrowed)))
+    }
+
+    pub(super) fn end_section(&mut self) -> Result<()> {
+        // What says that it is the last may still have `End` behind.
+        if self.next < self.bytes.len() && self.at != self.next {
+            return Err(self
+                .error(format!("the next section should begin here, but the file says at byte {}", self.next))
+                .remedy(
+                    "the number at the head of the section is wrong, or the file is damaged: write it again",
+                ));
+        }
+        Ok(())
+    }
+
+    pub(super) fn skip_section(&mut self) {
+        self.at = self.next;
+    }
+
+    pub(super) fn count(&mut self, what: &str, n_ints: usize, n_floats: usize) -> Result<usize> {
+        let n = self.int(&format!("the number of {what}"))?;
+        let bytes_each = n_ints
+            .saturating_mul(self.int_size())
+            .saturating_add(n_floats.saturating_mul(self.float_size()))
+            .max(1);
+        let room = self.left() / bytes_each;
+        usize::try_from(n).ok().filter(|&n| n <= room).ok_or_else(|| {
+            self.error(format!(
+                "{n} {what} are announced, but what is left of the section holds at most {room}"
+            ))
+            .remedy("the file is cut off or damaged: get it again")
+        })
+    }
+
+    pub(super) fn int(&mut self, what: &str) -> Result<i64> {
+        if self.version < 4 { self.small(what) } else { self.long(what) }
+    }
+
+    pub(super) fn small(&mut self, what: &str) -> Result<i64> {
+        let bits = u32::from_ne_bytes(self.take(what)?);
+        Ok(i64::from((if self.swapped { bits.swap_bytes() } else { bits }) as i32))
+    }
+
+    pub(super) fn float(&mut self, what: &str) -> Result<f64> {
+        if self.version > 1 {
+            return self.long(what).map(|bits| f64::from_bits(bits as u64));
+        }
+        self.small(what).map(|bits| f32::from_bits(bits as u32).into())
+    }
+
+    fn long(&mut self, what: &str) -> Result<i64> {
+        let bits = u64::from_ne_bytes(self.take(what)?);
+        Ok((if self.swapped { bits.swap_bytes() } else { bits }) as i64)
+    }
+
+    /// The bytes that are left of this section.
+    pub(super) fn left(&self) -> usize {
+        self.next - self.at
+    }
+
+    pub(super) fn float_size(&self) -> usize {
+        if self.version == 1 { 4 } else { 8 }
+    }
+
+    fn int_size(&self) -> usize {
+        if self.version < 4 { 4 } else { 8 }
+    }
+
+    pub(super) fn error(&self, what: impl Into<String>) -> Error {
+        Error::input(what).at(format!("byte {}", self.at))
+    }
+
+    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N]> {
+        let Some(&bytes) = self.bytes[self.at..self.next].first_chunk::<N>() else {
+            let of = if self.next < self.bytes.len() { "section" } else { "file" };
+            return Err(self
+                .error(format!("the {of} ends where {what} should follow"))
+                .remedy("the file is cut off or damaged: get it again"));
+        };
+        self.at += N;
+        Ok(bytes)
+    }
+}

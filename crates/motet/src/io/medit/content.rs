@@ -1,0 +1,148 @@
+//! What the sections of a file say, in the order in which they come.
+
+use super::solution::Solution;
+use super::source::{Source, is_end};
+use super::{DIMENSION, SECTIONS, Section};
+use crate::base::{Result, VertexId};
+use crate::io::format::Notes;
+use crate::io::text::quoted;
+use crate::mesh::{CellKind, Cells};
+
+/// Everything that a file holds.
+#[derive(Default)]
+pub(super) struct Content {
+    pub(super) dim: usize,
+    pub(super) points: Option<Vec<[f64; 3]>>,
+    pub(super) point_refs: Vec<i32>,
+    pub(super) cells: Cells,
+    pub(super) cell_refs: Vec<i32>,
+    /// Marked places: where among the sections, array, place.
+    pub(super) marks: Vec<(usize, &'static str, usize)>,
+    pub(super) solutions: Vec<Solution>,
+}
+
+/// Vertices of a cell at most.
+const MOST: usize = 10;
+
+impl Content {
+    /// Reads a file.
+    pub(super) fn read(bytes: &[u8], notes: &Notes) -> Result<Self> {
+        let mut source = Source::new(bytes)?;
+        let mut content = Self::default();
+        loop {
+            let Some(name) = source.section()? else {
+                notes.add("there is no `End`: the file may be cut off behind a section");
+                break;
+            };
+            if is_end(&name) {
+                break;
+            }
+            content.section(&mut source, &name, notes)?;
+        }
+        Ok(content)
+    }
+
+    fn section(&mut self, source: &mut Source<'_>, name: &str, notes: &Notes) -> Result<()> {
+        if name == DIMENSION.name {
+            match source.small("dimension")? {
+                dim @ 2..=3 => self.dim = dim as usize,
+                other => return Err(source.error(format!("{other} dimensions; 2 and 3 are read"))),
+            }
+            return source.end_section();
+        }
+        for (i, section) in SECTIONS.iter().enumerate() {
+            if section.list.name == name {
+                match section.cells {
+                    None => self.vertices(source)?,
+                    Some((kind, n)) => self.elements(source, section, kind, n)?,
+                }
+                return source.end_section();
+            }
+            if section.values.as_ref().is_some_and(|values| values.name == name) {
+                self.require_dim(source, name)?;
+                self.solutions.push(Solution::read(source, i, self.dim)?);
+                return source.end_section();
+            }
+            if let Some((_, array)) = section.marks.iter().find(|(keyword, _)| keyword.name == name) {
+                self.marks(source, name, i, array)?;
+                return source.end_section();
+            }
+        }
+        let name = quoted(name.as_bytes());
+        notes.add(format!("section {name} is passed over: a mesh here has no place for it"));
+        source.skip_section();
+        Ok(())
+    }
+
+    fn require_dim(&self, source: &Source<'_>, what: &str) -> Result<()> {
+        if self.dim == 0 {
+            return Err(source
+                .error(format!("{} come before the dimension", what.to_lowercase()))
+                .remedy("write the file again"));
+        }
+        Ok(())
+    }
+
+    fn vertices(&mut self, source: &mut Source<'_>) -> Result<()> {
+        self.require_dim(source, "vertices")?;
+        if self.points.is_some() {
+            return Err(source.error("a second section of vertices").remedy("write the file again"));
+        }
+        let n = source.count("vertices", 1, self.dim)?;
+        let mut points = Vec::with_capacity(n);
+        self.point_refs.reserve(n);
+        for _ in 0..n {
+            let mut point = [0.0; 3];
+            for x in &mut point[..self.dim] {
+                *x = source.float("coordinate of a vertex")?;
+            }
+            points.push(point);
+            self.point_refs.push(source.int32("reference of a vertex")?);
+        }
+        self.points = Some(points);
+        Ok(())
+    }
+
+    fn elements(
+        &mut self,
+        source: &mut Source<'_>,
+        section: &Section,
+        kind: CellKind,
+        n: usize,
+    ) -> Result<()> {
+        let n_cells = source.count(section.list.name, n + 1, 0)?;
+        let n_points = self.points.as_ref().map(Vec::len);
+        let mut vertices = [VertexId::default(); MOST];
+        for _ in 0..n_cells {
+            for vertex in &mut vertices[..n] {
+                let id = source.int("vertex of a cell")?;
+                *vertex = vertex_id(id, n_points, source)?;
+            }
+            self.cells.push(kind, vertices[..n].iter().copied());
+            self.cell_refs.push(source.int32("reference of a cell")?);
+        }
+        Ok(())
+    }
+
+    fn marks(&mut self, source: &mut Source<'_>, name: &str, of: usize, array: &'static str) -> Result<()> {
+        for _ in 0..source.count(name, 1, 0)? {
+            let id = source.int("a marked place")?;
+            let place = usize::try_from(id).ok().and_then(|id| id.checked_sub(1));
+            let place =
+                place.ok_or_else(|| source.error(format!("{name} names {id}, but counting begins at 1")))?;
+            self.marks.push((of, array, place));
+        }
+        Ok(())
+    }
+}
+
+/// Ids count from 1. Where the vertices come later, `Mesh::validate` has the last word.
+fn vertex_id(id: i64, n_points: Option<usize>, source: &Source<'_>) -> Result<VertexId> {
+    let n = n_points.unwrap_or(VertexId::MAX_COUNT);
+    match usize::try_from(id).ok().and_then(|id| id.checked_sub(1)).filter(|&place| place < n) {
+        Some(place) => Ok(VertexId::new(place)),
+        None => Err(source
+            .error(format!("a cell names vertex {id}, but there are {n} (1 to {n})"))
+            .remedy("the file is damaged: write it again")),
+    }
+}

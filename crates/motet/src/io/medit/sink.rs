@@ -1,0 +1,133 @@
+//! Sections of a Medit file, written as text or as bytes.
+
+use std::io::Write as _;
+
+use super::{DIMENSION, END, Keyword, TEXT_ONLY};
+use crate::io::text::push_float;
+
+/// A file that is being written.
+pub(super) struct Sink {
+    out: Vec<u8>,
+    /// The version of a binary file; none for text.
+    version: Option<i32>,
+    /// Where the position of the next section has to be put.
+    next_at: usize,
+}
+
+/// What `int` and `float` can be in version 2, and what makes it 3 or 4.
+pub(super) fn version_for(n_points: usize, n_bytes: u64) -> i32 {
+    match () {
+        () if i32::try_from(n_points).is_err() => 4,
+        () if i32::try_from(n_bytes).is_err() => 3,
+        () => 2,
+    }
+}
+
+impl Sink {
+    /// A file with its head; text where there is no version.
+    pub(super) fn new(version: Option<i32>) -> Self {
+        let mut sink = Self { out: Vec::new(), version, next_at: 0 };
+        match version {
+            None => sink.out.extend(b"MeshVersionFormatted 2\n\nDimension 3\n"),
+            Some(version) => {
+                sink.small(1);
+                sink.small(version);
+                sink.begin(&DIMENSION);
+                sink.small(3);
+                sink.end_section();
+            }
+        }
+        sink
+    }
+
+    /// Whether this form of file has such a section.
+    pub(super) fn has(&self, keyword: &Keyword) -> bool {
+        self.version.is_none() || keyword.number != TEXT_ONLY
+    }
+
+    /// Begins a section of `n` rows.
+    pub(super) fn section(&mut self, keyword: &Keyword, n: usize) {
+        if self.version.is_some() {
+            self.begin(keyword);
+            self.int(n as i64);
+        } else {
+            write!(self.out, "\n{}\n{n}\n", keyword.name).expect("writing into memory does not fail");
+        }
+    }
+
+    pub(super) fn end_section(&mut self) {
+        let here = self.out.len() as u64;
+        match self.version {
+            None => {}
+            Some(2) => self.out[self.next_at..][..4].copy_from_slice(&(here as u32).to_le_bytes()),
+            Some(_) => self.out[self.next_at..][..8].copy_from_slice(&here.to_le_bytes()),
+        }
+    }
+
+    pub(super) fn end_row(&mut self) {
+        if self.version.is_none() {
+            self.out.push(b'\n');
+        }
+    }
+
+    /// A count, a vertex or a reference.
+    pub(super) fn int(&mut self, x: i64) {
+        match self.version {
+            Some(4) => self.out.extend(x.to_le_bytes()),
+            _ => self.small(x as i32),
+        }
+    }
+
+    /// The number of arrays, or a type of one.
+    pub(super) fn small(&mut self, x: i32) {
+        if self.version.is_some() {
+            self.out.extend(x.to_le_bytes());
+        } else {
+            self.blank();
+            write!(self.out, "{x}").expect("writing into memory does not fail");
+        }
+    }
+
+    pub(super) fn float(&mut self, x: f64) {
+        if self.version.is_some() {
+            self.out.extend(x.to_le_bytes());
+        } else {
+            self.blank();
+            push_float(&mut self.out, x);
+        }
+    }
+
+    /// The file, ended.
+    pub(super) fn finish(mut self) -> Vec<u8> {
+        match self.version {
+            None => self.out.extend(b"\nEnd\n"),
+            Some(_) => self.begin(&END),
+        }
+        self.out
+    }
+
+    /// The number of a section, and room for where the next begins: 0, as of the last.
+    fn begin(&mut self, keyword: &Keyword) {
+        self.small(keyword.number);
+        self.next_at = self.out.len();
+        self.out.extend(vec![0; if self.version == Some(2) { 4 } else { 8 }]);
+    }
+
+    fn blank(&mut self) {
+        if self.out.last() != Some(&b'\n') {
+            self.out.push(b' ');
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_beyond_two_gigabytes_take_version_three() {
+        assert_eq!(version_for(10, i32::MAX as u64), 2);
+        assert_eq!(version_for(10, i32::MAX as u64 + 1), 3);
+        assert_eq!(version_for(1 << 31, 1 << 36), 4);
+    }
+}

@@ -1,0 +1,146 @@
+//! Numbers of a Medit file, whether they stand there as text or as bytes.
+
+use std::borrow::Cow;
+
+use super::binary::Binary;
+use super::{END, SPELLINGS};
+use crate::base::{Error, Result};
+use crate::io::text::Text;
+
+/// A place in a Medit file.
+pub(super) enum Source<'a> {
+    Text(Text<'a>),
+    Binary(Binary<'a>),
+}
+
+impl<'a> Source<'a> {
+    /// A file, its head read: which of the two forms it has, its own first bytes tell.
+    pub(super) fn new(bytes: &'a [u8]) -> Result<Self> {
+        match Binary::new(bytes)? {
+            Some(binary) => Ok(Self::Binary(binary)),
+            None => text(bytes).map(Self::Text),
+        }
+    }
+
+    /// The name of the next section; `None` at the end of the file, where `End` may be missing.
+    pub(super) fn section(&mut self) -> Result<Option<Cow<'static, str>>> {
+        let text = match self {
+            Self::Binary(binary) => return binary.section(),
+            Self::Text(text) => text,
+        };
+        let Some(word) = text.word() else { return Ok(None) };
+        if !word[0].is_ascii_alphabetic() {
+            return Err(text
+                .unexpected("a section", "its name", word)
+                .remedy("the number at the head of the section before is wrong, or the file is damaged"));
+        }
+        let name = String::from_utf8_lossy(word);
+        let known = SPELLINGS.iter().find(|(other, _)| *other == name).map(|&(_, known)| known);
+        Ok(Some(known.map_or(Cow::Owned(name.into_owned()), Cow::Borrowed)))
+    }
+
+    /// Ends a section that was read.
+    pub(super) fn end_section(&mut self) -> Result<()> {
+        match self {
+            Self::Text(_) => Ok(()),
+            Self::Binary(binary) => binary.end_section(),
+        }
+    }
+
+    /// Passes over the section that has just begun.
+    pub(super) fn skip_section(&mut self) {
+        match self {
+            Self::Binary(binary) => binary.skip_section(),
+            Self::Text(text) => {
+                while text.peek().is_some_and(|next| !next[0].is_ascii_alphabetic()) {
+                    text.word();
+                }
+            }
+        }
+    }
+
+    /// Reads how many things follow, of `n_ints` whole numbers and `n_floats` others each, held against
+    /// the bytes that are there.
+    pub(super) fn count(&mut self, what: &str, n_ints: usize, n_floats: usize) -> Result<usize> {
+        match self {
+            Self::Text(text) => text.count(what, n_ints.saturating_add(n_floats)),
+            Self::Binary(binary) => binary.count(what, n_ints, n_floats),
+        }
+    }
+
+    /// Reads a vertex or a reference.
+    pub(super) fn int(&mut self, what: &str) -> Result<i64> {
+        match self {
+            Self::Text(text) => text.int(what),
+            Self::Binary(binary) => binary.int(what),
+        }
+    }
+
+    /// Reads a reference.
+    pub(super) fn int32(&mut self, what: &str) -> Result<i32> {
+        let n = self.int(what)?;
+        i32::try_from(n).map_err(|_| self.error(format!("{what} {n} does not fit in 32 bits")))
+    }
+
+    /// Reads a dimension, or how many arrays a solution has and of which types: 32 bits in every version.
+    pub(super) fn small(&mut self, what: &str) -> Result<i64> {
+        match self {
+            Self::Text(text) => text.int(what),
+            Self::Binary(binary) => binary.small(what),
+        }
+    }
+
+    /// Reads a coordinate or a value.
+    pub(super) fn float(&mut self, what: &str) -> Result<f64> {
+        match self {
+            Self::Text(text) => text.float(what),
+            Self::Binary(binary) => binary.float(what),
+        }
+    }
+
+    /// How many values what is left of this section can hold at most.
+    pub(super) fn room_for_floats(&self) -> usize {
+        match self {
+            // A digit each, and what divides it from the next.
+            Self::Text(text) => text.rest().len().div_ceil(2),
+            Self::Binary(binary) => binary.left() / binary.float_size(),
+        }
+    }
+
+    /// An error at this place.
+    pub(super) fn error(&self, what: impl Into<String>) -> Error {
+        match self {
+            Self::Text(text) => text.error(what),
+            Self::Binary(binary) => binary.error(what),
+        }
+    }
+}
+
+/// Whether a section's name is that which ends a file.
+pub(super) fn is_end(name: &str) -> bool {
+    name == END.name
+}
+
+/// Whether bytes begin as Medit's files do, in either form.
+pub(super) fn is_medit(bytes: &[u8]) -> bool {
+    matches!(Binary::new(bytes), Ok(Some(_))) || text(bytes).is_ok()
+}
+
+/// The text form, behind its version.
+fn text(bytes: &[u8]) -> Result<Text<'_>> {
+    let mut text = Text::with_comments(bytes, b'#');
+    match text.word() {
+        Some(b"MeshVersionFormatted") => {}
+        Some(word) => {
+            return Err(text
+                .unexpected("the first word", "`MeshVersionFormatted`, or the number 1 of binary files", word)
+                .remedy("is this another format?"));
+        }
+        None => return Err(text.ends("`MeshVersionFormatted`")),
+    }
+    let version = text.int("version")?;
+    if !(0..=4).contains(&version) {
+        return Err(text.error(format!("version {version} of the format; 1 to 4 are read")));
+    }
+    Ok(text)
+}

@@ -1,0 +1,272 @@
+//! Writing meshes and solutions, both in either form.
+
+use super::sink::{Sink, version_for};
+use super::solution::{KINDS, Kind, places_of};
+use super::{Keyword, REF, SECTIONS, SOLUTION, Section};
+use crate::base::{Error, Result};
+use crate::io::cell_labels::{cell_labels, lost_names, say_all};
+use crate::io::format::Written;
+use crate::io::select::{keep_cells, lost_arrays};
+use crate::mesh::{CellKind, Field, Mesh, Values};
+
+/// Writes a mesh, and the solution that came with it.
+pub(super) fn mesh(mesh: &Mesh, binary: bool) -> Result<Written> {
+    let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
+    let mut parts = Parts::of(&mesh, binary, |f| is_solution(f) && f.name.starts_with(SOLUTION), lost);
+    if parts.has_left_out(is_solution) {
+        parts.lost.push(
+            "arrays of real numbers are written where a name that ends with .sol or .solb is asked for"
+                .into(),
+        );
+    }
+    let mut files = vec![(String::new(), parts.mesh_file())];
+    if parts.has_solution() {
+        files.push((if binary { ".solb" } else { ".sol" }.into(), parts.solution_file()));
+    }
+    Ok(Written { files, lost: parts.lost })
+}
+
+/// Writes a solution of all arrays that one can hold, and the mesh.
+pub(super) fn solution(mesh: &Mesh, binary: bool) -> Result<Written> {
+    let (mesh, lost) = keep_cells(mesh, "Medit", |kind| section_of(kind).is_some());
+    let mut parts = Parts::of(&mesh, binary, is_solution, lost);
+    if !parts.has_solution() {
+        return Err(Error::input("there is no array of real numbers that a solution could hold")
+            .remedy("write the mesh alone, as .mesh or .meshb"));
+    }
+    let mut files = vec![(String::new(), parts.solution_file())];
+    files.push((if binary { ".meshb" } else { ".mesh" }.into(), parts.mesh_file()));
+    Ok(Written { files, lost: parts.lost })
+}
+
+/// Where among the sections cells of a kind stand.
+fn section_of(kind: CellKind) -> Option<usize> {
+    SECTIONS.iter().position(|s| s.cells.is_some_and(|c| c.0 == kind))
+}
+
+/// Whether a solution can hold an array.
+fn is_solution(field: &Field) -> bool {
+    matches!(field.values, Values::F32(_) | Values::F64(_)) && kind_of(field).is_some()
+}
+
+fn kind_of(field: &Field) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.components == field.components)
+}
+
+/// A mesh of cells that the format can hold, and what is said of the rest.
+struct Parts<'m> {
+    mesh: &'m Mesh,
+    labels: Vec<i32>,
+    version: Option<i32>,
+    /// Arrays of the solution.
+    points: Vec<&'m Field>,
+    cells: Vec<&'m Field>,
+    /// Arrays on points and on cells that are in no solution.
+    other: [Vec<&'m Field>; 2],
+    lost: Vec<String>,
+}
+
+impl<'m> Parts<'m> {
+    /// `in_solution` says which arrays go into the solution.
+    fn of(mesh: &'m Mesh, binary: bool, in_solution: impl Fn(&Field) -> bool, lost: Vec<String>) -> Self {
+        let has_values = mesh.cells.kinds().iter().any(|&kind| takes_values(kind));
+        let (points, other_points) = mesh.point_data.iter().partition(|f| in_solution(f));
+        let (cells, other_cells) = mesh.cell_data.iter().partition(|f| has_values && in_solution(f));
+        let mut parts = Self {
+            mesh,
+            labels: cell_labels(mesh, None),
+            version: binary.then(|| version_for(mesh.points.len(), most_bytes(mesh))),
+            points,
+            cells,
+            other: [other_points, other_cells],
+            lost,
+        };
+        parts.say_what_is_lost();
+        parts
+    }
+
+    fn has_solution(&self) -> bool {
+        !self.points.is_empty() || !self.cells.is_empty()
+    }
+
+    fn has_left_out(&self, is_meant: impl Fn(&Field) -> bool) -> bool {
+        self.other.iter().flatten().any(|f| is_meant(f))
+    }
+
+    fn say_what_is_lost(&mut self) {
+        let mesh = self.mesh;
+        if !mesh.cells.kinds().is_sorted_by_key(|&kind| section_of(kind)) {
+            self.lost.push(
+                "Medit keeps cells by their kinds: their order in the file differs from that in the mesh"
+                    .into(),
+            );
+        }
+        let [points, cells] = &self.other;
+        let cells = cells.iter().filter(|f| !is_mark(f) && !say_all(&self.labels, mesh, f));
+        self.lost.extend(lost_arrays("Medit", "cell", cells.copied()));
+        let has_refs = point_refs(mesh).is_some();
+        let points = points.iter().filter(|f| !(is_mark(f) || f.name == REF && has_refs));
+        self.lost.extend(lost_arrays("Medit", "point", points.copied()));
+        self.lost.extend(lost_arrays("Medit", "field", &mesh.field_data));
+        self.lost.extend(lost_names("Medit", mesh));
+        self.say_what_solutions_lose();
+    }
+
+    fn say_what_solutions_lose(&mut self) {
+        let all = || self.points.iter().chain(&self.cells);
+        let names = |is_meant: fn(&Field) -> bool| -> Vec<&str> {
+            all().filter(|f| is_meant(f)).map(|f| f.name.as_str()).collect()
+        };
+        let nameless = names(|f| !f.name.starts_with(SOLUTION));
+        let single = names(|f| matches!(f.values, Values::F32(_)));
+        let quadratic = self.mesh.cells.kinds().iter().filter(|&&kind| !takes_values(kind)).count();
+        let mut lost = Vec::new();
+        if !nameless.is_empty() {
+            let names = nameless.join(", ");
+            lost.push(format!("arrays are written without names, solutions of Medit have none: {names}"));
+        }
+        if !single.is_empty() {
+            lost.push(format!("arrays come back in double precision: {}", single.join(", ")));
+        }
+        if quadratic > 0 && !self.cells.is_empty() {
+            lost.push(format!(
+                "values on {quadratic} cells of second order are left out: Medit has no solutions on these"
+            ));
+        }
+        self.lost.extend(lost);
+    }
+
+    fn mesh_file(&mut self) -> Vec<u8> {
+        let mut sink = Sink::new(self.version);
+        for (of, section) in SECTIONS.iter().enumerate() {
+            let places = places_of(self.mesh, of);
+            if places.is_empty() && section.cells.is_some() {
+                continue;
+            }
+            sink.section(&section.list, places.len());
+            match section.cells {
+                None => self.points(&mut sink),
+                Some(_) => self.cells(&mut sink, &places),
+            }
+            sink.end_section();
+            self.marks(&mut sink, section, &places);
+        }
+        sink.finish()
+    }
+
+    fn points(&self, sink: &mut Sink) {
+        let refs = point_refs(self.mesh);
+        for (i, point) in self.mesh.points.iter().enumerate() {
+            point.iter().for_each(|&x| sink.float(x));
+            sink.int(refs.as_ref().map_or(0, |r| r[i].into()));
+            sink.end_row();
+        }
+    }
+
+    fn cells(&self, sink: &mut Sink, places: &[usize]) {
+        for &i in places {
+            self.mesh.cells.connectivity().list(i).iter().for_each(|v| sink.int(i64::from(v.0) + 1));
+            sink.int(self.labels[i].into());
+            sink.end_row();
+        }
+    }
+
+    /// The sections that mark places of another one.
+    fn marks(&mut self, sink: &mut Sink, section: &Section, places: &[usize]) {
+        let fields = if section.cells.is_none() { &self.mesh.point_data } else { &self.mesh.cell_data };
+        for field in fields.iter().filter(|f| is_mark(f)) {
+            let marked = marked(field, places);
+            let list = section.marks.iter().find(|(list, array)| *array == field.name && sink.has(list));
+            match list {
+                _ if marked.is_empty() => {}
+                Some((list, _)) => write_places(sink, list, &marked),
+                None => self.lost.push(format!(
+                    "{} of {} {} is left out: there is no section for it",
+                    field.name,
+                    marked.len(),
+                    section.list.name
+                )),
+            }
+        }
+    }
+
+    fn solution_file(&self) -> Vec<u8> {
+        let mut sink = Sink::new(self.version);
+        for (of, section) in SECTIONS.iter().enumerate() {
+            let fields = if section.cells.is_none() { &self.points } else { &self.cells };
+            let places = places_of(self.mesh, of);
+            let Some(values) = section.values.as_ref().filter(|_| !fields.is_empty() && !places.is_empty())
+            else {
+                continue;
+            };
+            // Cells of a kind without any value, such as triangles beside tetrahedra that have some.
+            let says_nothing = |f: &&Field| {
+                places.iter().all(|&i| (0..f.components).all(|k| value(f, i * f.components + k).is_nan()))
+            };
+            if section.cells.is_some() && fields.iter().all(says_nothing) {
+                continue;
+            }
+            write_values(&mut sink, values, fields, &places);
+        }
+        sink.finish()
+    }
+}
+
+fn write_places(sink: &mut Sink, list: &Keyword, places: &[usize]) {
+    sink.section(list, places.len());
+    for place in places {
+        sink.int(*place as i64 + 1);
+        sink.end_row();
+    }
+    sink.end_section();
+}
+
+fn write_values(sink: &mut Sink, keyword: &Keyword, fields: &[&Field], places: &[usize]) {
+    sink.section(keyword, places.len());
+    sink.small(fields.len() as i32);
+    let kinds: Vec<&Kind> = fields.iter().filter_map(|f| kind_of(f)).collect();
+    kinds.iter().for_each(|kind| sink.small(kind.number));
+    sink.end_row();
+    for &i in places {
+        for (field, kind) in fields.iter().zip(&kinds) {
+            kind.places.iter().for_each(|place| sink.float(value(field, i * kind.components + place)));
+        }
+        sink.end_row();
+    }
+    sink.end_section();
+}
+
+fn value(field: &Field, i: usize) -> f64 {
+    field.values.get_f64(i).unwrap_or(f64::NAN)
+}
+
+/// Whether solutions have a section for cells of this kind.
+fn takes_values(kind: CellKind) -> bool {
+    SECTIONS.iter().any(|s| s.values.is_some() && s.cells.is_some_and(|c| c.0 == kind))
+}
+
+fn is_mark(field: &Field) -> bool {
+    SECTIONS.iter().flat_map(|s| s.marks).any(|(_, array)| *array == field.name) && field.components == 1
+}
+
+fn point_refs(mesh: &Mesh) -> Option<Vec<i32>> {
+    let refs = mesh.point_field(REF).filter(|f| f.components == 1)?.values.to_i64()?;
+    refs.into_iter().map(|r| i32::try_from(r).ok()).collect()
+}
+
+/// Which of `places` a field marks, as places among them.
+fn marked(field: &Field, places: &[usize]) -> Vec<usize> {
+    let values = field.values.to_i64().unwrap_or_default();
+    let is_marked = |&(_, &i): &(usize, &usize)| values.get(i).is_some_and(|&v| v != 0);
+    places.iter().enumerate().filter(is_marked).map(|(place, _)| place).collect()
+}
+
+/// What a binary file of either content takes at most, in version 2.
+fn most_bytes(mesh: &Mesh) -> u64 {
+    let (n_points, n_cells) = (mesh.points.len(), mesh.cells.len());
+    let ids = mesh.cells.connectivity().items().len() + n_cells;
+    let values = |fields: &[Field]| fields.iter().map(|f| 8 * f.values.len()).sum::<usize>();
+    let solution = values(&mesh.point_data) + values(&mesh.cell_data);
+    let file = 28 * n_points + 4 * ids + 4 * 2 * (n_points + n_cells);
+    (file.max(solution) + 4096) as u64
+}
