@@ -19,6 +19,9 @@ struct Rows {
     values: Vec<f64>,
 }
 
+/// Cells without values get NaN, so a file of few values could ask for any amount of memory.
+const MOST_ARRAYS: usize = 1000;
+
 /// A type of array, by its number in files.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
@@ -44,10 +47,11 @@ impl Solution {
     pub(super) fn read(source: &mut Source<'_>, of: usize, dim: usize) -> Result<Self> {
         let n_rows = source.count("rows of a solution", 0, 1)?;
         let n_fields = source.small("the number of arrays")?;
-        let n_fields = usize::try_from(n_fields)
-            .ok()
-            .filter(|&n| n <= source.room_for_floats())
-            .ok_or_else(|| source.error(format!("{n_fields} is no number of arrays")))?;
+        let n_fields = usize::try_from(n_fields).ok().filter(|&n| n <= MOST_ARRAYS).ok_or_else(|| {
+            source
+                .error(format!("{n_fields} arrays in one section; 0 to {MOST_ARRAYS} are read"))
+                .remedy("the file is damaged: write it again")
+        })?;
         let mut kinds = Vec::with_capacity(n_fields);
         for _ in 0..n_fields {
             let number = source.small("type of an array")?;
@@ -103,7 +107,7 @@ pub(super) fn attach(mesh: &mut Mesh, solutions: &[Solution]) -> Result<()> {
         mesh.set_point_field(field.named(numbered(i), field.values.clone()));
     }
     let mut known: Vec<(usize, usize)> = Vec::new();
-    for solution in solutions.iter().filter(|s| SECTIONS[s.of].cells.is_some()) {
+    for solution in solutions.iter().filter(|s| SECTIONS[s.of].cells.is_some() && s.n_rows > 0) {
         for (i, field) in solution.fields.iter().enumerate() {
             // What stands in the same place of another section, and has as many numbers, is one array.
             let key = (i, field.components);

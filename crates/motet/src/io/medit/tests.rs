@@ -292,7 +292,8 @@ fn a_solution_that_does_not_belong_is_passed_over_by_the_mesh_and_refused_by_nam
         ("SolAtVertices\n4\n1 5\n1 2 3 4\nEnd\n", "5 is no type of an array"),
         ("SolAtVertices\n4\n1 1\n1 2 3\nEnd\n", "found `End`"),
         ("SolAtVertices\n4\n1 1\n1 2 3", "4 rows of 1 values are announced"),
-        ("SolAtVertices\n4\n99999999999 1\n", "99999999999 is no number of arrays"),
+        ("SolAtVertices\n4\n99999999999 1\n", "99999999999 arrays in one section; 0 to 1000 are read"),
+        ("SolAtVertices\n4\n1001 1 1\n", "1001 arrays in one section"),
         ("SolAtVertices\n9999999999999\n1 1\n", "rows of a solution are announced"),
         ("SolAtVertices\n40000\n1 4\n1 2", "rows of a solution are announced"),
     ] {
