@@ -1,4 +1,4 @@
-"""MSH, STL, OBJ, Medit, TetGen, DOLFIN XML and SimVascular folders against Gmsh, meshio and VTK."""
+"""MSH, STL, OBJ, Medit, Abaqus, TetGen, DOLFIN XML and SimVascular folders against Gmsh, meshio and VTK."""
 import gzip
 import itertools
 import os
@@ -454,6 +454,148 @@ def test_a_solution_of_medit_as_the_manual_lays_it_out(motet, tmp_path, ending):
     arrays = meshio.read(back).point_data
     for name, ours in zip("abc", ["medit:sol", "medit:sol_2", "medit:sol_3"]):
         assert_same_array(arrays[ours], names[name])
+
+
+def test_abaqus_of_meshio(motet, tmp_path):
+    """Without curves of three nodes, which meshio leaves in the order of VTK, and pyramids, which it has not."""
+    mesh = mixed_mesh(["line", "triangle", "quad", "tetra", "hexahedron", "wedge", "triangle6", "quad8", "quad9", "tetra10",
+                       "hexahedron20", "wedge15"])
+    n = len(mesh.cells)
+    mesh.cell_sets = {"tets": [np.array([0, 1, 2] if b.type == "tetra" else [], int) for b in mesh.cells],
+                      "mixed": [np.array([i % 4]) for i in range(n)],
+                      "faces": [np.array([2, 3] if b.type in ("triangle", "quad9") else [], int) for b in mesh.cells]}
+    mesh.point_sets = {"held": np.arange(0, 60, 7), "last": np.array([59])}
+    source, copy = tmp_path / "source.inp", tmp_path / "copy.inp"
+    mesh.write(source)
+    motet("convert", source, copy)
+    ours, theirs = meshio.read(copy), meshio.read(source)
+    assert_same_mesh(ours, theirs)
+    for name, places in theirs.point_sets.items():
+        assert_same_array(ours.point_sets[name], places)
+    for name, blocks in mesh.cell_sets.items():
+        # meshio leaves out blocks without members.
+        blocks = [block for block in blocks if len(block)]
+        found = [block for block in ours.cell_sets[name] if len(block)]
+        assert len(found) == len(blocks)
+        for a, b in zip(found, blocks):
+            assert_same_array(a, b)
+
+
+@pytest.mark.parametrize("build", BUILDS)
+def test_abaqus_of_gmsh(motet, gmsh_session, tmp_path, build):
+    """Gmsh writes, motet reads; what motet makes of it is the same mesh to Gmsh, with the groups as labels."""
+    # Gmsh writes prisms of 18 nodes as if they had 6.
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", int(build.startswith("prisms")))
+    BUILDS[build]()
+    points, elements, names = gmsh_content()
+    source, again, copy = (tmp_path / name for name in ("source.inp", "again.inp", "copy.msh"))
+    gmsh.write(str(source))
+    motet("convert", source, again)
+    motet("convert", again, copy)
+    copy_points, copy_elements, copy_names = opened(copy)
+
+    def located(points, elements, names):
+        solids = {4, 5, 6, 11, 12, 17, 18}
+        faces = {2, 3, 9, 10, 16}
+        found = []
+        for kind, rows in elements.items():
+            dim = 3 if kind in solids else 2 if kind in faces else 0
+            for nodes, _, groups in rows:
+                name = [names[dim, group].replace(" ", "_") for group in groups]
+                if dim and name:
+                    found.append((kind, tuple(map(tuple, points[list(nodes)])), name))
+        return sorted(found)
+
+    ours, theirs = located(copy_points, copy_elements, copy_names), located(points, elements, names)
+    assert len(theirs) > 0
+    assert [row[0] for row in ours] == [row[0] for row in theirs]
+    assert [row[2] for row in ours] == [row[2] for row in theirs]
+    np.testing.assert_allclose(np.vstack([row[1] for row in ours]), np.vstack([row[1] for row in theirs]), atol=1e-15)
+
+
+@pytest.mark.parametrize("element_type", [2, 3, 4, 5, 6, 7, 8, 9, 16, 10, 11, 17, 12, 18, 19])
+def test_nodes_of_abaqus_stand_in_the_order_of_vtk(motet, gmsh_session, tmp_path, element_type):
+    gmsh.option.setNumber("Mesh.SaveAll", 1)
+    points = one_element(element_type)
+    source, target, back, again = (tmp_path / name for name in ("one.inp", "one.vtu", "back.inp", "again.vtu"))
+    gmsh.write(str(source))
+    motet("convert", source, target)
+    grid = vtk_grid(target)
+    assert grid.GetCellType(0) == TYPES[element_type]
+    cell = grid.GetCell(0)
+    found = vtk_to_numpy(cell.GetPoints().GetData())
+    assert len(found) == len(points)
+    for part, n_corners in [(deep(cell), 2 if cell.GetCellDimension() == 1 else 0)] + parts_of(cell):
+        middle = vtk_to_numpy(part.GetPoints().GetData())
+        corners, further = middle[:n_corners], middle[n_corners:]
+        if n_corners == 2 and len(further):
+            np.testing.assert_allclose(further[0], corners.mean(axis=0), atol=1e-14)
+        if len(further) > n_corners > 0:
+            np.testing.assert_allclose(further[-1], corners.mean(axis=0), atol=1e-14)
+    if cell.GetCellDimension() == 3:
+        size = vtk.vtkCellSizeFilter()
+        size.SetInputData(grid)
+        size.Update()
+        assert size.GetOutput().GetCellData().GetArray("Volume").GetValue(0) > 0
+    if element_type == 19:
+        return  # Abaqus has no pyramids of second order: motet writes none.
+    motet("convert", target, back)
+    numbers = [[int(x) for line in lines.split(",\n") for x in line.split(",") if x.strip()]
+               for lines in (path.read_text().split("*ELEMENT")[1].split("\n", 1)[1].split("*")[0].replace(" ", "").strip()
+                             for path in (source, back))]
+    nodes = [np.array([[float(x) for x in line.split(",")] for line in
+                       path.read_text().split("*NODE\n")[1].split("*")[0].strip().split("\n")]) for path in (source, back)]
+    placed = [{int(row[0]): row[1:] for row in rows} for rows in nodes]
+    theirs, ours = ([where[i] for i in ids[1:]] for where, ids in zip(placed, numbers))
+    np.testing.assert_allclose(ours, theirs, atol=1e-14)
+
+
+# Corners of the faces S1, S2, ... as the CalculiX manual lists them (*SURFACE).
+FACES_OF_ABAQUS = {"C3D4": ["123", "142", "243", "341"], "C3D10": ["123", "142", "243", "341"],
+                   "C3D8": ["1234", "5876", "1562", "2673", "3784", "4851"], "C3D6": ["123", "456", "1254", "2365", "3146"]}
+
+
+@pytest.mark.parametrize("build", ["tets", "tets of second order", "hexahedra", "prisms"])
+def test_surfaces_of_abaqus_are_the_patches(motet, gmsh_session, tmp_path, build):
+    """Surfaces that motet writes lie where the patches lie; without the surface cells they alone bring these back."""
+    BUILDS[build]()
+    source, out, bare, back = (tmp_path / name for name in ("source.msh", "out.inp", "bare.inp", "back.msh"))
+    gmsh_write(source, "4.1", "binary")
+    points, elements, names = opened(source)
+    motet("convert", source, out)
+    blocks = out.read_text().split("*")[1:]
+    nodes = {int(row[0]): tuple(row[1:]) for block in blocks if block.startswith("NODE")
+             for row in ([float(x) for x in line.split(",")] for line in block.strip().split("\n")[1:])}
+    solids, surfaces = {}, {}
+    for block in blocks:
+        head, *lines = block.strip().split("\n")
+        if head.startswith("ELEMENT, TYPE=C3D"):
+            for line in lines:
+                number, *ids = (int(x) for x in line.split(","))
+                solids[number] = head.split("=")[1], ids
+        if head.startswith("SURFACE"):
+            found = surfaces.setdefault(head.split("NAME=")[1].strip('"'), [])
+            for line in lines:
+                number, face = line.split(", S")
+                kind, ids = solids[int(number)]
+                found.append(tuple(sorted(nodes[ids[int(c) - 1]] for c in FACES_OF_ABAQUS[kind][int(face) - 1])))
+    n_corners = {2: 3, 3: 4, 9: 3}
+    patches = {}
+    for kind, rows in elements.items():
+        for ids, _, groups in rows if kind in n_corners else []:
+            corners = tuple(sorted(tuple(map(float, points[i])) for i in ids[: n_corners[kind]]))
+            patches.setdefault(names[2, groups[0]], []).append(corners)
+    assert {name: sorted(rows) for name, rows in surfaces.items()} == {name: sorted(rows) for name, rows in patches.items()}
+    is_shell = ("ELEMENT, TYPE=S", "ELSET", "NSET")
+    bare.write_text("".join("*" + block for block in blocks if not block.startswith(is_shell)))
+    motet("convert", bare, back)
+    back_points, back_elements, back_names = opened(back)
+    for kind in n_corners:
+        found = sorted(tuple(sorted(tuple(map(float, back_points[i])) for i in ids[: n_corners[kind]])) + (back_names[2, groups[0]],)
+                       for ids, _, groups in back_elements.get(kind, []))
+        expected = sorted(tuple(sorted(tuple(map(float, points[i])) for i in ids[: n_corners[kind]])) + (names[2, groups[0]],)
+                          for ids, _, groups in elements.get(kind, []))
+        assert found == expected
 
 
 def test_tetgen_of_meshio(motet, tmp_path):

@@ -74,6 +74,24 @@ const MEDIT_KINDS: &[CellKind] = &[
     CellKind::QUADRATIC_TETRA,
 ];
 
+const ABAQUS_KINDS: &[CellKind] = &[
+    CellKind::LINE,
+    CellKind::TRIANGLE,
+    CellKind::QUAD,
+    CellKind::TETRA,
+    CellKind::HEXAHEDRON,
+    CellKind::WEDGE,
+    CellKind::PYRAMID,
+    CellKind::QUADRATIC_LINE,
+    CellKind::QUADRATIC_TRIANGLE,
+    CellKind::QUADRATIC_QUAD,
+    CellKind::BIQUADRATIC_QUAD,
+    CellKind::QUADRATIC_TETRA,
+    CellKind::QUADRATIC_WEDGE,
+    CellKind::QUADRATIC_HEXAHEDRON,
+    CellKind::TRIQUADRATIC_HEXAHEDRON,
+];
+
 fn coordinate() -> impl Strategy<Value = f64> {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     NORMAL | SUBNORMAL | ZERO | POSITIVE | NEGATIVE
@@ -159,6 +177,24 @@ proptest! {
     }
 
     #[test]
+    fn abaqus_comes_back((mut mesh, labels) in meshes(ABAQUS_KINDS, false)) {
+        for (array, dim) in [("region", 3), ("patch", 2)] {
+            let on_dim = |(&label, kind): (&i32, &CellKind)| if kind.dim() == Some(dim) { label } else { 0 };
+            let ids: Vec<i32> = labels.iter().zip(mesh.cells.kinds()).map(on_dim).collect();
+            if ids.iter().any(|&id| id != 0) {
+                mesh.set_cell_field(Field::scalars(array, ids));
+            }
+        }
+        let (bytes, lost) = print(".inp", &mesh, &WriteOptions::default());
+        prop_assert!(lost.is_empty(), "{lost:?}");
+        let back = parse(".inp", &bytes).unwrap();
+        prop_assert_eq!(bits(&back.points), bits(&mesh.points));
+        prop_assert_eq!(&back.cells, &mesh.cells);
+        prop_assert_eq!(&back.cell_data, &mesh.cell_data);
+        prop_assert_eq!(&back.label_names, &mesh.label_names);
+    }
+
+    #[test]
     fn tetgen_comes_back(
         (mut mesh, labels) in meshes(&[CellKind::TETRA, CellKind::TRIANGLE, CellKind::LINE], true),
         quadratic in any::<bool>(),
@@ -236,6 +272,7 @@ proptest! {
             (".msh", options("4.1", Encoding::Binary)),
             (".mesh", WriteOptions::default()),
             (".meshb", WriteOptions::default()),
+            (".inp", WriteOptions::default()),
             (".obj", WriteOptions::default()),
             (".stl", WriteOptions::default()),
             (".stl", WriteOptions { encoding: Encoding::Ascii, ..WriteOptions::default() }),

@@ -1,5 +1,6 @@
 //! Floor 3: files. `format` says what a format is, each has a file or folder of its own, and `registry` knows them all.
 
+mod abaqus;
 mod cell_labels;
 mod dolfin;
 mod format;

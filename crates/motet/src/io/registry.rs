@@ -6,7 +6,7 @@ use crate::base::{Error, ErrorKind, Result};
 use crate::io::format::{Format, Notes, WriteOptions};
 use crate::io::reading::read_file;
 use crate::io::replace::{replace_all, replace_folder, replace_with};
-use crate::io::{dolfin, legacy, medit, msh, obj, off, ply, simvascular, stl, tetgen, vtkxml};
+use crate::io::{abaqus, dolfin, legacy, medit, msh, obj, off, ply, simvascular, stl, tetgen, vtkxml};
 use crate::mesh::Mesh;
 
 /// Every format, in the order in which endings are looked up.
@@ -27,6 +27,7 @@ const FORMATS: &[Format] = &[
     medit::MESHB,
     medit::SOL,
     medit::SOLB,
+    abaqus::FORMAT,
     tetgen::FORMAT,
     dolfin::FORMAT,
     simvascular::FORMAT,

@@ -1,0 +1,200 @@
+//! Which sets become labels, and arrays for the others.
+
+use std::collections::HashMap;
+
+use super::names::{PATCH, REGION, bare_number, numbers};
+use super::sets::Runs;
+use super::{ELSET, SURFACE};
+use crate::io::format::Notes;
+use crate::mesh::{Field, Labels, Mesh, Values, unused_name};
+
+/// A set or a surface, by places in the mesh.
+pub(super) struct Named {
+    pub(super) name: String,
+    pub(super) runs: Runs,
+    pub(super) rank: Rank,
+}
+
+/// Kinds of sets, those first that say best what parts of a mesh are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Rank {
+    Section,
+    Declared,
+    OfElements,
+    Instance,
+    Surface,
+}
+
+/// Arrays for sets that labels do not say, at most: each takes a byte for each cell.
+const MOST_ARRAYS: usize = 1000;
+
+impl Named {
+    fn places(&self) -> impl Iterator<Item = usize> + '_ {
+        self.runs.iter().cloned().flatten().map(|place| place as usize)
+    }
+}
+
+/// Sets under names that differ.
+#[derive(Default)]
+pub(super) struct NamedSets {
+    pub(super) all: Vec<Named>,
+    by_name: HashMap<String, usize>,
+}
+
+impl NamedSets {
+    /// Adds a set under a name that no other has; what comes twice under one name is one set.
+    pub(super) fn add(&mut self, mut set: Named) {
+        if self.by_name.get(&set.name).is_some_and(|&i| self.all[i].runs == set.runs) {
+            return;
+        }
+        set.name = unused_name(&set.name, |name| self.by_name.contains_key(name));
+        self.by_name.insert(set.name.clone(), self.all.len());
+        self.all.push(set);
+    }
+
+    /// Adds a surface, whose name a set may have too.
+    pub(super) fn add_surface(&mut self, name: String, runs: Runs) {
+        self.all.push(Named { name, runs, rank: Rank::Surface });
+    }
+}
+
+/// Makes labels of sets and surfaces, and arrays of those that labels do not say. Cells from `n_own` on are of
+/// surfaces alone.
+pub(super) fn set_labels(mesh: &mut Mesh, n_own: usize, sets: &[Named], notes: &Notes) {
+    let dims: Vec<usize> = mesh.cells.kinds().iter().map(|kind| kind.dim().unwrap_or(0)).collect();
+    let regions = chosen(sets, &dims[..n_own], 3);
+    let mut patches = chosen(sets, &dims[..n_own], 2);
+    patches.resize(dims.len(), NONE);
+    let surfaces: Vec<usize> = (0..sets.len()).filter(|&i| sets[i].rank == Rank::Surface).collect();
+    take_in_turn(&mut patches, &surfaces, sets, &dims, 2);
+    let mut labels = regions;
+    labels.resize(dims.len(), NONE);
+    let in_surfaces = dims.iter().zip(&patches).enumerate().filter(|(_, (dim, _))| **dim == 2);
+    in_surfaces.for_each(|(i, (_, &set))| labels[i] = set);
+    let said: Vec<bool> = sets.iter().map(|set| is_said(set, sets, &labels, &dims)).collect();
+    for which in [(3, REGION, "region"), (2, PATCH, "patch")] {
+        let Some(labels) = numbered(sets, &labels, &dims, which) else { continue };
+        let names = if which.0 == 3 { &mut mesh.label_names.regions } else { &mut mesh.label_names.patches };
+        names.extend(labels.names);
+        mesh.set_cell_field(Field::scalars(labels.array, labels.ids));
+    }
+    let n = mesh.cells.len();
+    for (prefix, is_surface) in [(ELSET, false), (SURFACE, true)] {
+        let unsaid =
+            sets.iter().zip(&said).filter(|(set, said)| !**said && (set.rank == Rank::Surface) == is_surface);
+        set_arrays(&mut mesh.cell_data, prefix, unsaid.map(|(set, _)| set), n, notes);
+    }
+}
+
+/// In place of a set.
+const NONE: u32 = u32::MAX;
+
+/// The set that labels each cell of dimension `dim`: those of the rank that reaches most cells.
+fn chosen(sets: &[Named], dims: &[usize], dim: usize) -> Vec<u32> {
+    let n_cells = dims.iter().filter(|&&d| d == dim).count();
+    let n_of = |set: &Named| set.places().filter(|&place| dims.get(place) == Some(&dim)).count();
+    // A set of all cells says least, unless a section says that it is meant.
+    let is_whole: Vec<bool> = sets.iter().map(|s| s.rank != Rank::Section && n_of(s) == n_cells).collect();
+    let ranks = [Rank::Section, Rank::Declared, Rank::OfElements, Rank::Instance];
+    let mut best = vec![NONE; dims.len()];
+    let mut most = 0;
+    for (whole, rank) in [false, true].into_iter().flat_map(|whole| ranks.map(|rank| (whole, rank))) {
+        let of_rank: Vec<usize> =
+            (0..sets.len()).filter(|&i| sets[i].rank == rank && is_whole[i] == whole).collect();
+        let mut labels = vec![NONE; dims.len()];
+        let n = take_in_turn(&mut labels, &of_rank, sets, dims, dim);
+        if n > most {
+            (best, most) = (labels, n);
+        }
+        if most == n_cells {
+            break;
+        }
+    }
+    best
+}
+
+/// Labels the cells of each set of which none has a label yet; returns how many cells got one.
+fn take_in_turn(labels: &mut [u32], order: &[usize], sets: &[Named], dims: &[usize], dim: usize) -> usize {
+    let mut n = 0;
+    for &i in order {
+        let places = || sets[i].places().filter(|&place| dims[place] == dim);
+        if places().all(|place| labels[place] == NONE) {
+            places().for_each(|place| {
+                labels[place] = i as u32;
+                n += 1;
+            });
+        }
+    }
+    n
+}
+
+/// Whether labels of the name of a set say just which cells it holds.
+fn is_said(set: &Named, sets: &[Named], labels: &[u32], dims: &[usize]) -> bool {
+    let has_name = |place: usize| sets.get(labels[place] as usize).is_some_and(|s| s.name == set.name);
+    let mut found = [0usize; 4];
+    for place in set.places() {
+        if !has_name(place) {
+            return false;
+        }
+        found[dims[place]] += 1;
+    }
+    let Some(first) = set.places().next() else { return false };
+    let by = &sets[labels[first] as usize];
+    // A surface may have the name of a set that holds solids besides.
+    let same_size =
+        |dim: usize| found[dim] == 0 || by.places().filter(|&place| dims[place] == dim).count() == found[dim];
+    (0..4).all(same_size)
+}
+
+/// Labels of the cells of one dimension; `None` where none has one.
+fn numbered(
+    sets: &[Named],
+    labels: &[u32],
+    dims: &[usize],
+    (dim, prefix, array): (usize, &str, &str),
+) -> Option<Labels> {
+    let mut used: Vec<u32> =
+        labels.iter().zip(dims).filter(|&(&set, &d)| d == dim && set != NONE).map(|(&set, _)| set).collect();
+    used.sort_unstable();
+    used.dedup();
+    let names: Vec<&str> = used.iter().map(|&set| sets[set as usize].name.as_str()).collect();
+    let numbers = numbers(&names, prefix);
+    let id = |(&set, &d): (&u32, &usize)| match used.binary_search(&set) {
+        Ok(i) if d == dim => numbers[i],
+        _ => 0,
+    };
+    let is_named = |(name, number): &(&&str, &i32)| bare_number(name, prefix) != Some(**number);
+    let named = names.iter().zip(&numbers).filter(is_named);
+    (!used.is_empty()).then(|| Labels {
+        ids: labels.iter().zip(dims).map(id).collect(),
+        names: named.map(|(name, &number)| (number, (*name).to_owned())).collect(),
+        array: array.to_owned(),
+    })
+}
+
+/// An array of 0 and 1 for each set.
+pub(super) fn set_arrays<'s>(
+    fields: &mut Vec<Field>,
+    prefix: &str,
+    sets: impl Iterator<Item = &'s Named>,
+    n: usize,
+    notes: &Notes,
+) {
+    let mut n_left_out = 0;
+    for set in sets {
+        if fields.len() >= MOST_ARRAYS {
+            n_left_out += 1;
+            continue;
+        }
+        let mut values = vec![0u8; n];
+        set.places().for_each(|place| values[place] = 1);
+        fields.push(Field {
+            name: format!("{prefix}{}", set.name),
+            components: 1,
+            values: Values::U8(values),
+        });
+    }
+    if n_left_out > 0 {
+        notes.add(format!("{n_left_out} sets beyond the first {MOST_ARRAYS} are passed over"));
+    }
+}

@@ -1,0 +1,376 @@
+//! What the lines of input files say, taken one by one.
+
+use std::collections::{BTreeSet, HashMap};
+
+use super::kinds::{ElementType, vtk_to_abaqus};
+use super::line::{Keyword, Label, Reference, Target, fields, float, id};
+use super::scope::{Entry, Placement, Scope, SurfaceText};
+use crate::base::{Error, Result};
+use crate::io::format::Notes;
+
+/// All that was read so far, and the block that the next line of data belongs to.
+pub(super) struct Model<'n> {
+    /// The flat file and the assembly.
+    pub(super) top: Scope,
+    parts: Vec<Scope>,
+    /// Whether a part has an instance.
+    is_used: Vec<bool>,
+    pub(super) instances: Vec<Scope>,
+    part_of_key: HashMap<String, usize>,
+    here: Here,
+    block: Block,
+    /// Bytes that further instances of parts took.
+    n_copied: usize,
+    passed_over: BTreeSet<String>,
+    notes: &'n Notes,
+}
+
+#[derive(Clone, Copy)]
+enum Here {
+    Top,
+    Part(usize),
+    Instance(usize),
+}
+
+/// What lines of data are about.
+enum Block {
+    /// No keyword was there yet.
+    Start,
+    Ignored,
+    Nodes(Option<usize>),
+    Elements(Elements),
+    Set {
+        is_of_nodes: bool,
+        set: usize,
+        generates: bool,
+        instance: Option<String>,
+    },
+    Surface(usize),
+    /// Lines on how an instance lies that were read.
+    Placement(usize),
+}
+
+struct Elements {
+    name: String,
+    of: ElementType,
+    /// For each node in VTK's order, its place in that of Abaqus.
+    order: Vec<usize>,
+    set: Option<usize>,
+    /// Numbers of the element that is being read: its own and those of its nodes.
+    pending: Vec<u64>,
+}
+
+/// Instances copy their part: a small file could ask for any amount of memory.
+const MOST_COPIED: usize = 1 << 30;
+
+/// Keywords that make nodes or elements, or move them, so that a mesh without them would be another.
+const REFUSED: &[&str] =
+    &["NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SYMMETRICMODELGENERATION"];
+
+/// Keywords without anything that a mesh could hold.
+const SILENT: &[&str] = &["HEADING", "PREPRINT", "ASSEMBLY", "ENDPART", "ENDASSEMBLY", "ENDINSTANCE"];
+
+impl<'n> Model<'n> {
+    pub(super) fn new(notes: &'n Notes) -> Self {
+        Self {
+            top: Scope::default(),
+            parts: Vec::new(),
+            is_used: Vec::new(),
+            instances: Vec::new(),
+            part_of_key: HashMap::new(),
+            here: Here::Top,
+            block: Block::Start,
+            n_copied: 0,
+            passed_over: BTreeSet::new(),
+            notes,
+        }
+    }
+
+    fn scope(&mut self) -> &mut Scope {
+        match self.here {
+            Here::Top => &mut self.top,
+            Here::Part(i) => &mut self.parts[i],
+            Here::Instance(i) => &mut self.instances[i],
+        }
+    }
+
+    /// Ends the block before, and begins that of a keyword.
+    pub(super) fn keyword(&mut self, keyword: &Keyword) -> Result<()> {
+        self.end_block()?;
+        self.block = match keyword.name.as_str() {
+            "NODE" => self.nodes(keyword)?,
+            "ELEMENT" => self.elements(keyword)?,
+            "NSET" => self.set(keyword, true)?,
+            "ELSET" => self.set(keyword, false)?,
+            "SURFACE" => self.surface(keyword)?,
+            "PART" => self.part(keyword)?,
+            "INSTANCE" => self.instance(keyword)?,
+            "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "ENDINSTANCE" => {
+                self.here = Here::Top;
+                Block::Ignored
+            }
+            name if REFUSED.contains(&name) => {
+                return Err(Error::input(format!(
+                    "*{name} makes or moves nodes or elements, which is not read"
+                ))
+                .remedy("let the preprocessor write the mesh with all its nodes and elements"));
+            }
+            name => {
+                if name.ends_with("SECTION")
+                    && let Some(label) = keyword.label("ELSET")
+                {
+                    self.scope().with_section.insert(label.key);
+                }
+                if !SILENT.contains(&name) {
+                    self.passed_over.insert(name.to_owned());
+                }
+                Block::Ignored
+            }
+        };
+        Ok(())
+    }
+
+    fn nodes(&mut self, keyword: &Keyword) -> Result<Block> {
+        match keyword.get("SYSTEM") {
+            Some("" | "R" | "r") | None => {}
+            Some(other) => {
+                return Err(Error::input(format!(
+                    "nodes in the system of coordinates `{other}` are not read"
+                ))
+                .remedy("write them in Cartesian coordinates"));
+            }
+        }
+        Ok(Block::Nodes(keyword.label("NSET").map(|label| self.scope().node_sets.named(label))))
+    }
+
+    fn elements(&mut self, keyword: &Keyword) -> Result<Block> {
+        let name = Label::new(keyword.expect("TYPE")?).key;
+        let Some(of) = ElementType::of(&name) else {
+            self.notes.add(format!("elements of type {name} are passed over: motet has no such cells"));
+            return Ok(Block::Ignored);
+        };
+        let set = keyword.label("ELSET").map(|label| self.scope().element_sets.named(label));
+        let order = vtk_to_abaqus(of.kind, of.n_nodes);
+        Ok(Block::Elements(Elements { name, of, order, set, pending: Vec::new() }))
+    }
+
+    fn set(&mut self, keyword: &Keyword, is_of_nodes: bool) -> Result<Block> {
+        let label = Label::new(keyword.expect(if is_of_nodes { "NSET" } else { "ELSET" })?);
+        let scope = self.scope();
+        let sets = if is_of_nodes { &mut scope.node_sets } else { &mut scope.element_sets };
+        let set = sets.named(label);
+        sets.all[set].is_declared = true;
+        sets.all[set].is_internal |= keyword.get("INTERNAL").is_some();
+        if let Some(elements) = keyword.label("ELSET").filter(|_| is_of_nodes) {
+            sets.entries.push((set, Entry::NodesOf(elements.key)));
+        }
+        let instance = keyword.label("INSTANCE").map(|label| label.key);
+        Ok(Block::Set { is_of_nodes, set, generates: keyword.get("GENERATE").is_some(), instance })
+    }
+
+    fn surface(&mut self, keyword: &Keyword) -> Result<Block> {
+        let label = Label::new(keyword.expect("NAME")?);
+        let is_of_elements =
+            keyword.get("TYPE").is_none_or(|t| t.is_empty() || t.eq_ignore_ascii_case("ELEMENT"));
+        if !is_of_elements || ["COMBINE", "CROP"].iter().any(|p| keyword.get(p).is_some()) {
+            self.notes.add(format!("surface {} is passed over: it is not made of faces", label.shown));
+            return Ok(Block::Ignored);
+        }
+        let is_internal = keyword.get("INTERNAL").is_some();
+        let surfaces = &mut self.scope().surfaces;
+        surfaces.push(SurfaceText { label, is_internal, faces: Vec::new() });
+        Ok(Block::Surface(surfaces.len() - 1))
+    }
+
+    fn part(&mut self, keyword: &Keyword) -> Result<Block> {
+        let name = Label::new(keyword.expect("NAME")?);
+        if self.part_of_key.insert(name.key.clone(), self.parts.len()).is_some() {
+            return Err(
+                Error::input(format!("a second part `{}`", name.shown)).remedy("give it another name")
+            );
+        }
+        self.here = Here::Part(self.parts.len());
+        self.is_used.push(false);
+        self.parts.push(Scope { name: Some(name), ..Scope::default() });
+        Ok(Block::Ignored)
+    }
+
+    /// An instance begins as a copy of its part.
+    fn instance(&mut self, keyword: &Keyword) -> Result<Block> {
+        let name = Label::new(keyword.expect("NAME")?);
+        let part = Label::new(keyword.expect("PART")?);
+        let &place = self.part_of_key.get(&part.key).ok_or_else(|| {
+            Error::input(format!(
+                "instance `{}` is of part `{}`, which was not there yet",
+                name.shown, part.shown
+            ))
+            .remedy("write the file again")
+        })?;
+        let part = &self.parts[place];
+        if std::mem::replace(&mut self.is_used[place], true) {
+            self.n_copied += part.n_bytes();
+        }
+        if self.n_copied > MOST_COPIED {
+            return Err(Error::input(format!(
+                "the instances of its parts take more than {MOST_COPIED} bytes"
+            ))
+            .remedy("read the parts one by one"));
+        }
+        let scope = Scope { name: Some(name), ..part.clone() };
+        self.here = Here::Instance(self.instances.len());
+        self.instances.push(scope);
+        Ok(Block::Placement(0))
+    }
+
+    /// Takes a line of data.
+    pub(super) fn data(&mut self, line: &str) -> Result<()> {
+        let mut block = std::mem::replace(&mut self.block, Block::Ignored);
+        let notes = self.notes;
+        let scope = self.scope();
+        let taken = match &mut block {
+            Block::Start => {
+                Err(Error::input("data before the first keyword, a line that begins with a star")
+                    .remedy("is this another format? AVS UCD has the same ending"))
+            }
+            Block::Ignored => Ok(()),
+            Block::Nodes(set) => node(scope, *set, &fields(line)),
+            Block::Elements(elements) => elements.line(scope, &fields(line), notes),
+            &mut Block::Set { is_of_nodes, set, generates, ref instance } => {
+                let sets = if is_of_nodes { &mut scope.node_sets } else { &mut scope.element_sets };
+                let add = |reference: Reference| match reference.to {
+                    Target::Number(id) => sets.add(set, id, reference.instance.or_else(|| instance.clone())),
+                    Target::Label(_) => {
+                        let instance = reference.instance.clone().or_else(|| instance.clone());
+                        sets.entries.push((set, Entry::Set(Reference { instance, ..reference })));
+                    }
+                };
+                if generates {
+                    generate(&fields(line), instance)
+                        .map(|entries| sets.entries.extend(entries.map(|entry| (set, entry))))
+                } else {
+                    let references: Result<Vec<_>> = fields(line).into_iter().map(Reference::parse).collect();
+                    references.map(|all| all.into_iter().for_each(add))
+                }
+            }
+            Block::Surface(surface) => {
+                let row = fields(line);
+                let face = row.get(1).map_or(String::new(), |face| face.to_ascii_uppercase());
+                let reference = Reference::parse(row.first().copied().unwrap_or_default());
+                reference.map(|of| scope.surfaces[*surface].faces.push((of, face)))
+            }
+            Block::Placement(n) => {
+                *n += 1;
+                place(&mut scope.placement, *n, &fields(line))
+            }
+        };
+        self.block = block;
+        taken
+    }
+
+    fn end_block(&mut self) -> Result<()> {
+        match std::mem::replace(&mut self.block, Block::Ignored) {
+            Block::Elements(elements) if !elements.pending.is_empty() => Err(elements.misfit()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Ends the last block; parts without instances lie as they are.
+    pub(super) fn finish(&mut self) -> Result<()> {
+        self.end_block()?;
+        if self.instances.is_empty() {
+            self.instances = std::mem::take(&mut self.parts);
+        }
+        self.parts.clear();
+        if !self.passed_over.is_empty() {
+            let names: Vec<_> = self.passed_over.iter().map(|name| format!("*{name}")).collect();
+            self.notes.add(format!("what is no mesh is passed over: {}", names.join(", ")));
+        }
+        Ok(())
+    }
+}
+
+/// A number and up to three coordinates.
+fn node(scope: &mut Scope, set: Option<usize>, row: &[&str]) -> Result<()> {
+    let id = id(row.first().copied().unwrap_or_default(), "number of a node")?;
+    let mut point = [0.0; 3];
+    for (x, field) in point.iter_mut().zip(row.iter().skip(1)) {
+        *x = float(field, "coordinate of a node")?;
+    }
+    scope.node_ids.push(id);
+    scope.points.push(point);
+    if let Some(set) = set {
+        scope.node_sets.add(set, id, None);
+    }
+    Ok(())
+}
+
+impl Elements {
+    /// Takes a line; an element goes on over lines until it has all its nodes.
+    fn line(&mut self, scope: &mut Scope, row: &[&str], notes: &Notes) -> Result<()> {
+        for field in row {
+            self.pending.push(id(field, "number of an element or of its nodes")?);
+        }
+        let n = self.of.n_nodes;
+        if self.of.may_have_direction && self.pending.len() == n + 2 {
+            notes.add("nodes that tell how beams are turned are passed over");
+            self.pending.pop();
+        }
+        if self.pending.len() > n + 1 {
+            return Err(self.misfit());
+        }
+        if self.pending.len() == n + 1 {
+            let number = self.pending[0];
+            scope.element_ids.push(number);
+            scope.kinds.push(self.of.kind);
+            scope.nodes.extend(self.order.iter().map(|&place| self.pending[1 + place]));
+            if let Some(set) = self.set {
+                scope.element_sets.add(set, number, None);
+            }
+            self.pending.clear();
+        }
+        Ok(())
+    }
+
+    fn misfit(&self) -> Error {
+        let (of, n) = (&self.name, self.of.n_nodes);
+        let number = self.pending.first().copied().unwrap_or_default();
+        let found = self.pending.len().saturating_sub(1);
+        Error::input(format!("element {number} of type {of} has {n} nodes, but {found} are given"))
+            .remedy("the file is cut off or damaged: write it again")
+    }
+}
+
+/// First, last, and every how many.
+fn generate(row: &[&str], instance: &Option<String>) -> Result<impl Iterator<Item = Entry>> {
+    let what = "first, last and step of a set";
+    let ids: Vec<u64> = row.iter().map(|field| id(field, what)).collect::<Result<_>>()?;
+    let (first, last, step) = match ids[..] {
+        [first, last] => (first, last, 1),
+        [first, last, step] => (first, last, step),
+        _ => return Err(Error::input(format!("expected {what}, found {} numbers", ids.len()))),
+    };
+    if first > last {
+        return Err(
+            Error::input(format!("a set goes from {first} to {last}")).remedy("write the smaller first")
+        );
+    }
+    Ok(std::iter::once(Entry::Ids { first, last, step, instance: instance.clone() }))
+}
+
+/// The first line on how an instance lies shifts it, the second turns it.
+fn place(placement: &mut Placement, line: usize, row: &[&str]) -> Result<()> {
+    let numbers: Vec<f64> = row.iter().map(|f| float(f, "how an instance lies")).collect::<Result<_>>()?;
+    let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);
+    match line {
+        1 => placement.shift = [at(0), at(1), at(2)],
+        2 => {
+            let (a, b) = ([at(0), at(1), at(2)], [at(3), at(4), at(5)]);
+            if a == b {
+                return Err(Error::input("the two points of an axis are one").remedy("write the file again"));
+            }
+            placement.turn = Some((a, b, at(6)));
+        }
+        _ => return Err(Error::input("a third line on how an instance lies").remedy("write the file again")),
+    }
+    Ok(())
+}

@@ -1,0 +1,116 @@
+//! From lines of a file, and of the files that it includes, to keywords and data.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use super::assemble::assemble;
+use super::line::Keyword;
+use super::model::Model;
+use crate::base::{Error, Result};
+use crate::io::Input;
+use crate::io::text::Text;
+use crate::mesh::Mesh;
+
+/// Files within files at most.
+const MOST_DEEP: usize = 16;
+/// Files that are included at most, in all.
+const MOST_INCLUDED: usize = 10_000;
+
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
+    let mut reader =
+        Reader { model: Model::new(input.notes), open: vec![input.path.to_owned()], n_included: 0 };
+    reader.lines(input.bytes)?;
+    let end = || format!("line {}", 1 + input.bytes.iter().filter(|&&b| b == b'\n').count());
+    reader.model.finish().map_err(|e| e.at(end()))?;
+    assemble(reader.model, input.notes)
+}
+
+struct Reader<'n> {
+    model: Model<'n>,
+    /// The files that are being read, each included in the one before.
+    open: Vec<PathBuf>,
+    n_included: usize,
+}
+
+impl Reader<'_> {
+    fn lines(&mut self, bytes: &[u8]) -> Result<()> {
+        let mut text = Text::new(bytes);
+        let mut n = 0;
+        while let Some(line) = text.line() {
+            n += 1;
+            let at = n;
+            let line = String::from_utf8_lossy(line.trim_ascii());
+            let taken = match line.strip_prefix('*') {
+                _ if line.is_empty() || line.starts_with("**") => Ok(()),
+                None => self.model.data(&line),
+                Some(keyword) => self.keyword(&Keyword::parse(&continued(keyword, &mut text, &mut n))),
+            };
+            taken.map_err(|e| if e.file().is_some() { e } else { e.at(format!("line {at}")) })?;
+        }
+        Ok(())
+    }
+
+    fn keyword(&mut self, keyword: &Keyword) -> Result<()> {
+        if keyword.name == "INCLUDE" {
+            return self.include(keyword.expect("INPUT")?);
+        }
+        self.model.keyword(keyword)?;
+        // Data of a mesh may lie in a file of their own.
+        let has_data = matches!(keyword.name.as_str(), "NODE" | "ELEMENT" | "NSET" | "ELSET" | "SURFACE");
+        match keyword.get("INPUT").filter(|_| has_data) {
+            Some(file) => self.include(file),
+            None => Ok(()),
+        }
+    }
+
+    /// Reads a file whose path begins where the file that names it lies.
+    fn include(&mut self, name: &str) -> Result<()> {
+        let name = name.trim_matches('"');
+        let from = self.open.last().and_then(|path| path.parent()).unwrap_or(Path::new(""));
+        let path = from.join(name);
+        let refuse = |what: &str| {
+            Error::input(format!("the file `{name}` is included, {what}")).remedy("write the file again")
+        };
+        if self.open.iter().any(|open| is_same(open, &path)) {
+            return Err(refuse("which includes the file that names it"));
+        }
+        self.n_included += 1;
+        if self.open.len() > MOST_DEEP || self.n_included > MOST_INCLUDED {
+            return Err(refuse("but too many are already"));
+        }
+        // Devices and pipes may never end.
+        if path.metadata().is_ok_and(|m| !m.is_file()) {
+            return Err(refuse("but it is no file"));
+        }
+        let bytes = std::fs::read(&path).map_err(|e| {
+            Error::input(format!("the file `{name}` is included, but cannot be read: {e}"))
+                .remedy("put it where the file that names it lies")
+        })?;
+        self.open.push(path.clone());
+        self.lines(&bytes).map_err(|e| e.in_file(&path))?;
+        self.open.pop();
+        Ok(())
+    }
+}
+
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// A keyword line with those behind that it goes on in, as its last comma says.
+fn continued<'k>(keyword: &'k str, text: &mut Text<'_>, n: &mut usize) -> Cow<'k, str> {
+    let mut whole = Cow::Borrowed(keyword);
+    while whole.ends_with(',') {
+        let next = text.clone().line().unwrap_or_default().trim_ascii();
+        if next.is_empty() || next.starts_with(b"*") || !next[0].is_ascii_alphabetic() {
+            break;
+        }
+        text.line();
+        *n += 1;
+        whole.to_mut().push_str(&String::from_utf8_lossy(next));
+    }
+    whole
+}

@@ -1,0 +1,242 @@
+//! Which nodes and elements the sets of a file hold.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use super::line::{Reference, Target};
+use super::scope::{Entry, Sets};
+use crate::base::{Error, Result};
+use crate::io::format::Notes;
+use crate::io::tags::Tags;
+use crate::mesh::Cells;
+
+/// Places of points or cells in a mesh, rising, none twice.
+pub(super) type Runs = Vec<Range<u32>>;
+
+/// Runs of all sets at most: sets of sets may repeat each other without end.
+pub(super) const MOST_RUNS: usize = 1 << 26;
+
+/// From the numbers of a scope to places in the mesh.
+pub(super) struct Numbering {
+    tags: Tags,
+    sorted: Vec<u64>,
+    first_place: u32,
+}
+
+impl Numbering {
+    /// # Errors
+    /// When a number occurs twice.
+    pub(super) fn new(ids: &[u64], what: &str, first_place: usize) -> Result<Self> {
+        let mut sorted = ids.to_vec();
+        sorted.sort_unstable();
+        Ok(Self { tags: Tags::new(ids, what)?, sorted, first_place: first_place as u32 })
+    }
+
+    /// The place of a number in the mesh.
+    pub(super) fn place(&self, id: u64) -> Option<u32> {
+        self.tags.place(id).map(|place| self.first_place + place)
+    }
+
+    /// Those of the numbers from `first` to `last`, every `step`, that there are.
+    fn between(&self, first: u64, last: u64, step: u64) -> impl Iterator<Item = u32> + '_ {
+        let from = self.sorted.partition_point(|&id| id < first);
+        let to = self.sorted.partition_point(|&id| id <= last);
+        let stepped =
+            self.sorted[from..to.max(from)].iter().filter(move |&&id| (id - first).is_multiple_of(step));
+        stepped.filter_map(|&id| self.place(id))
+    }
+}
+
+/// A scope whose nodes and elements lie in the mesh.
+pub(super) struct Placed {
+    pub(super) nodes: Numbering,
+    pub(super) elements: Numbering,
+    /// Its cells in the mesh.
+    pub(super) cells: Range<u32>,
+    pub(super) node_sets: Members,
+    pub(super) element_sets: Members,
+}
+
+/// The members of all sets of a scope.
+#[derive(Default)]
+pub(super) struct Members {
+    pub(super) runs: Vec<Runs>,
+    by_key: HashMap<String, usize>,
+}
+
+impl Members {
+    pub(super) fn find(&self, key: &str) -> Option<&Runs> {
+        self.by_key.get(key).map(|&set| &self.runs[set])
+    }
+}
+
+/// Which of the two sorts of sets.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Sort {
+    Nodes,
+    Elements,
+}
+
+/// What the sets of a scope may refer to.
+pub(super) struct Around<'a> {
+    pub(super) here: &'a Placed,
+    pub(super) instances: &'a [Placed],
+    pub(super) instance_of_key: &'a HashMap<String, usize>,
+    pub(super) cells: &'a Cells,
+    pub(super) notes: &'a Notes,
+}
+
+impl<'a> Around<'a> {
+    /// The scope of an instance, or the own one.
+    pub(super) fn scope(&self, instance: Option<&String>) -> Result<&'a Placed> {
+        let Some(key) = instance else { return Ok(self.here) };
+        self.instance_of_key.get(key).map(|&i| &self.instances[i]).ok_or_else(|| {
+            Error::input(format!("instance `{key}` is named, but there is none"))
+                .remedy("the file is damaged: write it again")
+        })
+    }
+
+    /// Finds the members of all sets of one sort, in the order in which the file fills them.
+    pub(super) fn members(&self, sets: &Sets, sort: Sort) -> Result<Members> {
+        let mut found: Vec<Gathered> = sets.all.iter().map(|_| Gathered::default()).collect();
+        let mut n_runs = 0;
+        for entries in sets.entries.chunk_by(|a, b| a.0 == b.0) {
+            let set = entries[0].0;
+            // Taken out, so that others can be read meanwhile; a set that names itself adds nothing.
+            let mut whole = std::mem::take(&mut found[set]);
+            let mut gathered = Gathered::default();
+            let mut known = HashSet::new();
+            for (_, entry) in entries {
+                match entry {
+                    Entry::Ids { first, last, step, instance } => {
+                        let scope = self.scope(instance.as_ref())?;
+                        gathered.add_ids(sort.numbering(scope), *first, *last, *step);
+                    }
+                    Entry::Set(reference) => {
+                        if known.insert((reference.instance.clone(), key_of(reference))) {
+                            gathered.runs.extend(self.other(sets, &found, reference, sort)?.iter().cloned());
+                        }
+                    }
+                    Entry::NodesOf(key) => {
+                        let cells = self.here.element_sets.find(key).ok_or_else(|| no_set(key))?;
+                        let cells = cells.iter().cloned().flatten();
+                        let nodes = cells.flat_map(|cell| self.cells.connectivity().list(cell as usize));
+                        gathered.runs.extend(nodes.map(|node| node.0..node.0 + 1));
+                    }
+                }
+            }
+            gathered.runs = merged(gathered.runs);
+            n_runs += gathered.runs.len();
+            if n_runs > MOST_RUNS {
+                return Err(
+                    Error::input("its sets repeat each other too often").remedy("write the file again")
+                );
+            }
+            whole.n_missing = whole.n_missing.saturating_add(gathered.n_missing);
+            whole.runs.append(&mut gathered.runs);
+            whole.runs = merged(whole.runs);
+            found[set] = whole;
+        }
+        for (set, gathered) in sets.all.iter().zip(&found).filter(|(_, gathered)| gathered.n_missing > 0) {
+            let n = gathered.n_missing;
+            self.notes.add(format!("set {} names {n} {} that there are not", set.label.shown, sort.what()));
+        }
+        let by_key = sets.all.iter().zip(0..).map(|(set, i)| (set.label.key.clone(), i)).collect();
+        Ok(Members { runs: found.into_iter().map(|gathered| gathered.runs).collect(), by_key })
+    }
+
+    /// The members of another set of the same scope, or of one of an instance.
+    fn other<'f>(
+        &'f self,
+        sets: &Sets,
+        found: &'f [Gathered],
+        reference: &Reference,
+        sort: Sort,
+    ) -> Result<&'f Runs> {
+        let key = key_of(reference);
+        if reference.instance.is_some() {
+            let scope = self.scope(reference.instance.as_ref())?;
+            let members = if sort == Sort::Nodes { &scope.node_sets } else { &scope.element_sets };
+            return members.find(&key).ok_or_else(|| no_set(&key));
+        }
+        sets.find(&key).map(|set| &found[set].runs).ok_or_else(|| no_set(&key))
+    }
+}
+
+#[derive(Default)]
+struct Gathered {
+    runs: Runs,
+    /// How many numbers stand for nothing.
+    n_missing: usize,
+}
+
+impl Gathered {
+    fn add_ids(&mut self, numbering: &Numbering, first: u64, last: u64, step: u64) {
+        let before = self.runs.len();
+        let mut n = 0u64;
+        for place in numbering.between(first, last, step) {
+            n += 1;
+            match self.runs[before..].last_mut() {
+                Some(run) if run.end == place => run.end += 1,
+                _ => self.runs.push(place..place + 1),
+            }
+        }
+        let n_missing = (last - first) / step + 1 - n;
+        self.n_missing = self.n_missing.saturating_add(usize::try_from(n_missing).unwrap_or(usize::MAX));
+    }
+}
+
+impl Sort {
+    fn numbering(self, scope: &Placed) -> &Numbering {
+        if self == Self::Nodes { &scope.nodes } else { &scope.elements }
+    }
+
+    fn what(self) -> &'static str {
+        if self == Self::Nodes { "nodes" } else { "elements" }
+    }
+}
+
+fn key_of(reference: &Reference) -> String {
+    match &reference.to {
+        Target::Label(label) => label.key.clone(),
+        Target::Number(id) => id.to_string(),
+    }
+}
+
+pub(super) fn no_set(key: &str) -> Error {
+    Error::input(format!("set `{key}` is named, but there is none"))
+        .remedy("the file is damaged: write it again")
+}
+
+/// Runs in rising order, those that touch or overlap made one.
+pub(super) fn merged(mut runs: Runs) -> Runs {
+    runs.sort_unstable_by_key(|run| (run.start, run.end));
+    let mut out = Runs::new();
+    for run in runs {
+        match out.last_mut() {
+            Some(last) if run.start <= last.end => last.end = last.end.max(run.end),
+            _ => out.push(run),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_that_touch_are_one() {
+        assert_eq!(merged(vec![5..6, 0..2, 2..3, 1..2, 6..9]), [0..3, 5..9]);
+    }
+
+    #[test]
+    fn a_range_finds_the_numbers_that_there_are() {
+        let numbering = Numbering::new(&[10, 4, 7, 40], "node", 100).unwrap();
+        let mut places: Vec<u32> = numbering.between(4, 10, 3).collect();
+        places.sort_unstable();
+        assert_eq!(places, [100, 101, 102]);
+        assert_eq!(numbering.between(5, u64::MAX, u64::MAX).count(), 0);
+        assert_eq!(numbering.place(40), Some(103));
+    }
+}
