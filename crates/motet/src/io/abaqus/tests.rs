@@ -436,3 +436,13 @@ fn labels_that_a_file_would_make_one_are_told() {
     assert!(lost.iter().any(|l| l == "regions of one name come back as one"), "{lost:?}");
     assert!(lost.iter().any(|l| l.ends_with("has more than 80 characters: Abaqus refuses it")), "{lost:?}");
 }
+
+#[test]
+fn a_set_of_solids_and_curves_is_a_label_and_an_array_and_comes_back_as_one() {
+    let mut mesh = labelled();
+    mesh.set_cell_field(Field::scalars("elset:blood", vec![0u8, 0, 1, 0, 1]));
+    let (text, lost) = print(&mesh);
+    assert_eq!(lost, [""; 0]);
+    assert!(text.contains("*ELSET, ELSET=blood\n3, 5\n"), "{text}");
+    assert_eq!(parse(&text).0, mesh);
+}

@@ -129,6 +129,14 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
         }
     }
     for (name, cells) in of_arrays(&mesh.cell_data, ELSET) {
+        // Labels and the array of one set, which has curves besides.
+        let can_have_label = |&&cell: &&usize| mesh.cells.kinds()[cell].dim() > Some(1);
+        if let Some(&place) = place_of.get(&name)
+            && cells.iter().filter(can_have_label).eq(&sorted(&sets[place].1))
+        {
+            sets[place].1 = cells;
+            continue;
+        }
         let unused = unused_name(&name, |name| place_of.contains_key(name));
         if unused != name {
             lost.push(format!("{ELSET}{name} is written as set {unused}: a label has its name"));
@@ -137,6 +145,12 @@ fn element_sets(mesh: &Mesh, patches: &ByLabel, lost: &mut Vec<String>) -> Sets 
         sets.push((unused, cells));
     }
     sets
+}
+
+fn sorted(cells: &[usize]) -> Vec<usize> {
+    let mut cells = cells.to_vec();
+    cells.sort_unstable();
+    cells
 }
 
 /// What arrays of 0 and 1 mark, by their names without the prefix.
