@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use super::kinds::{ElementType, vtk_to_abaqus};
 use super::line::{Keyword, Label, Reference, Target, fields, float, id};
-use super::scope::{Entry, Placement, Scope, SurfaceText};
+use super::scope::{Entry, Placement, Scope, Sets, SurfaceText};
 use crate::base::{Error, Result};
 use crate::io::format::Notes;
 
@@ -237,19 +237,10 @@ impl<'n> Model<'n> {
             Block::Elements(elements) => elements.line(scope, &fields(line), notes),
             &mut Block::Set { is_of_nodes, set, generates, ref instance } => {
                 let sets = if is_of_nodes { &mut scope.node_sets } else { &mut scope.element_sets };
-                let add = |reference: Reference| match reference.to {
-                    Target::Number(id) => sets.add(set, id, reference.instance.or_else(|| instance.clone())),
-                    Target::Label(_) => {
-                        let instance = reference.instance.clone().or_else(|| instance.clone());
-                        sets.entries.push((set, Entry::Set(Reference { instance, ..reference })));
-                    }
-                };
                 if generates {
-                    generate(&fields(line), instance)
-                        .map(|entries| sets.entries.extend(entries.map(|entry| (set, entry))))
+                    generate(&fields(line), instance).map(|entry| sets.entries.push((set, entry)))
                 } else {
-                    let references: Result<Vec<_>> = fields(line).into_iter().map(Reference::parse).collect();
-                    references.map(|all| all.into_iter().for_each(add))
+                    fields(line).into_iter().try_for_each(|field| member(sets, set, field, instance))
                 }
             }
             Block::Surface(surface) => {
@@ -340,8 +331,23 @@ impl Elements {
     }
 }
 
+/// Adds what a field of a set names: a number, or a set that is there already.
+fn member(sets: &mut Sets, set: usize, field: &str, instance: &Option<String>) -> Result<()> {
+    let reference = Reference::parse(field)?;
+    let instance = reference.instance.or_else(|| instance.clone());
+    match &reference.to {
+        Target::Number(id) => sets.add(set, *id, instance),
+        Target::Label(label) if instance.is_none() && sets.find(&label.key).is_none() => {
+            return Err(Error::input(format!("set `{}` is named, which was not there yet", label.shown))
+                .remedy("put it before the set that names it"));
+        }
+        Target::Label(_) => sets.entries.push((set, Entry::Set(Reference { instance, ..reference }))),
+    }
+    Ok(())
+}
+
 /// First, last, and every how many.
-fn generate(row: &[&str], instance: &Option<String>) -> Result<impl Iterator<Item = Entry>> {
+fn generate(row: &[&str], instance: &Option<String>) -> Result<Entry> {
     let what = "first, last and step of a set";
     let ids: Vec<u64> = row.iter().map(|field| id(field, what)).collect::<Result<_>>()?;
     let (first, last, step) = match ids[..] {
@@ -354,7 +360,7 @@ fn generate(row: &[&str], instance: &Option<String>) -> Result<impl Iterator<Ite
             Error::input(format!("a set goes from {first} to {last}")).remedy("write the smaller first")
         );
     }
-    Ok(std::iter::once(Entry::Ids { first, last, step, instance: instance.clone() }))
+    Ok(Entry::Ids { first, last, step, instance: instance.clone() })
 }
 
 /// The first line on how an instance lies shifts it, the second turns it.

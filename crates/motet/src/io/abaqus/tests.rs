@@ -331,7 +331,7 @@ fn what_is_wrong_is_told_with_its_line() {
         ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1\n", "found 1 numbers"),
         ("*NODE\n1\n*NSET,NSET=a,GENERATE\n3,1\n", "a set goes from 3 to 1"),
         ("*NODE\n1\n*NSET,NSET=a,GENERATE\n1,3,0\n", "0 is no number"),
-        ("*NODE\n1\n*NSET,NSET=a\nb\n", "set `B` is named, but there is none"),
+        ("*NODE\n1\n*NSET,NSET=a\nb\n*NSET,NSET=b\n1\n", "line 4: set `b` is named, which was not there yet"),
         ("*NODE\n1\n*NSET,NSET=a,ELSET=b\n", "set `B` is named, but there is none"),
         ("*NODE\n1\n*SURFACE,NAME=a\nb,S1\n", "set `B` is named, but there is none"),
         ("*NODE\n1\n*NGEN\n1,9\n", "line 3: *NGEN makes or moves nodes"),
