@@ -73,7 +73,9 @@ def test_other_threads_go_on():
 
 
 def test_ctrl_c_ends_it():
-    script = "import motet\nprint('here', flush=True)\nmotet.remesh(motet.shapes.box((8, 8, 8)), sizes=0.012)"
+    # Where the tests run in the background of a shell, Ctrl-C is ignored, and by whatever they start.
+    ready = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\nimport motet\nprint('here', flush=True)\n"
+    script = ready + "motet.remesh(motet.shapes.box((8, 8, 8)), sizes=0.012)"
     running = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     running.stdout.readline()
     time.sleep(0.5)
