@@ -7,7 +7,7 @@ use motet::{Error, ErrorKind, Result, io};
 /// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names. A series is many files: its folder
 /// is made where there is none.
 pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>, what: &str) -> Result<()> {
-    if io::is_series(output) {
+    if io::can_write_series(output) {
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
         folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(output, &e))?;
     } else {

@@ -30,7 +30,7 @@ Examples:
   motet info vessel.vtu --json | jq .quality.eas.min
   motet info vessel.msh -o quality.vtu        colour by eas in ParaView to see where it is bad")]
 pub(crate) struct InfoArgs {
-    /// The mesh file (or folder, or .pvd series)
+    /// The mesh file (or folder, or series: .pvd, .vtkhdf with steps)
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Write the mesh with a cell array for each measure: eas, mean_ratio, min_dihedral_deg,
@@ -245,12 +245,12 @@ fn yes_or_no(is: bool) -> &'static str {
 /// Times and files, and whether each file is there.
 fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(path)?;
-    if let Some((_, file)) = frames.iter().find(|(_, file)| !file.exists()) {
+    if let Some((_, file)) = frames.iter().find(|(_, file)| !io::file_of(file).exists()) {
         return Err(Error::input(format!("names {}, which is not there", file.display())).in_file(path));
     }
     let mut table = Table::new(["file", "time"]);
     frames.iter().for_each(|(time, file)| table.row([file.display().to_string(), time_of(*time)]));
-    console.say(format_args!("{}: a series of {} files\n{table}", path.display(), frames.len()));
+    console.say(format_args!("{}: a series of {} meshes\n{table}", path.display(), frames.len()));
     let frames: Vec<_> = frames.iter().map(|(time, file)| json!({ "time": time, "file": file })).collect();
     console.report(&json!({ "file": path, "series": frames }));
     Ok(Outcome::Done)

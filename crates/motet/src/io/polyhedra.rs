@@ -1,7 +1,8 @@
-//! Faces of a polyhedron as one stream of numbers, as VTK's files have them:
+//! Polyhedra: cells with their faces, and faces as one stream of numbers, as VTK's files have them:
 //! how many faces, then for each how many vertices, and these.
 
-use crate::base::{Csr, VertexId};
+use crate::base::{Csr, Result, VertexId};
+use crate::mesh::{CellKind, Cells};
 
 /// Takes the faces of one polyhedron off the front of `stream`; `None` when it ends too early.
 pub(super) fn next_polyhedron(stream: &mut &[u32]) -> Option<Csr<VertexId>> {
@@ -25,4 +26,26 @@ pub(super) fn face_stream(faces: &Csr<VertexId>) -> Vec<u32> {
         stream.extend(face.iter().map(|v| v.0));
     }
     stream
+}
+
+/// Cells from a kind each, where each starts, all their vertices, and the faces of the polyhedra among them.
+pub(super) fn cells_with_polyhedra(
+    kinds: &[CellKind],
+    offsets: Vec<u32>,
+    vertices: Vec<VertexId>,
+    faces: Vec<Csr<VertexId>>,
+) -> Result<Cells> {
+    // Checked as polygons, which may have any number of vertices.
+    let stand_in = |k: &CellKind| if *k == CellKind::POLYHEDRON { CellKind::POLYGON } else { *k };
+    let checked = Cells::from_parts(kinds.iter().map(stand_in).collect(), offsets, vertices)?;
+    let mut faces = faces.into_iter();
+    let mut cells = Cells::new();
+    for ((_, _, vertices), &kind) in checked.iter().zip(kinds) {
+        let vertices = vertices.iter().copied();
+        match kind {
+            CellKind::POLYHEDRON => cells.push_polyhedron(vertices, faces.next().unwrap_or_default()),
+            _ => cells.push(kind, vertices),
+        }
+    }
+    Ok(cells)
 }

@@ -35,7 +35,7 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
 }
 
 /// What a reader returned, found to hold together; errors with the file and a remedy.
-fn checked(mesh: Result<Mesh>, path: &Path) -> Result<Mesh> {
+pub(super) fn checked(mesh: Result<Mesh>, path: &Path) -> Result<Mesh> {
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
     let mesh = mesh.map_err(told)?;
     mesh.validate().map_err(told)?;

@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::base::{Error, ErrorKind, Result};
 use crate::io::format::{Format, Notes, WriteOptions};
-use crate::io::reading::read_file;
+use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
-use crate::io::{abaqus, dolfin, legacy, medit, msh, obj, off, ply, simvascular, stl, tetgen, vtkxml};
+use crate::io::{
+    abaqus, dolfin, legacy, medit, msh, obj, off, ply, simvascular, stl, tetgen, vtkhdf, vtkxml,
+};
 use crate::mesh::Mesh;
 
 /// Every format, in the order in which endings are looked up.
@@ -18,6 +20,7 @@ const FORMATS: &[Format] = &[
     vtkxml::VTU,
     vtkxml::VTP,
     legacy::VTK,
+    vtkhdf::FORMAT,
     msh::FORMAT,
     stl::FORMAT,
     obj::FORMAT,
@@ -96,7 +99,7 @@ fn folder_format(path: &Path) -> Result<&'static Format> {
     })
 }
 
-/// Reads a file or folder in the format that its ending tells.
+/// Reads a file or folder in the format that its ending tells; `flow.vtkhdf#3` is step 3 of that file.
 ///
 /// # Errors
 /// Names the file, the place in it, what was expected and found, and what to do.
@@ -111,6 +114,10 @@ pub fn read(path: impl AsRef<Path>) -> Result<Mesh> {
 pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
+    if let Some(step) = vtkhdf::StepPath::of(path) {
+        let mesh = checked(vtkhdf::read_step(&step, &notes), path)?;
+        return Ok((mesh, notes.into_vec()));
+    }
     let format = if path.is_dir() { folder_format(path)? } else { by_ending(path)? };
     let mesh = read_file(format, path, &notes)?;
     Ok((mesh, notes.into_vec()))

@@ -1,4 +1,4 @@
-//! Meshes over time: a PVD file that names a file for each time, as ParaView plays it.
+//! Meshes over time: a PVD file that names a file for each time, as ParaView plays it, or a VTKHDF file with steps.
 
 use std::path::{Path, PathBuf};
 
@@ -8,24 +8,38 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
 use crate::io::format::WriteOptions;
-use crate::io::{replace, write};
+use crate::io::{replace, vtkhdf, write};
 use crate::mesh::Mesh;
 
-/// Whether a path is that of a series, by its ending.
+/// Whether a path is that of a series: by its ending (`.pvd`), or a VTKHDF file that is there and has several steps.
 pub fn is_series(path: impl AsRef<Path>) -> bool {
+    can_write_series(&path) || vtkhdf::is_transient(path.as_ref())
+}
+
+/// Whether a series can be written to this path, by its ending.
+pub fn can_write_series(path: impl AsRef<Path>) -> bool {
     path.as_ref().extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+}
+
+/// The file that a path of [`read_series`] lies in: itself, or the one whose step it is.
+pub fn file_of(path: impl AsRef<Path>) -> PathBuf {
+    vtkhdf::StepPath::of(path.as_ref()).map_or_else(|| path.as_ref().to_owned(), |step| step.file)
 }
 
 /// The times of a series and the file of each, in the order in which they are written down.
 ///
 /// A file without a time gets its place in the series. Names are taken to be relative
-/// to where the series lies.
+/// to where the series lies. The steps of a VTKHDF file have paths such as `flow.vtkhdf#3`,
+/// which [`read`](super::read) knows.
 ///
 /// # Errors
 /// When the file cannot be read or is no series, when a time is no finite number, and
 /// when several files make up one time: names the place.
 pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     let path = path.as_ref();
+    if !can_write_series(path) && vtkhdf::is_transient(path) {
+        return vtkhdf::times(path).map_err(|e| e.in_file(path));
+    }
     let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
     let frames = parse_series(&bytes).map_err(told)?;

@@ -38,7 +38,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     let bar = console.bar(n as u64, "measuring");
     let mut report = Report::new(args);
     let mut series =
-        io::is_series(&args.output).then(|| SeriesWriter::new(&args.output, args.writing.options()));
+        io::can_write_series(&args.output).then(|| SeriesWriter::new(&args.output, args.writing.options()));
     let mut handle: Option<(Contact, Frame)> = None;
     let mut next = Some(frames.read(0, console)?);
     for k in 0..n {

@@ -262,8 +262,9 @@ impl<'a> Asked<'a, '_> {
     }
 
     fn parts(self, motion: BoundaryMotion) -> Plan<'a> {
-        let default = if io::is_series(&self.args.output) { SERIES_STEPS } else { 1 };
-        let in_time = io::is_series(&self.args.output) || !self.args.nodal.is_empty();
+        let is_series = io::can_write_series(&self.args.output);
+        let default = if is_series { SERIES_STEPS } else { 1 };
+        let in_time = is_series || !self.args.nodal.is_empty();
         let n = self.args.steps.unwrap_or(default);
         let dt = self.args.dt.unwrap_or(1.0);
         Plan {

@@ -5,6 +5,7 @@ use std::io::Write;
 use crate::base::{Error, Result, VertexId};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::labels::label_fields;
+use crate::io::polyhedra::cells_with_polyhedra;
 use crate::io::surplus::trim;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
@@ -76,27 +77,6 @@ fn read_kinds(file: &File<'_>, element: &Element<'_>, n: usize) -> Result<Vec<Ce
     let numbers =
         numbers.ok_or_else(|| Error::input("a cell type is not in 0 to 255").at(element.place()))?;
     Ok(bytemuck::allocation::cast_vec(numbers))
-}
-
-fn cells_with_polyhedra(
-    kinds: &[CellKind],
-    offsets: Vec<u32>,
-    vertices: Vec<VertexId>,
-    faces: Vec<crate::base::Csr<VertexId>>,
-) -> Result<Cells> {
-    // Checked as polygons, which may have any number of vertices.
-    let stand_in = |k: &CellKind| if *k == CellKind::POLYHEDRON { CellKind::POLYGON } else { *k };
-    let checked = Cells::from_parts(kinds.iter().map(stand_in).collect(), offsets, vertices)?;
-    let mut faces = faces.into_iter();
-    let mut cells = Cells::new();
-    for ((_, _, vertices), &kind) in checked.iter().zip(kinds) {
-        let vertices = vertices.iter().copied();
-        match kind {
-            CellKind::POLYHEDRON => cells.push_polyhedron(vertices, faces.next().unwrap_or_default()),
-            _ => cells.push(kind, vertices),
-        }
-    }
-    Ok(cells)
 }
 
 pub(in crate::io) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {

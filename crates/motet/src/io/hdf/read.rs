@@ -1,0 +1,250 @@
+//! Groups, attributes and arrays of a file that is there.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use hdf5_pure::{AttrValue, DType, Dataset, File, is_hdf5_bytes};
+
+use crate::base::{Error, Result};
+use crate::mesh::Values;
+
+/// zlib makes no more than so many bytes of one (its own documentation: 1032 to 1).
+const MOST_BYTES_OF_ONE: u64 = 1032;
+/// So much may be announced whatever the file's size: values that were never written take no room in a file.
+const ALWAYS_ALLOWED: u64 = 1 << 24;
+
+/// Whether these are the bytes of an HDF5 file.
+pub(in crate::io) fn is_hdf5(bytes: &[u8]) -> bool {
+    is_hdf5_bytes(bytes)
+}
+
+/// The root of a file that is in memory.
+pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
+    if !is_hdf5(bytes) {
+        return Err(Error::input("is no HDF5 file: its signature is missing").remedy("get the file again"));
+    }
+    let file = guarded("/", || File::from_bytes(bytes.to_vec()))?;
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), bytes.len() as u64)
+}
+
+/// The root of a file that stays where it is: what is asked for is read, and no more.
+pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
+    let told = |e: std::io::Error| Error::io(path, &e);
+    let size = std::fs::metadata(path).map_err(told)?.len();
+    let file = guarded("/", || File::open_streaming(path))?;
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), size)
+}
+
+/// Calls the library: its errors get the place, its panics become errors.
+fn guarded<T>(place: &str, call: impl FnOnce() -> Result<T, hdf5_pure::Error>) -> Result<T> {
+    match catch_unwind(AssertUnwindSafe(call)) {
+        Ok(Ok(value)) => Ok(value),
+        Ok(Err(e)) => Err(Error::input(e.to_string()).at(place)),
+        Err(_) => Err(Error::input("the library for HDF5 (hdf5-pure) fails on what stands here").at(place)),
+    }
+}
+
+/// A group: a folder within the file.
+pub(in crate::io) struct Group {
+    inner: hdf5_pure::Group,
+    path: String,
+    attributes: HashMap<String, AttrValue>,
+    groups: Vec<String>,
+    arrays: Vec<String>,
+    file_size: u64,
+}
+
+impl Group {
+    fn new(inner: hdf5_pure::Group, path: String, file_size: u64) -> Result<Self> {
+        let place = if path.is_empty() { "/" } else { &path };
+        let attributes = guarded(place, || inner.attrs())?;
+        let mut groups = guarded(place, || inner.groups())?;
+        let mut arrays = guarded(place, || inner.datasets())?;
+        // The library lists them as they lie in the file, which has no meaning.
+        groups.sort_unstable();
+        arrays.sort_unstable();
+        Ok(Self { inner, path, attributes, groups, arrays, file_size })
+    }
+
+    /// Where it stands in the file.
+    pub(in crate::io) fn place(&self) -> &str {
+        if self.path.is_empty() { "/" } else { &self.path }
+    }
+
+    /// The names of the arrays in it, sorted.
+    pub(in crate::io) fn arrays(&self) -> &[String] {
+        &self.arrays
+    }
+
+    /// The group of this name, if there is one.
+    pub(in crate::io) fn group(&self, name: &str) -> Result<Option<Self>> {
+        if self.groups.binary_search_by(|g| g.as_str().cmp(name)).is_err() {
+            return Ok(None);
+        }
+        let path = format!("{}/{name}", self.path);
+        let inner = guarded(&path, || self.inner.group(name))?;
+        Self::new(inner, path, self.file_size).map(Some)
+    }
+
+    /// The array of this name, if there is one.
+    pub(in crate::io) fn array(&self, name: &str) -> Result<Option<Array>> {
+        if self.arrays.binary_search_by(|a| a.as_str().cmp(name)).is_err() {
+            return Ok(None);
+        }
+        let path = format!("{}/{name}", self.path);
+        let inner = guarded(&path, || self.inner.dataset(name))?;
+        Array::new(inner, path, self.file_size).map(Some)
+    }
+
+    /// The array of this name, which must be there.
+    pub(in crate::io) fn needed_array(&self, name: &str) -> Result<Array> {
+        self.array(name)?.ok_or_else(|| {
+            Error::input(format!("the array {name} is missing"))
+                .at(self.place())
+                .remedy("the file is damaged, or not finished: write it again")
+        })
+    }
+
+    /// An attribute that is a text, without what pads it.
+    pub(in crate::io) fn text(&self, name: &str) -> Option<&str> {
+        self.attributes.get(name)?.as_str().map(|text| text.trim_end_matches(['\0', ' ']))
+    }
+
+    /// An attribute that is one whole number, or several.
+    pub(in crate::io) fn ints(&self, name: &str) -> Option<Vec<i64>> {
+        self.attributes.get(name)?.to_i64s()
+    }
+}
+
+/// An array: its shape and type, and values when they are asked for.
+pub(in crate::io) struct Array {
+    inner: Dataset,
+    path: String,
+    shape: Vec<usize>,
+    kind: DType,
+}
+
+impl Array {
+    fn new(inner: Dataset, path: String, file_size: u64) -> Result<Self> {
+        let shape = guarded(&path, || inner.shape())?;
+        let kind = guarded(&path, || inner.dtype())?;
+        let size = guarded(&path, || inner.element_size())?;
+        let chunk = guarded(&path, || inner.chunk_shape())?.unwrap_or_default();
+        let filtered = !guarded(&path, || Ok(inner.filters()))?.is_empty();
+        let room = file_size.saturating_mul(if filtered { MOST_BYTES_OF_ONE } else { 1 }).max(ALWAYS_ALLOWED);
+        // No values, but rows without end, are no less wrong.
+        let bytes = |shape: &[u64]| shape.iter().fold(size, |n, &d| n.saturating_mul(d.max(1)));
+        let announced = bytes(&shape).max(bytes(&chunk));
+        if announced > room {
+            return Err(Error::input(format!(
+                "{announced} bytes are announced, but a file of {file_size} bytes holds at most {room}"
+            ))
+            .at(path)
+            .remedy("the file is cut off or damaged: get it again"));
+        }
+        let fits = shape.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<Vec<_>>>();
+        let shape = fits.ok_or_else(|| Error::input("an array that is too large").at(path.as_str()))?;
+        Ok(Self { inner, path, shape, kind })
+    }
+
+    /// Where it stands in the file.
+    pub(in crate::io) fn place(&self) -> &str {
+        &self.path
+    }
+
+    /// How many rows there are: its first dimension.
+    pub(in crate::io) fn rows(&self) -> usize {
+        self.shape.first().copied().unwrap_or(1)
+    }
+
+    /// How many values a row has: its other dimensions.
+    pub(in crate::io) fn components(&self) -> usize {
+        self.shape.iter().skip(1).fold(1, |n, &d| n.saturating_mul(d))
+    }
+
+    /// All values.
+    pub(in crate::io) fn all(&self) -> Result<Values> {
+        self.values(0..self.rows())
+    }
+
+    /// The values of some rows, in the type that the file has them in.
+    pub(in crate::io) fn values(&self, rows: Range<usize>) -> Result<Values> {
+        if rows.start > rows.end || rows.end > self.rows() {
+            let (start, end, n) = (rows.start, rows.end, self.rows());
+            return Err(self.error(format!("rows {start} to {end} are asked for, but there are {n}")));
+        }
+        let expected = rows.len().saturating_mul(self.components());
+        let values = if expected == 0 { self.none()? } else { self.read(rows)? };
+        match values.len() == expected {
+            true => Ok(values),
+            false => Err(self.error(format!("{expected} values are expected, {} came", values.len()))),
+        }
+    }
+
+    /// Whole numbers of some rows, of whatever type.
+    pub(in crate::io) fn ints(&self, rows: Range<usize>) -> Result<Vec<i64>> {
+        let values = self.values(rows)?;
+        values.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
+    }
+
+    /// An error that names this array.
+    pub(in crate::io) fn error(&self, what: impl Into<String>) -> Error {
+        Error::input(what)
+            .at(self.path.as_str())
+            .remedy("the file is damaged, or was written wrong: write it again")
+    }
+}
+
+macro_rules! reading {
+    ($($kind:ident $t:ty, $all:ident, $some:ident;)*) => {
+        impl Array {
+            fn read(&self, rows: Range<usize>) -> Result<Values> {
+                let whole = rows == (0..self.rows());
+                let (start, n) = (rows.start as u64, rows.len() as u64);
+                let read = || Ok(match self.kind {
+                    $(DType::$kind if whole => Some(Values::$kind(self.inner.$all()?)),
+                    DType::$kind => Some(Values::$kind(self.inner.$some(start, n)?)),)*
+                    DType::String | DType::VariableLengthString => {
+                        Some(Values::Text(self.inner.read_string_rows(start, n)?))
+                    }
+                    _ => None,
+                });
+                guarded(&self.path, read)?.ok_or_else(|| self.unknown())
+            }
+
+            fn none(&self) -> Result<Values> {
+                match self.kind {
+                    $(DType::$kind => Ok(Values::$kind(Vec::<$t>::new())),)*
+                    DType::String | DType::VariableLengthString => Ok(Values::Text(Vec::new())),
+                    _ => Err(self.unknown()),
+                }
+            }
+
+            /// Whether its values are numbers or texts, and not records or the like.
+            pub(in crate::io) fn is_known(&self) -> bool {
+                self.none().is_ok()
+            }
+        }
+    };
+}
+
+reading! {
+    I8 i8, read_i8, read_i8_rows;
+    U8 u8, read_u8, read_u8_rows;
+    I16 i16, read_i16, read_i16_rows;
+    U16 u16, read_u16, read_u16_rows;
+    I32 i32, read_i32, read_i32_rows;
+    U32 u32, read_u32, read_u32_rows;
+    I64 i64, read_i64, read_i64_rows;
+    U64 u64, read_u64, read_u64_rows;
+    F32 f32, read_f32, read_f32_rows;
+    F64 f64, read_f64, read_f64_rows;
+}
+
+impl Array {
+    fn unknown(&self) -> Error {
+        self.error(format!("values of type {} are neither numbers nor texts", self.kind))
+    }
+}

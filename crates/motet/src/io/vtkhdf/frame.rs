@@ -1,0 +1,130 @@
+//! Which parts of a file make one mesh, and in which rows of each array they begin.
+
+use std::ops::Range;
+
+use crate::base::{Error, Result};
+use crate::io::hdf::{Array, Group};
+
+/// The group of steps, in files that go over time.
+pub(super) struct Steps {
+    group: Group,
+    /// The time of each step.
+    pub(super) times: Vec<f64>,
+}
+
+impl Steps {
+    /// The steps of a file; `None` where it has none.
+    pub(super) fn of(root: &Group) -> Result<Option<Self>> {
+        let Some(group) = root.group("Steps")? else { return Ok(None) };
+        let values = group.needed_array("Values")?;
+        let times = values.all()?.to_f64().ok_or_else(|| values.error("times are no numbers"))?;
+        let promised = group.ints("NSteps").and_then(|n| n.first().copied());
+        if promised.is_some_and(|n| usize::try_from(n) != Ok(times.len())) || times.is_empty() {
+            let promised = promised.unwrap_or_default();
+            return Err(values.error(format!("{} times for {promised} steps", times.len())));
+        }
+        Ok(Some(Self { group, times }))
+    }
+
+    /// What the array `name` says of a step; `None` where there is no such array.
+    fn row(&self, name: &str, step: usize) -> Result<Option<Vec<usize>>> {
+        self.group.array(name)?.map(|array| row(&array, step)).transpose()
+    }
+
+    /// As [`Self::row`], of an array in a group.
+    fn row_within(&self, group: &str, name: &str, step: usize) -> Result<Option<Vec<usize>>> {
+        let array = self.group.group(group)?.map(|g| g.array(name)).transpose()?.flatten();
+        array.map(|array| row(&array, step)).transpose()
+    }
+}
+
+fn row(array: &Array, step: usize) -> Result<Vec<usize>> {
+    array.ints(step..step + 1)?.into_iter().map(|n| whole(array, n)).collect()
+}
+
+fn whole(array: &Array, n: i64) -> Result<usize> {
+    usize::try_from(n).map_err(|_| array.error(format!("{n} is no number of rows")))
+}
+
+/// The counts of an array, one a part.
+pub(super) fn counts(group: &Group, name: &str, parts: &Range<usize>) -> Result<Vec<usize>> {
+    let array = group.needed_array(name)?;
+    array.ints(parts.clone())?.into_iter().map(|n| whole(&array, n)).collect()
+}
+
+/// One mesh of a file: the only one, or that of a step.
+pub(super) struct Frame<'a> {
+    root: &'a Group,
+    step: Option<(&'a Steps, usize)>,
+    /// Its parts among all.
+    pub(super) parts: Range<usize>,
+}
+
+impl<'a> Frame<'a> {
+    /// The mesh of a file without steps: all parts.
+    pub(super) fn whole(root: &'a Group) -> Result<Self> {
+        let parts = 0..root.needed_array("NumberOfPoints")?.rows();
+        Ok(Self { root, step: None, parts })
+    }
+
+    /// The mesh of a step.
+    pub(super) fn of_step(root: &'a Group, steps: &'a Steps, step: usize) -> Result<Self> {
+        let first = |name| Ok::<_, Error>(steps.row(name, step)?.and_then(|row| row.first().copied()));
+        let all = root.needed_array("NumberOfPoints")?;
+        let n = first("NumberOfParts")?.unwrap_or(all.rows() / steps.times.len());
+        let start = first("PartOffsets")?.unwrap_or(step * n);
+        match start.checked_add(n).filter(|&end| end <= all.rows()) {
+            Some(end) => Ok(Self { root, step: Some((steps, step)), parts: start..end }),
+            None => Err(all.error(format!("step {step} names parts from {start} on, {n} of them"))),
+        }
+    }
+
+    /// Where the frame begins in the rows that the array `offsets` of the steps tells; `sum` counts what stands before where it does not.
+    pub(super) fn start(
+        &self,
+        offsets: &str,
+        column: usize,
+        before: impl Fn() -> Result<usize>,
+    ) -> Result<usize> {
+        let told = match self.step {
+            Some((steps, step)) => steps.row(offsets, step)?.and_then(|row| row.get(column).copied()),
+            None => None,
+        };
+        told.map_or_else(before, Ok)
+    }
+
+    /// The sum of the counts of the parts before this frame.
+    pub(super) fn before(&self, group: &Group, counted: &str) -> Result<usize> {
+        let counts = counts(group, counted, &(0..self.parts.start))?;
+        Ok(counts.iter().fold(0, |sum, n| sum.saturating_add(*n)))
+    }
+
+    /// Where the points begin.
+    pub(super) fn first_point(&self) -> Result<usize> {
+        self.start("PointOffsets", 0, || self.before(self.root, "NumberOfPoints"))
+    }
+
+    /// Where an array of `kind` (`PointData`, `CellData`) begins; `usual` where the steps say nothing of it.
+    pub(super) fn first_value(&self, kind: &str, name: &str, usual: usize) -> Result<usize> {
+        let Some((steps, step)) = self.step else { return Ok(usual) };
+        let row = steps.row_within(&format!("{kind}Offsets"), name, step)?;
+        Ok(row.and_then(|row| row.first().copied()).unwrap_or(usual))
+    }
+
+    /// The rows of an array about the mesh as a whole, and how many values each has.
+    pub(super) fn field_rows(&self, name: &str, array: &Array) -> Result<(Range<usize>, usize)> {
+        let all = (0..array.rows(), array.components());
+        let Some((steps, step)) = self.step else { return Ok(all) };
+        let sizes = steps.row_within("FieldDataSizes", name, step)?;
+        let (components, n) = match sizes.as_deref() {
+            Some(&[components, n]) => (components, n),
+            _ => (all.1, 1),
+        };
+        let start = steps.row_within("FieldDataOffsets", name, step)?.and_then(|row| row.first().copied());
+        match start.or_else(|| (all.0.end == steps.times.len()).then_some(step)) {
+            // What changes its width over time is not told by rows: it comes as it stands.
+            Some(start) if components == all.1 => Ok((start..start.saturating_add(n), components)),
+            _ => Ok(all),
+        }
+    }
+}

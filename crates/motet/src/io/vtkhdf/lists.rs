@@ -1,0 +1,54 @@
+//! Lists of ids as VTKHDF has them, part after part: where each list begins, and the ids of all.
+
+use crate::base::{Csr, Result, VertexId};
+use crate::io::hdf::Group;
+
+/// The two arrays of lists, and where in them a frame begins.
+pub(super) struct Source<'a> {
+    pub(super) group: &'a Group,
+    /// The array that tells where each list begins; one number more than lists in each part.
+    pub(super) offsets: &'a str,
+    /// The row of the first list among all lists of the file, one row more for each part before.
+    pub(super) first_offset: usize,
+    /// The array of ids.
+    pub(super) ids: &'a str,
+    pub(super) first_id: usize,
+}
+
+/// How many lists a part has, how many ids, and how many things these ids may mean.
+pub(super) struct Part {
+    pub(super) n_lists: usize,
+    pub(super) n_ids: usize,
+    pub(super) n_things: usize,
+}
+
+impl Source<'_> {
+    /// The lists of all parts, ids counted through.
+    pub(super) fn read(&self, parts: &[Part]) -> Result<Csr<u32>> {
+        let offsets = self.group.needed_array(self.offsets)?;
+        let ids = self.group.needed_array(self.ids)?;
+        let (mut at_offset, mut at_id, mut shift) = (self.first_offset, self.first_id, 0usize);
+        let (mut ends, mut all) = (vec![0u32], Vec::new());
+        for part in parts {
+            let next_offset = at_offset.saturating_add(part.n_lists).saturating_add(1);
+            let next_id = at_id.saturating_add(part.n_ids);
+            let starts = offsets.ints(at_offset..next_offset)?;
+            if all.len().saturating_add(part.n_ids) > VertexId::MAX_COUNT {
+                return Err(ids.error("more ids than a mesh can hold"));
+            }
+            let rise = starts.is_sorted() && starts.first() == Some(&0);
+            if !rise || starts.last().is_none_or(|&end| usize::try_from(end) != Ok(part.n_ids)) {
+                return Err(offsets.error(format!("the offsets do not rise from 0 to {} ids", part.n_ids)));
+            }
+            ends.extend(starts[1..].iter().map(|&end| all.len() as u32 + end as u32));
+            for id in ids.ints(at_id..next_id)? {
+                let known = usize::try_from(id).ok().filter(|&id| id < part.n_things);
+                let id =
+                    known.ok_or_else(|| ids.error(format!("{id} is named, there are {}", part.n_things)))?;
+                all.push((shift + id) as u32);
+            }
+            (at_offset, at_id, shift) = (next_offset, next_id, shift + part.n_things);
+        }
+        Csr::new(ends, all).ok_or_else(|| offsets.error("the offsets do not rise"))
+    }
+}

@@ -1,0 +1,44 @@
+//! VTKHDF (`.vtkhdf`, `.hdf`): VTK's meshes in HDF5, one mesh or many over time.
+//!
+//! The layout is that of VTK's documentation, "VTKHDF File Format" (docs.vtk.org, versions 1.0 to 2.7):
+//!
+//! ```text
+//! VTKHDF  Version, Type        UnstructuredGrid or PolyData
+//!   NumberOfPoints, NumberOfCells, NumberOfConnectivityIds       of each part: an array each
+//!   Points, Types, Offsets, Connectivity                         part after part; ids and offsets begin anew in each
+//!   FaceConnectivity, FaceOffsets, PolyhedronToFaces, PolyhedronOffsets, and their numbers       where there are polyhedra
+//!   Vertices, Lines, Polygons, Strips     in polygonal data: a group each, with the cells' arrays
+//!   PointData, CellData, FieldData        an array each
+//!   Steps  NSteps     for each step its time, its parts, and where in each array it begins
+//! ```
+//!
+//! | file | idea |
+//! |---|---|
+//! | `frame` | which parts make a mesh, and where they begin |
+//! | `lists` | lists of ids, part after part |
+//! | `read` | the mesh of a frame |
+//! | `series` | steps as files of a series: `flow.vtkhdf#3` |
+//! | `write` | a mesh out |
+
+mod frame;
+mod lists;
+mod read;
+mod series;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use crate::io::format::Format;
+
+pub(super) use series::{StepPath, is_transient, read_step, times};
+
+/// Unstructured grids and polygonal data in HDF5.
+pub(super) const FORMAT: Format = Format {
+    name: "VTKHDF",
+    endings: &[".vtkhdf", ".hdf"],
+    read: Some(read::read),
+    write: Some(write::write),
+};
+
+/// The names of the groups of polygonal data, in the order of the sections.
+const SECTIONS: [&str; 4] = ["Vertices", "Lines", "Polygons", "Strips"];

@@ -1,0 +1,161 @@
+//! A mesh as a VTKHDF file.
+
+use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::format::{Compression, WriteOptions, Written};
+use crate::io::hdf::{Attribute, Node, Packing};
+use crate::io::labels::label_fields;
+use crate::io::polygonal::{kind_in_section, section_of};
+use crate::io::vtkhdf::SECTIONS;
+use crate::mesh::{CellKind, Cells, Field, Mesh, Values, unused_name};
+
+/// What every reader of VTKHDF knows, and what those have to know that are to see polyhedra.
+const VERSIONS: [[i64; 2]; 2] = [[2, 0], [2, 5]];
+
+pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
+    let packing = packing(options)?;
+    let mut lost = Vec::new();
+    let mut root = Node::new("VTKHDF");
+    let sections = sections_of(&mesh.cells);
+    let has_polyhedra = !mesh.cells.polyhedron_faces().is_empty();
+    root.attribute("Version", Attribute::Ints(VERSIONS[usize::from(has_polyhedra)].to_vec()));
+    root.attribute(
+        "Type",
+        Attribute::Text(if sections.is_some() { "PolyData" } else { "UnstructuredGrid" }.into()),
+    );
+    let points = Values::F64(mesh.points.as_flattened().to_vec());
+    root.array("Points", points, &[mesh.points.len(), 3], packing);
+    count(&mut root, "NumberOfPoints", mesh.points.len());
+    match sections {
+        Some(sections) => {
+            SECTIONS
+                .iter()
+                .zip(&sections)
+                .for_each(|(name, lists)| root.group(section(name, lists, packing)));
+        }
+        None => grid(&mut root, &mesh.cells, packing),
+    }
+    let (label_cells, label_names) = label_fields(mesh);
+    for (name, own, labels) in [
+        ("PointData", &mesh.point_data, Vec::new()),
+        ("CellData", &mesh.cell_data, label_cells),
+        ("FieldData", &mesh.field_data, label_names),
+    ] {
+        root.group(arrays(name, own.iter().chain(&labels), packing, &mut lost));
+    }
+    let mut file = Node::new("");
+    file.group(root);
+    Ok(Written { lost, ..Written::one(file.into_file()?) })
+}
+
+fn packing(options: &WriteOptions) -> Result<Packing> {
+    match options.compression {
+        Compression::None => Ok(Packing::Growing),
+        Compression::Zlib => Ok(Packing::Zlib),
+        Compression::Lz4 | Compression::Lzma => {
+            Err(Error::options("VTKHDF is not packed by lz4 or lzma: readers would need a plugin of HDF5")
+                .remedy("choose zlib or none"))
+        }
+    }
+}
+
+fn count(group: &mut Node, name: &str, n: usize) {
+    group.array(name, Values::I64(vec![n as i64]), &[1], Packing::Plain);
+}
+
+/// Numbers in 64 bits, as VTK has its ids.
+fn ids(group: &mut Node, name: &str, ids: impl Iterator<Item = u32>, packing: Packing) {
+    let ids: Vec<i64> = ids.map(i64::from).collect();
+    let n = ids.len();
+    group.array(name, Values::I64(ids), &[n], packing);
+}
+
+/// The lists of polygonal data, where all cells come back from them as they are and in their order; else the mesh is a grid.
+fn sections_of(cells: &Cells) -> Option<[Csr<VertexId>; 4]> {
+    let mut lists: [Csr<VertexId>; 4] = Default::default();
+    let mut last = 0;
+    for (_, kind, vertices) in cells.iter() {
+        let section =
+            section_of(kind).filter(|&s| s >= last && kind_in_section(s, vertices.len()) == kind)?;
+        lists[section].push(vertices.iter().copied());
+        last = section;
+    }
+    cells.kinds().iter().any(|kind| kind.dim() == Some(2)).then_some(lists)
+}
+
+fn section(name: &str, lists: &Csr<VertexId>, packing: Packing) -> Node {
+    let mut group = Node::new(name);
+    connectivity(&mut group, lists, packing);
+    group
+}
+
+/// How many cells there are, where each begins, and their vertices.
+fn connectivity(group: &mut Node, lists: &Csr<VertexId>, packing: Packing) {
+    count(group, "NumberOfCells", lists.len());
+    count(group, "NumberOfConnectivityIds", lists.items().len());
+    starts(group, "Offsets", lists, packing);
+    ids(group, "Connectivity", lists.items().iter().map(|v| v.0), packing);
+}
+
+/// Where each list begins, and the last one ends.
+fn starts<T>(group: &mut Node, name: &str, lists: &Csr<T>, packing: Packing) {
+    let ends = lists.iter().scan(0, |end, list| {
+        *end += list.len() as u32;
+        Some(*end)
+    });
+    ids(group, name, std::iter::once(0).chain(ends), packing);
+}
+
+fn grid(root: &mut Node, cells: &Cells, packing: Packing) {
+    connectivity(root, cells.connectivity(), packing);
+    let kinds: Vec<u8> = cells.kinds().iter().map(|kind| kind.0).collect();
+    root.array("Types", Values::U8(kinds), &[cells.len()], packing);
+    if cells.polyhedron_faces().is_empty() {
+        return;
+    }
+    let (mut corners, mut of_cells) = (Csr::<u32>::default(), Csr::<u32>::default());
+    let mut polyhedra = cells.polyhedron_faces().iter();
+    for kind in cells.kinds() {
+        let first = corners.len() as u32;
+        let faces = if *kind == CellKind::POLYHEDRON { polyhedra.next() } else { None };
+        faces.into_iter().flat_map(Csr::iter).for_each(|face| corners.push(face.iter().map(|v| v.0)));
+        of_cells.push(first..corners.len() as u32);
+    }
+    count(root, "NumberOfFaces", corners.len());
+    count(root, "NumberOfFaceConnectivityIds", corners.items().len());
+    count(root, "NumberOfPolyhedronToFaceIds", of_cells.items().len());
+    starts(root, "FaceOffsets", &corners, packing);
+    ids(root, "FaceConnectivity", corners.items().iter().copied(), packing);
+    starts(root, "PolyhedronOffsets", &of_cells, packing);
+    ids(root, "PolyhedronToFaces", of_cells.items().iter().copied(), packing);
+}
+
+fn arrays<'f>(
+    name: &str,
+    fields: impl Iterator<Item = &'f Field>,
+    packing: Packing,
+    lost: &mut Vec<String>,
+) -> Node {
+    let mut group = Node::new(name);
+    let mut taken: Vec<String> = Vec::new();
+    for field in fields {
+        let name = valid_name(&field.name, &taken);
+        if name != field.name {
+            lost.push(format!(
+                "the name of the array `{}`, which HDF5 cannot hold: it is called `{name}`",
+                field.name
+            ));
+        }
+        let shape = [field.n_rows(), field.components];
+        let shape = if field.components == 1 { &shape[..1] } else { &shape };
+        group.array(&name, field.values.clone(), shape, packing);
+        taken.push(name);
+    }
+    group
+}
+
+/// The name, or one near it that VTKHDF can hold: neither slashes nor dots, and none twice.
+fn valid_name(name: &str, taken: &[String]) -> String {
+    let clean: String = name.chars().map(|c| if matches!(c, '/' | '.' | '\0') { '_' } else { c }).collect();
+    let clean = if clean.is_empty() { "unnamed".to_owned() } else { clean };
+    unused_name(&clean, |name| taken.iter().any(|t| t == name))
+}
