@@ -239,3 +239,30 @@ def test_every_step_is_what_vtk_reads(motet, tmp_path, name, growing):
         assert np.array_equal(ours.points, source.at(time).points)
     first = motet("convert", path, tmp_path / "first.vtu")
     assert "3 steps" in first.stderr
+
+
+@pytest.mark.parametrize("topology", ["kept", "changing"])
+def test_vtk_plays_what_motet_writes_over_time(motet, tmp_path, topology):
+    files = []
+    for k in range(3):
+        n = 3 + (k if topology == "changing" else 0)
+        grid = pyvista.ImageData(dimensions=(n, 3, 3)).cast_to_unstructured_grid()
+        grid.points = np.asarray(grid.points, float) * (1 + 0.1 * k)
+        grid.point_data["u"] = np.random.default_rng(k).normal(size=(grid.n_points, 3))
+        grid.cell_data["label"] = np.arange(grid.n_cells, dtype=np.int32)
+        grid.save(tmp_path / f"frame{k}.vtu")
+        files.append(f'<DataSet timestep="{0.5 * k}" file="frame{k}.vtu"/>')
+    (tmp_path / "in.pvd").write_text(f'<VTKFile type="Collection"><Collection>{"".join(files)}</Collection></VTKFile>')
+    motet("convert", tmp_path / "in.pvd", tmp_path / "out.vtkhdf")
+    reader = vtkHDFReader()
+    reader.SetFileName(str(tmp_path / "out.vtkhdf"))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == 3
+    motet("convert", tmp_path / "out.vtkhdf", tmp_path / "back.pvd")
+    for k in range(3):
+        expected = read_xml(tmp_path / f"frame{k}.vtu")
+        for data in (read_hdf(tmp_path / "out.vtkhdf", k), read_xml(tmp_path / f"back_{k:04d}.vtu")):
+            assert cells_of(data) == cells_of(expected)
+            np.testing.assert_array_equal(data.points, expected.points)
+            np.testing.assert_array_equal(data.point_data["u"], expected.point_data["u"])
+            np.testing.assert_array_equal(data.cell_data["label"], expected.cell_data["label"])

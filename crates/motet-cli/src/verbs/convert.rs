@@ -22,6 +22,7 @@ Examples:
   motet convert mesh-complete/ vessel.vtu                 a SimVascular folder, faces as patches
   motet convert vessel.msh mesh-complete/                 and the other way
   motet convert vessel.vtu vessel.msh --version 2.2       for OpenFOAM's and old readers
+  motet convert flow.pvd flow.vtkhdf                      a series, and the other way
   motet convert a.vtu b.vtu --encoding ascii --compression none")]
 pub(crate) struct ConvertArgs {
     /// The file (or folder) to read
@@ -92,7 +93,27 @@ impl WritingArgs {
     }
 }
 
+/// A series into a file of another kind.
+fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
+    let frames = io::read_series(&args.input)?;
+    let bar = console.bar(frames.len() as u64, "converting");
+    let read = frames.iter().map(|(time, file)| {
+        bar.inc(1);
+        Ok((*time, io::read(file)?))
+    });
+    let lost = io::write_series(&args.output, read, &args.writing.options())?;
+    bar.finish_and_clear();
+    lost.iter().for_each(|what| console.warn(what));
+    let n = frames.len();
+    console.say(format_args!("{} -> {}: {n} meshes", args.input.display(), args.output.display()));
+    console.report(&json!({ "input": args.input, "output": args.output, "meshes": n, "lost": lost }));
+    Ok(Outcome::Done)
+}
+
 pub(crate) fn run(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
+    if io::is_series(&args.input) && io::can_be_series(&args.output) {
+        return series(args, console);
+    }
     io::can_write(&args.output)?;
     let start = Instant::now();
     let (mesh, notes) = io::read_noted(&args.input)?;

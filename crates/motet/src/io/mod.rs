@@ -37,4 +37,7 @@ pub use nodal::NodalSeries;
 pub use reading::read_as;
 pub use registry::{can_write, formats, read, read_noted, write};
 pub use replace::{replace, replace_all};
-pub use series::{SeriesWriter, can_write_series, file_of, is_series, parse_series, read_series};
+pub use series::{
+    SeriesWriter, can_be_series, can_write_series, file_of, is_series, parse_series, read_series,
+    write_series,
+};

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
 use crate::io::format::WriteOptions;
-use crate::io::{replace, vtkhdf, write};
+use crate::io::{replace, replace_all, vtkhdf, write};
 use crate::mesh::Mesh;
 
 /// Whether a path is that of a series: by its ending (`.pvd`), or a VTKHDF file that is there and has several steps.
@@ -19,6 +19,11 @@ pub fn is_series(path: impl AsRef<Path>) -> bool {
 /// Whether a series can be written to this path, by its ending.
 pub fn can_write_series(path: impl AsRef<Path>) -> bool {
     path.as_ref().extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pvd"))
+}
+
+/// Whether [`write_series`] knows this ending.
+pub fn can_be_series(path: impl AsRef<Path>) -> bool {
+    can_write_series(&path) || vtkhdf::is_named_so(path.as_ref())
 }
 
 /// The file that a path of [`read_series`] lies in: itself, or the one whose step it is.
@@ -105,6 +110,40 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Result<Option<String>> {
     let bad = |e: &dyn std::fmt::Display| Error::input(format!("no well-formed XML: {e}"));
     let Some(attribute) = element.try_get_attribute(name).map_err(|e| bad(&e))? else { return Ok(None) };
     Ok(Some(unescape(&attribute.value).map_err(|e| bad(&e))?.into_owned()))
+}
+
+/// Writes a whole series to one file: a `.pvd` and its frames beside it, or steps of a `.vtkhdf`, which are held in memory until all are there.
+///
+/// Returns what the format could not hold.
+///
+/// # Errors
+/// Those of the frames; as [`write()`]; when the file's ending is that of no series.
+pub fn write_series(
+    path: impl AsRef<Path>,
+    frames: impl IntoIterator<Item = Result<(f64, Mesh)>>,
+    options: &WriteOptions,
+) -> Result<Vec<String>> {
+    let path = path.as_ref();
+    let mut lost = Vec::new();
+    if can_write_series(path) {
+        let mut series = SeriesWriter::new(path, options.clone());
+        for frame in frames {
+            let (time, mesh) = frame?;
+            lost = series.add(time, &mesh)?.1;
+        }
+        return Ok(lost);
+    }
+    if !vtkhdf::is_named_so(path) {
+        return Err(Error::options("a series is written as .pvd or as .vtkhdf").in_file(path));
+    }
+    let mut steps = vtkhdf::Steps::default();
+    for frame in frames {
+        let (time, mesh) = frame?;
+        steps.add(time, &mesh).map_err(|e| e.in_file(path))?;
+    }
+    let written = steps.into_file(options).map_err(|e| e.in_file(path))?;
+    replace_all(&[(path.to_owned(), written.files[0].1.as_slice())])?;
+    Ok(written.lost)
 }
 
 /// A series that grows frame by frame. The PVD file is replaced after each frame, so

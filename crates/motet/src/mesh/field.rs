@@ -16,6 +16,15 @@ macro_rules! values {
                 match self { $(Self::$variant(v) => v.len(),)* }
             }
 
+            /// Adds values behind these. False, and nothing is done, where they are of another type.
+            pub fn append(&mut self, more: &Self) -> bool {
+                match (self, more) {
+                    $((Self::$variant(v), Self::$variant(more)) => v.extend_from_slice(more),)*
+                    _ => return false,
+                }
+                true
+            }
+
             /// Rows of `components` values each, picked in this order.
             fn pick(&self, components: usize, rows: impl Iterator<Item = usize>) -> Self {
                 match self { $(Self::$variant(v) => Self::$variant(pick(v, components, rows)),)* }

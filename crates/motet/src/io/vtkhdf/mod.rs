@@ -19,18 +19,21 @@
 //! | `read` | the mesh of a frame |
 //! | `series` | steps as files of a series: `flow.vtkhdf#3` |
 //! | `write` | a mesh out |
+//! | `steps` | meshes over time out |
 
 mod frame;
 mod lists;
 mod read;
 mod series;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod write;
 
 use crate::io::format::Format;
 
-pub(super) use series::{StepPath, is_transient, read_step, times};
+pub(super) use series::{StepPath, is_named_so, is_transient, read_step, times};
+pub(super) use steps::Steps;
 
 /// Unstructured grids and polygonal data in HDF5.
 pub(super) const FORMAT: Format = Format {

@@ -38,10 +38,14 @@ fn has_ending(name: &str) -> bool {
     FORMAT.endings.iter().any(|ending| name.ends_with(ending))
 }
 
+/// Whether a file of this name is to be VTKHDF.
+pub(in crate::io) fn is_named_so(path: &Path) -> bool {
+    path.file_name().and_then(|name| name.to_str()).is_some_and(has_ending)
+}
+
 /// Whether this is a file of several steps.
 pub(in crate::io) fn is_transient(path: &Path) -> bool {
-    let named = path.file_name().and_then(|name| name.to_str()).is_some_and(has_ending);
-    named && path.is_file() && times(path).is_ok_and(|frames| frames.len() > 1)
+    is_named_so(path) && path.is_file() && times(path).is_ok_and(|frames| frames.len() > 1)
 }
 
 /// The times of a file and the path of each step.

@@ -47,7 +47,7 @@ pub(super) fn write(mesh: &Mesh, options: &WriteOptions) -> Result<Written> {
     Ok(Written { lost, ..Written::one(file.into_file()?) })
 }
 
-fn packing(options: &WriteOptions) -> Result<Packing> {
+pub(super) fn packing(options: &WriteOptions) -> Result<Packing> {
     match options.compression {
         Compression::None => Ok(Packing::Growing),
         Compression::Zlib => Ok(Packing::Zlib),
@@ -154,7 +154,7 @@ fn arrays<'f>(
 }
 
 /// The name, or one near it that VTKHDF can hold: neither slashes nor dots, and none twice.
-fn valid_name(name: &str, taken: &[String]) -> String {
+pub(super) fn valid_name(name: &str, taken: &[String]) -> String {
     let clean: String = name.chars().map(|c| if matches!(c, '/' | '.' | '\0') { '_' } else { c }).collect();
     let clean = if clean.is_empty() { "unnamed".to_owned() } else { clean };
     unused_name(&clean, |name| taken.iter().any(|t| t == name))

@@ -1,0 +1,203 @@
+//! Meshes over time as one VTKHDF file. Cells that are those of the step before, and arrays that are, stand in it once.
+
+use crate::base::{Error, Result};
+use crate::io::format::{WriteOptions, Written};
+use crate::io::hdf::{Attribute, Node, Packing};
+use crate::io::labels::label_fields;
+use crate::io::vtkhdf::write::{packing, valid_name};
+use crate::mesh::{Cells, Field, Mesh, Values};
+
+/// Frames as they come.
+#[derive(Debug, Default)]
+pub(in crate::io) struct Steps {
+    times: Vec<f64>,
+    points: Vec<f64>,
+    /// Where in the points each step begins.
+    first_points: Vec<i64>,
+    /// For each step the part that its cells are.
+    parts: Vec<i64>,
+    /// Where in the cells, and in their vertices, each step begins.
+    first_cells: Vec<i64>,
+    first_ids: Vec<i64>,
+    cells: Parts,
+    last: Option<Cells>,
+    on_points: Vec<Growing>,
+    on_cells: Vec<Growing>,
+    whole: Vec<Field>,
+}
+
+/// Cells that differ, one behind the other.
+#[derive(Debug, Default)]
+struct Parts {
+    n_points: Vec<i64>,
+    n_cells: Vec<i64>,
+    n_ids: Vec<i64>,
+    kinds: Vec<u8>,
+    offsets: Vec<i64>,
+    ids: Vec<i64>,
+}
+
+/// An array that every step has.
+#[derive(Debug)]
+struct Growing {
+    field: Field,
+    /// In which row each step begins.
+    first: Vec<i64>,
+    /// The rows of the last one.
+    last: Values,
+}
+
+impl Steps {
+    /// Adds a frame; frames come in the order of their times.
+    ///
+    /// # Errors
+    /// When it has polyhedra, or its time does not come after the one before.
+    pub(in crate::io) fn add(&mut self, time: f64, mesh: &Mesh) -> Result<()> {
+        if !mesh.cells.polyhedron_faces().is_empty() {
+            return Err(Error::input("polyhedra over time are not written to VTKHDF").remedy("write a .pvd"));
+        }
+        if !time.is_finite() || self.times.last().is_some_and(|&last| last >= time) {
+            return Err(Error::input(format!("the time {time} does not come after those before it")));
+        }
+        if self.last.as_ref() != Some(&mesh.cells)
+            || self.cells.n_points.last() != Some(&(mesh.points.len() as i64))
+        {
+            self.add_part(mesh);
+        }
+        let part = self.cells.n_cells.len() - 1;
+        self.parts.push(part as i64);
+        self.first_cells.push(self.cells.n_cells[..part].iter().sum());
+        self.first_ids.push(self.cells.n_ids[..part].iter().sum());
+        self.first_points.push((self.points.len() / 3) as i64);
+        self.points.extend_from_slice(mesh.points.as_flattened());
+        let (label_cells, label_names) = label_fields(mesh);
+        let is_first = self.times.is_empty();
+        grow(&mut self.on_points, mesh.point_data.iter(), is_first);
+        grow(&mut self.on_cells, mesh.cell_data.iter().chain(&label_cells), is_first);
+        if is_first {
+            self.whole = mesh.field_data.iter().cloned().chain(label_names).collect();
+        }
+        self.times.push(time);
+        Ok(())
+    }
+
+    fn add_part(&mut self, mesh: &Mesh) {
+        let lists = mesh.cells.connectivity();
+        self.cells.n_points.push(mesh.points.len() as i64);
+        self.cells.n_cells.push(mesh.cells.len() as i64);
+        self.cells.n_ids.push(lists.items().len() as i64);
+        self.cells.kinds.extend(mesh.cells.kinds().iter().map(|kind| kind.0));
+        self.cells.ids.extend(lists.items().iter().map(|v| i64::from(v.0)));
+        let ends = lists.iter().scan(0, |end, list| {
+            *end += list.len() as i64;
+            Some(*end)
+        });
+        self.cells.offsets.extend(std::iter::once(0).chain(ends));
+        self.last = Some(mesh.cells.clone());
+    }
+
+    /// The file.
+    ///
+    /// # Errors
+    /// When there is no frame, or the options ask for what HDF5 cannot do.
+    pub(in crate::io) fn into_file(mut self, options: &WriteOptions) -> Result<Written> {
+        let packing = packing(options)?;
+        let n = self.times.len();
+        if n == 0 {
+            return Err(Error::input("a series without a mesh"));
+        }
+        let mut lost = Vec::new();
+        for (what, arrays) in [("point", &mut self.on_points), ("cell", &mut self.on_cells)] {
+            let (kept, left): (Vec<_>, Vec<_>) =
+                std::mem::take(arrays).into_iter().partition(|a| a.first.len() == n);
+            *arrays = kept;
+            lost.extend(left.iter().map(|array| {
+                format!(
+                    "the {what} array {}, which not every step has, or not with the same numbers a row",
+                    array.field.name
+                )
+            }));
+        }
+        let mut root = Node::new("VTKHDF");
+        root.attribute("Version", Attribute::Ints(vec![2, 0]));
+        root.attribute("Type", Attribute::Text("UnstructuredGrid".into()));
+        let n_rows = self.points.len() / 3;
+        root.array("Points", Values::F64(self.points), &[n_rows, 3], packing);
+        let Parts { n_points, n_cells, n_ids, kinds, offsets, ids } = self.cells;
+        for (name, numbers) in
+            [("NumberOfPoints", n_points), ("NumberOfCells", n_cells), ("NumberOfConnectivityIds", n_ids)]
+        {
+            int(&mut root, name, numbers, Packing::Plain);
+        }
+        let n_kinds = kinds.len();
+        root.array("Types", Values::U8(kinds), &[n_kinds], packing);
+        int(&mut root, "Offsets", offsets, packing);
+        int(&mut root, "Connectivity", ids, packing);
+        let mut steps = Node::new("Steps");
+        steps.attribute("NSteps", Attribute::Ints(vec![n as i64]));
+        steps.array("Values", Values::F64(self.times), &[n], Packing::Plain);
+        int(&mut steps, "NumberOfParts", vec![1; n], Packing::Plain);
+        int(&mut steps, "PartOffsets", self.parts, Packing::Plain);
+        int(&mut steps, "PointOffsets", self.first_points, Packing::Plain);
+        steps.array("CellOffsets", Values::I64(self.first_cells), &[n, 1], Packing::Plain);
+        steps.array("ConnectivityIdOffsets", Values::I64(self.first_ids), &[n, 1], Packing::Plain);
+        for (kind, arrays) in [("PointData", self.on_points), ("CellData", self.on_cells)] {
+            let (mut data, mut firsts) = (Node::new(kind), Node::new(format!("{kind}Offsets")));
+            let mut taken: Vec<String> = Vec::new();
+            for Growing { field, first, .. } in arrays {
+                let name = valid_name(&field.name, &taken);
+                let shape = [field.n_rows(), field.components];
+                let shape = if field.components == 1 { &shape[..1] } else { &shape };
+                data.array(&name, field.values, shape, packing);
+                int(&mut firsts, &name, first, Packing::Plain);
+                taken.push(name);
+            }
+            root.group(data);
+            steps.group(firsts);
+        }
+        let mut data = Node::new("FieldData");
+        let mut taken: Vec<String> = Vec::new();
+        for field in self.whole {
+            let name = valid_name(&field.name, &taken);
+            let shape = [field.n_rows(), field.components];
+            data.array(&name, field.values, &shape, Packing::Plain);
+            taken.push(name);
+        }
+        root.group(data);
+        root.group(steps);
+        let mut file = Node::new("");
+        file.group(root);
+        Ok(Written { lost, ..Written::one(file.into_file()?) })
+    }
+}
+
+fn int(group: &mut Node, name: &str, numbers: Vec<i64>, packing: Packing) {
+    let n = numbers.len();
+    group.array(name, Values::I64(numbers), &[n], packing);
+}
+
+/// Adds the rows of a step to each array that all steps before had; at the first step all arrays are there.
+fn grow<'f>(all: &mut Vec<Growing>, fields: impl Iterator<Item = &'f Field>, is_first: bool) {
+    let fields: Vec<&Field> = fields.collect();
+    if is_first {
+        all.extend(fields.iter().map(|&field| Growing {
+            field: field.clone(),
+            first: vec![0],
+            last: field.values.clone(),
+        }));
+        return;
+    }
+    for growing in all {
+        let same = |field: &&&Field| {
+            field.name == growing.field.name && field.components == growing.field.components
+        };
+        let Some(field) = fields.iter().find(same) else { continue };
+        let row = growing.field.n_rows() as i64;
+        if field.values == growing.last {
+            growing.first.extend(growing.first.last().copied());
+        } else if growing.field.values.append(&field.values) {
+            growing.first.push(row);
+            growing.last = field.values.clone();
+        }
+    }
+}
