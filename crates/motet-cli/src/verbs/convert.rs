@@ -21,7 +21,8 @@ Examples:
   motet convert vessel.msh vessel.vtu                     for ParaView
   motet convert mesh-complete/ vessel.vtu                 a SimVascular folder, faces as patches
   motet convert vessel.msh mesh-complete/                 and the other way
-  motet convert vessel.vtu vessel.msh --version 2.2       for OpenFOAM's and old readers
+  motet convert vessel.vtu case/constant/polyMesh         an OpenFOAM case, and the other way: motet convert case vessel.vtu
+  motet convert vessel.vtu vessel.msh --version 2.2       for old readers
   motet convert flow.pvd flow.vtkhdf                      a series, and the other way
   motet convert a.vtu b.vtu --encoding ascii --compression none")]
 pub(crate) struct ConvertArgs {

@@ -113,6 +113,6 @@ pub struct Format {
 impl Format {
     /// Whether a mesh in this format is a folder of files.
     pub fn is_folder(&self) -> bool {
-        self.endings == ["/"]
+        self.endings.iter().any(|ending| ending.ends_with('/'))
     }
 }

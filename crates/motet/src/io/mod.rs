@@ -17,6 +17,7 @@ mod off;
 mod ply;
 mod polygonal;
 mod polyhedra;
+mod polymesh;
 mod reading;
 mod registry;
 mod replace;

@@ -7,7 +7,7 @@ use crate::io::format::{Format, Notes, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, dolfin, legacy, medit, msh, obj, off, ply, simvascular, stl, tetgen, vtkhdf, vtkxml,
+    abaqus, dolfin, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen, vtkhdf, vtkxml,
 };
 use crate::mesh::Mesh;
 
@@ -33,6 +33,7 @@ const FORMATS: &[Format] = &[
     abaqus::FORMAT,
     tetgen::FORMAT,
     dolfin::FORMAT,
+    polymesh::FORMAT,
     simvascular::FORMAT,
 ];
 
@@ -54,7 +55,19 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
 fn for_writing(path: &Path) -> Result<&'static Format> {
     let ends_with_slash =
         path.as_os_str().as_encoded_bytes().last().is_some_and(|&b| std::path::is_separator(b.into()));
-    if ends_with_slash || path.is_dir() { folder_format(path) } else { by_ending(path) }
+    if polymesh::is_to_be_one(path) {
+        return Ok(&polymesh::FORMAT);
+    }
+    if ends_with_slash || path.is_dir() {
+        return Ok(&simvascular::FORMAT);
+    }
+    let format = by_ending(path)?;
+    match format.is_folder() {
+        true => Err(Error::options("is a mark for ParaView, and no place for a mesh")
+            .in_file(path)
+            .remedy("name the folder: constant/polyMesh")),
+        false => Ok(format),
+    }
 }
 
 /// Whether a mesh could be written to `path`, so that a long run can ask before
@@ -92,11 +105,9 @@ fn refuse_full_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// The format of a folder.
-fn folder_format(path: &Path) -> Result<&'static Format> {
-    FORMATS.iter().find(|f| f.is_folder()).ok_or_else(|| {
-        Error::input("is a folder, not a mesh file").in_file(path).remedy("name one of the files in it")
-    })
+/// The format of a folder that is there.
+fn folder_format(path: &Path) -> &'static Format {
+    if polymesh::is_case(path) { &polymesh::FORMAT } else { &simvascular::FORMAT }
 }
 
 /// Reads a file or folder in the format that its ending tells; `flow.vtkhdf#3` is step 3 of that file.
@@ -118,7 +129,7 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
         let mesh = checked(vtkhdf::read_step(&step, &notes), path)?;
         return Ok((mesh, notes.into_vec()));
     }
-    let format = if path.is_dir() { folder_format(path)? } else { by_ending(path)? };
+    let format = if path.is_dir() { folder_format(path) } else { by_ending(path)? };
     let mesh = read_file(format, path, &notes)?;
     Ok((mesh, notes.into_vec()))
 }

@@ -1,0 +1,274 @@
+//! One file of a mesh: its header, then words and lists, in text or binary.
+
+use crate::base::{Csr, Error, Point, Result, VertexId};
+use crate::io::text::{parse_float, parse_int, quoted};
+
+/// A file, and a place in it.
+pub(super) struct File<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    is_binary: bool,
+    label_bytes: usize,
+    scalar_bytes: usize,
+    /// What the file says that it holds.
+    pub(super) class: String,
+}
+
+impl<'a> File<'a> {
+    /// Reads the header.
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self> {
+        let mut file =
+            Self { bytes, at: 0, is_binary: false, label_bytes: 4, scalar_bytes: 8, class: String::new() };
+        if file.word()? != b"FoamFile" {
+            return Err(file.error("is no file of OpenFOAM: it does not begin with FoamFile"));
+        }
+        file.expect(b"{")?;
+        loop {
+            let key = file.word()?.to_vec();
+            if key == b"}" {
+                return Ok(file);
+            }
+            let value = file.word()?.to_vec();
+            let text = String::from_utf8_lossy(&value).trim_matches('"').to_owned();
+            match key.as_slice() {
+                b"format" => file.is_binary = text == "binary",
+                b"class" => file.class = text,
+                b"arch" => file.arch(&text)?,
+                _ => {}
+            }
+            while file.word()? != b";" {}
+        }
+    }
+
+    /// Sizes of numbers, such as `LSB;label=32;scalar=64`.
+    fn arch(&mut self, text: &str) -> Result<()> {
+        for part in text.split(';') {
+            let bits = |of: &str| part.strip_prefix(of).and_then(|bits| bits.parse::<usize>().ok());
+            if part == "MSB" {
+                return Err(self
+                    .error("binary numbers of the other byte order")
+                    .remedy("convert it to text by foamFormatConvert"));
+            }
+            if let Some(bits) = bits("label=") {
+                self.label_bytes = bits / 8;
+            }
+            if let Some(bits) = bits("scalar=") {
+                self.scalar_bytes = bits / 8;
+            }
+        }
+        match (self.label_bytes, self.scalar_bytes) {
+            (4 | 8, 4 | 8) => Ok(()),
+            _ => Err(self.error("numbers of neither 32 nor 64 bits")),
+        }
+    }
+
+    /// Passes over blanks and comments.
+    fn skip(&mut self) {
+        loop {
+            let rest = &self.bytes[self.at..];
+            let blank = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
+            let rest = &rest[blank..];
+            self.at += blank;
+            let end: &[u8] = match rest {
+                [b'/', b'/', ..] => b"\n",
+                [b'/', b'*', ..] => b"*/",
+                _ => return,
+            };
+            let found = rest.windows(end.len()).skip(2).position(|w| w == end).map(|i| i + 2 + end.len());
+            self.at += found.unwrap_or(rest.len());
+        }
+    }
+
+    /// The next word, a sign of its own, or a text in quotes; empty at the end.
+    fn next(&mut self) -> &'a [u8] {
+        self.skip();
+        let rest = &self.bytes[self.at..];
+        let is_sign = |b: u8| matches!(b, b'(' | b')' | b'{' | b'}' | b'[' | b']' | b';');
+        let n = match rest.first() {
+            None => 0,
+            Some(b'"') => 1 + rest[1..].iter().position(|&b| b == b'"').map_or(rest.len() - 1, |i| i + 1),
+            Some(&b) if is_sign(b) => 1,
+            Some(_) => rest.iter().position(|&b| b.is_ascii_whitespace() || is_sign(b)).unwrap_or(rest.len()),
+        };
+        self.at += n;
+        &rest[..n]
+    }
+
+    /// The next word, which must be there.
+    pub(super) fn word(&mut self) -> Result<&'a [u8]> {
+        match self.next() {
+            [] => Err(self.error("the file ends too early").remedy("the file is cut off: get it again")),
+            word => Ok(word),
+        }
+    }
+
+    /// The next word, left in place; empty at the end.
+    pub(super) fn peek(&mut self) -> &'a [u8] {
+        let at = self.at;
+        let word = self.next();
+        self.at = at;
+        word
+    }
+
+    pub(super) fn expect(&mut self, sign: &[u8]) -> Result<()> {
+        let word = self.word()?;
+        match word == sign {
+            true => Ok(()),
+            false => Err(self.error(format!("expected {}, found {}", quoted(sign), quoted(word)))),
+        }
+    }
+
+    /// Passes over the rest of an entry: up to its semicolon, groups in braces and lists left whole.
+    pub(super) fn skip_entry(&mut self) -> Result<()> {
+        let mut depth = 0usize;
+        loop {
+            match self.word()? {
+                b";" if depth == 0 => return Ok(()),
+                b"{" | b"(" | b"[" => depth += 1,
+                b"}" if depth == 1 => return Ok(()),
+                b"}" | b")" | b"]" => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+        }
+    }
+
+    pub(super) fn int(&mut self) -> Result<i64> {
+        let word = self.word()?;
+        parse_int(word).ok_or_else(|| self.error(format!("expected a whole number, found {}", quoted(word))))
+    }
+
+    fn float(&mut self) -> Result<f64> {
+        let word = self.word()?;
+        parse_float(word).ok_or_else(|| self.error(format!("expected a number, found {}", quoted(word))))
+    }
+
+    /// A whole number that is no less than 0.
+    pub(super) fn count(&mut self) -> Result<usize> {
+        let n = self.int()?;
+        usize::try_from(n).map_err(|_| self.error(format!("{n} is no number of things")))
+    }
+
+    /// How many things follow, of so many bytes each at least.
+    fn room_for(&mut self, bytes_each: usize) -> Result<usize> {
+        let n = self.count()?;
+        // A list of one value, many times over, needs no room but that for telling so.
+        let room = (self.bytes.len() - self.at) / bytes_each + 1;
+        if n > room && self.peek() != b"{" {
+            return Err(self
+                .error(format!(
+                    "{n} entries are announced, but what is left of the file holds at most {room}"
+                ))
+                .remedy("the file is cut off or damaged: get it again"));
+        }
+        if n > VertexId::MAX_COUNT {
+            return Err(self.error(format!("{n} entries are more than a mesh can have")));
+        }
+        Ok(n)
+    }
+
+    /// A list of labels.
+    pub(super) fn labels(&mut self) -> Result<Vec<i64>> {
+        let size = if self.is_binary { self.label_bytes } else { 2 };
+        let n = self.room_for(size)?;
+        if let Some(one) = self.uniform(Self::int)? {
+            return Ok(vec![one; n]);
+        }
+        if self.is_binary {
+            let raw = self.raw(n, self.label_bytes)?;
+            return Ok(match self.label_bytes {
+                4 => raw.as_chunks::<4>().0.iter().map(|&b| i64::from(i32::from_le_bytes(b))).collect(),
+                _ => raw.as_chunks::<8>().0.iter().map(|&b| i64::from_le_bytes(b)).collect(),
+            });
+        }
+        self.between_brackets(n, Self::int)
+    }
+
+    /// A list of points.
+    pub(super) fn points(&mut self) -> Result<Vec<Point>> {
+        let size = if self.is_binary { 3 * self.scalar_bytes } else { 8 };
+        let n = self.room_for(size)?;
+        if self.is_binary {
+            let raw = self.raw(3 * n, self.scalar_bytes)?;
+            let flat: Vec<f64> = match self.scalar_bytes {
+                4 => raw.as_chunks::<4>().0.iter().map(|&b| f64::from(f32::from_le_bytes(b))).collect(),
+                _ => raw.as_chunks::<8>().0.iter().map(|&b| f64::from_le_bytes(b)).collect(),
+            };
+            return Ok(flat.as_chunks::<3>().0.to_vec());
+        }
+        self.between_brackets(n, |file| {
+            file.expect(b"(")?;
+            let point = [file.float()?, file.float()?, file.float()?];
+            file.expect(b")").map(|()| point)
+        })
+    }
+
+    /// A list of faces, which are lists of points.
+    pub(super) fn faces(&mut self) -> Result<Csr<u32>> {
+        if self.class == "faceCompactList" {
+            let (offsets, points) = (self.labels()?, self.labels()?);
+            let narrow = |list: Vec<i64>| list.into_iter().map(u32::try_from).collect::<Result<Vec<_>, _>>();
+            let (offsets, points) = (narrow(offsets), narrow(points));
+            let lists = offsets.ok().zip(points.ok()).and_then(|(offsets, points)| Csr::new(offsets, points));
+            return lists.ok_or_else(|| self.error("offsets of faces that do not rise, or a point below 0"));
+        }
+        if self.is_binary {
+            return Err(self
+                .error("a binary list of faces of an old kind")
+                .remedy("convert it by foamFormatConvert"));
+        }
+        let n = self.room_for(4)?;
+        let mut faces = Csr::default();
+        self.expect(b"(")?;
+        for _ in 0..n {
+            let points = self.labels()?;
+            let points: Result<Vec<u32>, _> = points.into_iter().map(u32::try_from).collect();
+            faces.push(points.map_err(|_| self.error("a face with a point below 0"))?);
+        }
+        self.expect(b")")?;
+        Ok(faces)
+    }
+
+    /// The one value of a list in braces.
+    fn uniform(&mut self, read: impl Fn(&mut Self) -> Result<i64>) -> Result<Option<i64>> {
+        if self.peek() != b"{" {
+            return Ok(None);
+        }
+        self.expect(b"{")?;
+        let one = read(self)?;
+        self.expect(b"}").map(|()| Some(one))
+    }
+
+    fn between_brackets<T>(&mut self, n: usize, read: impl Fn(&mut Self) -> Result<T>) -> Result<Vec<T>> {
+        self.expect(b"(")?;
+        let all = (0..n).map(|_| read(self)).collect::<Result<Vec<T>>>()?;
+        self.expect(b")").map(|()| all)
+    }
+
+    /// The bytes of a binary list.
+    fn raw(&mut self, n: usize, size: usize) -> Result<&'a [u8]> {
+        if n == 0 {
+            if self.peek() == b"(" {
+                self.expect(b"(")?;
+                self.expect(b")")?;
+            }
+            return Ok(&[]);
+        }
+        self.expect(b"(")?;
+        let bytes = self.bytes[self.at..].get(..n * size);
+        let bytes = bytes.ok_or_else(|| {
+            self.error("the file ends within a list").remedy("the file is cut off: get it again")
+        })?;
+        self.at += bytes.len();
+        self.expect(b")").map(|()| bytes)
+    }
+
+    /// An error at the place that was read last.
+    pub(super) fn error(&self, what: impl Into<String>) -> Error {
+        let place = if self.is_binary {
+            format!("byte {}", self.at)
+        } else {
+            format!("line {}", 1 + self.bytes[..self.at].iter().filter(|&&b| b == b'\n').count())
+        };
+        Error::input(what).at(place)
+    }
+}

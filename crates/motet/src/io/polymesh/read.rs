@@ -1,0 +1,219 @@
+//! A mesh in.
+
+use std::path::Path;
+
+use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::format::{Input, Notes};
+use crate::io::polymesh::cells;
+use crate::io::polymesh::file::File;
+use crate::io::polymesh::folder::{load, mesh_folder};
+use crate::mesh::{CellKind, Cells, Field, Mesh};
+
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
+    let folder = mesh_folder(input.path).ok_or_else(|| {
+        Error::input(
+            "there is no polyMesh: neither here nor in constant/polyMesh are points, faces and owner",
+        )
+        .in_file(input.path)
+        .remedy("name the case, or its polyMesh folder")
+    })?;
+    let points = needed(&folder, "points", |file| file.points())?;
+    let faces = needed(&folder, "faces", |file| file.faces())?;
+    let owner = needed(&folder, "owner", |file| file.labels())?;
+    let neighbour = needed(&folder, "neighbour", |file| file.labels())?;
+    let patches = needed(&folder, "boundary", patches)?;
+    let told = |e: Error| e.in_file(&folder);
+    let sides = Sides::new(&faces, &owner, &neighbour, points.len()).map_err(told)?;
+    let mut mesh = Mesh::new(points, sides.cells());
+    let n_cells = mesh.cells.len();
+    let mut labels = vec![0; n_cells];
+    for (label, patch) in (1..).zip(&patches) {
+        let end = patch.start.checked_add(patch.n).filter(|&end| end <= faces.len());
+        let end = end.ok_or_else(|| {
+            told(Error::input(format!(
+                "patch {} has faces beyond the {} that there are",
+                patch.name,
+                faces.len()
+            )))
+        })?;
+        for face in patch.start..end {
+            push_face(&mut mesh.cells, faces.list(face));
+        }
+        labels.resize(mesh.cells.len(), label);
+        mesh.label_names.patches.insert(label, patch.name.clone());
+    }
+    zones(&folder, &mut mesh, n_cells, input.notes)?;
+    mesh.set_cell_field(Field::scalars("patch", labels));
+    for other in ["faceZones", "pointZones"] {
+        let is_there = load(&folder, other)?.is_some_and(|(_, bytes)| !bytes.ends_with(b"0()"));
+        if is_there && has_entries(&folder, other)? {
+            input.notes.add(format!("{other} are passed over"));
+        }
+    }
+    Ok(mesh)
+}
+
+/// Reads what a file holds.
+fn needed<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<T> {
+    optional(folder, name, read)?.ok_or_else(|| {
+        Error::input("is not there")
+            .in_file(folder.join(name))
+            .remedy("a polyMesh has points, faces, owner, neighbour and boundary")
+    })
+}
+
+fn optional<T>(folder: &Path, name: &str, read: impl Fn(&mut File<'_>) -> Result<T>) -> Result<Option<T>> {
+    let Some((path, bytes)) = load(folder, name)? else { return Ok(None) };
+    File::open(&bytes).and_then(|mut file| read(&mut file)).map(Some).map_err(|e| e.in_file(path))
+}
+
+fn has_entries(folder: &Path, name: &str) -> Result<bool> {
+    Ok(optional(folder, name, |file| file.count())?.is_some_and(|n| n > 0))
+}
+
+struct Patch {
+    name: String,
+    start: usize,
+    n: usize,
+}
+
+/// The patches of `boundary`.
+fn patches(file: &mut File<'_>) -> Result<Vec<Patch>> {
+    let n = file.count()?;
+    file.expect(b"(")?;
+    let mut patches = Vec::new();
+    for _ in 0..n {
+        let name = String::from_utf8_lossy(file.word()?).trim_matches('"').to_owned();
+        file.expect(b"{")?;
+        let (mut start, mut faces) = (None, None);
+        loop {
+            match file.word()? {
+                b"}" => break,
+                b"startFace" => start = Some(file.count()?),
+                b"nFaces" => faces = Some(file.count()?),
+                _ => {}
+            }
+            file.skip_entry()?;
+        }
+        let (Some(start), Some(n)) = (start, faces) else {
+            return Err(file.error(format!("patch {name} has no startFace or no nFaces")));
+        };
+        patches.push(Patch { name, start, n });
+    }
+    file.expect(b")").map(|()| patches)
+}
+
+/// The zones of cells, as regions.
+fn zones(folder: &Path, mesh: &mut Mesh, n_cells: usize, notes: &Notes) -> Result<()> {
+    let zones = optional(folder, "cellZones", |file| {
+        let n = file.count()?;
+        if n == 0 {
+            return Ok(Vec::new());
+        }
+        file.expect(b"(")?;
+        let mut zones = Vec::new();
+        for _ in 0..n {
+            let name = String::from_utf8_lossy(file.word()?).trim_matches('"').to_owned();
+            file.expect(b"{")?;
+            loop {
+                match file.word()? {
+                    b"}" => break,
+                    b"cellLabels" => {
+                        if file.peek().starts_with(b"List") {
+                            file.word()?;
+                        }
+                        zones.push((name.clone(), file.labels()?));
+                    }
+                    _ => {}
+                }
+                file.skip_entry()?;
+            }
+        }
+        file.expect(b")").map(|()| zones)
+    })?;
+    let Some(zones) = zones.filter(|zones| !zones.is_empty()) else { return Ok(()) };
+    let mut regions = vec![0; mesh.cells.len()];
+    for (label, (name, cells)) in (1..).zip(zones) {
+        for cell in cells {
+            let place = usize::try_from(cell).ok().filter(|&cell| cell < n_cells).ok_or_else(|| {
+                Error::input(format!("zone {name} names cell {cell} of {n_cells}"))
+                    .in_file(folder.join("cellZones"))
+            })?;
+            if regions[place] != 0 {
+                notes.add("of a cell in several zones the first counts");
+            } else {
+                regions[place] = label;
+            }
+        }
+        mesh.label_names.regions.insert(label, name);
+    }
+    mesh.set_cell_field(Field::scalars("region", regions));
+    Ok(())
+}
+
+fn push_face(cells: &mut Cells, face: &[u32]) {
+    let kind = match face.len() {
+        3 => CellKind::TRIANGLE,
+        4 => CellKind::QUAD,
+        _ => CellKind::POLYGON,
+    };
+    cells.push(kind, face.iter().map(|&v| VertexId(v)));
+}
+
+/// The faces of each cell, and whether it is their owner.
+struct Sides<'a> {
+    faces: &'a Csr<u32>,
+    of_cells: Vec<Vec<(u32, bool)>>,
+}
+
+impl<'a> Sides<'a> {
+    fn new(faces: &'a Csr<u32>, owner: &[i64], neighbour: &[i64], n_points: usize) -> Result<Self> {
+        if owner.len() != faces.len() || neighbour.len() > faces.len() {
+            return Err(Error::input(format!(
+                "{} faces have {} owners and {} neighbours",
+                faces.len(),
+                owner.len(),
+                neighbour.len()
+            )));
+        }
+        if let Some(i) =
+            faces.iter().position(|face| face.len() < 3 || face.iter().any(|&v| v as usize >= n_points))
+        {
+            return Err(
+                Error::input("has less than three points, or one that is not there").at(format!("face {i}"))
+            );
+        }
+        // A cell has four faces at least, so that this is no more than the file can mean.
+        let sides = owner.iter().enumerate().map(|(face, &cell)| (face, cell, true));
+        let sides = sides.chain(neighbour.iter().enumerate().map(|(face, &cell)| (face, cell, false)));
+        let most = faces.len();
+        let mut of_cells: Vec<Vec<(u32, bool)>> = Vec::new();
+        // In some versions of OpenFOAM every face has a neighbour, -1 at the boundary.
+        for (face, cell, is_owner) in sides.filter(|&(_, cell, is_owner)| is_owner || cell >= 0) {
+            let cell = usize::try_from(cell).ok().filter(|&cell| cell < most).ok_or_else(|| {
+                Error::input(format!("names cell {cell}, with {most} faces in all"))
+                    .at(format!("face {face}"))
+            })?;
+            if of_cells.len() <= cell {
+                of_cells.resize_with(cell + 1, Vec::new);
+            }
+            of_cells[cell].push((face as u32, is_owner));
+        }
+        match of_cells.iter().position(|sides| sides.len() < 4) {
+            Some(cell) => Err(Error::input("has less than four faces").at(format!("cell {cell}"))),
+            None => Ok(Self { faces, of_cells }),
+        }
+    }
+
+    fn cells(&self) -> Cells {
+        let mut cells = Cells::new();
+        for sides in &self.of_cells {
+            let rings = sides.iter().map(|&(face, is_owner)| {
+                let ring = self.faces.list(face as usize).iter().map(|&v| VertexId(v));
+                if is_owner { ring.collect::<Vec<_>>() } else { ring.rev().collect() }
+            });
+            cells::push(&mut cells, &rings.collect::<Vec<_>>());
+        }
+        cells
+    }
+}
