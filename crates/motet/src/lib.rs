@@ -18,6 +18,7 @@
 //! | [`meshing`] | 7 | closed surfaces in, volume mesh out |
 //! | [`contact`] | 7 | how far apart surfaces are, where, and when they will touch |
 //! | [`implant`] | 8 | devices put into a mesh, one conforming mesh out |
+//! | [`moving`] | 9 | the loop: moved, repaired, refined, watched, carried, step after step |
 //!
 //! A module imports only from lower floors; `tests/layers.rs` holds it to that.
 
@@ -32,6 +33,7 @@ pub mod kernel;
 pub mod mesh;
 pub mod meshing;
 pub mod motion;
+pub mod moving;
 pub mod ops;
 pub mod preflight;
 pub mod refine;

@@ -23,6 +23,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("meshing", 7),
     ("contact", 7),
     ("implant", 8),
+    ("moving", 9),
 ];
 
 fn floor(module: &str) -> Option<u32> {

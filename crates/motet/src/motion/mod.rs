@@ -74,6 +74,7 @@
 mod advance;
 mod bodies;
 mod boundary_motion;
+mod carrier;
 mod certificate;
 mod check;
 mod choose;
@@ -99,6 +100,7 @@ mod walls;
 mod weights;
 
 pub use boundary_motion::{BoundaryMotion, Taken};
+pub use carrier::SurfaceCarrier;
 pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
 pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};

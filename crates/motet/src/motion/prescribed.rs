@@ -20,6 +20,19 @@ pub enum Prescribed {
     },
     /// `x' = A x + b`; each row holds one of A's and the entry of b.
     Affine([[f64; 4]; 3]),
+    /// What stands on a plane becomes an arc: a beam, a flap, a leaflet. What lies behind the plane stays.
+    Bend {
+        /// A point of the plane where it is held.
+        hinge: Point,
+        /// Which way it stands at first; of any length but zero.
+        along: Point,
+        /// Which way it bends: what is at right angles to `along` counts, and must not be nothing.
+        towards: Point,
+        /// How long it is, in the unit of the points.
+        length: f64,
+        /// By how much its end turns, in radians.
+        angle: f64,
+    },
     /// The first, then the others, each applied to where the one before it led.
     Sequence(Vec<Prescribed>),
 }
@@ -52,6 +65,14 @@ impl Prescribed {
                 finite(axis) && angle.is_finite() && finite(centre)
             }
             Self::Affine(rows) => finite(rows.as_flattened()),
+            Self::Bend { hinge, along, towards, length, angle } => {
+                if norm(cross(*along, *towards)) == 0.0 || !(*length > 0.0) {
+                    return Err(Error::options(
+                        "a bend needs a length above 0 and two directions that are not parallel",
+                    ));
+                }
+                finite(hinge) && finite(along) && finite(towards) && length.is_finite() && angle.is_finite()
+            }
             Self::Sequence(motions) => return motions.iter().try_for_each(Self::check),
         };
         if fine { Ok(()) } else { Err(Error::options("a motion with a number that is not finite")) }
@@ -69,6 +90,14 @@ impl Prescribed {
                 let image = rows.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d);
                 add(p, scale(sub(image, p), fraction))
             }
+            Self::Bend { hinge, along, towards, length, angle } => {
+                let along = scale(*along, 1.0 / norm(*along));
+                let off = sub(*towards, scale(along, dot(*towards, along)));
+                add(
+                    *hinge,
+                    bent(sub(p, *hinge), along, scale(off, 1.0 / norm(off)), angle * fraction / length),
+                )
+            }
             Self::Sequence(motions) => motions.iter().fold(p, |p, motion| motion.apply(p, fraction)),
         }
     }
@@ -81,6 +110,20 @@ impl Prescribed {
             _ => sub(self.apply(p, fraction), p),
         }
     }
+}
+
+/// Where a place of a beam along the unit vector `along` from the origin goes as the beam gets this curvature towards the unit vector `off`.
+fn bent(v: Point, along: Point, off: Point, curvature: f64) -> Point {
+    let (height, aside) = (dot(v, along), dot(v, off));
+    if height <= 0.0 || curvature == 0.0 {
+        return v;
+    }
+    let angle = curvature * height;
+    let (sin, cos) = angle.sin_cos();
+    // (1 - cos) / angle by the half angle, which loses no digits.
+    let half = (0.5 * angle).sin();
+    let (up, over) = (sin / curvature - aside * sin, 2.0 * half * half / curvature + aside * cos);
+    add(v, add(scale(along, up - height), scale(off, over - aside)))
 }
 
 /// Turns `v` by `angle` about an axis through the origin (Rodrigues 1840).
@@ -134,6 +177,29 @@ mod tests {
         let shift = Prescribed::Shift([1.0, 0.0, 0.0]);
         let sequence = Prescribed::Sequence(vec![turn(0.4), shift.clone()]);
         assert!(near(sequence.apply(P, 1.0), shift.apply(turn(0.4).apply(P, 1.0), 1.0)));
+    }
+
+    #[test]
+    fn a_beam_becomes_an_arc_of_its_length() {
+        let (hinge, angle) = ([1.0, 2.0, 3.0], 1.25);
+        let bend =
+            Prescribed::Bend { hinge, along: [0.0, 0.0, 2.0], towards: [3.0, 0.0, 1.0], length: 4.0, angle };
+        let at = |height: f64| bend.apply(add(hinge, [0.0, 0.0, height]), 1.0);
+        let radius = 4.0 / angle;
+        let centre = add(hinge, [radius, 0.0, 0.0]);
+        for height in [0.5, 2.0, 4.0] {
+            assert!((norm(sub(at(height), centre)) - radius).abs() < 1e-14);
+        }
+        let end = sub(at(4.0), hinge);
+        assert!(near(end, [radius * (1.0 - angle.cos()), 0.0, radius * angle.sin()]));
+        // Across the beam all stays straight, behind the hinge all stays.
+        let [a, b] = [0.1, 0.3].map(|x| bend.apply(add(hinge, [x, 0.0, 3.0]), 1.0));
+        assert!((norm(sub(a, b)) - 0.2).abs() < 1e-14);
+        assert_eq!(bend.apply(sub(hinge, [0.0, 0.0, 1.0]), 1.0), sub(hinge, [0.0, 0.0, 1.0]));
+        assert!(near(bend.apply(P, 0.0), P) && near(bend.apply(P, 1e-12), P));
+        let flat =
+            Prescribed::Bend { hinge, along: [0.0, 0.0, 1.0], towards: [0.0, 0.0, 2.0], length: 1.0, angle };
+        assert!(flat.check().is_err() && bend.check().is_ok());
     }
 
     #[test]

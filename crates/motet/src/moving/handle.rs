@@ -1,0 +1,330 @@
+//! The handle: a mesh that moves with its walls, step after step.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::base::{Error, Point, Result, Threads};
+use crate::contact;
+use crate::geometry::vector::{is_finite, scale, sub};
+use crate::mesh::history::History;
+use crate::mesh::{Field, Mesh};
+use crate::motion::Mover;
+use crate::moving::legs::{Reached, Way, volume_deviation};
+use crate::moving::now::{Known, Now, go_to};
+use crate::moving::options::Options;
+use crate::moving::shapes::Shape;
+use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
+use crate::moving::wall::Wall;
+use crate::moving::watch::Watch;
+use crate::refine::{self, MeshRefinement, Wanted};
+
+/// A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
+///
+/// One at a time for each mesh; any number of them beside each other.
+#[derive(Debug)]
+pub struct MovingMesh {
+    pub(super) options: Options,
+    pub(super) wall: Wall,
+    pub(super) now: Now,
+    pub(super) clock: Clock,
+    pub(super) changes: VecDeque<(usize, Arc<History>)>,
+    /// Changes of steps up to this one are no longer known.
+    pub(super) forgotten: Option<usize>,
+    watch: Option<Watch>,
+}
+
+/// Where in time a mesh is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Clock {
+    /// How many steps were made.
+    pub(super) step: usize,
+    pub(super) time: f64,
+    /// How long the last step took.
+    pub(super) dt: f64,
+    /// How many tets there are to be: as many as at first, or as refinement left.
+    pub(super) n_first: usize,
+}
+
+impl MovingMesh {
+    /// Takes over a mesh where its walls are undisplaced. Time is 0.
+    ///
+    /// # Errors
+    /// As [`Mover::new`]; when a watched patch is not there.
+    pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
+        let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
+        let wall = Wall::of(mesh, mover.boundary(), &options.motion);
+        let known = Known::at_first(mesh, mover.boundary());
+        let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
+        let n_first = now.tets.len();
+        let mut moving = Self::of(options, wall, now, Clock { n_first, ..Clock::default() });
+        moving.measure_gaps(threads)?;
+        Ok(moving)
+    }
+
+    pub(super) fn of(options: Options, wall: Wall, now: Now, clock: Clock) -> Self {
+        let watch = options.watch.clone().map(Watch::new);
+        Self { options, wall, now, clock, changes: VecDeque::new(), forgotten: None, watch }
+    }
+
+    /// Where the vertices that are driven were at first: those of the boundary, and of patches inside that were asked for, in the
+    /// order of the first mesh. Displacements are given for these, whatever becomes of the mesh.
+    pub fn driven_places(&self) -> &[Point] {
+        &self.wall.places
+    }
+
+    /// The mesh as it is, with its arrays.
+    pub fn mesh(&self) -> &Mesh {
+        &self.now.mesh
+    }
+
+    /// The time that was reached.
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    /// How many steps were made.
+    pub fn step(&self) -> usize {
+        self.clock.step
+    }
+
+    /// What it was told.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The velocity of each vertex in the last step; zero before there was one. Of a vertex that came in it: from the place, at its beginning, between those
+    /// that it came from.
+    pub fn velocity(&self) -> Vec<Point> {
+        let Self { now, clock, .. } = self;
+        if clock.dt == 0.0 {
+            return vec![[0.0; 3]; now.mesh.points.len()];
+        }
+        let of = |(&p, &before): (&Point, &Point)| scale(sub(p, before), 1.0 / clock.dt);
+        now.mesh.points.iter().zip(&now.known.before).map(of).collect()
+    }
+
+    /// How far each vertex is from where it was at first.
+    pub fn displacement(&self) -> Vec<Point> {
+        let pairs = self.now.mesh.points.iter().zip(&self.now.known.first);
+        pairs.map(|(&p, &first)| sub(p, first)).collect()
+    }
+
+    /// What the watch measured last.
+    pub fn gaps(&self) -> Option<&contact::Gaps> {
+        self.watch.as_ref().and_then(|watch| watch.last.as_ref())
+    }
+
+    /// Puts a point array on the mesh, in place of one of that name: a solver's new values. Arrays are carried where the mesh changes.
+    ///
+    /// # Errors
+    /// When it has not one row for each point.
+    pub fn set_point_field(&mut self, field: Field) -> Result<()> {
+        check_rows(&field, self.now.mesh.points.len(), "points")?;
+        self.now.mesh.set_point_field(field);
+        Ok(())
+    }
+
+    /// The same with a cell array.
+    ///
+    /// # Errors
+    /// When it has not one row for each cell.
+    pub fn set_cell_field(&mut self, field: Field) -> Result<()> {
+        check_rows(&field, self.now.mesh.cells.len(), "cells")?;
+        self.now.mesh.set_cell_field(field);
+        Ok(())
+    }
+
+    /// From the mesh after `step` (0: the first) to the mesh as it is: carries any array of any time level in between. `None` where the
+    /// connectivity is the same, and where that step is forgotten: [`Options::remembered`], [`Self::remembers`].
+    pub fn history_since(&self, step: usize) -> Option<History> {
+        if !self.remembers(step) {
+            return None;
+        }
+        let later = self.changes.iter().filter(|(at, _)| *at > step).map(|(_, history)| history);
+        later.fold(None, |all: Option<History>, history| {
+            Some(all.map_or_else(|| History::clone(history), |all| all.then(history)))
+        })
+    }
+
+    /// Whether all changes since a step are known.
+    pub fn remembers(&self, step: usize) -> bool {
+        step <= self.clock.step && self.forgotten.is_none_or(|forgotten| step >= forgotten)
+    }
+
+    /// Takes the walls to where they are at `time`: `displacement` has an entry for each of [`Self::driven_places`], counted from there. The inside
+    /// follows; what becomes bad is repaired, on the way where need be.
+    ///
+    /// A motion that cannot be gone to the end is no error: see [`Step::complete`].
+    ///
+    /// # Errors
+    /// When a displacement is missing or not finite, time does not go on, an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    pub fn advance(&mut self, time: f64, displacement: &[Point], threads: &Threads) -> Result<Step> {
+        let begin = Instant::now();
+        self.check(time, displacement)?;
+        let start = self.clock.time;
+        let mut way = Way {
+            options: &self.options,
+            wall: &self.wall,
+            displacement,
+            times: [start, time],
+            n_first: self.clock.n_first,
+            threads,
+            points: Vec::new(),
+            seconds: Seconds::default(),
+            changes: Vec::new(),
+            legs: 0,
+        };
+        let last = std::mem::replace(&mut self.now.known.before, self.now.mesh.points.clone());
+        let reached = way.go(&self.now);
+        if reached.is_err() {
+            self.now.known.before = last;
+        }
+        let Reached { changed, left, shape, fraction } = reached?;
+        let Way { points, mut seconds, changes, legs, .. } = way;
+        if let Some(now) = changed {
+            self.now = now;
+        }
+        if let Some(left) = left {
+            self.now.left = left;
+        }
+        go_to(&mut self.now.mesh, &points, &self.options.contents);
+        let is_complete = fraction == 1.0;
+        let reached = if is_complete { time } else { start + (time - start) * fraction };
+        self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, ..self.clock };
+        self.remember(&changes);
+        let begin_contact = Instant::now();
+        let gaps = self.measure_gaps(threads)?;
+        seconds.contact = begin_contact.elapsed().as_secs_f64();
+        seconds.total = begin.elapsed().as_secs_f64();
+        Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })
+    }
+
+    /// How good the mesh is as it is, without a step.
+    ///
+    /// # Errors
+    /// Those of measuring gaps.
+    pub fn certify(&mut self, threads: &Threads) -> Result<Step> {
+        let begin = Instant::now();
+        let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
+        let quality = begin.elapsed().as_secs_f64();
+        let gaps = self.measure_gaps(threads)?;
+        let total = begin.elapsed().as_secs_f64();
+        let seconds = Seconds { quality, contact: total - quality, total, ..Seconds::default() };
+        Ok(Step { complete: true, fraction: 1.0, gaps, seconds, ..self.certified(&shape) })
+    }
+
+    /// Divides tets and takes divisions back, at the time that was reached, as [`MeshRefinement::reach`] does. What was divided is remembered by arrays of the mesh.
+    ///
+    /// # Errors
+    /// As there. Then all is as it was before the call.
+    pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
+        let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
+        let mut given = self.now.mesh.clone();
+        let rules = self.now.put_known(&mut given, &self.options.rules);
+        let mut refinement = MeshRefinement::new(&given, refine::Options::default(), threads)?;
+        let wanted = Wanted { keeps_history: true, ..wanted.clone() };
+        let n_before = self.now.tets.len();
+        let reached = refinement.reach(&wanted, &rules, threads, |_| ())?;
+        let history = Arc::new(
+            reached
+                .history
+                .unwrap_or_else(|| History::identity(self.now.mesh.points.len(), self.now.mesh.cells.len())),
+        );
+        let mut mesh = refinement.with_memory(threads);
+        if mesh.cells == self.now.mesh.cells {
+            return Ok(None);
+        }
+        let known = self.now.known_of(&mut mesh, &history)?;
+        let points_before = self.now.mesh.points.clone();
+        let now = Now::new(mesh, known, Vec::new(), &self.wall, &self.options, threads)?;
+        let is_kept = |id: &&crate::base::CellId| **id != crate::base::Id::NONE;
+        let n_kept = history.cells.kept().iter().filter(is_kept).count();
+        let change = Change {
+            time: self.clock.time,
+            why: Why::Refinement,
+            tets_before: n_before,
+            tets_after: now.tets.len(),
+            kept_share: n_kept as f64 / self.now.mesh.cells.len().max(1) as f64,
+            bad_before: shape.bad.len(),
+            worst_before: shape.worst.map_or(1.0, |(_, eas, _)| eas),
+            operations: crate::remesh::Counts::default(),
+            volume_deviation: volume_deviation(&history),
+            history,
+            points_before,
+        };
+        self.now = now;
+        self.clock.n_first = self.now.tets.len();
+        self.now.known.size_anew(&self.now.mesh);
+        self.remember(std::slice::from_ref(&change));
+        Ok(Some(change))
+    }
+
+    fn check(&self, time: f64, displacement: &[Point]) -> Result<()> {
+        let n = self.wall.places.len();
+        if displacement.len() != n {
+            return Err(Error::input(format!(
+                "{} displacements are given, but {n} vertices are driven",
+                displacement.len()
+            ))
+            .remedy("give one for each vertex that was driven at first, whatever the mesh has become"));
+        }
+        if let Some(i) = displacement.iter().position(|&d| !is_finite(d)) {
+            return Err(
+                Error::input("a displacement that is no finite number").at(format!("driven vertex {i}"))
+            );
+        }
+        match time > self.clock.time && time.is_finite() {
+            true => Ok(()),
+            false => Err(Error::options(format!(
+                "the time {time} is not after {}, which was reached",
+                self.clock.time
+            ))),
+        }
+    }
+
+    fn remember(&mut self, changes: &[Change]) {
+        if changes.is_empty() {
+            return;
+        }
+        if let Some(watch) = &mut self.watch {
+            watch.forget();
+        }
+        self.changes.extend(changes.iter().map(|change| (self.clock.step, change.history.clone())));
+        while self.changes.len() > self.options.remembered {
+            self.forgotten = self.changes.pop_front().map(|(step, _)| step);
+        }
+    }
+
+    fn measure_gaps(&mut self, threads: &Threads) -> Result<Option<super::Gaps>> {
+        let Some(mut watch) = self.watch.take() else { return Ok(None) };
+        let velocity = (self.clock.dt > 0.0).then(|| self.velocity());
+        let ahead = velocity.as_ref().map(|velocity| (velocity.as_slice(), self.clock.dt));
+        let gaps = watch.measure(&self.now.mesh, ahead, threads);
+        self.watch = Some(watch);
+        gaps.map(Some)
+    }
+
+    fn certified(&self, shape: &Shape) -> Step {
+        let Self { now, clock, .. } = self;
+        Step {
+            step: clock.step,
+            time: clock.time,
+            points: now.mesh.points.len(),
+            tets: now.tets.len(),
+            bad: shape.bad.len(),
+            forced: now.n_forced(shape),
+            inverted: shape.inverted,
+            worst: shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place }),
+            ..Step::default()
+        }
+    }
+}
+
+fn check_rows(field: &Field, n: usize, what: &str) -> Result<()> {
+    match field.n_rows() == n && field.values.len() == n * field.components {
+        true => Ok(()),
+        false => Err(Error::input(format!("has {} rows for {n} {what}", field.n_rows()))
+            .at(format!("array {}", field.name))),
+    }
+}

@@ -1,0 +1,225 @@
+//! A step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::base::{CellId, Point, Result, Threads};
+use crate::geometry::vector::{add, scale, sub};
+use crate::mesh::history::History;
+use crate::moving::now::{LeftBad, Now};
+use crate::moving::options::Options;
+use crate::moving::shapes::Shape;
+use crate::moving::step::{Change, Seconds, Why};
+use crate::moving::wall::Wall;
+use crate::remesh::{self, Goal, Sizes, remesh_mesh};
+
+/// Parts are halved down to this where tets would become flat: repairing more often than so is no way to go on.
+const SMALLEST: f64 = 1.0 / 32.0;
+/// And down to this where they would be inverted.
+const LEAST: f64 = 1.0 / 4096.0;
+
+/// On the way of one step.
+pub(super) struct Way<'a> {
+    pub(super) options: &'a Options,
+    pub(super) wall: &'a Wall,
+    /// Of the nodes of the wall, from where they were at first.
+    pub(super) displacement: &'a [Point],
+    /// From when to when.
+    pub(super) times: [f64; 2],
+    /// How many tets there are to be.
+    pub(super) n_first: usize,
+    pub(super) threads: &'a Threads,
+    /// Where the vertices are to be: scratch, and the result.
+    pub(super) points: Vec<Point>,
+    pub(super) seconds: Seconds,
+    pub(super) changes: Vec<Change>,
+    pub(super) legs: usize,
+}
+
+/// Where a way has led.
+pub(super) struct Reached {
+    /// The mesh that came; `None`: the one that there was, with its vertices at [`Way::points`].
+    pub(super) changed: Option<Now>,
+    /// The bad tets that nothing could be done about, where that was tried last and nothing changed.
+    pub(super) left: Option<Vec<LeftBad>>,
+    /// How good the tets are.
+    pub(super) shape: Shape,
+    /// How much of the way was gone.
+    pub(super) fraction: f64,
+}
+
+/// How hard repair tries.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Effort {
+    Usual,
+    /// Nothing could move: everything as good as it gets.
+    All,
+}
+
+impl Way<'_> {
+    /// Goes from where `start` is, which stays as it is.
+    pub(super) fn go(&mut self, start: &Now) -> Result<Reached> {
+        let (mut changed, mut gone, mut effort) = (None::<Now>, 0.0, Effort::Usual);
+        loop {
+            let watch = self.threads.watch();
+            watch.go_on("moving and repairing", self.legs, self.options.motion.limits.substeps)?;
+            let now = changed.as_ref().unwrap_or(start);
+            let (part, shape) = self.leg(now)?;
+            self.legs += 1;
+            gone = if part == 1.0 { 1.0 } else { gone + (1.0 - gone) * part };
+            let is_stuck = part == 0.0;
+            if is_stuck && effort == Effort::All || self.legs >= self.options.motion.limits.substeps {
+                return Ok(Reached { changed, left: None, shape, fraction: gone });
+            }
+            let is_end = part == 1.0;
+            let is_worth_it = shape.bad.iter().any(|&(cell, eas)| !now.is_left(cell, eas));
+            if is_end && !(is_worth_it && self.options.repair.is_some()) {
+                return Ok(Reached { changed, left: None, shape, fraction: gone });
+            }
+            effort = if is_stuck { Effort::All } else { Effort::Usual };
+            let time = self.times[0] + (self.times[1] - self.times[0]) * gone;
+            let next = match self.repaired(now, &shape, time, effort)? {
+                Repaired::Changed(next) => *next,
+                Repaired::Left(left) if is_end => {
+                    return Ok(Reached { changed, left: Some(left), shape, fraction: gone });
+                }
+                Repaired::Left(left) => self.re_referenced(now, left)?,
+            };
+            let shape = self.shape(&next);
+            self.points.clone_from(&next.mesh.points);
+            changed = Some(next);
+            if is_end {
+                return Ok(Reached { changed, left: None, shape, fraction: gone });
+            }
+        }
+    }
+
+    /// Goes on as far as tets stay well shaped: all the way that is left, or a half of it, and so on. How far, and how the tets are there.
+    fn leg(&mut self, now: &Now) -> Result<(f64, Shape)> {
+        let (from, to) = (now.here(), now.target(self.displacement));
+        let mut part = 1.0;
+        loop {
+            let driven: Vec<Point> = match part {
+                1.0 => to.clone(),
+                _ => from.iter().zip(&to).map(|(&a, &b)| add(a, scale(sub(b, a), part))).collect(),
+            };
+            self.points.resize(now.mesh.points.len(), [0.0; 3]);
+            let begin = Instant::now();
+            now.mover.step(&driven, &mut self.points, self.threads)?;
+            self.seconds.motion += begin.elapsed().as_secs_f64();
+            let begin = Instant::now();
+            let is_upright = now.mover.check.turned_over(&self.points, self.threads).is_empty();
+            self.seconds.quality += begin.elapsed().as_secs_f64();
+            if is_upright {
+                let shape = self.shape_at(now);
+                let is_flat =
+                    |&(cell, eas): &(CellId, f64)| eas < self.options.floor && !now.is_left(cell, eas);
+                if part <= SMALLEST || self.options.repair.is_none() || !shape.bad.iter().any(is_flat) {
+                    return Ok((part, shape));
+                }
+            }
+            part *= 0.5;
+            if part < LEAST {
+                self.points.copy_from_slice(&now.mesh.points);
+                return Ok((0.0, self.shape_at(now)));
+            }
+        }
+    }
+
+    /// The shape of the tets where [`Self::points`] has the vertices.
+    fn shape_at(&mut self, now: &Now) -> Shape {
+        let begin = Instant::now();
+        let shape = now.tets.shape(&self.points, self.options.limit(), self.threads);
+        self.seconds.quality += begin.elapsed().as_secs_f64();
+        shape
+    }
+
+    /// The shape of the tets of a mesh as it is.
+    fn shape(&mut self, now: &Now) -> Shape {
+        let begin = Instant::now();
+        let shape = now.tets.shape(&now.mesh.points, self.options.limit(), self.threads);
+        self.seconds.quality += begin.elapsed().as_secs_f64();
+        shape
+    }
+
+    /// The mesh with its bad tets repaired where [`Self::points`] has the vertices.
+    fn repaired(&mut self, now: &Now, shape: &Shape, time: f64, effort: Effort) -> Result<Repaired> {
+        let begin = Instant::now();
+        let options = self.options;
+        let is_asked = !shape.bad.is_empty() || effort == Effort::All;
+        let Some(asked) = options.repair.as_ref().filter(|_| is_asked) else {
+            return Ok(Repaired::Left(Vec::new()));
+        };
+        let is_thinned = (now.tets.len() as f64) < options.keep_tets * self.n_first as f64;
+        let asked = remesh::Options {
+            sizes: if is_thinned {
+                Some(Sizes::Vertices(now.known.size.clone()))
+            } else {
+                asked.sizes.clone()
+            },
+            min_eas: asked.min_eas + options.margin,
+            goal: if effort == Effort::All { Goal::Best } else { asked.goal },
+            ..asked.clone()
+        };
+        let mut given = now.moved(&self.points, &options.contents);
+        let rules = now.put_known(&mut given, &options.rules);
+        let outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
+        let (report, history, mut mesh) = (outcome.report, Arc::new(outcome.history), outcome.mesh);
+        let left = left_of(&report);
+        self.seconds.repair += begin.elapsed().as_secs_f64();
+        if report.kept == now.tets.len() && mesh.points == given.points {
+            return Ok(Repaired::Left(left));
+        }
+        let begin = Instant::now();
+        let known = now.known_of(&mut mesh, &history)?;
+        self.changes.push(Change {
+            time,
+            why: Why::Repair,
+            tets_before: now.tets.len(),
+            tets_after: report.after.tets,
+            kept_share: report.kept_share,
+            bad_before: shape.bad.len(),
+            worst_before: shape.worst.map_or(1.0, |(_, eas, _)| eas),
+            operations: report.operations,
+            volume_deviation: volume_deviation(&history),
+            history,
+            points_before: self.points.clone(),
+        });
+        let next = Now::new(mesh, known, left, self.wall, options, self.threads)?;
+        self.seconds.setup += begin.elapsed().as_secs_f64();
+        Ok(Repaired::Changed(Box::new(next)))
+    }
+
+    /// The same mesh, that moves on from where [`Self::points`] has the vertices.
+    fn re_referenced(&mut self, now: &Now, left: Vec<LeftBad>) -> Result<Now> {
+        let begin = Instant::now();
+        let mesh = now.moved(&self.points, &self.options.contents);
+        let next = Now::new(mesh, now.known.clone(), left, self.wall, self.options, self.threads);
+        self.seconds.setup += begin.elapsed().as_secs_f64();
+        next
+    }
+}
+
+/// What repair came to.
+enum Repaired {
+    Changed(Box<Now>),
+    /// Nothing could be done about these.
+    Left(Vec<LeftBad>),
+}
+
+fn left_of(report: &remesh::Report) -> Vec<LeftBad> {
+    let of = |left: &remesh::Left| LeftBad {
+        cell: CellId(left.tet),
+        eas: left.eas,
+        is_forced: left.reason.is_forced(),
+    };
+    let mut all: Vec<LeftBad> = report.left.iter().map(of).collect();
+    all.sort_by_key(|left| left.cell);
+    all
+}
+
+/// By how much new tets took more or less than the volume of old ones, as a part of what changed.
+pub(super) fn volume_deviation(history: &History) -> f64 {
+    let regions = history.ledger.regions.iter().filter(|region| region.volume_before > 0.0);
+    regions.map(|region| region.deviation / region.volume_before).fold(0.0, f64::max)
+}

@@ -1,0 +1,205 @@
+//! The mesh between two changes: where it is, what moves it, where each vertex was at first.
+
+use std::sync::Arc;
+
+use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
+use crate::geometry::tet;
+use crate::geometry::vector::{add, distance, sub};
+use crate::mesh::history::{History, Rule, Rules};
+use crate::mesh::{Field, Mesh};
+use crate::motion::Mover;
+use crate::moving::options::Options;
+use crate::moving::shapes::{Shape, Tets};
+use crate::moving::wall::{Drive, NO_NODE, Wall};
+
+/// A bad tet that repair has left: worth another try only once it is this much worse.
+const WORSE: f64 = 0.5;
+
+/// The mesh, and all that is made anew when it changes.
+#[derive(Debug)]
+pub(super) struct Now {
+    /// Its points are where they are; the arrays are the user's.
+    pub(super) mesh: Mesh,
+    pub(super) tets: Tets,
+    /// Its reference is where the vertices were at the last change.
+    pub(super) mover: Mover,
+    /// What is known of each vertex.
+    pub(super) known: Known,
+    drive: Drive,
+    /// Bad tets that repair has left, cells rising.
+    pub(super) left: Vec<LeftBad>,
+}
+
+/// A bad tet that repair has left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LeftBad {
+    pub(super) cell: CellId,
+    /// Its EAS then.
+    pub(super) eas: f64,
+    /// Whether walls force it.
+    pub(super) is_forced: bool,
+}
+
+/// What is known of each vertex beside where it is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Known {
+    /// Where it was at first: for one that came later, the place between those that it came from.
+    pub(super) first: Vec<Point>,
+    /// Where it was when the step began.
+    pub(super) before: Vec<Point>,
+    /// The node of the wall that it is, or [`NO_NODE`].
+    pub(super) node: Vec<u32>,
+    /// How long edges were there at first.
+    pub(super) size: Vec<f64>,
+}
+
+impl Known {
+    /// Of a mesh in its first place.
+    pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
+        let mut node = vec![NO_NODE; mesh.points.len()];
+        (0..).zip(driven).for_each(|(number, v)| node[v.index()] = number);
+        Self { first: mesh.points.clone(), before: mesh.points.clone(), node, size: mean_lengths(mesh) }
+    }
+
+    /// Edges are to be as long as they are now.
+    pub(super) fn size_anew(&mut self, mesh: &Mesh) {
+        self.size = mean_lengths(mesh);
+    }
+}
+
+/// The mean length of the edges of tets at each vertex, each as often as tets have it; 0 where there is none.
+fn mean_lengths(mesh: &Mesh) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0); mesh.points.len()];
+    for (_, tet) in mesh.cells.tets() {
+        for [i, j] in tet::EDGES {
+            let ends = [tet[i], tet[j]];
+            let length = distance(mesh.points[ends[0].index()], mesh.points[ends[1].index()]);
+            for v in ends {
+                sums[v.index()].0 += length;
+                sums[v.index()].1 += 1.0;
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, n): (f64, f64)| if n > 0.0 { sum / n } else { 0.0 }).collect()
+}
+
+impl Now {
+    /// Sets up the motion of a mesh from where it is.
+    pub(super) fn new(
+        mesh: Mesh,
+        known: Known,
+        left: Vec<LeftBad>,
+        wall: &Wall,
+        options: &Options,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
+        Self::of(mesh, mover, known, left, wall, threads)
+    }
+
+    /// The same with a mover that is there; its reference may be another place than where the mesh is.
+    pub(super) fn of(
+        mesh: Mesh,
+        mover: Mover,
+        known: Known,
+        left: Vec<LeftBad>,
+        wall: &Wall,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let drive = wall.drive(mover.boundary(), &known.first, &known.node, threads)?;
+        let tets = Tets::of(&mesh.cells, mover.reference());
+        Ok(Self { mesh, tets, mover, known, drive, left })
+    }
+
+    /// Where the mover is to take the driven vertices, for displacements of the nodes of the wall.
+    pub(super) fn target(&self, displacement: &[Point]) -> Vec<Point> {
+        let carried = self.drive.carry(displacement);
+        let reference = self.mover.reference();
+        let of = |(v, d): (&VertexId, Point)| sub(add(self.known.first[v.index()], d), reference[v.index()]);
+        self.mover.boundary().iter().zip(carried).map(of).collect()
+    }
+
+    /// Where the driven vertices are, from the mover's reference.
+    pub(super) fn here(&self) -> Vec<Point> {
+        let reference = self.mover.reference();
+        let of = |v: &VertexId| sub(self.mesh.points[v.index()], reference[v.index()]);
+        self.mover.boundary().iter().map(of).collect()
+    }
+
+    /// Whether a bad tet was left by repair, and is hardly worse than then.
+    pub(super) fn is_left(&self, cell: CellId, eas: f64) -> bool {
+        let found = self.left.binary_search_by_key(&cell, |left| left.cell);
+        found.is_ok_and(|i| eas >= WORSE * self.left[i].eas)
+    }
+
+    /// How many of the bad tets walls force.
+    pub(super) fn n_forced(&self, shape: &Shape) -> usize {
+        let is_forced = |cell: CellId| {
+            let found = self.left.binary_search_by_key(&cell, |left| left.cell);
+            found.is_ok_and(|i| self.left[i].is_forced)
+        };
+        shape.bad.iter().filter(|(cell, _)| is_forced(*cell)).count()
+    }
+
+    /// The mesh with its vertices at `points`.
+    pub(super) fn moved(&self, points: &[Point], contents: &[String]) -> Mesh {
+        let mut mesh = self.mesh.clone();
+        go_to(&mut mesh, points, contents);
+        mesh
+    }
+
+    /// Gives a mesh that is about to change what has to follow as point arrays; the rules with those for it.
+    pub(super) fn put_known(&self, mesh: &mut Mesh, rules: &Rules) -> Rules {
+        let mut rules = rules.clone();
+        for (name, values) in [(FIRST, &self.known.first), (BEFORE, &self.known.before)] {
+            mesh.set_point_field(Field::vectors(name, values));
+            rules.points.insert(name.to_owned(), Rule::Interpolate);
+        }
+        mesh.set_point_field(Field::scalars(SIZE, self.known.size.clone()));
+        // A rule may name an array that the user has taken off since.
+        rules.points.retain(|name, _| mesh.point_field(name).is_some());
+        rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
+        rules
+    }
+
+    /// What is known of the vertices of a mesh that came of one with [these arrays](Self::put_known).
+    pub(super) fn known_of(&self, mesh: &mut Mesh, history: &Arc<History>) -> Result<Known> {
+        let mut take = |name: &str| -> Result<Field> {
+            let place = mesh.point_data.iter().position(|field| field.name == name);
+            let place = place.ok_or_else(|| Error::input(format!("the array {name} was lost on the way")))?;
+            Ok(mesh.point_data.remove(place))
+        };
+        let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
+        let size = take(SIZE)?.values.to_f64().unwrap_or_default();
+        let node = |old: &VertexId| match *old == VertexId::NONE {
+            true => NO_NODE,
+            false => self.known.node[old.index()],
+        };
+        Ok(Known { first, before, size, node: history.vertices.kept().iter().map(node).collect() })
+    }
+}
+
+/// Puts the vertices of a mesh to `points`. The cell arrays that `contents` names are densities of what stays in its cell.
+pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
+    for field in mesh.cell_data.iter_mut().filter(|field| contents.contains(&field.name)) {
+        let n = field.components;
+        for (cell, corners) in mesh.cells.tets() {
+            let of = |points: &[Point]| tet::volume(corners.map(|v| points[v.index()])).abs();
+            let grown = of(points) / of(&mesh.points);
+            if grown == 1.0 || !(grown > 0.0 && grown.is_finite()) {
+                continue;
+            }
+            for i in cell.index() * n..(cell.index() + 1) * n {
+                if let Some(value) = field.values.get_f64(i) {
+                    field.values.set_f64(i, value / grown);
+                }
+            }
+        }
+    }
+    mesh.points.copy_from_slice(points);
+}
+
+/// Point arrays that go along while a mesh is changed.
+pub(super) const FIRST: &str = "moving:first";
+pub(super) const BEFORE: &str = "moving:before";
+pub(super) const SIZE: &str = "moving:size";

@@ -1,0 +1,173 @@
+//! What a moving mesh is told: patches by label, since ids do not outlast a change.
+
+use crate::base::{Result, VertexId};
+use crate::contact;
+use crate::mesh::history::Rules;
+use crate::mesh::{Boundary, Mesh, Surface, cone_volume};
+use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer};
+use crate::remesh;
+
+/// How a mesh is kept good while its walls move.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// How the inside follows the walls.
+    pub motion: Motion,
+    /// What is bad, and what may be done about it; `None`: nothing is repaired, and a step ends where a cell would turn over. Default: EAS below 0.2, the surface kept.
+    pub repair: Option<remesh::Options>,
+    /// Where something is repaired, tets up to this much above the limit are made better, too, so that the next step does not bring them below it at
+    /// once. Default: 0.05.
+    pub margin: f64,
+    /// No step, or part of one, takes a tet that can be repaired below this EAS: it is repaired on the way, as long as that is easy. Default: 0.05.
+    pub floor: f64,
+    /// Where repairs have left fewer tets than this part of those at first, the next one also brings edges back to the lengths that they had at
+    /// first. Default: 0.9; 0: never.
+    pub keep_tets: f64,
+    /// What becomes of arrays where the mesh changes.
+    pub rules: Rules,
+    /// Cell arrays whose integral over each cell stays while the cell moves: a density goes down where its cell grows. All others keep their values.
+    pub contents: Contents,
+    /// Which patches are watched. Default: none.
+    pub watch: Option<Watching>,
+    /// So many changes are remembered for [`MovingMesh::history_since`](super::MovingMesh::history_since). Default: 64.
+    pub remembered: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            motion: Motion::default(),
+            repair: Some(remesh::Options::default()),
+            margin: 0.05,
+            floor: 0.05,
+            keep_tets: 0.9,
+            rules: Rules::default(),
+            contents: Contents::default(),
+            watch: None,
+            remembered: 64,
+        }
+    }
+}
+
+impl Options {
+    /// The EAS below which a tet is bad.
+    pub fn limit(&self) -> f64 {
+        self.repair.as_ref().map_or(motion::BAD_EAS, remesh::Options::limit)
+    }
+}
+
+/// Names of cell arrays that are densities of something that stays in its cell.
+pub type Contents = Vec<String>;
+
+/// How the inside follows the walls: as [`motion::Options`], with patches by label.
+#[derive(Clone, Debug, Default)]
+pub struct Motion {
+    /// The method. Facets that it names are not looked at: see [`Self::bodies`].
+    pub method: Method,
+    /// The patches of [`Method::Bodies`], each a body; none: as there.
+    pub bodies: Vec<i32>,
+    /// As [`motion::Options::within_walls`].
+    pub within_walls: bool,
+    /// As [`motion::Options::smoothing`]. Default: none.
+    pub smoothing: usize,
+    /// Patches inside the volume whose vertices are driven, such as a flap.
+    pub inside: Vec<i32>,
+    /// Flat patches whose vertices slide in their plane.
+    pub sliding: Vec<i32>,
+    /// Vertices that keep their place relative to the wall, and the patches that are that wall; no patches: all that do not slide.
+    pub rigid_layer: Option<(Extent, Vec<i32>)>,
+    /// As [`motion::Options::limits`].
+    pub limits: Limits,
+}
+
+impl Motion {
+    /// The vertices of a mesh that are driven: those of its boundary, and of patches inside; rising. What [`Script`](super::Script) is about.
+    pub fn driven(&self, mesh: &Mesh) -> Vec<VertexId> {
+        let mut driven = Boundary::of(&mesh.cells).vertices;
+        driven.extend(self.driven_inside(mesh));
+        driven.sort_unstable();
+        driven
+    }
+
+    /// The same for a mesh as it is now.
+    pub(super) fn of(&self, mesh: &Mesh) -> motion::Options {
+        let sets = |labels: &[i32]| -> Vec<FacetSet> {
+            labels.iter().map(|&label| FacetSet::of_patch(mesh, label)).collect()
+        };
+        let method = match &self.method {
+            Method::Bodies(_) => Method::Bodies(sets(&self.bodies)),
+            other => other.clone(),
+        };
+        let rigid_layer = self
+            .rigid_layer
+            .as_ref()
+            .map(|(extent, wall)| RigidLayer { extent: *extent, wall: FacetSet::joined(sets(wall)) });
+        motion::Options {
+            method,
+            within_walls: self.within_walls,
+            smoothing: self.smoothing,
+            also_moved: self.driven_inside(mesh),
+            rigid_layer,
+            sliding: sets(&self.sliding),
+            limits: self.limits,
+        }
+    }
+
+    /// The vertices of patches inside that are driven and not on the boundary, rising.
+    fn driven_inside(&self, mesh: &Mesh) -> Vec<VertexId> {
+        if self.inside.is_empty() {
+            return Vec::new();
+        }
+        let boundary = Boundary::of(&mesh.cells).vertices;
+        let all = self.inside.iter().map(|&label| FacetSet::of_patch(mesh, label).vertices);
+        let mut inside: Vec<VertexId> =
+            all.flatten().filter(|v| boundary.binary_search(v).is_err()).collect();
+        inside.sort_unstable();
+        inside.dedup();
+        inside
+    }
+}
+
+/// Which patches are watched, and how.
+#[derive(Clone, Debug)]
+pub struct Watching {
+    /// Names or numbers of patches; each is a body. All pairs are measured.
+    pub patches: Vec<String>,
+    /// How.
+    pub options: contact::Options,
+    /// How far ahead is looked at the present velocity, in units of time; `None`: as long as the last step took.
+    pub horizon: Option<f64>,
+}
+
+impl Watching {
+    /// The bodies in a mesh. Those that are closed parts of its boundary have their free side where the volume is, however their triangles are turned in the file.
+    ///
+    /// # Errors
+    /// When it has no such patch.
+    pub(super) fn bodies(&self, mesh: &Mesh) -> Result<Vec<contact::Body>> {
+        let key = |t: &[VertexId; 3]| {
+            let mut key = *t;
+            key.sort_unstable();
+            key
+        };
+        let mut outward = Surface::boundary_of(mesh).triangles;
+        outward.sort_by_key(key);
+        let turned =
+            |t: &[VertexId; 3]| outward.binary_search_by_key(&key(t), key).ok().map(|place| outward[place]);
+        let bodies = contact::Body::of_mesh(mesh, "surface", &self.patches, 0)?;
+        let body = |(mut body, _): (contact::Body, _)| {
+            let all: Option<Vec<[VertexId; 3]>> = body.triangles.iter().map(turned).collect();
+            if let Some(mut triangles) = all.filter(|triangles| contact::is_closed(triangles)) {
+                // The outer wall is the room; what is closed otherwise is a body in it, and faces the volume.
+                let origin = mesh.points[triangles[0][0].index()];
+                let volume = |t: &[VertexId; 3]| cone_volume(t.iter().copied(), &mesh.points, origin);
+                body.is_room = triangles.iter().map(volume).sum::<f64>() >= 0.0;
+                if !body.is_room {
+                    triangles.iter_mut().for_each(|t| t.swap(1, 2));
+                }
+                body.triangles = triangles;
+            }
+            body
+        };
+        Ok(bodies.into_iter().map(body).collect())
+    }
+}

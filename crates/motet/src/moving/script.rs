@@ -1,0 +1,261 @@
+//! What walls do in time: motions told in words, displacements of their own, measured frames; each with a course in time.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, norm, scale, sub};
+use crate::motion::{FacetSet, Prescribed};
+
+/// The part of a motion that is done at a phase: 0 at the begin of a period, 1 at its end. Beyond, periods follow each other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum InTime {
+    /// There and back, softly: `(1 - cos(2 pi phase)) / 2`, all of it at half the period.
+    #[default]
+    Beat,
+    /// To one side, to the other, and back: `sin(2 pi phase)`.
+    Swing,
+    /// Evenly, from none at the begin of the first period to all of it at its end, where it stays.
+    Ramp,
+    /// Linear between these pairs of phase and part, which rise in phase; the first follows the last a period later.
+    Table(Vec<[f64; 2]>),
+}
+
+impl InTime {
+    /// # Errors
+    /// When a table has no two entries, phases outside of 0 to 1 or that do not rise, or a number that is not finite.
+    pub fn check(&self) -> Result<()> {
+        let Self::Table(table) = self else { return Ok(()) };
+        let is_finite = table.as_flattened().iter().all(|x| x.is_finite());
+        let is_rising = table.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+        let is_within = table.iter().all(|[phase, _]| (0.0..=1.0).contains(phase));
+        match table.len() > 1 && is_finite && is_rising && is_within {
+            true => Ok(()),
+            false => Err(Error::options(
+                "a course in time that is no table of two entries or more, phases rising from 0 to 1",
+            )
+            .remedy("give pairs of phase and part, such as [[0, 0], [0.3, 1], [1, 0]]")),
+        }
+    }
+
+    /// The part that is done.
+    pub fn at(&self, phase: f64) -> f64 {
+        let turn = std::f64::consts::TAU * (phase - phase.floor());
+        match self {
+            Self::Beat => {
+                let half = (0.5 * turn).sin();
+                half * half
+            }
+            Self::Swing => turn.sin(),
+            Self::Ramp => phase.clamp(0.0, 1.0),
+            Self::Table(table) => in_table(table, phase - phase.floor()),
+        }
+    }
+}
+
+fn in_table(table: &[[f64; 2]], phase: f64) -> f64 {
+    let (first, last) = (table[0], table[table.len() - 1]);
+    let after = table.partition_point(|[at, _]| *at <= phase);
+    let [a, b] = match after {
+        0 => [[last[0] - 1.0, last[1]], first],
+        n if n == table.len() => [last, [first[0] + 1.0, first[1]]],
+        n => [table[n - 1], table[n]],
+    };
+    let width = b[0] - a[0];
+    if width > 0.0 { a[1] + (b[1] - a[1]) * (phase - a[0]) / width } else { b[1] }
+}
+
+/// The displacement of each driven vertex at any time. A vertex obeys the first that is told about it; the others stay.
+#[derive(Clone, Debug)]
+pub struct Script {
+    /// The vertices of the first mesh, rising.
+    driven: Vec<VertexId>,
+    places: Vec<Point>,
+    /// Which part each obeys, and its place in it.
+    obeys: Vec<Option<(usize, usize)>>,
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug)]
+enum Part {
+    Stay,
+    /// A motion of space.
+    Follow(Prescribed, InTime),
+    /// A displacement for each vertex.
+    Go(Vec<Point>, InTime),
+    /// Displacements for each frame, evenly over a period; whether the first follows the last.
+    Frames(Vec<Vec<Point>>, bool),
+}
+
+impl Script {
+    /// Nothing moves. `driven` are the vertices that [`Motion::driven`](super::Motion::driven) tells, at their first `places`.
+    pub fn still(driven: &[VertexId], points: &[Point]) -> Self {
+        Self {
+            driven: driven.to_vec(),
+            places: driven.iter().map(|v| points[v.index()]).collect(),
+            obeys: vec![None; driven.len()],
+            parts: Vec::new(),
+        }
+    }
+
+    /// These stay; how many of them obey, since nothing was told about them before.
+    pub fn hold(&mut self, vertices: &[VertexId]) -> usize {
+        self.give(vertices, Part::Stay)
+    }
+
+    /// These follow a motion of space.
+    ///
+    /// # Errors
+    /// As [`Prescribed::check`] and [`InTime::check`].
+    pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed, in_time: InTime) -> Result<usize> {
+        motion.check()?;
+        in_time.check()?;
+        Ok(self.give(vertices, Part::Follow(motion, in_time)))
+    }
+
+    /// These go each its own way: `by` is the whole of it.
+    ///
+    /// # Errors
+    /// As [`InTime::check`]; when there are not as many ways as vertices.
+    pub fn go(&mut self, vertices: &[VertexId], by: Vec<Point>, in_time: InTime) -> Result<usize> {
+        in_time.check()?;
+        check_rows(&by, vertices)?;
+        Ok(self.give(vertices, Part::Go(by, in_time)))
+    }
+
+    /// These are where frames say, which are spread evenly over a period and linear in between.
+    ///
+    /// # Errors
+    /// When there is no frame, or one that has not as many displacements as there are vertices.
+    pub fn frames(
+        &mut self,
+        vertices: &[VertexId],
+        frames: Vec<Vec<Point>>,
+        is_periodic: bool,
+    ) -> Result<usize> {
+        if frames.is_empty() {
+            return Err(Error::input("a motion by frames without a frame"));
+        }
+        frames.iter().try_for_each(|frame| check_rows(frame, vertices))?;
+        Ok(self.give(vertices, Part::Frames(frames, is_periodic)))
+    }
+
+    fn give(&mut self, vertices: &[VertexId], part: Part) -> usize {
+        let mut n = 0;
+        for (row, v) in vertices.iter().enumerate() {
+            let Ok(i) = self.driven.binary_search(v) else { continue };
+            if self.obeys[i].is_none() {
+                self.obeys[i] = Some((self.parts.len(), row));
+                n += 1;
+            }
+        }
+        self.parts.push(part);
+        n
+    }
+
+    /// The displacement of each driven vertex at a phase: time over period.
+    pub fn at(&self, phase: f64) -> Vec<Point> {
+        let of = |(&place, obeys): (&Point, &Option<(usize, usize)>)| match obeys {
+            None => [0.0; 3],
+            Some((part, row)) => self.parts[*part].displacement(place, *row, phase),
+        };
+        self.places.iter().zip(&self.obeys).map(of).collect()
+    }
+}
+
+impl Part {
+    fn displacement(&self, place: Point, row: usize, phase: f64) -> Point {
+        match self {
+            Self::Stay => [0.0; 3],
+            Self::Follow(motion, in_time) => motion.displacement(place, in_time.at(phase)),
+            Self::Go(by, in_time) => scale(by[row], in_time.at(phase)),
+            Self::Frames(frames, is_periodic) => {
+                let n = frames.len();
+                // A phase of k / n is frame k, whatever rounding did to it.
+                let at = match is_periodic {
+                    true => whole((phase - phase.floor()) * n as f64),
+                    false => whole(phase.clamp(0.0, 1.0) * (n - 1) as f64),
+                };
+                let (k, part) = (at.floor() as usize, at - at.floor());
+                let [a, b] = [k % n, (k + 1) % n].map(|k| frames[k][row]);
+                if part == 0.0 { a } else { add(a, scale(sub(b, a), part)) }
+            }
+        }
+    }
+}
+
+/// A number of frames, whole where it is but for rounding.
+fn whole(x: f64) -> f64 {
+    if (x - x.round()).abs() < 1e-9 { x.round() } else { x }
+}
+
+fn check_rows(rows: &[Point], vertices: &[VertexId]) -> Result<()> {
+    match rows.len() == vertices.len() {
+        true => Ok(()),
+        false => Err(Error::input(format!("{} displacements for {} vertices", rows.len(), vertices.len()))),
+    }
+}
+
+/// The unit normals of the vertices of some facets, away from the volume where the facets face that way: means of the facets by area. The way of a wall that swells.
+pub fn normals(facets: &FacetSet, points: &[Point]) -> Vec<Point> {
+    let mut sums = vec![[0.0; 3]; facets.vertices.len()];
+    for triangle in facets.triangles() {
+        let area = area_vector(triangle.map(|v| points[v.index()]));
+        for v in triangle {
+            if let Ok(i) = facets.vertices.binary_search(&v) {
+                sums[i] = add(sums[i], area);
+            }
+        }
+    }
+    let unit = |v: Point| {
+        let length = norm(v);
+        if length > 0.0 { scale(v, 1.0 / length) } else { v }
+    };
+    sums.into_iter().map(unit).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn courses_in_time_are_what_their_names_say() {
+        assert_eq!([0.0, 0.5, 1.0, 2.5].map(|t| InTime::Beat.at(t)), [0.0, 1.0, 0.0, 1.0]);
+        assert!((InTime::Swing.at(0.25) - 1.0).abs() < 1e-15 && (InTime::Swing.at(1.75) + 1.0).abs() < 1e-15);
+        assert_eq!([0.0, 0.3, 1.0, 7.0].map(|t| InTime::Ramp.at(t)), [0.0, 0.3, 1.0, 1.0]);
+        let table = InTime::Table(vec![[0.25, 1.0], [0.75, 3.0]]);
+        assert_eq!([0.25, 0.5, 0.75, 0.0, 1.0, 0.875].map(|t| table.at(t)), [1.0, 2.0, 3.0, 2.0, 2.0, 2.5]);
+        assert!(table.check().is_ok());
+        for off in [
+            vec![],
+            vec![[0.0, 1.0]],
+            vec![[0.5, 0.0], [0.5, 1.0]],
+            vec![[0.0, 0.0], [1.5, 0.0]],
+            vec![[0.0, 0.0], [1.0, f64::NAN]],
+        ] {
+            assert!(InTime::Table(off).check().is_err());
+        }
+    }
+
+    #[test]
+    fn frames_are_met_to_the_bit_and_the_first_told_is_obeyed() {
+        let driven = [2, 4, 5].map(VertexId);
+        let points = vec![[1.0; 3]; 6];
+        let mut script = Script::still(&driven, &points);
+        let frames: Vec<Vec<Point>> =
+            (0..7).map(|k| vec![[0.1 * f64::from(k), 0.0, 0.0], [0.0, 1.0, 0.0]]).collect();
+        assert_eq!(script.frames(&[4, 1].map(VertexId), frames.clone(), true).unwrap(), 1);
+        assert_eq!(script.hold(&[4, 5].map(VertexId)), 1);
+        assert_eq!(
+            script.follow(&[2, 5].map(VertexId), Prescribed::Shift([0.0, 0.0, 2.0]), InTime::Ramp).unwrap(),
+            1
+        );
+        for k in 0..21 {
+            let at = script.at(f64::from(k) / 7.0);
+            assert_eq!(at[1], frames[k as usize % 7][0]);
+            assert_eq!(at[2], [0.0; 3]);
+        }
+        assert_eq!(script.at(0.5)[0], [0.0, 0.0, 1.0]);
+        assert!((script.at(6.5 / 7.0)[1][0] - 0.3).abs() < 1e-15);
+        assert!(script.frames(&driven, frames, false).is_err());
+        assert!(script.go(&driven, vec![[0.0; 3]; 2], InTime::Beat).is_err());
+    }
+}

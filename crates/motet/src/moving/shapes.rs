@@ -1,0 +1,128 @@
+//! Which tets are bad, and how bad the worst is.
+
+use crate::base::{CellId, Point, Threads, VertexId};
+use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
+use crate::geometry::tet;
+use crate::mesh::Cells;
+
+/// The tets of a mesh, turned so that most are positive, and which cells they are.
+#[derive(Clone, Debug)]
+pub(super) struct Tets {
+    corners: Vec<[VertexId; 4]>,
+    cells: Vec<CellId>,
+}
+
+/// How the tets are at some places of the vertices.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shape {
+    /// Those below the limit and their EAS, cells rising.
+    pub(super) bad: Vec<(CellId, f64)>,
+    /// The worst of all, with its EAS and the mean of its corners.
+    pub(super) worst: Option<(CellId, f64, Point)>,
+    /// How many are flat or inverted.
+    pub(super) inverted: usize,
+}
+
+/// Tets that one thread looks at in one go.
+const CHUNK: usize = 1 << 13;
+
+impl Tets {
+    pub(super) fn of(cells: &Cells, points: &[Point]) -> Self {
+        let (mut of_cells, mut corners) = (Vec::new(), Vec::new());
+        for (cell, tet) in cells.tets() {
+            of_cells.push(cell);
+            corners.push(tet);
+        }
+        let is_negative = |tet: &&[VertexId; 4]| tet::volume(tet.map(|v| points[v.index()])) < 0.0;
+        if 2 * corners.iter().filter(is_negative).count() > corners.len() {
+            corners.iter_mut().for_each(|tet| tet.swap(0, 1));
+        }
+        Self { corners, cells: of_cells }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Looks closely only where a rough look leaves a doubt.
+    pub(super) fn shape(&self, points: &[Point], limit: f64, threads: &Threads) -> Shape {
+        let chunks: Vec<usize> = (0..self.len()).step_by(CHUNK).collect();
+        let look = |start: usize| self.look(start..(start + CHUNK).min(self.len()), points, limit);
+        let parts = threads.each(chunks, look);
+        parts.into_iter().fold(Shape::default(), Shape::and)
+    }
+
+    fn look(&self, range: std::ops::Range<usize>, points: &[Point], limit: f64) -> Shape {
+        let corners = &self.corners[range.clone()];
+        let rough = rough_eas(points, corners);
+        let lowest = rough.iter().copied().fold(f32::INFINITY, f32::min);
+        let doubtful = (limit + ROUGH_EAS_ERROR).max(f64::from(lowest) + 2.0 * ROUGH_EAS_ERROR);
+        let mut shape = Shape::default();
+        for (i, tet) in
+            range.zip(corners).zip(&rough).filter(|(_, r)| f64::from(**r) <= doubtful).map(|(t, _)| t)
+        {
+            let place = tet.map(|v| points[v.index()]);
+            let (cell, quality) = (self.cells[i], eas(place));
+            if quality < limit {
+                shape.bad.push((cell, quality));
+            }
+            // A tet without an angle counts as flat.
+            if !(quality > 0.0) {
+                shape.inverted += 1;
+            }
+            if shape.worst.is_none_or(|(_, worst, _)| quality < worst) {
+                shape.worst = Some((cell, quality, tet::centroid(place)));
+            }
+        }
+        shape
+    }
+}
+
+impl Shape {
+    fn and(mut self, other: Self) -> Self {
+        self.bad.extend(other.bad);
+        self.inverted += other.inverted;
+        self.worst = match (self.worst, other.worst) {
+            (Some(a), Some(b)) if b.1 < a.1 => Some(b),
+            (a, b) => a.or(b),
+        };
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes::sphere_in_box;
+
+    #[test]
+    fn a_rough_look_finds_what_a_close_one_does() {
+        let mut mesh = sphere_in_box(4, 4);
+        for (i, p) in mesh.points.iter_mut().enumerate() {
+            (0..3).for_each(|k| p[k] += 0.35 * ((7 * i + 3 * k) as f64).sin());
+        }
+        let tets = Tets::of(&mesh.cells, &mesh.points);
+        for limit in [0.0, 0.2, 0.9] {
+            let shape = tets.shape(&mesh.points, limit, &Threads::single());
+            let all: Vec<(CellId, f64)> = (mesh.cells.tets())
+                .map(|(cell, tet)| (cell, eas(tet.map(|v| mesh.points[v.index()]))))
+                .collect();
+            let bad: Vec<_> = all.iter().copied().filter(|(_, q)| *q < limit).collect();
+            assert_eq!(shape.bad, bad);
+            assert_eq!(shape.inverted, all.iter().filter(|(_, q)| *q <= 0.0).count());
+            let worst = all.iter().copied().reduce(|a, b| if b.1 < a.1 { b } else { a });
+            assert_eq!(shape.worst.map(|(cell, quality, _)| (cell, quality)), worst);
+            assert!(limit == 0.0 || !bad.is_empty());
+        }
+    }
+
+    #[test]
+    fn tets_that_are_numbered_the_other_way_round_are_not_inverted() {
+        let mesh = sphere_in_box(2, 2);
+        let mut mirrored = mesh.clone();
+        mirrored.points.iter_mut().for_each(|p| p[0] = -p[0]);
+        let [a, b] = [&mesh, &mirrored]
+            .map(|m| Tets::of(&m.cells, &m.points).shape(&m.points, 0.2, &Threads::single()).worst.unwrap());
+        assert!(a.1 > 0.0 && (a.1 - b.1).abs() < 1e-12);
+    }
+}

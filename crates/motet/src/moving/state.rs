@@ -1,0 +1,158 @@
+//! All of a moving mesh in a file, and back: a run that was stopped goes on to the same bytes.
+//!
+//! The file is a VTU that ParaView opens as it is. What is beside the mesh stands in arrays whose names begin with `moving:`; they are taken off when it is read.
+
+use std::path::Path;
+
+use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
+use crate::io::{self, WriteOptions};
+use crate::mesh::{Field, Mesh, Values};
+use crate::motion::Mover;
+use crate::moving::handle::{Clock, MovingMesh};
+use crate::moving::now::{BEFORE, FIRST, Known, LeftBad, Now, SIZE};
+use crate::moving::options::Options;
+use crate::moving::wall::Wall;
+
+const PREFIX: &str = "moving:";
+const REFERENCE: &str = "moving:reference";
+const NODE: &str = "moving:node";
+const PLACES: &str = "moving:wall_places";
+const TRIANGLES: &str = "moving:wall_triangles";
+const LEFT: &str = "moving:left";
+const LEFT_EAS: &str = "moving:left_eas";
+const LEFT_FORCED: &str = "moving:left_forced";
+const CLOCK: &str = "moving:clock";
+
+impl MovingMesh {
+    /// Writes all that the next steps depend on. Changes before it are not in it: [`Self::remembers`] nothing that was before.
+    ///
+    /// # Errors
+    /// As [`io::write`].
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        let Now { mesh, mover, known, left, .. } = &self.now;
+        let clock = self.clock;
+        let mut file = mesh.clone();
+        for (name, values) in [(FIRST, &known.first), (BEFORE, &known.before)] {
+            file.set_point_field(Field::vectors(name, values));
+        }
+        file.set_point_field(Field::vectors(REFERENCE, mover.reference()));
+        file.set_point_field(Field::scalars(NODE, known.node.clone()));
+        file.set_point_field(Field::scalars(SIZE, known.size.clone()));
+        let triangles: Vec<u32> = self.wall.triangles.as_flattened().iter().map(|v| v.0).collect();
+        file.field_data.extend([
+            Field::vectors(PLACES, &self.wall.places),
+            Field { components: 3, ..Field::scalars(TRIANGLES, triangles) },
+            Field::scalars(LEFT, left.iter().map(|left| left.cell.0).collect::<Vec<_>>()),
+            Field::scalars(LEFT_EAS, left.iter().map(|left| left.eas).collect::<Vec<_>>()),
+            Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
+            Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
+        ]);
+        io::write(path, &file, &WriteOptions::default()).map(|_| ())
+    }
+
+    /// Goes on from what [`Self::save`] wrote, with the same options.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is no such file; as [`Self::new`].
+    pub fn load(path: impl AsRef<Path>, options: Options, threads: &Threads) -> Result<Self> {
+        let path = path.as_ref();
+        let file = io::read(path)?;
+        Self::taken(file, options, threads).map_err(|e| match e.file() {
+            Some(_) => e,
+            None => e.in_file(path),
+        })
+    }
+
+    fn taken(mut mesh: Mesh, options: Options, threads: &Threads) -> Result<Self> {
+        let mut taken = Taken { fields: Vec::new() };
+        for list in [&mut mesh.point_data, &mut mesh.field_data] {
+            let is_ours = |field: &mut Field| field.name.starts_with(PREFIX);
+            taken.fields.extend(list.extract_if(.., is_ours));
+        }
+        let clock = taken.floats(CLOCK)?;
+        let &[step, time, dt, n_first] = clock.as_slice() else { return Err(no_state(CLOCK)) };
+        let clock = Clock { step: step as usize, time, dt, n_first: n_first as usize };
+        let known = Known {
+            first: taken.vectors(FIRST)?,
+            before: taken.vectors(BEFORE)?,
+            node: taken.ids(NODE)?,
+            size: taken.floats(SIZE)?,
+        };
+        let wall = Wall { places: taken.vectors(PLACES)?, triangles: triangles(&taken.ids(TRIANGLES)?)? };
+        check(&wall, &known, mesh.points.len())?;
+        let left = taken.left(mesh.cells.len())?;
+        let here = std::mem::replace(&mut mesh.points, taken.vectors(REFERENCE)?);
+        let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
+        mesh.points = here;
+        let now = Now::of(mesh, mover, known, left, &wall, threads)?;
+        let forgotten = Some(clock.step);
+        let mut moving = Self::of(options, wall, now, clock);
+        moving.forgotten = forgotten;
+        Ok(moving)
+    }
+}
+
+/// The arrays that were taken off a file.
+struct Taken {
+    fields: Vec<Field>,
+}
+
+impl Taken {
+    fn field(&self, name: &str) -> Result<&Field> {
+        self.fields.iter().find(|field| field.name == name).ok_or_else(|| no_state(name))
+    }
+
+    fn vectors(&self, name: &str) -> Result<Vec<Point>> {
+        self.field(name)?.to_vectors()
+    }
+
+    fn floats(&self, name: &str) -> Result<Vec<f64>> {
+        self.field(name)?.values.to_f64().ok_or_else(|| no_state(name))
+    }
+
+    fn ids(&self, name: &str) -> Result<Vec<u32>> {
+        match &self.field(name)?.values {
+            Values::U32(ids) => Ok(ids.clone()),
+            _ => Err(no_state(name)),
+        }
+    }
+
+    fn left(&self, n_cells: usize) -> Result<Vec<LeftBad>> {
+        let (cells, eas, forced) = (self.ids(LEFT)?, self.floats(LEFT_EAS)?, self.floats(LEFT_FORCED)?);
+        let is_right = cells.len() == eas.len()
+            && cells.len() == forced.len()
+            && cells.is_sorted()
+            && cells.iter().all(|&cell| (cell as usize) < n_cells);
+        if !is_right {
+            return Err(no_state(LEFT));
+        }
+        let all = cells.into_iter().zip(eas).zip(forced);
+        Ok(all
+            .map(|((cell, eas), forced)| LeftBad { cell: CellId(cell), eas, is_forced: forced != 0.0 })
+            .collect())
+    }
+}
+
+fn triangles(ids: &[u32]) -> Result<Vec<[VertexId; 3]>> {
+    match ids.as_chunks::<3>() {
+        (triangles, []) => Ok(triangles.iter().map(|t| t.map(VertexId)).collect()),
+        _ => Err(no_state(TRIANGLES)),
+    }
+}
+
+fn check(wall: &Wall, known: &Known, n_points: usize) -> Result<()> {
+    let n = wall.places.len();
+    let is_node = |&node: &u32| node == super::wall::NO_NODE || (node as usize) < n;
+    if !known.node.iter().all(is_node) || known.node.len() != n_points {
+        return Err(no_state(NODE));
+    }
+    match wall.triangles.as_flattened().iter().all(|v| v.index() < n) {
+        true => Ok(()),
+        false => Err(no_state(TRIANGLES)),
+    }
+}
+
+fn no_state(name: &str) -> Error {
+    Error::input(format!("is no state of a moving mesh, or is damaged: the array {name} is missing or off"))
+        .remedy("start the run anew")
+}

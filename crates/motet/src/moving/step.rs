@@ -1,0 +1,135 @@
+//! What a step says of itself.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::base::{CellId, Point};
+use crate::mesh::history::History;
+use crate::remesh::Counts;
+
+/// What became of a step: the certificate of the mesh as it is now.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Step {
+    /// Its number, from 1.
+    pub step: usize,
+    /// The time that was reached.
+    pub time: f64,
+    /// Whether the walls are where they were asked to be.
+    pub complete: bool,
+    /// The part of the way that was gone: 1 when complete.
+    pub fraction: f64,
+    /// In how many parts it was gone; 1 as a rule.
+    pub legs: usize,
+    /// What was changed, in order.
+    pub changes: Vec<Change>,
+    /// Points of the mesh.
+    pub points: usize,
+    /// Its tets.
+    pub tets: usize,
+    /// Tets whose EAS is below the limit.
+    pub bad: usize,
+    /// Of these, tets that walls force: too narrow an angle or gap for a good one.
+    pub forced: usize,
+    /// Tets that are flat or inverted.
+    pub inverted: usize,
+    /// The worst tet.
+    pub worst: Option<WorstTet>,
+    /// How near the watched patches are.
+    pub gaps: Option<Gaps>,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// The worst tet of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WorstTet {
+    /// Its EAS.
+    pub eas: f64,
+    /// Which cell.
+    pub cell: CellId,
+    /// The mean of its corners.
+    pub place: Point,
+}
+
+/// Why a mesh changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Why {
+    /// Tets were bad.
+    Repair,
+    /// Tets were to be divided, or divisions taken back.
+    Refinement,
+}
+
+/// A change of connectivity, at one time.
+#[derive(Clone, Debug, Serialize)]
+pub struct Change {
+    /// When.
+    pub time: f64,
+    /// Why.
+    pub why: Why,
+    /// Tets before.
+    pub tets_before: usize,
+    /// Tets after.
+    pub tets_after: usize,
+    /// The part of the tets that are as they came, to the bit.
+    pub kept_share: f64,
+    /// Bad tets before, by the limit of the step.
+    pub bad_before: usize,
+    /// The worst EAS before.
+    pub worst_before: f64,
+    /// How often each operation was made; of repairs.
+    pub operations: Counts,
+    /// By how much new tets took more or less than the volume of old ones, as a part of what changed.
+    pub volume_deviation: f64,
+    /// From the mesh before to the mesh after, both at this time.
+    #[serde(skip)]
+    pub history: Arc<History>,
+    /// Where the vertices of the mesh before were at this time.
+    #[serde(skip)]
+    pub points_before: Vec<Point>,
+}
+
+/// How near watched patches are to each other.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Gaps {
+    /// The least gap of all; `None` where nothing is within reach.
+    pub least: Option<f64>,
+    /// Every pair.
+    pub pairs: Vec<Closest>,
+    /// Vertices that warn.
+    pub warned: usize,
+    /// Nothing touches earlier, at the velocities of this step; `None`: not within the horizon.
+    pub touch_not_before: Option<f64>,
+}
+
+/// The nearest places of two patches.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Closest {
+    /// Their names.
+    pub patches: [String; 2],
+    /// How far apart; `None` where farther than is looked.
+    pub gap: Option<f64>,
+    /// The place on the first.
+    pub place: Option<Point>,
+    /// Triangles that cross.
+    pub crossings: usize,
+}
+
+/// Seconds by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Placing vertices.
+    pub motion: f64,
+    /// Looking for bad and inverted tets.
+    pub quality: f64,
+    /// Repairing, and carrying arrays.
+    pub repair: f64,
+    /// Setting the motion up again after a change.
+    pub setup: f64,
+    /// Measuring gaps.
+    pub contact: f64,
+    /// All of it.
+    pub total: f64,
+}

@@ -1,0 +1,71 @@
+//! How near patches are to each other, and how long surely nothing touches.
+
+use crate::base::{Point, Result, Threads};
+use crate::contact::{self, Contact, FirstContact};
+use crate::mesh::Mesh;
+use crate::moving::options::Watching;
+use crate::moving::step::{Closest, Gaps};
+
+/// The watched patches. Prepared once for each mesh, refitted at each step.
+#[derive(Clone, Debug)]
+pub(super) struct Watch {
+    asked: Watching,
+    contact: Option<Contact>,
+    /// What was measured last.
+    pub(super) last: Option<contact::Gaps>,
+}
+
+impl Watch {
+    pub(super) fn new(asked: Watching) -> Self {
+        Self { asked, contact: None, last: None }
+    }
+
+    /// The mesh has other triangles now.
+    pub(super) fn forget(&mut self) {
+        self.contact = None;
+    }
+
+    /// Measures, and looks ahead where there is a velocity and time to look.
+    pub(super) fn measure(
+        &mut self,
+        mesh: &Mesh,
+        velocity: Option<(&[Point], f64)>,
+        threads: &Threads,
+    ) -> Result<Gaps> {
+        let contact = match self.contact.take() {
+            Some(mut contact) => {
+                contact.refit(&mesh.points, threads)?;
+                contact
+            }
+            None => Contact::new(mesh.points.clone(), self.asked.bodies(mesh)?, self.asked.options, threads)?,
+        };
+        let contact = self.contact.insert(contact);
+        let gaps = contact.measure(threads);
+        let first = match velocity {
+            Some((velocity, dt)) => {
+                let horizon = self.asked.horizon.unwrap_or(dt);
+                contact.look_ahead(velocity, horizon, threads)?.first
+            }
+            None => None,
+        };
+        let told = told(contact, &gaps, first);
+        self.last = Some(gaps);
+        Ok(told)
+    }
+}
+
+fn told(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) -> Gaps {
+    let name = |body: u32| contact.name(body).to_owned();
+    let pairs = gaps.pairs.iter().map(|pair| Closest {
+        patches: pair.bodies.map(name),
+        gap: pair.nearest.map(|nearest| nearest.distance),
+        place: pair.nearest.map(|nearest| nearest.points[0]),
+        crossings: pair.crossings.len(),
+    });
+    Gaps {
+        least: Some(gaps.least()).filter(|least| least.is_finite()),
+        pairs: pairs.collect(),
+        warned: gaps.bodies.iter().map(|body| body.warning.iter().filter(|w| **w).count()).sum(),
+        touch_not_before: first.map(|first| first.time),
+    }
+}

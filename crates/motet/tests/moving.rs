@@ -1,0 +1,338 @@
+//! A mesh that moves with its walls: repaired on the way, arrays and maps carried, saved and gone on with, watched.
+
+use motet::base::{Point, Threads, VertexId, Watch};
+use motet::contact;
+use motet::geometry::tet::volume;
+use motet::geometry::vector::{add, norm, sub};
+use motet::mesh::shapes::{TubeOptions, WallCells, sphere_in_box, tube};
+use motet::mesh::{Field, Mesh, check};
+use motet::motion::Prescribed;
+use motet::moving::{MovingMesh, Options, Watching, Why};
+use motet::refine::{Criterion, Wanted};
+use motet::{ErrorKind, Result};
+
+fn threads() -> Threads {
+    Threads::single()
+}
+
+fn is_sphere(p: Point) -> bool {
+    norm(p) < 1.01
+}
+
+/// A displacement for each driven vertex: `of` the sphere, none of the box.
+fn sphere_goes(moving: &MovingMesh, of: impl Fn(Point) -> Point) -> Vec<Point> {
+    let goes = |&p: &Point| if is_sphere(p) { sub(of(p), p) } else { [0.0; 3] };
+    moving.driven_places().iter().map(goes).collect()
+}
+
+fn shift(by: Point) -> impl Fn(Point) -> Point {
+    move |p| add(p, by)
+}
+
+fn total_volume(mesh: &Mesh) -> f64 {
+    mesh.cells.tets().map(|(_, tet)| volume(tet.map(|v| mesh.points[v.index()]))).sum()
+}
+
+fn content(mesh: &Mesh, name: &str) -> f64 {
+    let density = mesh.cell_field(name).unwrap().values.to_f64().unwrap();
+    let of = |tet: [VertexId; 4]| volume(tet.map(|v| mesh.points[v.index()]));
+    mesh.cells.tets().map(|(cell, tet)| density[cell.index()] * of(tet)).sum()
+}
+
+fn box_mesh() -> Mesh {
+    let mut mesh = sphere_in_box(6, 5);
+    let linear: Vec<f64> = mesh.points.iter().map(|p| 1.0 + 0.5 * p[0] - 0.25 * p[2]).collect();
+    mesh.set_point_field(Field::scalars("linear", linear));
+    let dye = (0..mesh.cells.len()).map(|i| 1.0 + (i as f64 * 0.1).sin()).collect::<Vec<_>>();
+    mesh.set_cell_field(Field::scalars("dye", dye));
+    mesh
+}
+
+/// Back and forth along x, as far as three radii of the sphere from the middle, where one radius is left to the wall; and half a turn there.
+fn cycle(k: usize) -> Prescribed {
+    let angle = k as f64 / 12.0 * std::f64::consts::TAU;
+    let turn = Prescribed::Turn { axis: [0.1, 0.2, 1.0], angle: 1.6 * angle.sin(), centre: [0.0; 3] };
+    Prescribed::Sequence(vec![turn, Prescribed::Shift([3.0 * angle.sin(), 0.4 * (2.0 * angle).sin(), 0.0])])
+}
+
+fn along(motion: Prescribed) -> impl Fn(Point) -> Point {
+    move |p| motion.apply(p, 1.0)
+}
+
+fn options() -> Options {
+    let mut options = Options { contents: vec!["dye".into()], ..Options::default() };
+    options.motion.smoothing = 2;
+    options
+}
+
+#[test]
+fn a_sphere_goes_far_and_comes_back_again_and_again_and_no_tet_is_bad() {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    let (volume_at_first, dye_at_first) = (total_volume(&mesh), content(&mesh, "dye"));
+    let mut n_changes = 0;
+    for k in 1..=36 {
+        let displacement = sphere_goes(&moving, along(cycle(k)));
+        let step = moving.advance(k as f64, &displacement, &threads()).unwrap();
+        let worst = step.worst.unwrap();
+        println!(
+            "step {k}: {} tets, {} bad, worst {:.4}, {} legs, {} changes",
+            step.tets,
+            step.bad,
+            worst.eas,
+            step.legs,
+            step.changes.len()
+        );
+        assert!(step.complete && step.inverted == 0 && step.bad == 0 && worst.eas >= 0.2);
+        assert_eq!((step.step, step.time, moving.step(), moving.time()), (k, k as f64, k, k as f64));
+        n_changes += step.changes.len();
+        let now = moving.mesh();
+        assert!(check::check(now).is_empty(), "{:?}", check::check(now));
+        // The walls are where they were told to be.
+        let all = now.points.iter().zip(moving.displacement()).map(|(&p, d)| (sub(p, d), d));
+        let mut n = 0;
+        for (first, d) in all.filter(|(first, _)| is_sphere(*first)) {
+            assert!(norm(sub(d, cycle(k).displacement(first, 1.0))) < 1e-13);
+            n += 1;
+        }
+        assert_eq!(n, moving.driven_places().iter().filter(|p| is_sphere(**p)).count());
+        assert!((total_volume(now) - volume_at_first).abs() < 1e-12 * volume_at_first);
+        assert!((content(now, "dye") - dye_at_first).abs() < 1e-12 * dye_at_first, "step {k}");
+    }
+    assert!(n_changes > 3, "the motion is far enough to need repair");
+}
+
+#[test]
+fn as_long_as_nothing_changes_a_step_depends_on_where_the_walls_are_alone() {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    let there = sphere_goes(&moving, shift([0.4, 0.1, -0.2]));
+    let away = sphere_goes(&moving, shift([-0.5, 0.3, 0.1]));
+    let still = vec![[0.0; 3]; there.len()];
+    moving.advance(1.0, &there, &threads()).unwrap();
+    let first = moving.mesh().points.clone();
+    moving.advance(2.0, &away, &threads()).unwrap();
+    assert!(moving.advance(3.0, &there, &threads()).unwrap().changes.is_empty());
+    assert_eq!(moving.mesh().points, first);
+    moving.advance(4.0, &still, &threads()).unwrap();
+    assert_eq!(moving.mesh().points, mesh.points);
+    assert!(moving.history_since(0).is_none());
+    let back: Vec<Point> = first.iter().zip(&mesh.points).map(|(&a, &b)| sub(b, a)).collect();
+    assert_eq!(moving.velocity(), back);
+}
+
+#[test]
+fn histories_lead_from_any_step_to_the_present_one() {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    // Arrays of the caller's own, one set at first and one later, each where vertices were at that time.
+    let mut kept: Vec<(usize, Field)> = vec![(0, Field::vectors("place", &mesh.points))];
+    for k in 1..=6 {
+        let displacement = sphere_goes(&moving, along(cycle(k)));
+        let step = moving.advance(k as f64, &displacement, &threads()).unwrap();
+        for change in &step.changes {
+            assert_eq!(change.why, Why::Repair);
+            assert!(change.bad_before > 0 && change.volume_deviation < 1e-12);
+            assert_eq!(change.points_before.len(), change.history.vertices.n_old());
+        }
+        if k == 3 {
+            kept.push((3, Field::vectors("place", &moving.mesh().points)));
+        }
+    }
+    for (step, field) in kept {
+        let history = moving.history_since(step).expect("there were changes");
+        let carried = history.transfer_points(&field).unwrap().to_vectors().unwrap();
+        assert_eq!(carried.len(), moving.mesh().points.len());
+        // Kept vertices have the very place that they had then.
+        let vertices =
+            history.vertices.kept().iter().zip(&carried).filter(|(old, _)| **old != motet::base::Id::NONE);
+        let old = field.to_vectors().unwrap();
+        vertices.for_each(|(v, &place)| assert_eq!(place, old[v.index()]));
+    }
+    assert!(moving.remembers(0) && moving.remembers(6) && !moving.remembers(7));
+    let mut short = MovingMesh::new(&mesh, Options { remembered: 1, ..options() }, &threads()).unwrap();
+    for k in 1..=12 {
+        let displacement = sphere_goes(&short, along(cycle(k)));
+        short.advance(k as f64, &displacement, &threads()).unwrap();
+    }
+    assert!(!short.remembers(0) && short.history_since(0).is_none());
+}
+
+#[test]
+fn a_run_that_is_saved_and_loaded_ends_with_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.vtu");
+    let mesh = box_mesh();
+    let watched = || {
+        let watch = Watching {
+            patches: vec!["sphere".into(), "box".into()],
+            options: contact::Options { warn: Some(1.5), ..contact::Options::default() },
+            horizon: Some(3.0),
+        };
+        Options { watch: Some(watch), ..options() }
+    };
+    let mut whole = MovingMesh::new(&mesh, watched(), &threads()).unwrap();
+    let mut broken = MovingMesh::new(&mesh, watched(), &Threads::new(2).unwrap()).unwrap();
+    for k in 1..=14 {
+        let displacement = sphere_goes(&whole, along(cycle(k)));
+        let a = whole.advance(k as f64, &displacement, &threads()).unwrap();
+        broken.save(&file).unwrap();
+        // Every other time with more threads.
+        let threads = Threads::new(1 + k % 2).unwrap();
+        broken = MovingMesh::load(&file, watched(), &threads).unwrap();
+        assert_eq!(broken.driven_places(), whole.driven_places());
+        let b = broken.advance(k as f64, &displacement, &threads).unwrap();
+        assert_eq!((a.bad, a.legs, a.worst, &a.gaps), (b.bad, b.legs, b.worst, &b.gaps));
+        assert_eq!(broken.mesh(), whole.mesh(), "step {k}");
+        assert_eq!(broken.velocity(), whole.velocity());
+        assert!(broken.remembers(k - 1) && (k < 2 || !broken.remembers(k - 2)));
+    }
+}
+
+#[test]
+fn what_is_no_state_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.vtu");
+    let mesh = sphere_in_box(2, 2);
+    motet::io::write(&file, &mesh, &motet::io::WriteOptions::default()).unwrap();
+    let told = MovingMesh::load(&file, Options::default(), &threads()).unwrap_err();
+    assert_eq!(told.kind(), ErrorKind::Input);
+    assert!(told.to_string().contains("state.vtu") && told.to_string().contains("no state"), "{told}");
+    MovingMesh::new(&mesh, Options::default(), &threads()).unwrap().save(&file).unwrap();
+    let saved = motet::io::read(&file).unwrap();
+    let damaged = |change: &dyn Fn(&mut Mesh)| {
+        let mut mesh = saved.clone();
+        change(&mut mesh);
+        motet::io::write(&file, &mesh, &motet::io::WriteOptions::default()).unwrap();
+        MovingMesh::load(&file, Options::default(), &threads()).unwrap_err().to_string()
+    };
+    let node = |mesh: &mut Mesh| {
+        let n = mesh.points.len();
+        mesh.set_point_field(Field::scalars("moving:node", vec![4_000_000_u32; n]));
+    };
+    assert!(damaged(&node).contains("moving:node"));
+    assert!(damaged(&|mesh| mesh.field_data.retain(|f| f.name != "moving:clock")).contains("moving:clock"));
+    assert!(damaged(&|mesh| mesh.point_data.retain(|f| f.name != "moving:first")).contains("moving:first"));
+}
+
+#[test]
+fn what_cannot_be_done_leaves_all_as_it_was() -> Result<()> {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, options(), &threads())?;
+    let far = sphere_goes(&moving, shift([2.9, 0.0, 0.0]));
+    moving.advance(1.0, &sphere_goes(&moving, shift([0.5, 0.0, 0.0])), &threads())?;
+    let (before, velocity) = (moving.mesh().clone(), moving.velocity());
+    let mut broken = far.clone();
+    broken[7][1] = f64::NAN;
+    let watch = Watch::new();
+    watch.stop();
+    let stopped = Threads::single().watched(&watch);
+    let told = [
+        moving.advance(2.0, &far[1..], &threads()).unwrap_err(),
+        moving.advance(2.0, &broken, &threads()).unwrap_err(),
+        moving.advance(1.0, &far, &threads()).unwrap_err(),
+        moving.advance(f64::INFINITY, &far, &threads()).unwrap_err(),
+        moving.advance(2.0, &far, &stopped).unwrap_err(),
+    ];
+    for (error, part) in told.iter().zip(["driven", "vertex 7", "not after 1", "not after", "stopped"]) {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    assert_eq!((moving.mesh(), moving.velocity(), moving.step()), (&before, velocity, 1));
+    assert!(moving.set_cell_field(Field::scalars("p", vec![0.0; 3])).is_err());
+    assert!(moving.advance(2.0, &far, &threads())?.complete);
+    Ok(())
+}
+
+#[test]
+fn without_repair_a_motion_ends_where_a_cell_would_turn_over() {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, Options { repair: None, ..options() }, &threads()).unwrap();
+    let n_cells = mesh.cells.len();
+    let through = sphere_goes(&moving, shift([4.2, 0.0, 0.0]));
+    let step = moving.advance(1.0, &through, &threads()).unwrap();
+    assert!(!step.complete && step.fraction > 0.5 && step.fraction < 1.0 && step.inverted == 0);
+    assert_eq!(step.time, step.fraction);
+    assert_eq!(moving.mesh().cells.len(), n_cells);
+    // With it the sphere goes through the wall as little.
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    let step = moving.advance(1.0, &through, &threads()).unwrap();
+    assert!(!step.complete && step.inverted == 0, "{step:?}");
+}
+
+#[test]
+fn what_is_refined_moves_on_and_comes_back() {
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    let wanted = Wanted {
+        criteria: vec![Criterion::Ball { centre: [0.0; 3], radius: 1.3 }],
+        generations: Some(1),
+        ..Wanted::default()
+    };
+    moving.advance(1.0, &sphere_goes(&moving, shift([0.3, 0.0, 0.0])), &threads()).unwrap();
+    let change = moving.refine(&wanted, &threads()).unwrap().expect("something was divided");
+    assert!(change.why == Why::Refinement && change.tets_after > change.tets_before && change.time == 1.0);
+    let n_divided = moving.mesh().cells.len();
+    assert!(check::check(moving.mesh()).is_empty());
+    // Displacements are still those of the first walls: new vertices of the sphere follow the triangles that they divide.
+    for k in 2..=6 {
+        let by = [0.3 * k as f64, 0.0, 0.0];
+        let step = moving.advance(k as f64, &sphere_goes(&moving, shift(by)), &threads()).unwrap();
+        assert!(step.complete && step.inverted == 0 && step.bad == 0);
+        let of_sphere = moving.displacement().into_iter().zip(&moving.mesh().points);
+        let near = of_sphere.filter(|(d, p)| norm(sub(**p, *d)) < 1.0 + 1e-9);
+        near.for_each(|(d, _)| assert!(norm(sub(d, by)) < 1e-12, "{d:?}"));
+    }
+    for k in (0..=5).rev() {
+        let by = [0.3 * f64::from(k), 0.0, 0.0];
+        let step = moving.advance(12.0 - f64::from(k), &sphere_goes(&moving, shift(by)), &threads()).unwrap();
+        assert!(step.complete && step.bad == 0);
+    }
+    let back = Wanted { coarsen: true, ..Wanted::default() };
+    moving.refine(&back, &threads()).unwrap().expect("something was taken back");
+    println!(
+        "{} cells at first, {n_divided} divided, {} at the end",
+        mesh.cells.len(),
+        moving.mesh().cells.len()
+    );
+    assert!(moving.mesh().cells.len() < n_divided);
+}
+
+#[test]
+fn what_comes_near_is_warned_of_before_it_is_there() {
+    let mesh = box_mesh();
+    let watch = Watching {
+        patches: vec!["sphere".into(), "box".into()],
+        options: contact::Options { warn: Some(1.2), ..contact::Options::default() },
+        horizon: Some(100.0),
+    };
+    let mut moving = MovingMesh::new(&mesh, Options { watch: Some(watch), ..options() }, &threads()).unwrap();
+    for k in 1..=6 {
+        let by = 0.5 * f64::from(k);
+        let step =
+            moving.advance(f64::from(k), &sphere_goes(&moving, shift([by, 0.0, 0.0])), &threads()).unwrap();
+        let gaps = step.gaps.unwrap();
+        // The sphere's triangles lie within it, vertices on it.
+        assert!((gaps.least.unwrap() - (4.0 - by)).abs() < 1e-12);
+        assert_eq!(gaps.warned > 0, by > 2.8, "{by}: {gaps:?}");
+        let touch = gaps.touch_not_before.unwrap();
+        assert!(touch <= (4.0 - by) / 0.5 && touch > 0.99 * (4.0 - by) / 0.5);
+        assert_eq!(gaps.pairs[0].patches, ["sphere", "box"]);
+        assert!(moving.gaps().unwrap().least() == gaps.least.unwrap());
+    }
+}
+
+#[test]
+fn wedges_at_the_wall_stay_and_tets_inside_are_repaired() {
+    let mesh = tube(&TubeOptions { wall_layers: 3, wall_cells: WallCells::Wedges, ..TubeOptions::default() });
+    let mut moving = MovingMesh::new(&mesh, Options::default(), &threads()).unwrap();
+    let kinds = |mesh: &Mesh| mesh.cells.counts();
+    let wedges = |mesh: &Mesh| kinds(mesh).into_iter().find(|(k, _)| *k == motet::mesh::CellKind::WEDGE);
+    for k in 1..=4 {
+        // The vessel bends.
+        let bend = |p: &Point| [0.02 * f64::from(k) * p[2] * p[2], 0.0, 0.0];
+        let displacement: Vec<Point> = moving.driven_places().iter().map(bend).collect();
+        let step = moving.advance(f64::from(k), &displacement, &threads()).unwrap();
+        assert!(step.complete && step.inverted == 0);
+        assert_eq!(wedges(moving.mesh()), wedges(&mesh));
+    }
+}
