@@ -8,7 +8,7 @@
 //! | `watch` | long calls: Ctrl-C and progress |
 //! | `words` | what a call may say: patches, rules of arrays, threads |
 //! | `shapes` | meshes of the library's own |
-//! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact` | a verb or a handle each |
+//! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | a verb or a handle each |
 
 mod arrays;
 mod border;
@@ -19,6 +19,7 @@ mod history;
 mod implant;
 mod meshing;
 mod motion;
+mod moving;
 mod refine;
 mod remesh;
 mod report;
@@ -45,6 +46,8 @@ mod _motet {
     use crate::meshing::mesh;
     #[pymodule_export]
     use crate::motion::{Mover, PointMover, choose, mesh_velocity, patch_vertices, prescribed};
+    #[pymodule_export]
+    use crate::moving::MovingMesh;
     #[pymodule_export]
     use crate::refine::{Criterion, Refinement, refined};
     #[pymodule_export]

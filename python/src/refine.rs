@@ -26,7 +26,7 @@ use crate::words::{rules, threads};
 /// What is to be divided.
 #[pyclass(frozen, from_py_object, module = "motet._motet")]
 #[derive(Clone)]
-pub(crate) struct Criterion(refine::Criterion);
+pub(crate) struct Criterion(pub(crate) refine::Criterion);
 
 /// A share of the error, or a number of tets.
 #[derive(FromPyObject)]

@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{contact, convert, demo, implant, info, meshing, moving, refine, remesh};
+use crate::verbs::{cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, run};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -25,12 +25,14 @@ pub(crate) struct Call {
 pub(crate) enum Verb {
     Info(info::InfoArgs),
     Convert(convert::ConvertArgs),
+    Cap(cap::CapArgs),
     Mesh(Box<meshing::MeshArgs>),
     Move(Box<moving::MoveArgs>),
     Remesh(Box<remesh::RemeshArgs>),
     Refine(Box<refine::RefineArgs>),
     Implant(Box<implant::ImplantArgs>),
     Contact(Box<contact::ContactArgs>),
+    Run(run::RunArgs),
     Demo(demo::DemoArgs),
 }
 

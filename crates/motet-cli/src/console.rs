@@ -21,6 +21,11 @@ impl Console {
         Self { json: common.json, quiet: common.quiet, verbose: common.verbose }
     }
 
+    /// The same, but for the objects of single results: where one object at the end stands for all.
+    pub(crate) fn without_reports(&self) -> Self {
+        Self { json: false, quiet: self.quiet || self.json, verbose: self.verbose }
+    }
+
     /// The result for people, on standard output; nothing where JSON is asked for.
     pub(crate) fn say(&self, text: impl Display) {
         if !self.json && !self.quiet {

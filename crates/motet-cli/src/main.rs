@@ -30,12 +30,14 @@ fn main() -> ExitCode {
     let outcome = match call.verb {
         Verb::Info(args) => verbs::info::run(&args, &console),
         Verb::Convert(args) => verbs::convert::run(&args, &console),
+        Verb::Cap(args) => verbs::cap::run(&args, &console),
         Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
         Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
         Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
         Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),
         Verb::Implant(args) => verbs::implant::run(&args, &call.common, &console),
         Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
+        Verb::Run(args) => verbs::run::run(&args, &call.common, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
     exit::status(outcome, &console)

@@ -6,7 +6,7 @@
 >>> points, certificate = mover.advance(displacement)             # doctest: +SKIP
 
 Verbs take a :class:`Mesh`, a path, a ``meshio.Mesh`` or a PyVista data set, and give back new meshes; what they are given stays as it was.
-Handles (:class:`Mover`, :class:`Refinement`, :class:`Contact`) are set up once and used step after step.
+Handles (:class:`Mover`, :class:`MovingMesh`, :class:`Refinement`, :class:`Contact`) are set up once and used step after step.
 """
 from . import shapes
 from ._motet import __version__, formats
@@ -15,12 +15,13 @@ from ._contact import Ahead, Body, Contact, Gaps
 from .errors import Error, FileError, InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, read
 from ._motion import Moved, Mover, PointMover, mesh_velocity, move
+from ._moving import MovingMesh
 from ._refinement import Refinement, refine
 from ._report import Report
 from ._series import SeriesWriter, read_nodal, read_series, write_nodal
 
 __all__ = [
     "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "Mesh", "MeshLike", "Moved", "Mover",
-    "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_nodal",
+    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_nodal",
     "read_series", "refine", "remesh", "shapes", "write_nodal", "__version__",
 ]  # fmt: skip

@@ -97,6 +97,38 @@ def refine(
     Changed
         ``complete`` says whether all edges are as short as was asked for.
     """
+    criteria = _criteria(
+        everything=everything, near=near, near_size=near_size, box=box, ball=ball, region=region, patch=patch, size=size, where=where,
+        gradient=gradient, vorticity=vorticity, q=q, jump=jump, recovery=recovery, hessian=hessian, smallest=smallest,
+    )  # fmt: skip
+    if not criteria and not coarsen and not coarsen_where:
+        raise OptionsError("nothing says what to divide: give a criterion, such as near_size=[(stent, 0.05)], or coarsen=True")
+    asked = _Asked(
+        criteria, coarsen, _several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
+        dict(carry or {}), forget,
+    )  # fmt: skip
+    return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
+
+
+def _criteria(
+    *,
+    everything: bool = False,
+    near: Sequence[tuple[MeshLike, float]] = (),
+    near_size: Sequence[tuple[MeshLike, float] | tuple[MeshLike, float, float]] = (),
+    box: Sequence[tuple[ArrayLike, ArrayLike]] = (),
+    ball: Sequence[tuple[ArrayLike, float]] = (),
+    region: Sequence[str | int] = (),
+    patch: Sequence[str | int | tuple[str | int, float]] = (),
+    size: float | str | None = None,
+    where: Sequence[str] = (),
+    gradient: Sequence[str] = (),
+    vorticity: Sequence[str] = (),
+    q: Sequence[str] = (),
+    jump: Mapping[str, float] | None = None,
+    recovery: Mapping[str, float] | None = None,
+    hessian: Mapping[str | tuple[str, ...], float | str] | None = None,
+    smallest: float | None = None,
+) -> list:
     make = _motet.Criterion
     criteria = [make.all()] if everything else []
     criteria += [make.near(as_mesh(one), distance) for one, distance in near]
@@ -114,13 +146,7 @@ def refine(
     criteria += [make.jump(array, amount) for array, amount in (jump or {}).items()]
     criteria += [make.recovery(array, amount) for array, amount in (recovery or {}).items()]
     criteria += [_hessian(arrays, aim, smallest) for arrays, aim in (hessian or {}).items()]
-    if not criteria and not coarsen and not coarsen_where:
-        raise OptionsError("nothing says what to divide: give a criterion, such as near_size=[(stent, 0.05)], or coarsen=True")
-    asked = _Asked(
-        criteria, coarsen, _several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
-        dict(carry or {}), forget,
-    )  # fmt: skip
-    return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
+    return criteria
 
 
 def _several(words: Any) -> list:

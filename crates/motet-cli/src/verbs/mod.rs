@@ -1,5 +1,6 @@
 //! One file a verb.
 
+pub(crate) mod cap;
 pub(crate) mod contact;
 pub(crate) mod convert;
 pub(crate) mod demo;
@@ -9,3 +10,4 @@ pub(crate) mod meshing;
 pub(crate) mod moving;
 pub(crate) mod refine;
 pub(crate) mod remesh;
+pub(crate) mod run;

@@ -161,6 +161,23 @@ impl SeriesWriter {
         Self { path: path.into(), frames: Vec::new(), options }
     }
 
+    /// Takes over the first `n` frames of the series that lies there: those after them are written anew.
+    ///
+    /// # Errors
+    /// When there is no such series, or it has fewer frames.
+    pub fn go_on_after(&mut self, n: usize) -> Result<()> {
+        let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, &e))?;
+        let mut frames = parse_series(&bytes).map_err(|e| e.in_file(&self.path))?;
+        if frames.len() < n {
+            return Err(Error::input(format!("has {} frames, expected {n} at least", frames.len()))
+                .in_file(&self.path)
+                .remedy("start the run anew"));
+        }
+        frames.truncate(n);
+        self.frames = frames;
+        Ok(())
+    }
+
     /// Where frame `k` lies: beside the series, under its name and the number.
     pub fn frame_path(&self, k: usize) -> PathBuf {
         self.path.with_file_name(self.frame_name(k))

@@ -3,6 +3,7 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one, meshes that end at a common edge are one surface |
+//! | caps | `caps` | open rims closed, frame by frame of a wall that moves |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
 //! | layers | [`layers`] | thin prisms on walls, where they are asked for; what follows fills the room that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
@@ -13,6 +14,7 @@
 //! | labels | `fill` | what surfaces enclose is a region, triangles keep their patches |
 
 mod bodies;
+mod caps;
 mod compact;
 mod fill;
 mod graded;
@@ -26,6 +28,7 @@ mod surfaces;
 
 pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
+pub use caps::Caps;
 pub(crate) use compact::{compact, named};
 pub use fill::{Filled, Options, Report, fill};
 pub(crate) use graded::points_between;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::base::{Error, Point, Result, Threads};
 use crate::contact;
 use crate::geometry::vector::{is_finite, scale, sub};
-use crate::mesh::history::History;
+use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::Mover;
 use crate::moving::legs::{Reached, Way, volume_deviation};
@@ -216,12 +216,19 @@ impl MovingMesh {
 
     /// Divides tets and takes divisions back, at the time that was reached, as [`MeshRefinement::reach`] does. What was divided is remembered by arrays of the mesh.
     ///
+    /// Where patches are watched, criteria find the point array [`GAP`]: the gap at each of their vertices, no limit elsewhere. As a size it keeps edges of walls as short as the gap
+    /// between them is wide, and so the tets in it well shaped; a limit of the smallest edge ends that.
+    ///
     /// # Errors
     /// As there. Then all is as it was before the call.
     pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
         let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
         let mut given = self.now.mesh.clone();
-        let rules = self.now.put_known(&mut given, &self.options.rules);
+        let mut rules = self.now.put_known(&mut given, &self.options.rules);
+        if let Some(gap) = self.gap_sizes() {
+            given.set_point_field(gap);
+            rules.points.insert(GAP.to_owned(), Rule::Interpolate);
+        }
         let mut refinement = MeshRefinement::new(&given, refine::Options::default(), threads)?;
         let wanted = Wanted { keeps_history: true, ..wanted.clone() };
         let n_before = self.now.tets.len();
@@ -232,6 +239,7 @@ impl MovingMesh {
                 .unwrap_or_else(|| History::identity(self.now.mesh.points.len(), self.now.mesh.cells.len())),
         );
         let mut mesh = refinement.with_memory(threads);
+        mesh.point_data.retain(|field| field.name != GAP);
         if mesh.cells == self.now.mesh.cells {
             return Ok(None);
         }
@@ -258,6 +266,19 @@ impl MovingMesh {
         self.now.known.size_anew(&self.now.mesh);
         self.remember(std::slice::from_ref(&change));
         Ok(Some(change))
+    }
+
+    /// The gap at each vertex, as a size of edges.
+    fn gap_sizes(&self) -> Option<Field> {
+        let gaps = self.gaps()?;
+        let mut sizes = vec![f64::INFINITY; self.now.mesh.points.len()];
+        for body in &gaps.bodies {
+            for (v, &gap) in body.vertices.iter().zip(&body.gap) {
+                let size = &mut sizes[v.index()];
+                *size = size.min(gap.max(f64::MIN_POSITIVE));
+            }
+        }
+        Some(Field::scalars(GAP, sizes))
     }
 
     fn check(&self, time: f64, displacement: &[Point]) -> Result<()> {
@@ -320,6 +341,9 @@ impl MovingMesh {
         }
     }
 }
+
+/// The point array that criteria of [`MovingMesh::refine`] find where patches are watched.
+pub const GAP: &str = "moving:gap";
 
 fn check_rows(field: &Field, n: usize, what: &str) -> Result<()> {
     match field.n_rows() == n && field.values.len() == n * field.components {

@@ -61,7 +61,7 @@ mod swept;
 mod wall;
 mod watch;
 
-pub use handle::MovingMesh;
+pub use handle::{GAP, MovingMesh};
 pub use options::{Contents, Motion, Options, Watching};
 pub use script::{InTime, Script, normals};
 pub use step::{Change, Closest, Gaps, Seconds, Step, Why, WorstTet};

@@ -96,6 +96,11 @@ impl Script {
         }
     }
 
+    /// Where the driven vertices are at first.
+    pub fn places(&self) -> &[Point] {
+        &self.places
+    }
+
     /// These stay; how many of them obey, since nothing was told about them before.
     pub fn hold(&mut self, vertices: &[VertexId]) -> usize {
         self.give(vertices, Part::Stay)

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
-use crate::io::{self, WriteOptions};
+use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
 use crate::moving::handle::{Clock, MovingMesh};
@@ -47,7 +47,9 @@ impl MovingMesh {
             Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
         ]);
-        io::write(path, &file, &WriteOptions::default()).map(|_| ())
+        // Written after every step, read once: packing would take ten times as long as writing.
+        let options = WriteOptions { compression: Compression::None, ..WriteOptions::default() };
+        io::write(path, &file, &options).map(|_| ())
     }
 
     /// Goes on from what [`Self::save`] wrote, with the same options.

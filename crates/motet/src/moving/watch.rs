@@ -1,6 +1,6 @@
 //! How near patches are to each other, and how long surely nothing touches.
 
-use crate::base::{Point, Result, Threads};
+use crate::base::{Point, Result, Threads, VertexId};
 use crate::contact::{self, Contact, FirstContact};
 use crate::mesh::Mesh;
 use crate::moving::options::Watching;
@@ -37,7 +37,11 @@ impl Watch {
                 contact.refit(&mesh.points, threads)?;
                 contact
             }
-            None => Contact::new(mesh.points.clone(), self.asked.bodies(mesh)?, self.asked.options, threads)?,
+            None => {
+                let bodies = self.asked.bodies(mesh)?;
+                let options = within_reach(&bodies, self.asked.options);
+                Contact::new(mesh.points.clone(), bodies, options, threads)?
+            }
         };
         let contact = self.contact.insert(contact);
         let gaps = contact.measure(threads);
@@ -52,6 +56,25 @@ impl Watch {
         self.last = Some(gaps);
         Ok(told)
     }
+}
+
+/// With a warning distance alone, patches that hang together are measured as far as this many of it.
+const JOINED_WARNINGS: f64 = 4.0;
+
+/// Patches that share vertices are near to each other everywhere along what they share; which of that is a gap is found by ways along the surface. Without a
+/// limit that is the work of the whole wall: 6 s a step for a flap of 336 triangles, 7 ms within four warning distances.
+fn within_reach(bodies: &[contact::Body], options: contact::Options) -> contact::Options {
+    let Some(warn) = options.warn.filter(|_| options.within == f64::INFINITY) else { return options };
+    let vertices = |body: &contact::Body| {
+        let mut all: Vec<VertexId> = body.triangles.as_flattened().to_vec();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    let mut all: Vec<VertexId> = bodies.iter().flat_map(vertices).collect();
+    all.sort_unstable();
+    let is_joined = all.windows(2).any(|pair| pair[0] == pair[1]);
+    contact::Options { within: if is_joined { JOINED_WARNINGS * warn } else { options.within }, ..options }
 }
 
 fn told(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) -> Gaps {

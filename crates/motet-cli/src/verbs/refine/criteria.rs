@@ -47,7 +47,7 @@ pub(crate) fn criteria(args: &RefineArgs, threads: &Threads) -> Result<Vec<Crite
 ///
 /// # Errors
 /// When it cannot be read, or is none.
-pub(super) fn target(surface: &Path, threads: &Threads) -> Result<Arc<Target>> {
+pub(crate) fn target(surface: &Path, threads: &Threads) -> Result<Arc<Target>> {
     let mesh = io::read(surface)?;
     Target::of_mesh(&mesh, threads).map(Arc::new).map_err(|e| e.in_file(surface))
 }

@@ -3,7 +3,7 @@
 mod args;
 mod criteria;
 mod report;
-mod words;
+pub(crate) mod words;
 
 use std::time::Instant;
 
@@ -11,6 +11,7 @@ use motet::refine::{MeshRefinement, Options, fix_sizes};
 use motet::{Error, io};
 
 pub(crate) use args::RefineArgs;
+pub(crate) use criteria::target;
 
 use self::report::Report;
 use crate::args::Common;

@@ -1,0 +1,103 @@
+//! `motet cap`: open rims of a surface closed, or of every frame of one that moves.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use motet::meshing::Caps;
+use motet::{Error, Mesh, Result, io};
+use serde_json::json;
+
+use crate::console::Console;
+use crate::exit::Outcome;
+use crate::outputs;
+use crate::table::count;
+use crate::verbs::convert::WritingArgs;
+
+/// Close the open rims of a surface, or of every frame of one that moves
+///
+/// Each rim gets a cap of triangles about as long as the rim's edges: a patch `cap_1`, `cap_2`, ..., the longest rim first. Caps of all frames have the
+/// same triangles, and follow the rims.
+#[derive(Debug, Args)]
+#[command(override_usage = "motet cap SURFACE... -o OUT [OPTIONS]")]
+#[command(after_help = "\
+Examples:
+  motet cap ventricle.vtk -o closed.vtp
+  motet cap frame_*.vtk -o wall.pvd --period 0.8          frames of one cycle, evenly in time
+  motet cap wall.pvd -o closed.pvd
+  motet mesh closed_0000.vtu -o lumen.vtu --size 2        and then the inside
+
+Exit status 3: there is no open rim, rims touch, or frames have different numbers of points; nothing is written.")]
+pub(crate) struct CapArgs {
+    /// A surface, several that are frames of one, or a series
+    #[arg(value_name = "SURFACE", required = true)]
+    surfaces: Vec<PathBuf>,
+    /// Where the result goes: a .pvd for frames, any mesh format for one surface
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// How long the frames take together, where they are files: the first follows the last
+    #[arg(long, value_name = "TIME", default_value_t = 1.0, value_parser = crate::words::positive)]
+    period: f64,
+
+    #[command(flatten)]
+    writing: WritingArgs,
+}
+
+pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
+    outputs::check(&args.output, args.surfaces.iter().map(PathBuf::as_path), "a surface")?;
+    let frames = frames(args)?;
+    let is_series = io::can_write_series(&args.output);
+    if frames.len() > 1 && !is_series {
+        return Err(Error::options("several frames need a series")
+            .in_file(&args.output)
+            .remedy("end it in .pvd"));
+    }
+    let first = read(&frames[0].1, console)?;
+    let caps = Caps::of(&first).map_err(|e| e.in_file(&frames[0].1))?;
+    let closed = |file: &Path| caps.close(&read(file, console)?).map_err(|e| e.in_file(file));
+    let options = args.writing.options();
+    let lost = match is_series {
+        true => {
+            // All of them first: where one does not fit, nothing is written.
+            let meshes = frames.iter().map(|(time, file)| Ok((*time, closed(file)?)));
+            let meshes = meshes.collect::<Result<Vec<_>>>()?;
+            io::write_series(&args.output, meshes.into_iter().map(Ok), &options)?
+        }
+        false => io::write(&args.output, &closed(&frames[0].1)?, &options)?,
+    };
+    lost.iter().for_each(|what| console.warn(what));
+    let whole = caps.close(&first)?;
+    let added = whole.points.len() - first.points.len();
+    console.say(format_args!(
+        "{}: {} frames, {} rims capped, {} points and {} triangles added",
+        args.output.display(),
+        frames.len(),
+        caps.len(),
+        count(added),
+        count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
+    ));
+    console.report(&json!({
+        "output": args.output,
+        "frames": frames.len(),
+        "rims": caps.len(),
+        "points": whole.points.len(),
+        "triangles": whole.cells.len(),
+    }));
+    Ok(Outcome::Done)
+}
+
+/// The frames and their times.
+fn frames(args: &CapArgs) -> Result<Vec<(f64, PathBuf)>> {
+    match args.surfaces.as_slice() {
+        [one] if io::is_series(one) => io::read_series(one),
+        files => {
+            let n = files.len() as f64;
+            Ok(files.iter().enumerate().map(|(k, file)| (args.period * k as f64 / n, file.clone())).collect())
+        }
+    }
+}
+
+fn read(file: &Path, console: &Console) -> Result<Mesh> {
+    let (mesh, notes) = io::read_noted(file)?;
+    notes.iter().for_each(|note| console.warn(note));
+    Ok(mesh)
+}

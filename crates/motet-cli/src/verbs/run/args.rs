@@ -1,0 +1,81 @@
+//! The words of `motet run`, as its help shows them.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Keep a mesh good through cycles of its walls: moved, repaired, refined, watched, arrays carried
+///
+/// The job file says what moves, and how; what becomes bad is repaired on the way. Each step is certified, and written to a series
+/// whose meshes may differ from step to step; ParaView plays it.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A job, in TOML; names of files are relative to it. All but `mesh` and `output` may be left away:
+
+  mesh = \"vessel.vtu\"
+  output = \"out/vessel.pvd\"       # beside it: vessel.jsonl, a line a step; vessel.state.vtu, to go on from
+  every = 1                       # steps from frame to frame of the output
+  contents = [\"dye\"]              # densities of what stays in its cell
+
+  [time]
+  period = 1.0                    # in the unit of time of the output
+  steps = 25                      # in a period [for measured walls one a frame]
+  periods = 3
+
+  [[device]]                      # put into the mesh first, as `motet implant` does
+  file = \"coil.stl\"
+  hollow = true                   # the flow goes round it
+
+  [motion]
+  method = \"delaunay\"             # bodies, guided, ... as `motet move --method`
+  smooth = 2
+  rigid_layer = \"3layers\"         # or a distance
+  within_walls = false
+  fixed = [\"inlet\"]
+  slide = [\"outlet\"]
+  inside = [\"flap\"]               # patches inside the volume that are driven
+  surfaces = \"wall.pvd\"           # measured walls, over a period
+  match = \"nearest\"               # id (default), position, or nearest: a mesh with triangles of its own
+  patch = \"wall\"                  # what follows the surfaces, for match = \"nearest\"
+
+  [[motion.move]]                 # or walls that move by rule; a vertex obeys the first that is about it
+  patch = \"sac\"
+  swell = 0.1                     # along its normals; or one or several of
+  # shift = [0.5, 0, 0]   turn = { axis = [0, 0, 1], degrees = 40, centre = [0, 0, 0] }
+  # bend = { hinge = [0, 0, 0], along = [0, 1, 0], towards = [1, 0, 0], length = 2, degrees = 60 }
+  # affine = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]]
+  in_time = \"beat\"                # swing, ramp, or a table [[0, 0], [0.3, 1], [1, 0]] over a period
+
+  [repair]                        # off = true: nothing is repaired
+  min_eas = 0.2
+  surface = \"keep\"                # adapt or loose: it may stray by `distance`
+  margin = 0.05                   # repaired to so much more
+  floor = 0.05                    # no step goes below this before it is repaired
+  keep_tets = 0.9                 # edges get their lengths back where there are fewer tets
+
+  [[refine]]                      # words as those of `motet refine`
+  near_size = [\"coil.stl=0.05,0.3\"]
+  every = 5
+  coarsen = true
+  # gaps = true   smallest = 0.02: edges of watched patches no longer than the gap between them
+
+  [contact]
+  patches = [\"flap\", \"wall\"]
+  warn = 0.1
+
+  [carry]
+  pressure = \"mean\"               # or inherit, drop
+
+Exit status 3: the job cannot be read, or names what is not there (file, line). 4: a step could not be gone to its end, or
+bad tets are left that walls do not force; what was reached is written.")]
+pub(crate) struct RunArgs {
+    /// The job file
+    #[arg(value_name = "JOB.toml")]
+    pub(crate) job: PathBuf,
+    /// Go on after the last step that an earlier run of the job has saved; start where there is none
+    #[arg(long)]
+    pub(crate) resume: bool,
+    /// End after this step
+    #[arg(long, value_name = "STEP")]
+    pub(crate) until: Option<usize>,
+}

@@ -1,0 +1,226 @@
+//! What a run begins with: the mesh with its devices, what its walls do, how it is kept good.
+
+use motet::base::Threads;
+use motet::contact;
+use motet::implant::{self, Device, Inside, implant};
+use motet::mesh::history::{self, Rules};
+use motet::mesh::unused_name;
+use motet::motion::{Extent, Method, MethodWords};
+use motet::moving::{GAP, Motion, Options, Script, Watching};
+use motet::refine::{Criterion, Limits, Size, Wanted};
+use motet::remesh::{self, SurfaceRule};
+use motet::{Error, Mesh, Result, io};
+
+use super::course;
+use super::job::{Carry, Job, Layer, Refine, Surface};
+use super::places::labels;
+use crate::console::Console;
+use crate::verbs::refine::{target, words};
+use crate::words::stem;
+
+/// All that a run begins with.
+pub(super) struct Begin {
+    /// In its first place.
+    pub(super) mesh: Mesh,
+    pub(super) script: Script,
+    pub(super) options: Options,
+    /// What is refined, and after every how many steps.
+    pub(super) refining: Vec<(usize, Wanted)>,
+}
+
+impl Begin {
+    pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
+        let mesh = with_devices(job, threads, console)?;
+        let options = options(job, &mesh).map_err(|e| job.told(e))?;
+        let script = course::script(job, &mesh, &options.motion, threads)?;
+        let refining = job.refine.iter().map(|asked| wanted(job, asked, threads));
+        let refining = refining.collect::<Result<_>>().map_err(|e| job.told(e))?;
+        Ok(Self { mesh, script, options, refining })
+    }
+}
+
+/// The mesh, devices put into it.
+fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh> {
+    let mut mesh = read(job, &job.mesh, console)?;
+    for asked in &job.device {
+        let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
+        let taken: Vec<String> = names.cloned().collect();
+        let name = stem(&asked.file).unwrap_or_default();
+        let name = unused_name(&name, |name| taken.iter().any(|t| t == name));
+        let mut device = Device::new(read(job, &asked.file, console)?, name);
+        if asked.hollow {
+            device.inside = Inside::Hollow;
+        } else if asked.fill {
+            device.inside = Inside::Filled;
+        }
+        let interface = match asked.conform {
+            Some(tolerance) => implant::Interface::Conform { tolerance: Some(tolerance) },
+            None => implant::Interface::Match,
+        };
+        let options = implant::Options { interface, ..implant::Options::default() };
+        let made = implant(&mesh, &[device], &options, &Rules::default(), threads);
+        mesh = made.map_err(|e| e.in_file(job.path(&asked.file)))?.mesh;
+    }
+    Ok(mesh)
+}
+
+fn read(job: &Job, file: &std::path::Path, console: &Console) -> Result<Mesh> {
+    let (mesh, notes) = io::read_noted(job.path(file))?;
+    notes.iter().for_each(|note| console.warn(note));
+    Ok(mesh)
+}
+
+fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
+    let mut rules = Rules::default();
+    for (name, carry) in &job.carry {
+        let carry = match carry {
+            Carry::Mean => history::Carry::Mean,
+            Carry::Inherit => history::Carry::Inherit,
+            Carry::Drop => history::Carry::Drop,
+        };
+        rules.carry(mesh, name, carry)?;
+    }
+    if let Some(name) = job.contents.iter().find(|name| mesh.cell_field(name).is_none()) {
+        let known: Vec<&str> = mesh.cell_data.iter().map(|field| field.name.as_str()).collect();
+        return Err(Error::input(format!("there is no cell array `{name}` for `contents`"))
+            .remedy(format!("the mesh has these: {}", known.join(", "))));
+    }
+    let repair = &job.repair;
+    let asked = remesh::Options {
+        min_eas: repair.min_eas,
+        surface: match repair.surface {
+            Surface::Keep => SurfaceRule::Keep,
+            Surface::Adapt => SurfaceRule::Adapt { distance: repair.distance },
+            Surface::Loose => SurfaceRule::Loose { distance: repair.distance },
+        },
+        ..remesh::Options::default()
+    };
+    Ok(Options {
+        motion: motion(job, mesh)?,
+        repair: (!repair.off).then_some(asked),
+        margin: repair.margin,
+        floor: repair.floor,
+        keep_tets: repair.keep_tets,
+        rules,
+        contents: job.contents.clone(),
+        watch: watching(job, mesh)?,
+        // Histories are for those who hold the handle.
+        remembered: 1,
+    })
+}
+
+fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
+    let asked = &job.motion;
+    let method = match &asked.method {
+        None => Method::default(),
+        Some(name) => Method::of_name(name, MethodWords::default())?,
+    };
+    if !asked.bodies.is_empty() && !matches!(method, Method::Bodies(_)) {
+        return Err(Error::input("motion.bodies names rigid bodies, but the method has none")
+            .remedy("add method = \"bodies\""));
+    }
+    let rigid_layer = match &asked.rigid_layer {
+        None => None,
+        Some(layer) => Some((extent(layer)?, labels(mesh, &asked.rigid_layer_at)?)),
+    };
+    Ok(Motion {
+        method,
+        bodies: labels(mesh, &asked.bodies)?,
+        within_walls: asked.within_walls,
+        smoothing: asked.smooth,
+        inside: labels(mesh, &asked.inside)?,
+        sliding: labels(mesh, &asked.slide)?,
+        rigid_layer,
+        ..Motion::default()
+    })
+}
+
+fn extent(layer: &Layer) -> Result<Extent> {
+    let off = || {
+        Error::input("motion.rigid_layer is neither a distance nor layers")
+            .remedy("give a number above 0, or a text such as \"3layers\"")
+    };
+    match layer {
+        Layer::Distance(distance) if *distance > 0.0 && distance.is_finite() => {
+            Ok(Extent::Distance(*distance))
+        }
+        Layer::Distance(_) => Err(off()),
+        Layer::Word(word) => {
+            let n = word.strip_suffix("layers").or_else(|| word.strip_suffix("layer"));
+            let n = n.and_then(|n| n.trim().parse().ok()).filter(|n| *n > 0);
+            n.map(Extent::Cells).ok_or_else(off)
+        }
+    }
+}
+
+fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
+    let Some(asked) = &job.contact else { return Ok(None) };
+    labels(mesh, &asked.patches)?;
+    let options = contact::Options {
+        warn: asked.warn,
+        own: asked.own,
+        within: asked.within.unwrap_or(f64::INFINITY),
+        ..contact::Options::default()
+    };
+    Ok(Some(Watching { patches: asked.patches.clone(), options, horizon: asked.horizon }))
+}
+
+/// What an entry of `refine` asks for, and after every how many steps: once, before the first, where it does not say.
+fn wanted(job: &Job, asked: &Refine, threads: &Threads) -> Result<(usize, Wanted)> {
+    let mut criteria = Vec::new();
+    let off = |what: &str| Error::input(format!("refine: {what}"));
+    for text in &asked.near {
+        let near = words::near(text).map_err(|e| off(&e))?;
+        criteria.push(Criterion::Near {
+            target: target(&job.path(&near.surface), threads)?,
+            within: near.within,
+        });
+    }
+    for text in &asked.near_size {
+        let near = words::near_size(text).map_err(|e| off(&e))?;
+        let target = target(&job.path(&near.surface), threads)?;
+        criteria.push(Criterion::NearSize { target, size: near.size, growth: near.growth });
+    }
+    type Parse = fn(&str) -> std::result::Result<Criterion, String>;
+    let lists: [(&[String], Parse); 6] = [
+        (&asked.ball, words::ball),
+        (&asked.in_box, words::in_box),
+        (&asked.patch, words::patch),
+        (&asked.region, words::region),
+        (&asked.gradient, words::gradient),
+        (&asked.vorticity, words::vorticity),
+    ];
+    for (texts, parse) in lists {
+        for text in texts {
+            criteria.push(parse(text).map_err(|e| off(&e))?);
+        }
+    }
+    for text in &asked.conditions {
+        criteria.push(Criterion::Where(words::condition(text).map_err(|e| off(&e))?));
+    }
+    if asked.gaps {
+        criteria.push(Criterion::Size(Size::Array(GAP.into())));
+        if asked.smallest.is_none() {
+            return Err(off("gaps can be as narrow as they like")
+                .remedy("add smallest, the length at which dividing ends"));
+        }
+    }
+    if criteria.is_empty() && !asked.coarsen {
+        return Err(off("an entry that marks nothing")
+            .remedy("say where: near, near_size, where, ball, box, patch, ..."));
+    }
+    let limits = Limits { generation: asked.limit_generation, smallest: asked.smallest, ..Limits::default() };
+    let wanted = Wanted {
+        criteria,
+        coarsen: asked.coarsen,
+        generations: asked.generations,
+        limits,
+        ..Wanted::default()
+    };
+    match asked.every {
+        Some(0) => {
+            Err(off("every is 0").remedy("give a number of steps, or leave it away: once, before the first"))
+        }
+        every => Ok((every.unwrap_or(usize::MAX), wanted)),
+    }
+}

@@ -1,0 +1,173 @@
+//! What the walls of a job do in time.
+
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::vector::sub;
+use motet::mesh::Surface;
+use motet::motion::{FacetSet, Matching, Prescribed, SurfaceCarrier, SurfaceMotion};
+use motet::moving::{InTime, Motion, Script, normals};
+use motet::{Error, Mesh, Result, io};
+
+use super::job::{Course, Job, Match, Move};
+use super::places::vertices;
+
+/// The script of a job.
+///
+/// # Errors
+/// When it names what is not there, surfaces do not fit, or a motion means nothing.
+pub(super) fn script(job: &Job, mesh: &Mesh, motion: &Motion, threads: &Threads) -> Result<Script> {
+    let mut script = Script::still(&motion.driven(mesh), &mesh.points);
+    script.hold(&vertices(mesh, &job.motion.fixed).map_err(|e| job.told(e))?);
+    if let Some(series) = &job.motion.surfaces {
+        frames(job, &job.path(series), mesh, &mut script, threads)?;
+    }
+    for asked in &job.motion.moves {
+        obey(asked, mesh, &mut script).map_err(|e| job.told(e))?;
+    }
+    if job.motion.surfaces.is_none() && job.motion.moves.is_empty() {
+        return Err(job.told(Error::input("nothing moves").remedy("add [[motion.move]], or motion.surfaces")));
+    }
+    Ok(script)
+}
+
+/// `surfaces`: each is a frame of a period, and the first follows the last.
+fn frames(
+    job: &Job,
+    series: &std::path::Path,
+    mesh: &Mesh,
+    script: &mut Script,
+    threads: &Threads,
+) -> Result<()> {
+    let files: Vec<_> = io::read_series(series)?.into_iter().map(|(_, file)| file).collect();
+    if job.motion.matching == Match::Nearest {
+        return nearest(job, &files, mesh, script, threads);
+    }
+    let matching = match job.motion.matching {
+        Match::Position => Matching::Position,
+        _ => Matching::Id,
+    };
+    let mut reader = SurfaceMotion::new(mesh, matching);
+    let mut driven: Vec<VertexId> = Vec::new();
+    let mut frames = Vec::new();
+    for file in &files {
+        let moved = reader.next(&io::read(file)?).map_err(|e| e.in_file(file))?;
+        let (now, by): (Vec<_>, Vec<_>) = moved.into_iter().unzip();
+        if frames.is_empty() {
+            driven = now;
+        } else if now != driven {
+            return Err(
+                Error::input("is about other vertices of the mesh than the first frame").in_file(file)
+            );
+        }
+        frames.push(by);
+    }
+    script.frames(&driven, frames, true).map(|_| ()).map_err(|e| e.in_file(series))
+}
+
+/// The mesh has triangles of its own: each of its vertices goes with the nearest place of the first surface.
+fn nearest(
+    job: &Job,
+    files: &[std::path::PathBuf],
+    mesh: &Mesh,
+    script: &mut Script,
+    threads: &Threads,
+) -> Result<()> {
+    let words: Vec<String> = job.motion.patch.iter().cloned().collect();
+    let followers = match words.is_empty() {
+        true => motet::mesh::Boundary::of(&mesh.cells).vertices,
+        false => vertices(mesh, &words).map_err(|e| job.told(e))?,
+    };
+    let places: Vec<Point> = followers.iter().map(|v| mesh.points[v.index()]).collect();
+    let first = io::read(&files[0])?;
+    let triangles = Surface::of(&first).triangles;
+    let carrier =
+        SurfaceCarrier::new(&first.points, &triangles, &places, threads).map_err(|e| e.in_file(&files[0]))?;
+    let mut frames = Vec::new();
+    for file in files {
+        let surface = io::read(file)?;
+        if surface.points.len() != first.points.len() {
+            return Err(Error::input(format!(
+                "has {} points, the first frame {}",
+                surface.points.len(),
+                first.points.len()
+            ))
+            .in_file(file)
+            .remedy("frames of one surface have the same points in the same order"));
+        }
+        let moved: Vec<Point> = surface.points.iter().zip(&first.points).map(|(&p, &q)| sub(p, q)).collect();
+        frames.push(carrier.carry(&moved));
+    }
+    script.frames(&followers, frames, true).map(|_| ())
+}
+
+/// One `[[motion.move]]`.
+fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
+    let facets = FacetSet::find(mesh, &asked.patch)?;
+    let in_time = in_time(&asked.in_time)?;
+    let motions = motions(asked, mesh, &facets);
+    let n = match (asked.swell, motions.is_empty()) {
+        (Some(by), true) => {
+            let outward = outward(mesh, &facets);
+            script.go(&facets.vertices, outward.iter().map(|n| n.map(|x| by * x)).collect(), in_time)?
+        }
+        (None, false) => script.follow(&facets.vertices, Prescribed::sequence(motions), in_time)?,
+        (None, true) => {
+            return Err(Error::input(format!("motion.move of patch {} says no motion", asked.patch))
+                .remedy("add shift, turn, affine, bend or swell"));
+        }
+        (Some(_), false) => {
+            return Err(Error::input(format!("motion.move of patch {} both swells and goes", asked.patch))
+                .remedy("give two entries for two patches; a vertex obeys the first that is about it"));
+        }
+    };
+    match n {
+        0 => Err(Error::input(format!("no vertex of patch {} is left to move by this entry", asked.patch))
+            .remedy(
+                "entries before it are about all of them, or the patch is inside: name it in motion.inside",
+            )),
+        _ => Ok(()),
+    }
+}
+
+fn motions(asked: &Move, mesh: &Mesh, facets: &FacetSet) -> Vec<Prescribed> {
+    let turn = asked.turn.as_ref().map(|turn| Prescribed::Turn {
+        axis: turn.axis,
+        angle: turn.degrees.to_radians(),
+        centre: turn.centre.unwrap_or_else(|| Prescribed::middle(&mesh.points, &facets.vertices)),
+    });
+    let bend = asked.bend.as_ref().map(|bend| Prescribed::Bend {
+        hinge: bend.hinge,
+        along: bend.along,
+        towards: bend.towards,
+        length: bend.length,
+        angle: bend.degrees.to_radians(),
+    });
+    let affine = asked.affine.map(Prescribed::Affine);
+    [bend, turn, affine, asked.shift.map(Prescribed::Shift)].into_iter().flatten().collect()
+}
+
+fn in_time(course: &Course) -> Result<InTime> {
+    Ok(match course {
+        Course::Table(table) => InTime::Table(table.clone()),
+        Course::Name(name) => match name.as_str() {
+            "beat" => InTime::Beat,
+            "swing" => InTime::Swing,
+            "ramp" => InTime::Ramp,
+            _ => {
+                return Err(Error::input(format!("in_time = \"{name}\" is no course in time")).remedy(
+                    "give \"beat\", \"swing\", \"ramp\", or a table such as [[0, 0], [0.3, 1], [1, 0]]",
+                ));
+            }
+        },
+    })
+}
+
+/// Unit normals of the vertices of a patch, away from the volume, however its facets are turned.
+fn outward(mesh: &Mesh, facets: &FacetSet) -> Vec<Point> {
+    let boundary = Surface::boundary_of(mesh);
+    let is_in = |t: &&[VertexId; 3]| t.iter().all(|v| facets.vertices.binary_search(v).is_ok());
+    let own = boundary.triangles.iter().filter(is_in);
+    let turned = FacetSet::of_rings(facets.name.clone(), own.map(|t| t.as_slice()));
+    let of_turned = normals(&turned, &mesh.points);
+    let of = |v: &VertexId| turned.vertices.binary_search(v).map_or([0.0; 3], |i| of_turned[i]);
+    facets.vertices.iter().map(of).collect()
+}

@@ -1,0 +1,335 @@
+//! The job file: what it may say, and what is wrong with it, with its line.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use motet::base::Point;
+use motet::{Error, Result};
+use serde::Deserialize;
+
+/// All that a job file says.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Job {
+    /// Where it lies: names of files are relative to it.
+    #[serde(skip)]
+    pub(super) file: PathBuf,
+    pub(super) mesh: PathBuf,
+    pub(super) output: PathBuf,
+    #[serde(default = "one")]
+    pub(super) every: usize,
+    #[serde(default)]
+    pub(super) contents: Vec<String>,
+    #[serde(default)]
+    pub(super) time: Time,
+    #[serde(default)]
+    pub(super) device: Vec<Device>,
+    #[serde(default)]
+    pub(super) motion: Motion,
+    #[serde(default)]
+    pub(super) repair: Repair,
+    #[serde(default)]
+    pub(super) refine: Vec<Refine>,
+    pub(super) contact: Option<Contact>,
+    #[serde(default)]
+    pub(super) carry: BTreeMap<String, Carry>,
+}
+
+/// How often a step is written, where nobody says.
+fn one() -> usize {
+    1
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Time {
+    pub(super) period: f64,
+    pub(super) steps: Option<usize>,
+    pub(super) periods: usize,
+}
+
+impl Default for Time {
+    fn default() -> Self {
+        Self { period: 1.0, steps: None, periods: 1 }
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Device {
+    pub(super) file: PathBuf,
+    #[serde(default)]
+    pub(super) hollow: bool,
+    #[serde(default)]
+    pub(super) fill: bool,
+    /// A new surface within so much of the device's.
+    pub(super) conform: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Motion {
+    pub(super) method: Option<String>,
+    pub(super) bodies: Vec<String>,
+    pub(super) smooth: usize,
+    pub(super) rigid_layer: Option<Layer>,
+    pub(super) rigid_layer_at: Vec<String>,
+    pub(super) within_walls: bool,
+    pub(super) fixed: Vec<String>,
+    pub(super) slide: Vec<String>,
+    pub(super) inside: Vec<String>,
+    pub(super) surfaces: Option<PathBuf>,
+    #[serde(rename = "match")]
+    pub(super) matching: Match,
+    pub(super) patch: Option<String>,
+    #[serde(rename = "move")]
+    pub(super) moves: Vec<Move>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Layer {
+    Distance(f64),
+    Word(String),
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Match {
+    #[default]
+    Id,
+    Position,
+    Nearest,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Move {
+    pub(super) patch: String,
+    pub(super) shift: Option<Point>,
+    pub(super) turn: Option<Turn>,
+    pub(super) affine: Option<[[f64; 4]; 3]>,
+    pub(super) bend: Option<Bend>,
+    pub(super) swell: Option<f64>,
+    #[serde(default)]
+    pub(super) in_time: Course,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Turn {
+    pub(super) axis: Point,
+    pub(super) degrees: f64,
+    pub(super) centre: Option<Point>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Bend {
+    pub(super) hinge: Point,
+    pub(super) along: Point,
+    pub(super) towards: Point,
+    pub(super) length: f64,
+    pub(super) degrees: f64,
+}
+
+/// A name of a course, or a table.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Course {
+    Name(String),
+    Table(Vec<[f64; 2]>),
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self::Name("beat".into())
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Repair {
+    pub(super) off: bool,
+    pub(super) min_eas: f64,
+    pub(super) surface: Surface,
+    pub(super) distance: Option<f64>,
+    pub(super) margin: f64,
+    pub(super) floor: f64,
+    pub(super) keep_tets: f64,
+}
+
+impl Default for Repair {
+    fn default() -> Self {
+        let usual = motet::moving::Options::default();
+        Self {
+            off: false,
+            min_eas: usual.limit(),
+            surface: Surface::Keep,
+            distance: None,
+            margin: usual.margin,
+            floor: usual.floor,
+            keep_tets: usual.keep_tets,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Surface {
+    Keep,
+    Adapt,
+    Loose,
+}
+
+/// Each word as on the command line of `motet refine`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Refine {
+    pub(super) near: Vec<String>,
+    pub(super) near_size: Vec<String>,
+    #[serde(rename = "where")]
+    pub(super) conditions: Vec<String>,
+    pub(super) ball: Vec<String>,
+    #[serde(rename = "box")]
+    pub(super) in_box: Vec<String>,
+    pub(super) patch: Vec<String>,
+    pub(super) region: Vec<String>,
+    pub(super) gradient: Vec<String>,
+    pub(super) vorticity: Vec<String>,
+    /// Edges of watched patches no longer than the gap between them.
+    pub(super) gaps: bool,
+    pub(super) smallest: Option<f64>,
+    pub(super) generations: Option<u32>,
+    pub(super) limit_generation: Option<u8>,
+    pub(super) every: Option<usize>,
+    pub(super) coarsen: bool,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Contact {
+    pub(super) patches: Vec<String>,
+    pub(super) warn: Option<f64>,
+    pub(super) within: Option<f64>,
+    #[serde(default)]
+    pub(super) own: bool,
+    pub(super) horizon: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Carry {
+    Mean,
+    Inherit,
+    Drop,
+}
+
+impl Job {
+    /// Reads and checks a job.
+    ///
+    /// # Errors
+    /// When it cannot be read, or says what no job can; with the line.
+    pub(super) fn read(file: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, &e))?;
+        let job = toml::from_str(&text).map_err(|e| off(&text, &e).in_file(file))?;
+        let job = Self { file: file.to_owned(), ..job };
+        job.check().map_err(|e| e.in_file(file))?;
+        Ok(job)
+    }
+
+    /// A file that the job names.
+    pub(super) fn path(&self, named: &Path) -> PathBuf {
+        self.file.parent().unwrap_or(Path::new("")).join(named)
+    }
+
+    /// An error of kind input, in the job where no other file is named: what it says does not fit what there is.
+    pub(super) fn told(&self, error: Error) -> Error {
+        let file = error.file().unwrap_or(&self.file).to_owned();
+        let mut told = Error::input(error.what());
+        if let Some(place) = error.place() {
+            told = told.at(place);
+        }
+        if let Some(remedy) = error.remedy_text() {
+            told = told.remedy(remedy);
+        }
+        told.in_file(file)
+    }
+
+    /// Steps in a period.
+    pub(super) fn steps_in_period(&self) -> usize {
+        self.time.steps.unwrap_or(STEPS)
+    }
+
+    /// Steps in all.
+    pub(super) fn n_steps(&self) -> usize {
+        self.steps_in_period() * self.time.periods
+    }
+
+    /// When step `k` is.
+    pub(super) fn time(&self, k: usize) -> f64 {
+        self.time.period * (k as f64 / self.steps_in_period() as f64)
+    }
+
+    fn check(&self) -> Result<()> {
+        let off = |what: &str, remedy: &str| Err(Error::input(what).remedy(remedy));
+        if !(self.time.period > 0.0 && self.time.period.is_finite()) {
+            return off("time.period is no length of time", "give a number above 0");
+        }
+        if self.every == 0 || self.time.steps == Some(0) || self.time.periods == 0 {
+            return off("every, time.steps or time.periods is 0", "give numbers from 1 on");
+        }
+        if self.steps_in_period().checked_mul(self.time.periods).is_none_or(|n| n > MOST_STEPS) {
+            return off("there are far too many steps", "a run has a hundred million at most");
+        }
+        if !motet::io::can_write_series(&self.output) {
+            return off("output is no series", "name a file that ends in .pvd");
+        }
+        let share = |x: f64| (0.0..1.0).contains(&x);
+        let repair = &self.repair;
+        if !(share(repair.min_eas) && share(repair.margin) && share(repair.floor) && share(repair.keep_tets))
+        {
+            return off(
+                "a number of [repair] is not between 0 and 1",
+                "min_eas, margin, floor and keep_tets are shares",
+            );
+        }
+        if repair.distance.is_some() && repair.surface == Surface::Keep {
+            return off(
+                "repair.distance says how far the surface may stray, and it is kept",
+                "add surface = \"adapt\"",
+            );
+        }
+        if let Some(Contact { warn: Some(warn), .. }) =
+            self.contact.as_ref().filter(|c| c.warn.is_some_and(|w| !(w > 0.0)))
+        {
+            return off(&format!("contact.warn is {warn}"), "give a distance above 0");
+        }
+        if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
+            return off(
+                "refine.gaps follows the gaps between watched patches, and none is watched",
+                "add [contact]",
+            );
+        }
+        if self.device.iter().any(|device| device.hollow && device.fill) {
+            return off("a device is both hollow and to be filled", "say one of them");
+        }
+        Ok(())
+    }
+}
+
+/// Steps of a period, where nothing says.
+const STEPS: usize = 20;
+const MOST_STEPS: usize = 100_000_000;
+
+/// What the reader of TOML says, with the line.
+fn off(text: &str, error: &toml::de::Error) -> Error {
+    let told = Error::input(error.message().trim().replace('\n', "; "));
+    let told = told.remedy("`motet help run` shows a job with all that it may say");
+    match error.span() {
+        Some(span) => {
+            told.at(format!("line {}", 1 + text[..span.start.min(text.len())].matches('\n').count()))
+        }
+        None => told,
+    }
+}

@@ -1,0 +1,208 @@
+"""The loop: a mesh that moves with its walls, step after step, and stays good."""
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _motet
+from ._changing import Carry, History
+from ._mesh import Mesh, MeshLike, as_mesh
+from ._refinement import _criteria
+from ._report import Progress, Report, report
+from .errors import OptionsError
+
+
+@dataclass
+class _Asked:
+    """What the native handle is told."""
+
+    method: str
+    bodies: list
+    within_walls: bool
+    smooth: int
+    inside: list
+    slide: list
+    rigid_layer: float | None
+    rigid_layer_cells: int | None
+    rigid_layer_at: list
+    repair: bool
+    min_eas: float
+    surface: str
+    distance: float | None
+    margin: float
+    floor: float
+    keep_tets: float
+    contents: list
+    carry: dict
+    watch: list
+    warn: float | None
+    within: float
+    horizon: float | None
+    remembered: int
+
+
+def _asked(
+    *,
+    method: str = "delaunay",
+    bodies: Sequence[str | int] = (),
+    within_walls: bool = False,
+    smooth: int = 0,
+    inside: Sequence[str | int] = (),
+    slide: Sequence[str | int] = (),
+    rigid_layer: float | None = None,
+    rigid_layer_cells: int | None = None,
+    rigid_layer_at: Sequence[str | int] = (),
+    repair: bool = True,
+    min_eas: float = 0.2,
+    surface: str = "keep",
+    distance: float | None = None,
+    margin: float = 0.05,
+    floor: float = 0.05,
+    keep_tets: float = 0.9,
+    contents: Sequence[str] = (),
+    carry: Mapping[str, Carry] | None = None,
+    watch: Sequence[str | int] = (),
+    warn: float | None = None,
+    within: float = float("inf"),
+    horizon: float | None = None,
+    remembered: int = 64,
+) -> _Asked:
+    if rigid_layer is not None and rigid_layer_cells is not None:
+        raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
+
+    def names(words: Sequence[str | int]) -> list[str]:
+        return [str(word) for word in words]
+
+    return _Asked(
+        method, names(bodies), within_walls, smooth, names(inside), names(slide), rigid_layer, rigid_layer_cells, names(rigid_layer_at), repair,
+        min_eas, surface, distance, margin, floor, keep_tets, list(contents), dict(carry or {}), names(watch), warn, within, horizon, remembered,
+    )  # fmt: skip
+
+
+class MovingMesh:
+    """A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
+
+    Displacements are always given for the walls as they came, counted from there, whatever the mesh becomes; what becomes bad is repaired while it still has
+    a volume, and maps lead from any step to the present one.
+
+    Parameters
+    ----------
+    mesh : mesh, path, meshio.Mesh or PyVista data set
+    method, within_walls, smooth, rigid_layer, rigid_layer_cells : as of :class:`Mover`
+    bodies, inside, slide, rigid_layer_at : sequences of names or labels of patches
+        ``inside``: patches inside the volume that are driven, such as a flap. The others as of :class:`Mover`.
+    repair : bool
+        Whether bad tets are repaired; if not, a step ends where a cell would turn over.
+    min_eas, surface, distance : as of :func:`remesh`
+    margin, floor : float
+        Repaired are tets to ``min_eas + margin``; no step takes one that can be repaired below ``floor``.
+    keep_tets : float
+        Where there are fewer tets than this part of those at first, a repair also brings edges back to the lengths that they had.
+    contents : sequence of names
+        Cell arrays that are densities of something that stays in its cell: their integrals are kept while cells move.
+    carry : mapping from names to "mean", "inherit" or "drop"
+        What becomes of arrays where the mesh changes.
+    watch : sequence of patches
+        Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time.
+    remembered : int
+        So many changes are remembered for :meth:`history_since`.
+    threads : int
+        0 for all cores. The outcome does not depend on it.
+    progress : callable
+        As of :func:`remesh`, while it is set up.
+    """
+
+    def __init__(self, mesh: MeshLike, *, threads: int = 0, progress: Progress | None = None, **options: Any):
+        self._native = _motet.MovingMesh(as_mesh(mesh), _asked(**options), threads, progress)
+        self._mesh: Mesh | None = None
+
+    @classmethod
+    def load(cls, path: str | PathLike[str], *, threads: int = 0, **options: Any) -> MovingMesh:
+        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes."""
+        moving = cls.__new__(cls)
+        moving._native, moving._mesh = _motet.MovingMesh.load(path, _asked(**options), threads), None
+        return moving
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Writes all that the next steps depend on, as a .vtu that ParaView opens."""
+        self._native.save(path)
+
+    @property
+    def driven_places(self) -> NDArray[np.float64]:
+        """(k, 3): where the driven vertices were at first. Displacements have a row for each of these."""
+        return self._native.driven_places
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh as it is, with its arrays."""
+        if self._mesh is None:
+            self._mesh = Mesh._of(self._native.mesh())
+        return self._mesh
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """(n, 3): where its vertices are."""
+        return self._native.points()
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """(n, 3): the velocity of each vertex in the last step."""
+        return self._native.velocity()
+
+    @property
+    def displacement(self) -> NDArray[np.float64]:
+        """(n, 3): how far each vertex is from where it was at first."""
+        return self._native.displacement()
+
+    @property
+    def time(self) -> float:
+        """The time that was reached."""
+        return self._native.time
+
+    @property
+    def step(self) -> int:
+        """How many steps were made."""
+        return self._native.step
+
+    def set_array(self, name: str, array: ArrayLike, *, on: str) -> None:
+        """Puts an array on the mesh, ``on`` its "points" or "cells", in place of one of that name; it is carried where the mesh changes."""
+        self._native.set_array(name, np.asarray(array), on)
+        self._mesh = None
+
+    def advance(self, time: float, displacement: ArrayLike, *, progress: Progress | None = None) -> Report:
+        """Takes the walls to where they are at ``time``.
+
+        Parameters
+        ----------
+        time : float
+            After :attr:`time`.
+        displacement : array (k, 3)
+            Of each of :attr:`driven_places`, counted from there.
+
+        Returns
+        -------
+        Report
+            ``complete``, ``fraction``, ``bad``, ``inverted``, ``worst``, ``changes`` (each with its time), ``gaps``, ``seconds``.
+        """
+        self._mesh = None
+        return report(self._native.advance(time, np.ascontiguousarray(displacement, np.float64), progress))
+
+    def refine(self, *, generations: int | None = None, coarsen: bool = False, **criteria: Any) -> Report | None:
+        """Divides tets and takes divisions back, by the criteria of :func:`refine`; None where nothing changed."""
+        self._mesh = None
+        change = self._native.refine(_criteria(**criteria), generations, coarsen)
+        return None if change is None else report(change)
+
+    def remembers(self, step: int) -> bool:
+        """Whether all changes since a step are known."""
+        return self._native.remembers(step)
+
+    def history_since(self, step: int) -> History | None:
+        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed."""
+        found = self._native.history_since(step)
+        return None if found is None else History(found)

@@ -1,0 +1,222 @@
+//! A mesh that moves with its walls and stays good.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use motet::Mesh;
+use motet::base::{Threads, Watch};
+use motet::contact;
+use motet::motion::{Extent, Limits, Method, MethodWords};
+use motet::moving::{self, Motion, Options, Watching};
+use motet::refine::Wanted;
+use motet::remesh::{self, SurfaceRule};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{Vectors, rows, to_field, vectors};
+use crate::border::{Given, parts};
+use crate::error::OrRaise;
+use crate::history::History;
+use crate::refine::Criterion;
+use crate::report::report;
+use crate::watch::{beside, watched};
+use crate::words::{one_of, rules, threads};
+
+/// What a moving mesh is told; a class with these attributes on Python's side.
+#[derive(FromPyObject)]
+pub(crate) struct Asked {
+    method: String,
+    bodies: Vec<String>,
+    within_walls: bool,
+    smooth: usize,
+    inside: Vec<String>,
+    slide: Vec<String>,
+    rigid_layer: Option<f64>,
+    rigid_layer_cells: Option<usize>,
+    rigid_layer_at: Vec<String>,
+    repair: bool,
+    min_eas: f64,
+    surface: String,
+    distance: Option<f64>,
+    margin: f64,
+    floor: f64,
+    keep_tets: f64,
+    contents: Vec<String>,
+    carry: BTreeMap<String, String>,
+    watch: Vec<String>,
+    warn: Option<f64>,
+    within: f64,
+    horizon: Option<f64>,
+    remembered: usize,
+}
+
+impl Asked {
+    fn options(&self, mesh: &Mesh) -> PyResult<Options> {
+        let labels = |words: &[String]| -> PyResult<Vec<i32>> {
+            words.iter().map(|word| mesh.find_patch(word)).collect::<motet::Result<_>>().or_raise()
+        };
+        let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
+        let wall = labels(&self.rigid_layer_at)?;
+        let motion = Motion {
+            method: Method::of_name(&self.method, MethodWords::default()).or_raise()?,
+            bodies: labels(&self.bodies)?,
+            within_walls: self.within_walls,
+            smoothing: self.smooth,
+            inside: labels(&self.inside)?,
+            sliding: labels(&self.slide)?,
+            rigid_layer: extent.map(|extent| (extent, wall)),
+            limits: Limits::default(),
+        };
+        let distance = self.distance;
+        let known = [
+            ("keep", SurfaceRule::Keep),
+            ("adapt", SurfaceRule::Adapt { distance }),
+            ("loose", SurfaceRule::Loose { distance }),
+        ];
+        let surface = one_of("surface", &self.surface, &known)?;
+        let repair = remesh::Options { min_eas: self.min_eas, surface, ..remesh::Options::default() };
+        let watch = (!self.watch.is_empty()).then(|| Watching {
+            patches: self.watch.clone(),
+            options: contact::Options { warn: self.warn, within: self.within, ..contact::Options::default() },
+            horizon: self.horizon,
+        });
+        Ok(Options {
+            motion,
+            repair: self.repair.then_some(repair),
+            margin: self.margin,
+            floor: self.floor,
+            keep_tets: self.keep_tets,
+            rules: rules(mesh, &self.carry)?,
+            contents: self.contents.clone(),
+            watch,
+            remembered: self.remembered,
+        })
+    }
+}
+
+/// A mesh that moves with its walls and stays good.
+#[pyclass(module = "motet._motet")]
+pub(crate) struct MovingMesh {
+    moving: moving::MovingMesh,
+    threads: Threads,
+}
+
+impl MovingMesh {
+    /// A call of the handle that can be ended by Ctrl-C.
+    fn watched<T: Send>(
+        &mut self,
+        py: Python<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+        call: impl FnOnce(&mut moving::MovingMesh, &Threads) -> motet::Result<T> + Send,
+    ) -> PyResult<T> {
+        let watch = Watch::new();
+        let threads = std::mem::take(&mut self.threads).watched(&watch);
+        let moving = &mut self.moving;
+        let (threads, outcome) = beside(py, &watch, threads, progress, |threads| call(moving, threads));
+        self.threads = threads;
+        outcome
+    }
+}
+
+#[pymethods]
+impl MovingMesh {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        mesh: Given,
+        asked: Asked,
+        threads: usize,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let options = asked.options(&mesh.0)?;
+        let new = |threads: &Threads| moving::MovingMesh::new(&mesh.0, options, threads);
+        Ok(Self { moving: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
+    }
+
+    /// Goes on from what `save` wrote.
+    #[staticmethod]
+    fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
+        let mesh = motet::io::read(&path).or_raise()?;
+        let options = asked.options(&mesh)?;
+        let load = |threads: &Threads| moving::MovingMesh::load(&path, options, threads);
+        Ok(Self { moving: watched(py, threads, None, load)?, threads: self::threads(threads)? })
+    }
+
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| self.moving.save(&path)).or_raise()
+    }
+
+    #[getter]
+    fn driven_places<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(vectors(py, self.moving.driven_places().to_vec())?.into_any())
+    }
+
+    #[getter]
+    fn time(&self) -> f64 {
+        self.moving.time()
+    }
+
+    #[getter]
+    fn step(&self) -> usize {
+        self.moving.step()
+    }
+
+    fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        parts(py, self.moving.mesh().clone())
+    }
+
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(vectors(py, self.moving.mesh().points.clone())?.into_any())
+    }
+
+    fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(vectors(py, self.moving.velocity())?.into_any())
+    }
+
+    fn displacement<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(vectors(py, self.moving.displacement())?.into_any())
+    }
+
+    fn set_array(&mut self, name: String, array: &Bound<'_, PyAny>, on: &str) -> PyResult<()> {
+        let field = to_field(name, array)?;
+        match one_of("on", on, &[("points", true), ("cells", false)])? {
+            true => self.moving.set_point_field(field),
+            false => self.moving.set_cell_field(field),
+        }
+        .or_raise()
+    }
+
+    fn advance<'py>(
+        &mut self,
+        py: Python<'py>,
+        time: f64,
+        displacement: Vectors<'_>,
+        progress: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let displacement = rows(&displacement, "displacement")?;
+        let step =
+            self.watched(py, progress, |moving, threads| moving.advance(time, displacement, threads))?;
+        report(py, &step)
+    }
+
+    fn refine<'py>(
+        &mut self,
+        py: Python<'py>,
+        criteria: Vec<Criterion>,
+        generations: Option<u32>,
+        coarsen: bool,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let criteria = criteria.into_iter().map(|criterion| criterion.0).collect();
+        let wanted = Wanted { criteria, generations, coarsen, ..Wanted::default() };
+        let change = self.watched(py, None, |moving, threads| moving.refine(&wanted, threads))?;
+        change.map(|change| report(py, &change)).transpose()
+    }
+
+    fn remembers(&self, step: usize) -> bool {
+        self.moving.remembers(step)
+    }
+
+    fn history_since(&self, py: Python<'_>, step: usize) -> Option<History> {
+        py.detach(|| self.moving.history_since(step)).map(History)
+    }
+}

@@ -1,0 +1,76 @@
+"""The moving mesh: what it gives, what it refuses, and that it goes on to the same bytes."""
+import numpy as np
+import pytest
+
+import motet
+from motet import shapes
+
+
+def sphere_at(moving, by, turn=0.0):
+    """The sphere shifted and turned about z, the box still."""
+    places = moving.driven_places
+    is_sphere = np.linalg.norm(places, axis=1) < 1.01
+    c, s = np.cos(turn), np.sin(turn)
+    moved = places @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) + by
+    return np.where(is_sphere[:, None], moved - places, 0.0)
+
+
+def test_a_sphere_goes_far_and_no_tet_is_bad():
+    moving = motet.MovingMesh(shapes.sphere_in_box(5, 4), smooth=2, watch=["sphere", "box"], warn=1.5)
+    first = np.arange(moving.mesh.n_points, dtype=float)
+    changes = 0
+    for k in range(1, 9):
+        phase = 2.0 * np.pi * k / 8.0
+        step = moving.advance(k * 0.1, sphere_at(moving, (3.0 * np.sin(phase), 0.0, 0.0), 1.2 * np.sin(phase)))
+        assert step.complete and step.bad == 0 and step.inverted == 0
+        assert step.worst.eas >= 0.2 and step.gaps.least == pytest.approx(4.0 - abs(3.0 * np.sin(phase)), abs=0.2)
+        assert (step.gaps.warned > 0) == (step.gaps.least < 1.5)
+        changes += len(step.changes)
+        assert moving.points.shape == moving.velocity.shape == moving.displacement.shape == (moving.mesh.n_points, 3)
+    assert changes > 0 and moving.step == 8 and moving.time == pytest.approx(0.8)
+    carried = moving.history_since(0).transfer(first, on="points")
+    assert carried.shape == (moving.mesh.n_points,)
+    assert moving.remembers(0) and moving.history_since(8) is None
+
+
+def test_it_goes_on_to_the_same_bytes(tmp_path):
+    options = {"smooth": 2}
+    whole = motet.MovingMesh(shapes.sphere_in_box(4, 4), **options)
+    broken = motet.MovingMesh(shapes.sphere_in_box(4, 4), **options)
+    for k in range(1, 7):
+        by = sphere_at(whole, (0.5 * k, 0.0, 0.0), 0.2 * k)
+        whole.advance(k, by)
+        broken.save(tmp_path / "state.vtu")
+        broken = motet.MovingMesh.load(tmp_path / "state.vtu", **options)
+        broken.advance(k, by)
+        assert np.array_equal(whole.points, broken.points)
+    assert not broken.remembers(0)
+
+
+def test_what_is_refined_follows_the_walls():
+    moving = motet.MovingMesh(shapes.sphere_in_box(3, 3), smooth=2)
+    moving.set_array("dye", np.ones(moving.mesh.n_cells), on="cells")
+    change = moving.refine(ball=[((0.0, 0.0, 0.0), 1.4)])
+    assert change.why == "refinement" and change.tets_after > change.tets_before
+    assert moving.refine(coarsen=True) is not None
+    moving.refine(patch=["sphere"])
+    step = moving.advance(1.0, sphere_at(moving, (0.5, 0.0, 0.0)))
+    assert step.complete and np.all(moving.mesh.cell_data["dye"] == 1.0)
+
+
+def test_what_is_off_is_told():
+    mesh = shapes.sphere_in_box(3, 3)
+    moving = motet.MovingMesh(mesh)
+    still = np.zeros_like(moving.driven_places)
+    with pytest.raises(motet.InputError, match="driven"):
+        moving.advance(1.0, still[1:])
+    with pytest.raises(motet.OptionsError, match="not after"):
+        moving.advance(0.0, still)
+    with pytest.raises(motet.Error, match="no patch|sphere, box"):
+        motet.MovingMesh(mesh, slide=["door"])
+    with pytest.raises(motet.OptionsError, match="surface"):
+        motet.MovingMesh(mesh, surface="melt")
+    with pytest.raises(TypeError):
+        motet.MovingMesh(mesh, speed=3)
+    with pytest.raises(motet.InputError, match="rows"):
+        moving.set_array("p", np.zeros(3), on="cells")
