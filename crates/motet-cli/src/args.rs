@@ -10,7 +10,7 @@ use crate::verbs::{cap, contact, convert, demo, implant, info, meshing, moving, 
 #[command(name = "motet", version, subcommand_required = true, arg_required_else_help = true)]
 #[command(max_term_width = 100)]
 #[command(after_help = "\
-File formats are told by their endings: .vtu .vtp .pvd .vtk .msh .mesh .inp .stl .obj .node .xml ...
+File formats are told by their endings: .vtu .vtp .pvd .vtk .msh .mesh .inp .cgns .stl .obj .node .xml ...
 Exit status: 0 done; 2 the words of the call are off; 3 an input cannot be read or is not what
 the verb needs; 4 the asked result was not reached (what was reached is written); 1 anything else.
 `motet help VERB` tells all about a verb, with examples.")]

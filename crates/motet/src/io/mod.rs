@@ -2,6 +2,8 @@
 
 mod abaqus;
 mod cell_labels;
+mod cells_of_faces;
+mod cgns;
 mod dolfin;
 mod format;
 mod hdf;

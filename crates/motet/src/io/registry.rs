@@ -7,7 +7,8 @@ use crate::io::format::{Format, Notes, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, dolfin, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen, vtkhdf, vtkxml,
+    abaqus, cgns, dolfin, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen, vtkhdf,
+    vtkxml,
 };
 use crate::mesh::Mesh;
 
@@ -21,6 +22,7 @@ const FORMATS: &[Format] = &[
     vtkxml::VTP,
     legacy::VTK,
     vtkhdf::FORMAT,
+    cgns::FORMAT,
     msh::FORMAT,
     stl::FORMAT,
     obj::FORMAT,

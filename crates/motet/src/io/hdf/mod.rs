@@ -8,5 +8,5 @@
 mod read;
 mod write;
 
-pub(super) use read::{Array, Group, open, open_in_place};
+pub(super) use read::{Array, Group, is_hdf5, open, open_in_place};
 pub(super) use write::{Attribute, Node, Packing};

@@ -78,6 +78,11 @@ impl Group {
         &self.arrays
     }
 
+    /// The names of the groups in it, sorted.
+    pub(in crate::io) fn groups(&self) -> &[String] {
+        &self.groups
+    }
+
     /// The group of this name, if there is one.
     pub(in crate::io) fn group(&self, name: &str) -> Result<Option<Self>> {
         if self.groups.binary_search_by(|g| g.as_str().cmp(name)).is_err() {

@@ -1,6 +1,6 @@
 //! A tree of groups and arrays, and the bytes of a file with them.
 
-use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, MaxExtent};
+use hdf5_pure::{AttrValue, DatasetBuilder, FileBuilder, FinishedGroup, GroupBuilder, LibVer, MaxExtent};
 
 use crate::base::{Error, Result};
 use crate::mesh::Values;
@@ -10,8 +10,12 @@ use crate::mesh::Values;
 pub(in crate::io) enum Attribute {
     /// A text as long as it is.
     Text(String),
+    /// A text in a field of so many bytes, the rest zeros.
+    Padded(String, u32),
     /// Numbers of 64 bits.
     Ints(Vec<i64>),
+    /// Numbers of 32 bits.
+    ShortInts(Vec<i32>),
 }
 
 /// How an array lies in the file.
@@ -62,7 +66,17 @@ impl Node {
 
     /// The file whose root this is.
     pub(in crate::io) fn into_file(self) -> Result<Vec<u8>> {
+        self.into(FileBuilder::new())
+    }
+
+    /// The same in the form of HDF5 1.8, for readers that refuse what is newer. It has arrays in one piece alone.
+    pub(in crate::io) fn into_file_of_1_8(self) -> Result<Vec<u8>> {
         let mut file = FileBuilder::new();
+        file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
+        self.into(file)
+    }
+
+    fn into(self, mut file: FileBuilder) -> Result<Vec<u8>> {
         for (name, value) in self.attributes {
             file.set_attr(&name, attribute(value)?);
         }
@@ -98,7 +112,9 @@ fn told(e: impl std::fmt::Display) -> Error {
 fn attribute(value: Attribute) -> Result<AttrValue> {
     Ok(match value {
         Attribute::Text(text) => AttrValue::AsciiString(text),
+        Attribute::Padded(text, width) => AttrValue::ascii_string_sized(text, width).map_err(told)?,
         Attribute::Ints(n) => AttrValue::I64Array(n),
+        Attribute::ShortInts(n) => AttrValue::I32Array(n),
     })
 }
 

@@ -8,13 +8,11 @@
 //! |---|---|
 //! | `file` | one file: header, words, lists |
 //! | `folder` | where the files of a case are |
-//! | `cells` | tets, pyramids, wedges, hexahedra from their faces; polyhedra else |
 //! | `read`, `write` | a mesh in, a mesh out |
 //!
 //! Patches become surface cells with their names, `cellZones` regions. A path may be the case, its `polyMesh` folder, or ParaView's `NAME.foam` in the
 //! case. Written is a folder that is called `polyMesh`; patches whose names begin with `wall` are of type `wall`, the others `patch`.
 
-mod cells;
 mod file;
 mod folder;
 mod read;

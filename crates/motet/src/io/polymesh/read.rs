@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::cells_of_faces as cells;
 use crate::io::format::{Input, Notes};
-use crate::io::polymesh::cells;
 use crate::io::polymesh::file::File;
 use crate::io::polymesh::folder::{load, mesh_folder};
 use crate::mesh::{CellKind, Cells, Field, Mesh};

@@ -1,0 +1,164 @@
+//! The elements of a zone as cells: polyhedra from their polygons, and of these those that are cells themselves.
+
+use crate::base::{Csr, Result, VertexId};
+use crate::io::cells_of_faces;
+use crate::io::cgns::conditions::Members;
+use crate::io::cgns::elements::{Body, Section};
+use crate::io::cgns::zone::Zone;
+use crate::mesh::{CellKind, Cells};
+
+/// In place of a cell.
+pub(super) const NOWHERE: u32 = u32::MAX;
+
+/// Where the elements of a section went.
+pub(super) struct Span {
+    pub(super) name: String,
+    /// The number of the first element.
+    pub(super) first: i64,
+    /// The cell of each, [`NOWHERE`] for those that are none.
+    pub(super) places: Vec<u32>,
+}
+
+impl Span {
+    /// The number of the last element.
+    pub(super) fn last(&self) -> i64 {
+        self.first + self.places.len() as i64 - 1
+    }
+
+    /// The cells that there are.
+    pub(super) fn cells(&self) -> impl Iterator<Item = usize> + '_ {
+        self.places.iter().filter(|&&place| place != NOWHERE).map(|&place| place as usize)
+    }
+
+    /// The cell of an element of this section.
+    pub(super) fn cell(&self, number: i64) -> Option<usize> {
+        let place = *self.places.get(usize::try_from(number - self.first).ok()?)?;
+        (place != NOWHERE).then_some(place as usize)
+    }
+}
+
+/// Adds the elements of a zone to `cells`, its points behind `shift` others.
+pub(super) fn place(zone: &Zone, shift: u32, cells: &mut Cells) -> Result<Vec<Span>> {
+    let faces = Faces { zone };
+    let mut room = faces.room();
+    let mut spans = Vec::new();
+    for (section, is_cell) in zone.sections.iter().zip(faces.are_cells()) {
+        let mut places = Vec::with_capacity(section.len());
+        let here = |cells: &Cells, is_cell: bool| if is_cell { cells.len() as u32 } else { NOWHERE };
+        match &section.body {
+            Body::Cells(kinds, nodes) => {
+                for (kind, nodes) in kinds.iter().zip(nodes.iter()) {
+                    places.push(here(cells, kind.is_some()));
+                    kind.iter().for_each(|&kind| cells.push(kind, shifted(nodes, shift)));
+                }
+            }
+            Body::Faces(lists) => {
+                for (nodes, is_cell) in lists.iter().zip(is_cell) {
+                    places.push(here(cells, is_cell));
+                    let told = || format!("section {}: a polygon of {} nodes", section.name, nodes.len());
+                    let kind = polygon(nodes.len()).ok_or_else(|| zone.node.error(told()))?;
+                    if is_cell {
+                        cells.push(kind, shifted(nodes, shift));
+                    }
+                }
+            }
+            Body::Polyhedra(lists) => {
+                for list in lists.iter() {
+                    places.push(here(cells, true));
+                    cells_of_faces::push(cells, &faces.rings(list, shift, &mut room)?);
+                }
+            }
+        }
+        if cells.connectivity().items().len() > VertexId::MAX_COUNT {
+            return Err(zone.node.error("more nodes of elements than a mesh can hold"));
+        }
+        spans.push(Span { name: section.name.clone(), first: section.first, places });
+    }
+    Ok(spans)
+}
+
+fn shifted(nodes: &[u32], shift: u32) -> impl Iterator<Item = VertexId> + '_ {
+    nodes.iter().map(move |&node| VertexId(node + shift))
+}
+
+fn polygon(n_nodes: usize) -> Option<CellKind> {
+    match n_nodes {
+        0..3 => None,
+        3 => Some(CellKind::TRIANGLE),
+        4 => Some(CellKind::QUAD),
+        _ => Some(CellKind::POLYGON),
+    }
+}
+
+/// The polygons of a zone.
+struct Faces<'a> {
+    zone: &'a Zone,
+}
+
+impl Faces<'_> {
+    /// For each section which of its polygons are cells: where polyhedra are made of them, those that a boundary
+    /// condition names; else all.
+    fn are_cells(&self) -> Vec<Vec<bool>> {
+        let sections = &self.zone.sections;
+        let all = !sections.iter().any(|section| matches!(section.body, Body::Polyhedra(_)));
+        let mut are_cells: Vec<Vec<bool>> = sections
+            .iter()
+            .map(|section| match &section.body {
+                Body::Faces(lists) => vec![all; lists.len()],
+                _ => Vec::new(),
+            })
+            .collect();
+        for condition in &self.zone.conditions {
+            let Members::Elements(numbers) = &condition.members else { continue };
+            for (section, are_cells) in sections.iter().zip(&mut are_cells).filter(|(_, a)| !a.is_empty()) {
+                let last = section.first + section.len() as i64 - 1;
+                numbers
+                    .within(section.first, last)
+                    .for_each(|number| are_cells[(number - section.first) as usize] = true);
+            }
+        }
+        are_cells
+    }
+
+    /// So many nodes the faces of all polyhedra have at most: two share a face.
+    fn room(&self) -> usize {
+        let items = |section: &Section| match &section.body {
+            Body::Faces(lists) => lists.items().len(),
+            _ => 0,
+        };
+        self.zone.sections.iter().map(items).sum::<usize>().saturating_mul(2)
+    }
+
+    /// The faces of a polyhedron, turned outward.
+    fn rings(&self, numbers: &[i64], shift: u32, room: &mut usize) -> Result<Vec<Vec<VertexId>>> {
+        if numbers.len() < 4 {
+            return Err(self.zone.node.error(format!("a polyhedron of {} polygons", numbers.len())));
+        }
+        let mut rings = Vec::with_capacity(numbers.len());
+        for &number in numbers {
+            let nodes = self.face(number.saturating_abs()).ok_or_else(|| {
+                self.zone.node.error(format!("a polyhedron names element {number}, which is no polygon"))
+            })?;
+            *room = room
+                .checked_sub(nodes.len())
+                .ok_or_else(|| self.zone.node.error("polyhedra name polygons more often than twice"))?;
+            let mut ring: Vec<VertexId> = shifted(nodes, shift).collect();
+            if number < 0 {
+                ring.reverse();
+            }
+            rings.push(ring);
+        }
+        Ok(rings)
+    }
+
+    fn face(&self, number: i64) -> Option<&[u32]> {
+        let sections = &self.zone.sections;
+        let at = sections.partition_point(|section| section.first <= number).checked_sub(1)?;
+        let lists: &Csr<u32> = match &sections[at].body {
+            Body::Faces(lists) => lists,
+            _ => return None,
+        };
+        let place = usize::try_from(number - sections[at].first).ok().filter(|&p| p < lists.len())?;
+        Some(lists.list(place)).filter(|nodes| nodes.len() >= 3)
+    }
+}

@@ -1,0 +1,84 @@
+//! Which elements or points a boundary condition names.
+
+use crate::base::Result;
+use crate::io::cgns::node::Node;
+use crate::io::format::Notes;
+
+/// A boundary condition of a zone.
+pub(super) struct Condition {
+    pub(super) name: String,
+    pub(super) family: Option<String>,
+    pub(super) members: Members,
+}
+
+/// What a condition or a solution is on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Members {
+    /// Elements, by their numbers.
+    Elements(Numbers),
+    /// Points, by their numbers.
+    Points(Numbers),
+}
+
+/// Numbers from 1 on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Numbers {
+    /// One by one.
+    List(Vec<i64>),
+    /// From the first to the last.
+    Range(i64, i64),
+}
+
+impl Numbers {
+    /// The numbers between two others.
+    pub(super) fn within(&self, first: i64, last: i64) -> Box<dyn Iterator<Item = i64> + '_> {
+        match self {
+            Self::List(all) => Box::new(all.iter().copied().filter(move |n| (first..=last).contains(n))),
+            Self::Range(from, to) => Box::new(first.max(*from)..=last.min(*to)),
+        }
+    }
+
+    /// Reads what a node names; `None` where it says nothing.
+    pub(super) fn of(node: &Node, list: &str, range: &str) -> Result<Option<Self>> {
+        if let Some(list) = node.child(list)? {
+            return Ok(Some(Self::List(list.ints()?)));
+        }
+        let Some(range) = node.child(range)? else { return Ok(None) };
+        match range.ints()?.as_slice() {
+            &[first, last] => Ok(Some(Self::Range(first.min(last), first.max(last)))),
+            _ => Err(range.error("a range is a pair of numbers")),
+        }
+    }
+}
+
+/// Whether a condition or a solution is on points: where nothing is said, it is.
+pub(super) fn is_on_points(node: &Node) -> Result<bool> {
+    Ok(node.text_of("GridLocation_t")?.is_none_or(|place| place == "Vertex"))
+}
+
+/// The boundary conditions of a zone.
+pub(super) fn conditions(zone: &Node, notes: &Notes) -> Result<Vec<Condition>> {
+    let mut all = Vec::new();
+    for conditions in zone.children_of("ZoneBC_t")? {
+        for node in conditions.children_of("BC_t")? {
+            match members(&node)? {
+                Some(members) => all.push(Condition {
+                    family: node.text_of("FamilyName_t")?.filter(|name| !name.is_empty()),
+                    name: node.name,
+                    members,
+                }),
+                None => notes.add(format!("{} names neither elements nor points: passed over", node.place())),
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn members(node: &Node) -> Result<Option<Members>> {
+    if let Some(numbers) = Numbers::of(node, "PointList", "PointRange")? {
+        let is_on_points = is_on_points(node)?;
+        return Ok(Some(if is_on_points { Members::Points(numbers) } else { Members::Elements(numbers) }));
+    }
+    // Before version 3 elements were named so.
+    Ok(Numbers::of(node, "ElementList", "ElementRange")?.map(Members::Elements))
+}

@@ -1,0 +1,192 @@
+//! A section of elements: the type of each, and its nodes or faces.
+
+use crate::base::{Csr, Result, VertexId};
+use crate::io::cgns::kinds::{ElementType, MIXED, NFACE, NGON};
+use crate::io::cgns::node::Node;
+use crate::io::format::Notes;
+use crate::mesh::CellKind;
+
+/// Elements that stand together, numbered through.
+pub(super) struct Section {
+    pub(super) name: String,
+    /// The number of the first one; the first of a zone is 1.
+    pub(super) first: i64,
+    pub(super) body: Body,
+}
+
+/// What the elements are.
+pub(super) enum Body {
+    /// For each its kind, and its nodes in VTK's order; `None` for those that are no cells here.
+    Cells(Vec<Option<CellKind>>, Csr<u32>),
+    /// Polygons.
+    Faces(Csr<u32>),
+    /// The numbers of the polygons of each polyhedron, below zero where the polygon is turned inward.
+    Polyhedra(Csr<i64>),
+}
+
+impl Section {
+    /// How many elements there are.
+    pub(super) fn len(&self) -> usize {
+        match &self.body {
+            Body::Cells(kinds, _) => kinds.len(),
+            Body::Faces(lists) => lists.len(),
+            Body::Polyhedra(lists) => lists.len(),
+        }
+    }
+
+    /// Reads a section of a zone that has so many points.
+    pub(super) fn read(node: &Node, n_points: usize, notes: &Notes) -> Result<Self> {
+        let number = node.ints()?.first().copied().unwrap_or(0);
+        let (first, n) = range(node)?;
+        let source = Source { node, n, n_points, ids: node.needed("ElementConnectivity")?.ints()? };
+        let body = match number {
+            MIXED => source.mixed(notes)?,
+            NGON => Body::Faces(source.lists(|id| source.point(id))?),
+            NFACE => Body::Polyhedra(source.lists(Ok)?),
+            number => source.fixed(number, notes)?,
+        };
+        Ok(Self { name: node.name.clone(), first, body })
+    }
+}
+
+/// The number of the first element, and how many there are.
+fn range(node: &Node) -> Result<(i64, usize)> {
+    let ends = node.needed("ElementRange")?.ints()?;
+    let &[first, last] = ends.as_slice() else {
+        return Err(node.error("the range of elements is no pair of numbers"));
+    };
+    let n = last.checked_sub(first).and_then(|n| n.checked_add(1)).and_then(|n| usize::try_from(n).ok());
+    match n.filter(|_| first >= 1) {
+        Some(n) => Ok((first, n)),
+        None => Err(node.error(format!("elements from {first} to {last} are announced"))),
+    }
+}
+
+struct Source<'a> {
+    node: &'a Node,
+    n: usize,
+    n_points: usize,
+    ids: Vec<i64>,
+}
+
+impl Source<'_> {
+    fn point(&self, id: i64) -> Result<u32> {
+        let place = usize::try_from(id).ok().and_then(|id| id.checked_sub(1)).filter(|&p| p < self.n_points);
+        place.map(|p| p as u32).ok_or_else(|| {
+            self.node.error(format!("an element names point {id}, there are {}", self.n_points))
+        })
+    }
+
+    fn fits(&self, n_expected: Option<usize>) -> Result<()> {
+        if n_expected == Some(self.ids.len()) && self.ids.len() <= VertexId::MAX_COUNT {
+            return Ok(());
+        }
+        Err(self.node.error(format!(
+            "{} elements are announced, to which {} numbers of nodes do not belong",
+            self.n,
+            self.ids.len()
+        )))
+    }
+
+    /// Elements of one type.
+    fn fixed(&self, number: i64, notes: &Notes) -> Result<Body> {
+        let Some(element) = ElementType::of(number) else {
+            return Err(self.node.error(format!("elements of type {number} are unknown")));
+        };
+        self.fits(self.n.checked_mul(element.n_nodes))?;
+        let mut out = Cells::default();
+        self.ids.chunks_exact(element.n_nodes).try_for_each(|ids| out.push(self, element, ids))?;
+        out.finish(notes)
+    }
+
+    /// Elements of several types, a type before the nodes of each.
+    fn mixed(&self, notes: &Notes) -> Result<Body> {
+        let mut out = Cells::default();
+        let mut rest = self.ids.as_slice();
+        while let Some((&number, behind)) = rest.split_first() {
+            let Some(element) = ElementType::of(number) else {
+                return Err(self.node.error(format!("an element of type {number} among others is unknown")));
+            };
+            let Some((ids, behind)) = behind.split_at_checked(element.n_nodes) else {
+                return Err(self.node.error("the last element is cut off"));
+            };
+            out.push(self, element, ids)?;
+            rest = behind;
+        }
+        self.fits((out.kinds.len() == self.n).then_some(self.ids.len()))?;
+        out.finish(notes)
+    }
+
+    /// Lists of whatever lengths: with where each begins, or, as it was before version 4, with its length before each.
+    fn lists<T>(&self, of: impl Fn(i64) -> Result<T>) -> Result<Csr<T>> {
+        let mut lists = Csr::default();
+        let mut push = |ids: &[i64]| {
+            let ids = ids.iter().map(|&id| of(id)).collect::<Result<Vec<T>>>()?;
+            lists.push(ids);
+            Ok(())
+        };
+        self.fits(Some(self.ids.len()))?;
+        match self.node.child("ElementStartOffset")? {
+            Some(offsets) => {
+                let starts = offsets.ints()?;
+                let ends = starts.first().zip(starts.last());
+                let n = self.ids.len();
+                if starts.len().checked_sub(1) != Some(self.n)
+                    || !starts.is_sorted()
+                    || ends.is_none_or(|(&first, &last)| first != 0 || usize::try_from(last) != Ok(n))
+                {
+                    return Err(offsets.error(format!(
+                        "{} numbers that rise from 0 to {n} are expected",
+                        self.n.saturating_add(1)
+                    )));
+                }
+                starts.windows(2).try_for_each(|pair| push(&self.ids[pair[0] as usize..pair[1] as usize]))?;
+            }
+            None => {
+                let mut rest = self.ids.as_slice();
+                while let Some((&n, behind)) = rest.split_first() {
+                    let list = usize::try_from(n).ok().and_then(|n| behind.split_at_checked(n));
+                    let (list, behind) = list.ok_or_else(|| {
+                        self.node.error(format!("a list of {n} is longer than what is left"))
+                    })?;
+                    push(list)?;
+                    rest = behind;
+                }
+            }
+        }
+        self.fits((lists.len() == self.n).then_some(self.ids.len()))?;
+        Ok(lists)
+    }
+}
+
+/// Cells as they come.
+#[derive(Default)]
+struct Cells {
+    kinds: Vec<Option<CellKind>>,
+    nodes: Csr<u32>,
+    n_passed: std::collections::BTreeMap<&'static str, usize>,
+    order: Option<(ElementType, Vec<usize>)>,
+}
+
+impl Cells {
+    fn push(&mut self, source: &Source<'_>, element: ElementType, ids: &[i64]) -> Result<()> {
+        if element.kind.is_none() {
+            *self.n_passed.entry(element.name).or_default() += 1;
+        }
+        if self.order.as_ref().is_none_or(|(of, _)| *of != element) {
+            self.order = Some((element, element.vtk_to_cgns()));
+        }
+        let order = self.order.as_ref().map_or(&[][..], |(_, order)| order);
+        let nodes = order.iter().map(|&place| source.point(ids[place])).collect::<Result<Vec<u32>>>()?;
+        self.kinds.push(element.kind);
+        self.nodes.push(nodes);
+        Ok(())
+    }
+
+    fn finish(self, notes: &Notes) -> Result<Body> {
+        for (name, n) in self.n_passed {
+            notes.add(format!("{n} elements of type {name} are passed over: motet has no such cells"));
+        }
+        Ok(Body::Cells(self.kinds, self.nodes))
+    }
+}

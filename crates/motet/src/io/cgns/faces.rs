@@ -1,0 +1,95 @@
+//! A mesh with polyhedra as faces and cells of faces: every face once, those that are surface cells first.
+
+use std::collections::HashMap;
+
+use crate::base::{Csr, Error, Result};
+use crate::io::cgns::parts::Part;
+use crate::mesh::adjacency::{FacetUse, Facets};
+use crate::mesh::{CellKind, Mesh, corners};
+
+/// Kinds of cells that are no fixed type of elements, so that the mesh is written face by face.
+pub(super) fn needs_faces(kind: CellKind) -> bool {
+    matches!(
+        kind,
+        CellKind::POLYGON | CellKind::POLYHEDRON | CellKind::PENTAGONAL_PRISM | CellKind::HEXAGONAL_PRISM
+    )
+}
+
+/// Kinds of cells of which a mesh of faces can be: all sides straight.
+pub(super) fn holds(kind: CellKind) -> bool {
+    needs_faces(kind)
+        || matches!(
+            kind,
+            CellKind::VERTEX
+                | CellKind::LINE
+                | CellKind::TRIANGLE
+                | CellKind::QUAD
+                | CellKind::TETRA
+                | CellKind::PYRAMID
+                | CellKind::WEDGE
+                | CellKind::HEXAHEDRON
+        )
+}
+
+/// The faces of a mesh, and the faces of its cells.
+pub(super) struct Faces {
+    /// The ring of each: surface cells in the order of the parts, then all others.
+    pub(super) rings: Csr<u32>,
+    /// For each volume cell the numbers of its faces, counted from 1, below zero where one is turned inward.
+    pub(super) of_cells: Vec<Vec<i64>>,
+}
+
+impl Faces {
+    pub(super) fn of(mesh: &Mesh, parts: &[Part]) -> Result<Self> {
+        let mut rings = Csr::default();
+        let mut places: HashMap<Vec<u32>, usize> = HashMap::new();
+        for &cell in parts.iter().filter(|part| part.dim == 2).flat_map(|part| &part.cells) {
+            let ring = corners(mesh.cells.kinds()[cell], mesh.cells.connectivity().list(cell));
+            let ring: Vec<u32> = ring.iter().map(|v| v.0).collect();
+            places.entry(key(&ring)).or_insert(rings.len());
+            rings.push(ring);
+        }
+        let facets = Facets::of(&mesh.cells);
+        let mut of_cells = vec![Vec::new(); mesh.cells.len()];
+        let mut too_many = None;
+        facets.for_each_shared(|uses| {
+            if uses.len() > 2 {
+                too_many = too_many.or(uses.first().copied());
+            }
+            let ring_of = |facet: &FacetUse| facets.corners(*facet).map(|v| v.0).collect::<Vec<u32>>();
+            let first = ring_of(&uses[0]);
+            let place = places.get(&key(&first)).copied().unwrap_or_else(|| {
+                rings.push(first.iter().copied());
+                rings.len() - 1
+            });
+            for facet in uses {
+                let number = place as i64 + 1;
+                let outward = turn_alike(rings.list(place), &ring_of(facet));
+                of_cells[facet.cell.index()].push(if outward { number } else { -number });
+            }
+        });
+        if let Some(facet) = too_many {
+            return Err(Error::input("more than two cells share a face").at(format!("cell {}", facet.cell)));
+        }
+        let is_flat = |(cell, kind): (usize, &CellKind)| kind.dim() == Some(3) && of_cells[cell].len() < 4;
+        match mesh.cells.kinds().iter().enumerate().position(is_flat) {
+            Some(cell) => {
+                Err(Error::input("a volume cell of less than four faces").at(format!("cell {cell}")))
+            }
+            None => Ok(Self { rings, of_cells }),
+        }
+    }
+}
+
+/// The corners of a ring, rising.
+fn key(ring: &[u32]) -> Vec<u32> {
+    let mut key = ring.to_vec();
+    key.sort_unstable();
+    key.dedup();
+    key
+}
+
+/// Whether two rings of the same corners run the same way round.
+fn turn_alike(a: &[u32], b: &[u32]) -> bool {
+    b.iter().position(|v| *v == a[0]).is_some_and(|at| b[(at + 1) % b.len()] == a[1])
+}

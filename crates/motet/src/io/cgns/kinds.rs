@@ -1,0 +1,170 @@
+//! Types of elements: their numbers in files, the kind of cell of each, and the order of its nodes.
+
+use crate::io::node_order::{Nodes, vtk_to_other};
+use crate::mesh::CellKind;
+
+/// Elements of several types.
+pub(super) const MIXED: i64 = 20;
+/// Polygons.
+pub(super) const NGON: i64 = 22;
+/// Polyhedra, by their polygons.
+pub(super) const NFACE: i64 = 23;
+
+/// A type of elements that have the same number of nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ElementType {
+    pub(super) number: i64,
+    pub(super) name: &'static str,
+    pub(super) n_nodes: usize,
+    /// `None` for those of order three and four, of which there are no cells here.
+    pub(super) kind: Option<CellKind>,
+}
+
+const fn row(number: i64, name: &'static str, n_nodes: usize, kind: CellKind) -> ElementType {
+    ElementType { number, name, n_nodes, kind: Some(kind) }
+}
+
+const fn passed(number: i64, name: &'static str, n_nodes: usize) -> ElementType {
+    ElementType { number, name, n_nodes, kind: None }
+}
+
+/// SIDS, "ElementType_t".
+const TYPES: &[ElementType] = &[
+    row(2, "NODE", 1, CellKind::VERTEX),
+    row(3, "BAR_2", 2, CellKind::LINE),
+    row(4, "BAR_3", 3, CellKind::QUADRATIC_LINE),
+    row(5, "TRI_3", 3, CellKind::TRIANGLE),
+    row(6, "TRI_6", 6, CellKind::QUADRATIC_TRIANGLE),
+    row(7, "QUAD_4", 4, CellKind::QUAD),
+    row(8, "QUAD_8", 8, CellKind::QUADRATIC_QUAD),
+    row(9, "QUAD_9", 9, CellKind::BIQUADRATIC_QUAD),
+    row(10, "TETRA_4", 4, CellKind::TETRA),
+    row(11, "TETRA_10", 10, CellKind::QUADRATIC_TETRA),
+    row(12, "PYRA_5", 5, CellKind::PYRAMID),
+    row(13, "PYRA_14", 14, CellKind::LAGRANGE_PYRAMID),
+    row(14, "PENTA_6", 6, CellKind::WEDGE),
+    row(15, "PENTA_15", 15, CellKind::QUADRATIC_WEDGE),
+    row(16, "PENTA_18", 18, CellKind::BIQUADRATIC_QUADRATIC_WEDGE),
+    row(17, "HEXA_8", 8, CellKind::HEXAHEDRON),
+    row(18, "HEXA_20", 20, CellKind::QUADRATIC_HEXAHEDRON),
+    row(19, "HEXA_27", 27, CellKind::TRIQUADRATIC_HEXAHEDRON),
+    row(21, "PYRA_13", 13, CellKind::QUADRATIC_PYRAMID),
+    row(24, "BAR_4", 4, CellKind::CUBIC_LINE),
+    passed(25, "TRI_9", 9),
+    passed(26, "TRI_10", 10),
+    passed(27, "QUAD_12", 12),
+    passed(28, "QUAD_16", 16),
+    passed(29, "TETRA_16", 16),
+    passed(30, "TETRA_20", 20),
+    passed(31, "PYRA_21", 21),
+    passed(32, "PYRA_29", 29),
+    passed(33, "PYRA_30", 30),
+    passed(34, "PENTA_24", 24),
+    passed(35, "PENTA_38", 38),
+    passed(36, "PENTA_40", 40),
+    passed(37, "HEXA_32", 32),
+    passed(38, "HEXA_56", 56),
+    passed(39, "HEXA_64", 64),
+    passed(40, "BAR_5", 5),
+    passed(41, "TRI_12", 12),
+    passed(42, "TRI_15", 15),
+    passed(43, "QUAD_P4_16", 16),
+    passed(44, "QUAD_25", 25),
+    passed(45, "TETRA_22", 22),
+    passed(46, "TETRA_34", 34),
+    passed(47, "TETRA_35", 35),
+    passed(48, "PYRA_P4_29", 29),
+    passed(49, "PYRA_50", 50),
+    passed(50, "PYRA_55", 55),
+    passed(51, "PENTA_33", 33),
+    passed(52, "PENTA_66", 66),
+    passed(53, "PENTA_75", 75),
+    passed(54, "HEXA_44", 44),
+    passed(55, "HEXA_98", 98),
+    passed(56, "HEXA_125", 125),
+];
+
+impl ElementType {
+    /// The type of a number.
+    pub(super) fn of(number: i64) -> Option<Self> {
+        TYPES.iter().find(|t| t.number == number).copied()
+    }
+
+    /// The type that cells of a kind, of so many vertices, are written as.
+    pub(super) fn of_kind(kind: CellKind, n_vertices: usize) -> Option<Self> {
+        TYPES.iter().find(|t| t.kind == Some(kind) && t.n_nodes == n_vertices).copied()
+    }
+
+    /// For each node in VTK's order, its place in that of CGNS.
+    pub(super) fn vtk_to_cgns(self) -> Vec<usize> {
+        let order = |theirs| vtk_to_other(self.kind.unwrap_or(CellKind::EMPTY), self.n_nodes, theirs);
+        match self.number {
+            15 => order(WEDGE.split_at(9).0),
+            16 => order(WEDGE),
+            18 => order(HEXAHEDRON.split_at(12).0),
+            19 => order(HEXAHEDRON),
+            // The others are in the same order.
+            _ => (0..self.n_nodes).collect(),
+        }
+    }
+}
+
+/// SIDS, "Unstructured Grid Element Numbering Conventions", "Pentahedral Elements".
+const WEDGE: Nodes = &[
+    &[0, 1],
+    &[1, 2],
+    &[2, 0],
+    &[0, 3],
+    &[1, 4],
+    &[2, 5],
+    &[3, 4],
+    &[4, 5],
+    &[5, 3],
+    &[0, 1, 3, 4],
+    &[1, 2, 4, 5],
+    &[2, 0, 5, 3],
+];
+
+/// The same, "Hexahedral Elements".
+const HEXAHEDRON: Nodes = &[
+    &[0, 1],
+    &[1, 2],
+    &[2, 3],
+    &[3, 0],
+    &[0, 4],
+    &[1, 5],
+    &[2, 6],
+    &[3, 7],
+    &[4, 5],
+    &[5, 6],
+    &[6, 7],
+    &[7, 4],
+    &[0, 1, 2, 3],
+    &[0, 1, 4, 5],
+    &[1, 2, 5, 6],
+    &[2, 3, 6, 7],
+    &[0, 3, 4, 7],
+    &[4, 5, 6, 7],
+    &[0, 1, 2, 3, 4, 5, 6, 7],
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_type_has_its_number_of_nodes_and_an_order_of_all_of_them() {
+        for t in TYPES {
+            assert_eq!(ElementType::of(t.number), Some(*t));
+            let in_name = t.name.rsplit('_').next().unwrap();
+            assert_eq!(in_name.parse().unwrap_or(1), t.n_nodes, "{}", t.name);
+            let Some(kind) = t.kind else { continue };
+            assert!(kind.n_vertices().is_none_or(|n| n == t.n_nodes), "{}", t.name);
+            assert_eq!(ElementType::of_kind(kind, t.n_nodes), Some(*t));
+            let mut order = t.vtk_to_cgns();
+            order.sort_unstable();
+            assert_eq!(order, (0..t.n_nodes).collect::<Vec<_>>());
+        }
+        assert_eq!(ElementType::of(MIXED), None);
+    }
+}

@@ -1,0 +1,64 @@
+//! CGNS (`.cgns`): meshes and solutions of computational fluid dynamics, in HDF5.
+//!
+//! The layout is that of the CGNS documentation: "Standard Interface Data Structures" (SIDS) says which nodes there are, "SIDS-to-HDF5
+//! File Mapping" how they lie in a file. Of unstructured meshes this is known:
+//!
+//! ```text
+//! CGNSBase_t            dimensions of cells and of space
+//!   Family_t            a name that sections and boundary conditions share; Ordinal: its number
+//!   Zone_t              numbers of points and cells; several zones are joined
+//!     GridCoordinates_t     CoordinateX, CoordinateY, CoordinateZ
+//!     Elements_t            cells of one kind or of several, of every dimension; numbered through from 1
+//!     ZoneGridConnectivity_t    points that are those of another zone
+//!     ZoneBC_t  BC_t        a name for elements, or for all that lies on some points
+//!     FlowSolution_t        arrays: a value for each point or each cell
+//!     UserDefinedData_t     arrays on some elements, such as surface cells
+//! ```
+//!
+//! | file | idea |
+//! |---|---|
+//! | `node` | the tree of nodes |
+//! | `kinds` | types of elements, and the order of their nodes |
+//! | `elements` | the lists of a section |
+//! | `zone` | points, elements, conditions of a zone |
+//! | `conditions` | which elements or points a boundary condition names |
+//! | `families` | names and numbers of families |
+//! | `cells` | the elements of a zone as cells |
+//! | `labels` | regions and patches from conditions, families, sections and zones |
+//! | `arrays` | solutions as arrays |
+//! | `seams` | points in which zones meet |
+//! | `bare` | what meshio writes |
+//! | `read` | a mesh in |
+//! | `tree` | nodes to be written |
+//! | `parts` | the cells of a mesh, label by label |
+//! | `faces` | a mesh with polyhedra as faces and cells of faces |
+//! | `names` | names that CGNS can hold |
+//! | `solutions` | arrays as solutions |
+//! | `write` | a mesh out |
+
+mod arrays;
+mod bare;
+mod cells;
+mod conditions;
+mod elements;
+mod faces;
+mod families;
+mod kinds;
+mod labels;
+mod names;
+mod node;
+mod parts;
+mod read;
+mod seams;
+mod solutions;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod write;
+mod zone;
+
+use crate::io::format::Format;
+
+/// Unstructured meshes with boundary conditions and solutions.
+pub(super) const FORMAT: Format =
+    Format { name: "CGNS", endings: &[".cgns"], read: Some(read::read), write: Some(write::write) };

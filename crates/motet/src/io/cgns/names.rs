@@ -1,0 +1,50 @@
+//! Names that CGNS can hold: 32 bytes at most, no slash, and none twice beside one another.
+
+use crate::mesh::unused_name;
+
+/// Bytes of a name at most.
+pub(super) const LONGEST: usize = 32;
+
+/// The name of a label that has none.
+pub(super) fn bare(dim: usize, number: i32) -> String {
+    format!("{}_{number}", if dim == 3 { "Region" } else { "Patch" })
+}
+
+/// The name, or one near it that CGNS can hold; none of `taken`.
+pub(super) fn valid(name: &str, taken: &[String]) -> String {
+    let clean: String = name.chars().map(|c| if matches!(c, '/' | '\0') { '_' } else { c }).collect();
+    let clean = clean.trim();
+    let clean = if clean.is_empty() || clean == "." || clean == ".." { "unnamed" } else { clean };
+    let mut longest = LONGEST;
+    loop {
+        // A number behind it takes room.
+        let name = unused_name(cut(clean, longest), |name| taken.iter().any(|t| t == name));
+        if name.len() <= LONGEST {
+            return name;
+        }
+        longest -= 1;
+    }
+}
+
+/// The name, cut off where it has more bytes than `most`.
+pub(super) fn cut(name: &str, most: usize) -> &str {
+    let end = (0..=most.min(name.len())).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+    &name[..end]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_cut_between_characters_and_told_apart() {
+        assert_eq!(valid("wall", &[]), "wall");
+        assert_eq!(valid("a/b", &["a_b".into()]), "a_b_2");
+        assert_eq!(valid(" ", &[]), "unnamed");
+        let long = "é".repeat(20);
+        let first = valid(&long, &[]);
+        assert_eq!(first, "é".repeat(16));
+        let second = valid(&long, std::slice::from_ref(&first));
+        assert!(second.len() <= LONGEST && second != first, "{second}");
+    }
+}

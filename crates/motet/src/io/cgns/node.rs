@@ -1,0 +1,110 @@
+//! The tree of nodes: each a group of HDF5 with a name, a label that says what it is, children, and an array called ` data`.
+
+use crate::base::{Error, Result};
+use crate::io::hdf::{Array, Group, is_hdf5, open};
+use crate::mesh::Values;
+
+/// How files of the older form begin, which is no HDF5: behind four bytes that `what` of Unix looks for, or those with their
+/// highest bits set.
+const ADF: &[u8] = b"ADF Database Version";
+
+/// A node of the tree.
+pub(super) struct Node {
+    pub(super) name: String,
+    pub(super) label: String,
+    group: Group,
+}
+
+impl Node {
+    /// The node whose children are the bases.
+    pub(super) fn root(bytes: &[u8]) -> Result<Self> {
+        if bytes.get(4..).is_some_and(|rest| rest.starts_with(ADF)) {
+            return Err(Error::input("is a CGNS file of the older form ADF, of which only HDF5 is read")
+                .remedy("turn it into HDF5: cgnsconvert -h old.cgns new.cgns"));
+        }
+        if !is_hdf5(bytes) {
+            return Err(Error::input("is no CGNS file: neither HDF5 nor ADF").remedy("get the file again"));
+        }
+        Ok(Self { name: String::new(), label: String::new(), group: open(bytes)? })
+    }
+
+    /// Where it stands in the file.
+    pub(super) fn place(&self) -> &str {
+        self.group.place()
+    }
+
+    /// All children, sorted by name.
+    ///
+    /// # Errors
+    /// When one stands for a node of another place: what it says is not here.
+    pub(super) fn children(&self) -> Result<Vec<Self>> {
+        let of = |name: &String| self.child(name).transpose();
+        self.group.groups().iter().filter_map(of).collect()
+    }
+
+    /// All children of a label, sorted by name.
+    pub(super) fn children_of(&self, label: &str) -> Result<Vec<Self>> {
+        Ok(self.children()?.into_iter().filter(|node| node.label == label).collect())
+    }
+
+    /// The first child of a label, by name.
+    pub(super) fn child_of(&self, label: &str) -> Result<Option<Self>> {
+        Ok(self.children_of(label)?.into_iter().next())
+    }
+
+    /// The child of a name, if there is one.
+    pub(super) fn child(&self, name: &str) -> Result<Option<Self>> {
+        let Some(group) = self.group.group(name)? else { return Ok(None) };
+        if group.text("type") == Some("LK") {
+            return Err(Error::input("is a link to a node elsewhere: links are not followed")
+                .at(group.place())
+                .remedy("put what is linked in its place: cgnsconvert -f -h -l linked.cgns whole.cgns"));
+        }
+        let label = group.text("label").unwrap_or_default().to_owned();
+        Ok(Some(Self { name: name.to_owned(), label, group }))
+    }
+
+    /// The child of a name, which must be there.
+    pub(super) fn needed(&self, name: &str) -> Result<Self> {
+        self.child(name)?.ok_or_else(|| self.error(format!("the node {name} is missing")))
+    }
+
+    /// Its array, if it has one.
+    pub(super) fn array(&self) -> Result<Option<Array>> {
+        self.group.array(" data")
+    }
+
+    /// Its values, which must be there.
+    pub(super) fn values(&self) -> Result<Values> {
+        self.array()?.ok_or_else(|| self.error("a node without values"))?.all()
+    }
+
+    /// Its values as whole numbers.
+    pub(super) fn ints(&self) -> Result<Vec<i64>> {
+        self.values()?.to_i64().ok_or_else(|| self.error("whole numbers are expected"))
+    }
+
+    /// Its values as a text; empty where there are none.
+    pub(super) fn text(&self) -> Result<String> {
+        let Some(array) = self.array()? else { return Ok(String::new()) };
+        let bytes: Vec<u8> = match array.all()? {
+            Values::I8(values) => values.into_iter().map(|c| c as u8).collect(),
+            Values::U8(values) => values,
+            Values::Text(values) => values.concat().into_bytes(),
+            _ => return Err(self.error("a text is expected")),
+        };
+        Ok(String::from_utf8_lossy(&bytes).trim_end_matches(['\0', ' ']).to_owned())
+    }
+
+    /// The text of the first child of a label; `None` where there is none.
+    pub(super) fn text_of(&self, label: &str) -> Result<Option<String>> {
+        self.child_of(label)?.map(|node| node.text()).transpose()
+    }
+
+    /// An error that names this node.
+    pub(super) fn error(&self, what: impl Into<String>) -> Error {
+        Error::input(what).at(self.place()).remedy(
+            "the file is damaged, or was written wrong: look at it with cgnscheck, and write it again",
+        )
+    }
+}

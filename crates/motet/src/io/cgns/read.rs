@@ -1,0 +1,109 @@
+//! A mesh in.
+
+use crate::base::{Error, Result, VertexId};
+use crate::io::cgns::arrays::{Places, Solutions};
+use crate::io::cgns::bare;
+use crate::io::cgns::cells::{Span, place};
+use crate::io::cgns::families::Families;
+use crate::io::cgns::labels::{Labelled, set_labels};
+use crate::io::cgns::node::Node;
+use crate::io::cgns::seams::{Seam, join_points, seams};
+use crate::io::cgns::zone::Zone;
+use crate::io::format::{Input, Notes};
+use crate::mesh::{Cells, Mesh};
+
+pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
+    let root = Node::root(input.bytes)?;
+    let bases = root.children_of("CGNSBase_t")?;
+    if bases.is_empty()
+        && let Some(mesh) = bare::read(&root)?
+    {
+        return Ok(mesh);
+    }
+    let base = bases.first().ok_or_else(|| {
+        Error::input("is an HDF5 file, but has no node of label CGNSBase_t")
+            .remedy("name the file after what it holds")
+    })?;
+    if bases.len() > 1 {
+        input.notes.add(format!("the file has {} bases: {} was read", bases.len(), base.name));
+    }
+    let cell_dim = base.ints()?.first().and_then(|&dim| usize::try_from(dim).ok()).unwrap_or(0);
+    let families = Families::of(base)?;
+    let mut mesh = Mesh::new(Vec::new(), Cells::new());
+    let mut zones = Vec::new();
+    let mut solutions = Solutions::default();
+    for node in base.children_of("Zone_t")? {
+        zones.push(join(&mut mesh, &mut solutions, Zone::read(node, input.notes)?, cell_dim, input.notes)?);
+    }
+    if zones.is_empty() {
+        return Err(base.error("a base without zones holds no mesh"));
+    }
+    mesh.point_data = solutions.points.finish(mesh.points.len());
+    mesh.cell_data = solutions.cells.finish(mesh.cells.len());
+    let labelled: Vec<Labelled<'_>> = zones.iter().map(Joined::labelled).collect();
+    set_labels(&mut mesh, &labelled, &families, cell_dim, input.notes);
+    join_zones(&mut mesh, &zones, input.notes);
+    Ok(mesh)
+}
+
+/// A zone whose points and cells are in the mesh.
+struct Joined {
+    zone: Zone,
+    spans: Vec<Span>,
+    points: (usize, usize),
+    seams: Vec<Option<Seam>>,
+}
+
+impl Joined {
+    fn labelled(&self) -> Labelled<'_> {
+        Labelled {
+            zone: &self.zone.node.name,
+            family: self.zone.family.as_deref(),
+            conditions: &self.zone.conditions,
+            spans: &self.spans,
+            points: self.points,
+        }
+    }
+}
+
+/// Adds a zone to the mesh.
+fn join(
+    mesh: &mut Mesh,
+    solutions: &mut Solutions,
+    mut zone: Zone,
+    cell_dim: usize,
+    notes: &Notes,
+) -> Result<Joined> {
+    let (first_point, n_points) = (mesh.points.len(), zone.points.len());
+    if first_point + n_points > VertexId::MAX_COUNT {
+        return Err(zone.node.error("more points than a mesh can hold"));
+    }
+    let spans = place(&zone, first_point as u32, &mut mesh.cells)?;
+    mesh.points.append(&mut zone.points);
+    zone.sections.clear();
+    let places = Places { first_point, n_points, spans: &spans, kinds: mesh.cells.kinds(), cell_dim };
+    solutions.take(&zone.node, &places, notes)?;
+    let seams = seams(&zone.node)?;
+    Ok(Joined { zone, spans, points: (first_point, n_points), seams })
+}
+
+/// Makes one of points in which zones meet, and says where they meet otherwise.
+fn join_zones(mesh: &mut Mesh, zones: &[Joined], notes: &Notes) {
+    let mut pairs = Vec::new();
+    let mut is_open = false;
+    for zone in zones {
+        for seam in &zone.seams {
+            let found = |seam: &Seam| zones.iter().find(|other| other.zone.node.name == seam.other);
+            match seam.as_ref().and_then(|seam| Some((seam, found(seam)?))) {
+                Some((seam, other)) => pairs.extend(seam.pairs(zone.points, other.points)),
+                None => is_open = true,
+            }
+        }
+    }
+    if pairs.is_empty() && !is_open {
+        return;
+    }
+    if join_points(mesh, &pairs) > 0 || is_open {
+        notes.add("zones meet in ways that do not say which points are one: there these are there twice");
+    }
+}

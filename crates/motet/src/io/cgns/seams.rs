@@ -1,0 +1,114 @@
+//! Points in which zones meet, one to one: two that the file says are one become one.
+
+use crate::base::{Csr, Point, Result, Sets, VertexId};
+use crate::io::cgns::conditions::{Numbers, is_on_points};
+use crate::io::cgns::node::Node;
+use crate::mesh::{CellKind, Cells, Mesh};
+
+/// Points that are one are at most so far apart, by the extent of the mesh: files have coordinates of seven digits.
+const FARTHEST: f64 = 1e-6;
+
+/// Points of a zone, and those of another with which they are one.
+pub(super) struct Seam {
+    /// The name of the other zone.
+    pub(super) other: String,
+    own_points: Vec<i64>,
+    other_points: Vec<i64>,
+}
+
+/// The seams of a zone; `None` for each that does not say which points are one.
+pub(super) fn seams(zone: &Node) -> Result<Vec<Option<Seam>>> {
+    let mut all = Vec::new();
+    for connectivity in zone.children_of("ZoneGridConnectivity_t")? {
+        for node in connectivity.children()? {
+            match node.label.as_str() {
+                "GridConnectivity_t" => all.push(seam(&node)?),
+                "GridConnectivity1to1_t" | "OversetHoles_t" => all.push(None),
+                _ => {}
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn seam(node: &Node) -> Result<Option<Seam>> {
+    let is_one_to_one = node.text_of("GridConnectivityType_t")?.as_deref() == Some("Abutting1to1");
+    // Such as the two sides of a periodic flow, which are no one place.
+    let has_property = node.child_of("GridConnectivityProperty_t")?.is_some();
+    if !is_one_to_one || has_property || !is_on_points(node)? {
+        return Ok(None);
+    }
+    let own = Numbers::of(node, "PointList", "PointRange")?;
+    let other = Numbers::of(node, "PointListDonor", "PointRangeDonor")?;
+    let (Some(Numbers::List(own_points)), Some(Numbers::List(other_points))) = (own, other) else {
+        return Ok(None);
+    };
+    let path = node.text()?;
+    let other = path.rsplit('/').next().unwrap_or_default().to_owned();
+    Ok((own_points.len() == other_points.len()).then_some(Seam { other, own_points, other_points }))
+}
+
+impl Seam {
+    /// The points that are one, by where the points of both zones stand in the mesh and how many they are.
+    pub(super) fn pairs(&self, own: (usize, usize), other: (usize, usize)) -> impl Iterator<Item = [u32; 2]> {
+        let place = |(first, n): (usize, usize), number: i64| {
+            let at = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
+            at.filter(|&at| at < n).map(|at| (first + at) as u32)
+        };
+        let both = self.own_points.iter().zip(&self.other_points);
+        both.filter_map(move |(&a, &b)| Some([place(own, a)?, place(other, b)?]))
+    }
+}
+
+/// Makes one point of each pair at one place; how many pairs are at two.
+pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
+    let Some([low, high]) = mesh.bounds() else { return pairs.len() };
+    let farthest = FARTHEST * distance(low, high);
+    let mut sets = Sets::new(mesh.points.len());
+    let mut n_apart = 0;
+    for &[a, b] in pairs {
+        let is_one = distance(mesh.points[a as usize], mesh.points[b as usize]) <= farthest;
+        if is_one {
+            sets.join(a, b);
+        } else {
+            n_apart += 1;
+        }
+    }
+    // Of points that are one the first stays.
+    let mut kept = Vec::new();
+    let mut new: Vec<VertexId> = Vec::with_capacity(mesh.points.len());
+    for v in 0..mesh.points.len() {
+        let root = sets.root(v as u32) as usize;
+        new.push(if root == v { VertexId::new(kept.len()) } else { new[root] });
+        if root == v {
+            kept.push(v);
+        }
+    }
+    if kept.len() < new.len() {
+        mesh.points = kept.iter().map(|&v| mesh.points[v]).collect();
+        mesh.point_data.iter_mut().for_each(|field| *field = field.pick(kept.iter().copied()));
+        mesh.cells = renumbered(&mesh.cells, &new);
+    }
+    n_apart
+}
+
+fn distance(a: Point, b: Point) -> f64 {
+    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+}
+
+fn renumbered(cells: &Cells, new: &[VertexId]) -> Cells {
+    let mut all = Cells::new();
+    let mut polyhedra = cells.polyhedron_faces().iter();
+    for (_, kind, vertices) in cells.iter() {
+        let vertices = vertices.iter().map(|v| new[v.index()]);
+        if kind == CellKind::POLYHEDRON {
+            let mut faces = Csr::default();
+            let own = polyhedra.next().into_iter().flat_map(Csr::iter);
+            own.for_each(|face| faces.push(face.iter().map(|v| new[v.index()])));
+            all.push_polyhedron(vertices, faces);
+        } else {
+            all.push(kind, vertices);
+        }
+    }
+    all
+}

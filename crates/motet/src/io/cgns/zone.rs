@@ -1,0 +1,87 @@
+//! A zone: its points, its elements, and its boundary conditions.
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::io::cgns::conditions::{Condition, conditions};
+use crate::io::cgns::elements::Section;
+use crate::io::cgns::node::Node;
+use crate::io::format::Notes;
+use crate::mesh::Values;
+
+/// What a zone holds, solutions left out.
+pub(super) struct Zone {
+    pub(super) node: Node,
+    pub(super) points: Vec<Point>,
+    /// Rising by the numbers of their elements.
+    pub(super) sections: Vec<Section>,
+    pub(super) conditions: Vec<Condition>,
+    pub(super) family: Option<String>,
+}
+
+impl Zone {
+    pub(super) fn read(node: Node, notes: &Notes) -> Result<Self> {
+        let kind = node.child_of("ZoneType_t")?.map(|node| node.text()).transpose()?;
+        if kind.as_deref() != Some("Unstructured") {
+            let kind = kind.filter(|kind| !kind.is_empty()).unwrap_or_else(|| "Structured".to_owned());
+            return Err(Error::input(format!("zone {} is {kind}; unstructured zones are read", node.name))
+                .at(node.place())
+                .remedy("in ParaView, open it, apply `Merge Blocks` and save the data as .vtu"));
+        }
+        let n_points = node.ints()?.first().copied().unwrap_or(0);
+        let n_points = usize::try_from(n_points).ok().filter(|&n| n <= VertexId::MAX_COUNT);
+        let n_points = n_points.ok_or_else(|| node.error("a number of points that no mesh has"))?;
+        let points = points(&node, n_points)?;
+        let mut sections = Vec::new();
+        for section in node.children_of("Elements_t")? {
+            sections.push(Section::read(&section, n_points, notes)?);
+        }
+        sections.sort_by_key(|section| section.first);
+        let overlap = sections.windows(2).find(|pair| pair[1].first - pair[0].first < pair[0].len() as i64);
+        if let Some(pair) = overlap {
+            let (a, b) = (&pair[0].name, &pair[1].name);
+            return Err(node.error(format!("the sections {a} and {b} have elements of the same numbers")));
+        }
+        let conditions = conditions(&node, notes)?;
+        let family = node.text_of("FamilyName_t")?.filter(|name| !name.is_empty());
+        Ok(Self { node, points, sections, conditions, family })
+    }
+}
+
+/// The points of a zone; coordinates that a plane mesh lacks are zero.
+fn points(zone: &Node, n: usize) -> Result<Vec<Point>> {
+    // A mesh that moves has more than one, of which this is the first.
+    let named = zone.child("GridCoordinates")?;
+    let grid = match named {
+        Some(grid) => Some(grid),
+        None => zone.child_of("GridCoordinates_t")?,
+    };
+    let grid = grid.ok_or_else(|| zone.error("a zone without coordinates"))?;
+    columns(&grid, Some(n))
+}
+
+/// Points from a column for each axis; all of as many as `n`, or else as the first.
+pub(super) fn columns(grid: &Node, n: Option<usize>) -> Result<Vec<Point>> {
+    let mut columns: Vec<Option<Vec<f64>>> = Vec::new();
+    let mut n = n;
+    for name in ["CoordinateX", "CoordinateY", "CoordinateZ"] {
+        let Some(node) = grid.child(name)? else {
+            columns.push(None);
+            continue;
+        };
+        let values = match node.values()? {
+            Values::F64(values) => values,
+            other => other.to_f64().ok_or_else(|| node.error("coordinates are no numbers"))?,
+        };
+        let n = *n.get_or_insert(values.len());
+        if values.len() != n {
+            return Err(node.error(format!("{} values, where there are {n} points", values.len())));
+        }
+        columns.push(Some(values));
+    }
+    if columns.iter().all(Option::is_none) {
+        return Err(grid
+            .error("no coordinates X, Y, Z")
+            .remedy("points are read in Cartesian coordinates: turn them into these"));
+    }
+    let at = |axis: usize, i: usize| columns[axis].as_ref().map_or(0.0, |column| column[i]);
+    Ok((0..n.unwrap_or(0)).map(|i| [0, 1, 2].map(|axis| at(axis, i))).collect())
+}
