@@ -6,6 +6,8 @@ pv = pytest.importorskip("pyvista")
 
 import moving_walls  # noqa: E402
 
+shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
+
 AFFINE = np.array([[1.1, 0.05, -0.02, 0.3], [0.03, 0.9, 0.04, -0.2], [-0.01, 0.02, 1.05, 0.1]])
 
 
@@ -16,12 +18,13 @@ def image(points, part):
 
 @pytest.fixture(scope="module")
 def box(motet, tmp_path_factory):
-    """The demo's folder and report: a mesh with patches, and a series."""
-    folder = tmp_path_factory.mktemp("demo")
-    return folder, motet.json("demo", folder)
+    """A folder with a mesh of patches and a series of it, and the report: a sphere that moves to near the wall of a box."""
+    folder = tmp_path_factory.mktemp("sphere")
+    shapes.sphere_in_box(16, 20).save(folder / "box.vtu")
+    return folder, motet.json("move", folder / "box.vtu", "-o", folder / "moved.pvd", "--translate", "sphere=3,0,0", "--quality")
 
 
-def test_the_demo_plays(box):
+def test_a_series_plays(box):
     folder, report = box
     reader = pv.get_reader(folder / "moved.pvd")
     assert list(reader.time_values) == [step["time"] for step in report["steps"]]

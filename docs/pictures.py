@@ -1,8 +1,9 @@
 """Draws the pictures of the README.
 
     ./test --setup                                        (once: the Python packages)
-    cargo run --release -- demo motet-demo
-    target/venv/bin/python docs/pictures.py motet-demo    (writes docs/demo.png)
+    target/venv/bin/python -c "from motet import shapes; shapes.sphere_in_box(16, 20).save('target/box.vtu')"
+    cargo run --release -- move target/box.vtu -o target/sphere/moved.pvd --translate sphere=3,0,0
+    target/venv/bin/python docs/pictures.py target/sphere (writes docs/demo.png)
 
 A cut through the box at the first and at the last step: the cells behind the plane y = 0, coloured by their
 equi-angle quality.
@@ -38,7 +39,7 @@ def series(folder):
     """The files of the folder's .pvd, in order."""
     index = next(folder.glob("*.pvd"), None)
     if index is None:
-        sys.exit(f"{folder} holds no .pvd: cargo run --release -- demo {folder}")
+        sys.exit(f"{folder} holds no .pvd; {__doc__}")
     return [folder / entry.get("file") for entry in ElementTree.parse(index).iter("DataSet")]
 
 

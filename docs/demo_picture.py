@@ -1,0 +1,55 @@
+"""Draws two meshes through a cycle of their walls (docs/run.png).
+
+    ./test --setup                                        (once: the Python packages)
+    cargo run --release -- demo motet-demo
+    target/venv/bin/python docs/demo_picture.py motet-demo
+
+Tets behind a plane, coloured by their equi-angle quality: the coiled aneurysm as its wall is widest and narrowest, the dissection as its flap is up and down.
+"""
+import sys
+from pathlib import Path
+
+import pyvista as pv
+from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight
+
+PANEL = (520, 400)
+EDGES = dict(show_edges=True, edge_color=INK, line_width=0.6, edge_opacity=0.45, ambient=0.65, diffuse=0.4, specular=0.0)
+
+
+def frame(folder, name, k):
+    return pv.read(folder / f"{name}_{k:04d}.vtu")
+
+
+def behind(mesh, axis, at):
+    tets = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
+    return tets.extract_cells(tets.cell_centers().points[:, axis] < at)
+
+
+def panel(mesh, axis, at, focus, height, offset, up):
+    plotter = lit(mesh, PANEL)
+    plotter.add_mesh(behind(mesh, axis, at), scalars="eas", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, **EDGES)
+    return seen_straight(plotter, focus, offset, up, height)
+
+
+def text(mesh, what):
+    tets = mesh.celltypes == pv.CellType.TETRA
+    eas = mesh.cell_data["eas"][tets]
+    return f"{what}: {tets.sum():,} tets, worst {eas.min():.2f}"
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder = Path(sys.argv[1])
+    panels = []
+    for k, what in ((4, "wall out"), (12, "wall in")):
+        mesh = frame(folder, "aneurysm", k)
+        panels.append((panel(mesh, 2, 0.0, (0.0, 0.9, 0.0), 6.6, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0)), text(mesh, what)))
+    for k, what in ((6, "flap up"), (18, "flap down")):
+        mesh = frame(folder, "dissection", k)
+        panels.append((panel(mesh, 2, 3.0, (0.0, 0.0, 3.0), 2.2, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0)), text(mesh, what)))
+    save_row(panels, HERE / "run.png")
+
+
+if __name__ == "__main__":
+    main()
