@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, run};
+use crate::verbs::{cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, report, run};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]
@@ -33,6 +33,7 @@ pub(crate) enum Verb {
     Implant(Box<implant::ImplantArgs>),
     Contact(Box<contact::ContactArgs>),
     Run(run::RunArgs),
+    Report(report::ReportArgs),
     Demo(demo::DemoArgs),
 }
 

@@ -38,6 +38,7 @@ fn main() -> ExitCode {
         Verb::Implant(args) => verbs::implant::run(&args, &call.common, &console),
         Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
         Verb::Run(args) => verbs::run::run(&args, &call.common, &console),
+        Verb::Report(args) => verbs::report::run(&args, &console),
         Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
     };
     exit::status(outcome, &console)

@@ -10,4 +10,5 @@ pub(crate) mod meshing;
 pub(crate) mod moving;
 pub(crate) mod refine;
 pub(crate) mod remesh;
+pub(crate) mod report;
 pub(crate) mod run;

@@ -13,7 +13,7 @@ use crate::args::{Call, Common, Verb};
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
-use crate::verbs::{implant, meshing, run};
+use crate::verbs::{implant, meshing, report, run};
 
 /// See it work: a coiled aneurysm that pulsates beside a stent, and a flap that beats in a dissection
 ///
@@ -30,7 +30,7 @@ const ANEURYSM: &str = include_str!("aneurysm.toml");
 const DISSECTION: &str = include_str!("dissection.toml");
 
 /// Each call, without the program's name; files lie in the folder of the demo.
-const CALLS: [(&str, &[&str]); 5] = [
+const CALLS: [(&str, &[&str]); 6] = [
     ("a vessel with an aneurysm is filled", &["mesh", "aneurysm.vtp", "-o", "vessel.vtu", "--size", "auto"]),
     (
         "a coil in the sac and a crimped stent at its neck are put in; what flows goes round them",
@@ -42,6 +42,20 @@ const CALLS: [(&str, &[&str]); 5] = [
         &["mesh", "lumen.vtp", "--membrane", "flap.vtp", "-o", "dissection.vtu", "--size", "auto"],
     ),
     ("the flap beats for a cycle", &["run", "dissection.toml"]),
+    (
+        "one page with both, to turn, cut and play",
+        &[
+            "report",
+            "aneurysm.pvd",
+            "aneurysm.jsonl",
+            "dissection.pvd",
+            "dissection.jsonl",
+            "-o",
+            "report.html",
+            "--title",
+            "A coiled aneurysm and a dissection",
+        ],
+    ),
 ];
 
 pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result<Outcome> {
@@ -55,7 +69,7 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
     let (mut outcome, mut took) = (Outcome::Done, Vec::new());
     for (what, words) in CALLS {
         let call = call(&args.folder, words);
-        console.say(format_args!("\n# {what}\n$ motet {}\n", call[1..].join(" ")));
+        console.say(format_args!("\n# {what}\n$ motet {}\n", words(&call[1..])));
         let one = Instant::now();
         if make(&call, common, console)? == Outcome::NotReached {
             outcome = Outcome::NotReached;
@@ -68,12 +82,18 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
 
 /// The words of a call, files in their folder.
 fn call(folder: &Path, words: &[&str]) -> Vec<String> {
-    let is_file = |word: &str| [".vtp", ".vtu", ".toml"].iter().any(|ending| word.ends_with(ending));
+    let is_file = |word: &str| [".vtp", ".vtu", ".toml", ".pvd", ".jsonl", ".html"].iter().any(|ending| word.ends_with(ending));
     let word = |word: &&str| match is_file(word) {
         true => folder.join(word).to_string_lossy().into_owned(),
         false => (*word).to_owned(),
     };
     std::iter::once("motet".to_owned()).chain(words.iter().map(word)).collect()
+}
+
+/// As a shell would have them.
+fn words(call: &[String]) -> String {
+    let word = |word: &String| if word.contains(' ') { format!("\"{word}\"") } else { word.clone() };
+    call.iter().map(word).collect::<Vec<_>>().join(" ")
 }
 
 fn make(call: &[String], common: &Common, console: &Console) -> Result<Outcome> {
@@ -83,6 +103,7 @@ fn make(call: &[String], common: &Common, console: &Console) -> Result<Outcome> 
         Ok(Verb::Mesh(args)) => meshing::run(&args, common, &quiet),
         Ok(Verb::Implant(args)) => implant::run(&args, common, &quiet),
         Ok(Verb::Run(args)) => run::run(&args, common, &quiet),
+        Ok(Verb::Report(args)) => report::run(&args, &quiet),
         _ => Err(Error::options("this name of a folder cannot be part of a call")),
     }
 }
@@ -110,7 +131,7 @@ fn tell(args: &DemoArgs, took: &[(&str, f64)], total: f64, console: &Console) ->
     times.row(["all".to_owned(), seconds(total)]);
     let folder = args.folder.display();
     console.say(format_args!(
-        "{times}\n\nSee it move:\n  paraview {folder}/aneurysm.pvd       (Apply, colour by eas, slice, play)\n  \
+        "{times}\n\nSee it move:\n  {folder}/report.html in a browser: turn, cut, play\n  paraview {folder}/aneurysm.pvd       (Apply, colour by eas, slice, play)\n  \
          paraview {folder}/dissection.pvd\nLook closer:\n  motet info {folder}/treated.vtu\n  motet help run"
     ));
     console.report(&json!({

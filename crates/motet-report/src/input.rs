@@ -1,0 +1,55 @@
+//! What the inputs are: meshes, series of them, and reports or logs in JSON.
+
+use std::path::{Path, PathBuf};
+
+use motet::{Error, Mesh, Result, io};
+
+use crate::log::{self, Log};
+
+/// One input of a report.
+#[derive(Debug)]
+pub(crate) enum Input {
+    Meshes(Meshes),
+    Log(Log),
+}
+
+/// A mesh, or a series of meshes that may change from frame to frame.
+#[derive(Debug)]
+pub(crate) struct Meshes {
+    pub(crate) file: PathBuf,
+    pub(crate) is_series: bool,
+    /// The time and the file of each frame.
+    pub(crate) frames: Vec<(f64, PathBuf)>,
+}
+
+impl Input {
+    /// Looks at what an input is; meshes are read later, one at a time.
+    pub(crate) fn open(path: &Path) -> Result<Self> {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("json") => return log::read_object(path).map(Self::Log),
+            Some("jsonl" | "ndjson") => return log::read_lines(path).map(Self::Log),
+            _ => {}
+        }
+        let is_series = io::is_series(path);
+        let frames = if is_series { io::read_series(path)? } else { vec![(0.0, path.to_owned())] };
+        if frames.is_empty() {
+            return Err(Error::input("a series of no frames: there is nothing to show").in_file(path));
+        }
+        Ok(Self::Meshes(Meshes { file: path.to_owned(), is_series, frames }))
+    }
+}
+
+impl Meshes {
+    /// Reads one frame, with notes of what the reader passed over.
+    pub(crate) fn read(&self, frame: usize) -> Result<(Mesh, Vec<String>)> {
+        let (mesh, notes) = io::read_noted(&self.frames[frame].1)?;
+        Ok((mesh, notes))
+    }
+}
+
+/// The name that the page gives to a file: without folders, so that a report tells nothing about the machine.
+pub(crate) fn name_of(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}

@@ -1,0 +1,186 @@
+//! Meshes, series of meshes and logs as one HTML page: a view to turn and cut, charts, tables.
+//!
+//! The page works without a network and without anything beside it. What is in it is budgeted: the surface of each frame comes first, then its
+//! inside, or the cells at a number of planes, and the page says what was left out. The same inputs give the same bytes.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `input`, `log` | what is read: meshes one at a time; JSON, whatever its keys |
+//! | `quality`, `arrays` | what is told of a mesh, and what it can be coloured by |
+//! | `skin`, `layout` | what is seen from outside; the order in which all of it is shipped |
+//! | `codec`, `store` | tables of numbers as few bytes, each once |
+//! | `part`, `plan`, `shown` | one frame packed; how much of which frame fits; what came of it |
+//! | `charts`, `sections`, `page` | lines, tables, the page |
+//! | `script/`, `style.css`, `page.html` | what the browser does |
+
+mod arrays;
+mod charts;
+mod codec;
+mod input;
+mod layout;
+mod log;
+mod numbers;
+mod page;
+mod part;
+mod plan;
+mod quality;
+mod sections;
+mod shown;
+mod skin;
+mod store;
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use motet::{Error, Result, io};
+use serde::Serialize;
+
+use crate::input::{Input, name_of};
+use crate::part::Holds;
+use crate::shown::Shown;
+use crate::store::Store;
+
+/// What a page is made of, and how large it may be.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The file to write; its ending is `.html` or `.htm`.
+    pub output: PathBuf,
+    /// What stands over the page; without one, the names of the inputs.
+    pub title: Option<String>,
+    /// How many bytes of the page meshes may take. Surfaces are there whatever it says.
+    pub budget: usize,
+}
+
+impl Options {
+    /// What [`Options::budget`] is if nobody says otherwise: 24 MB, which a browser opens in a second or two.
+    pub const BUDGET: usize = 24_000_000;
+
+    /// A page at `output`, its budget as usual.
+    pub fn new(output: impl Into<PathBuf>) -> Self {
+        Self { output: output.into(), title: None, budget: Self::BUDGET }
+    }
+}
+
+/// What was written, and what was not.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The page.
+    pub output: PathBuf,
+    /// Its size.
+    pub bytes: usize,
+    /// How many of these are meshes.
+    pub payload_bytes: usize,
+    /// How many they were allowed to be.
+    pub budget_bytes: usize,
+    /// One by one, in the order of the call.
+    pub inputs: Vec<InputReport>,
+}
+
+/// What became of one input.
+#[derive(Clone, Debug, Serialize)]
+pub struct InputReport {
+    /// The file.
+    pub file: PathBuf,
+    /// Frames of a mesh or series; 0 of a log.
+    pub frames: usize,
+    /// Frames that have a picture.
+    pub shown: usize,
+    /// Frames whose volume cells are all there to be cut.
+    pub whole: usize,
+    /// Frames that can be cut at some planes.
+    pub cut: usize,
+    /// Rows of a log's longest table.
+    pub rows: usize,
+    /// What is not on the page, each in a sentence.
+    pub left_out: Vec<String>,
+}
+
+/// Writes a page about `inputs`: meshes and series in any format that motet reads, reports (`.json`) and logs (`.jsonl`).
+///
+/// # Errors
+/// When an input cannot be read or is empty, naming the file and the place; when the output's ending is not that of a page,
+/// or it would overwrite an input.
+pub fn write(inputs: &[PathBuf], options: &Options) -> Result<Report> {
+    check(inputs, options)?;
+    let mut opened = inputs.iter().map(|path| Input::open(path)).collect::<Result<Vec<_>>>()?;
+    let mut store = Store::default();
+    let mut paid = BTreeSet::new();
+    let mut parts = Vec::new();
+    let mut n_meshes = opened.iter().filter(|input| matches!(input, Input::Meshes(_))).count();
+    for input in opened.drain(..) {
+        parts.push(match input {
+            Input::Log(log) => page::Part::Log(log),
+            Input::Meshes(meshes) => {
+                let left = options.budget.saturating_sub(spent(&store, &paid));
+                let shown = plan::shown(&meshes, left / n_meshes.max(1), &mut store, &mut paid)?;
+                n_meshes -= 1;
+                page::Part::Meshes(Box::new(shown))
+            }
+        });
+    }
+    let page = page::rendered(&parts, options, &store, &paid)?;
+    io::replace(&options.output, page.as_bytes())?;
+    let inputs = inputs.iter().zip(&parts).map(|(file, part)| told(file, part)).collect();
+    Ok(Report {
+        output: options.output.clone(),
+        bytes: page.len(),
+        payload_bytes: spent(&store, &paid),
+        budget_bytes: options.budget,
+        inputs,
+    })
+}
+
+fn spent(store: &Store, paid: &BTreeSet<usize>) -> usize {
+    paid.iter().map(|&id| store.get(id).cost()).sum()
+}
+
+fn check(inputs: &[PathBuf], options: &Options) -> Result<()> {
+    let output = &options.output;
+    if inputs.is_empty() {
+        return Err(Error::options("a report of nothing: at least one input is expected")
+            .remedy("name a mesh, a series, or a file of JSON"));
+    }
+    let ending = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if !matches!(ending.as_deref(), Some("html" | "htm")) {
+        return Err(Error::options(format!("a page is written as .html, not as {}", name_of(output)))
+            .in_file(output)
+            .remedy("give --output a name that ends in .html"));
+    }
+    let is_input = |input: &PathBuf| {
+        input.canonicalize().ok().is_some_and(|a| output.canonicalize().is_ok_and(|b| a == b))
+    };
+    if inputs.iter().any(is_input) {
+        return Err(Error::options("the page would overwrite an input it is made from")
+            .in_file(output)
+            .remedy("give --output another name"));
+    }
+    Ok(())
+}
+
+fn told(file: &Path, part: &page::Part) -> InputReport {
+    let mut report = InputReport {
+        file: file.to_owned(),
+        frames: 0,
+        shown: 0,
+        whole: 0,
+        cut: 0,
+        rows: 0,
+        left_out: Vec::new(),
+    };
+    match part {
+        page::Part::Log(log) => report.rows = log.tables.iter().map(|table| table.n_rows).max().unwrap_or(0),
+        page::Part::Meshes(shown) => tell_meshes(&mut report, shown),
+    }
+    report
+}
+
+fn tell_meshes(report: &mut InputReport, shown: &Shown) {
+    let count = |is: fn(Holds) -> bool| {
+        shown.frames.iter().filter(|frame| frame.inside.as_ref().is_some_and(|x| is(x.holds))).count()
+    };
+    report.frames = shown.facts.len();
+    report.shown = shown.frames.len();
+    report.whole = count(|holds| holds == Holds::All);
+    report.cut = count(|holds| matches!(holds, Holds::Planes(_)));
+    report.left_out.clone_from(&shown.left_out);
+}

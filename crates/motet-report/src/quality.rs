@@ -1,0 +1,122 @@
+//! How good the tets of one frame are, in numbers.
+
+use motet::Mesh;
+use motet::base::Point;
+use motet::geometry::quality::{dihedral, eas};
+use motet::geometry::tet::centroid;
+use motet::geometry::vector::is_finite;
+use motet::mesh::{BAD_EAS, CellKind};
+use serde::Serialize;
+
+/// Bars of EAS: one below 0, then twenty to 1.
+pub(crate) const EAS_BARS: usize = 21;
+/// Bars of the smallest dihedral angle, of 5 degrees each; that of the regular tet is 70.5.
+pub(crate) const ANGLE_BARS: usize = 15;
+
+/// Equi-angle quality and dihedral angles of the tets whose points are numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Quality {
+    pub(crate) tets: usize,
+    pub(crate) eas_min: f64,
+    pub(crate) eas_mean: f64,
+    pub(crate) bad: usize,
+    pub(crate) inverted: usize,
+    pub(crate) worst_cell: usize,
+    pub(crate) worst_at: Point,
+    pub(crate) angle_min: f64,
+    pub(crate) angle_max: f64,
+    pub(crate) eas_bars: [usize; EAS_BARS],
+    pub(crate) angle_bars: [usize; ANGLE_BARS],
+}
+
+/// The quality of the tets, of quadratic ones the corners; and EAS of each cell, NaN where it has none.
+pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, Vec<f32>) {
+    let mut by_cell = vec![f32::NAN; mesh.cells.len()];
+    let mut quality = Quality::empty();
+    let is_tet = |kind| matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA);
+    for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
+        let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
+        if tet.iter().all(|p| is_finite(*p)) {
+            by_cell[cell.index()] = quality.add(cell.index(), tet) as f32;
+        }
+    }
+    ((quality.tets > 0).then(|| quality.finished()), by_cell)
+}
+
+impl Quality {
+    fn empty() -> Self {
+        Self {
+            tets: 0,
+            eas_min: f64::INFINITY,
+            eas_mean: 0.0,
+            bad: 0,
+            inverted: 0,
+            worst_cell: 0,
+            worst_at: [0.0; 3],
+            angle_min: f64::INFINITY,
+            angle_max: 0.0,
+            eas_bars: [0; EAS_BARS],
+            angle_bars: [0; ANGLE_BARS],
+        }
+    }
+
+    /// The mean is a sum until [`Self::finished`], angles are radians.
+    fn add(&mut self, cell: usize, tet: [Point; 4]) -> f64 {
+        let eas = eas(tet);
+        let [low, high] = dihedral::min_max(tet);
+        if eas < self.eas_min {
+            (self.eas_min, self.worst_cell, self.worst_at) = (eas, cell, centroid(tet));
+        }
+        self.tets += 1;
+        self.eas_mean += eas;
+        self.bad += usize::from(eas < BAD_EAS);
+        self.inverted += usize::from(eas < 0.0);
+        self.angle_min = self.angle_min.min(low);
+        self.angle_max = self.angle_max.max(high);
+        self.eas_bars[if eas < 0.0 { 0 } else { 1 + ((eas * 20.0) as usize).min(EAS_BARS - 2) }] += 1;
+        self.angle_bars[((low.to_degrees() / 5.0) as usize).min(ANGLE_BARS - 1)] += 1;
+        eas
+    }
+
+    fn finished(mut self) -> Self {
+        self.eas_mean /= self.tets as f64;
+        self.angle_min = self.angle_min.to_degrees();
+        self.angle_max = self.angle_max.to_degrees();
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use motet::mesh::Summary;
+    use motet::mesh::shapes::{ball, mixed, quadratic};
+
+    use super::*;
+
+    #[test]
+    fn it_is_what_info_says() {
+        for mesh in [ball(3, 2), quadratic(&ball(2, 2)), mixed(2)] {
+            let ours = of(&mesh).0.unwrap();
+            let theirs = Summary::of(&mesh).quality.unwrap();
+            assert_eq!(
+                (ours.eas_min, ours.eas_mean, ours.bad),
+                (theirs.eas.min, theirs.eas.mean, theirs.eas.bad)
+            );
+            assert_eq!(
+                (ours.worst_cell, ours.worst_at),
+                (theirs.eas.worst_cell.index(), theirs.eas.worst_at)
+            );
+            assert_eq!((ours.angle_min, ours.angle_max), (theirs.dihedral_deg.min, theirs.dihedral_deg.max));
+            assert_eq!(ours.eas_bars.iter().sum::<usize>(), ours.tets);
+            assert_eq!(ours.angle_bars.iter().sum::<usize>(), ours.tets);
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_has_none() {
+        let mut mesh = ball(2, 1);
+        mesh.points.iter_mut().for_each(|p| p[0] = f64::NAN);
+        let (quality, by_cell) = of(&mesh);
+        assert!(quality.is_none() && by_cell.iter().all(|q| q.is_nan()));
+    }
+}

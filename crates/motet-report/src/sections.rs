@@ -1,0 +1,342 @@
+//! What is told of each input below the view: sentences, charts and tables.
+
+use serde::Serialize;
+
+use crate::charts::{Chart, Drawn, Line};
+use crate::input::name_of;
+use crate::log::{Cell, Column, Log, Table};
+use crate::numbers::{count, counted, short, time};
+use crate::shown::{Facts, Shown};
+
+/// Charts of one table at most; the other columns are in the table.
+const MOST_CHARTS: usize = 12;
+/// Rows of one table at most; of more, the first, the last and evenly chosen ones.
+const MOST_ROWS: usize = 400;
+/// Columns that tell most, in the order in which they are charted.
+const TELLING: [&str; 12] = [
+    "worst_eas",
+    "worst_eas.value",
+    "bad",
+    "inverted",
+    "tets",
+    "points",
+    "least_gap",
+    "least",
+    "gap",
+    "touched",
+    "admissible_fraction",
+    "deviation",
+];
+
+/// One input's part of the page.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Section {
+    pub(crate) name: String,
+    /// The place among the inputs that have pictures; its charts follow the frame that is shown.
+    pub(crate) view: Option<usize>,
+    pub(crate) sentences: Vec<String>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) charts: Vec<Drawn>,
+    pub(crate) has_histograms: bool,
+    pub(crate) facts: Vec<(String, String)>,
+    pub(crate) tables: Vec<Grid>,
+}
+
+/// A table as it is printed.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(crate) struct Grid {
+    pub(crate) name: String,
+    pub(crate) head: Vec<String>,
+    /// Whether a column has numbers, which stand to the right.
+    pub(crate) numeric: Vec<bool>,
+    pub(crate) rows: Vec<Vec<String>>,
+    pub(crate) note: Option<String>,
+}
+
+/// The part of a mesh or a series.
+pub(crate) fn of_meshes(shown: &Shown, view: usize) -> Section {
+    Section {
+        name: shown.name.clone(),
+        view: Some(view),
+        sentences: sentences(shown),
+        notes: shown.notes.iter().chain(&shown.left_out).cloned().collect(),
+        charts: charts(shown),
+        has_histograms: shown.facts.iter().any(|facts| facts.quality.is_some()),
+        facts: Vec::new(),
+        tables: vec![frames(shown)],
+    }
+}
+
+fn sentences(shown: &Shown) -> Vec<String> {
+    let (Some(first), Some(last)) = (shown.facts.first(), shown.facts.last()) else { return Vec::new() };
+    let cells = |facts: &Facts| {
+        let kinds: Vec<_> = facts.cells.iter().map(|(kind, n)| kind_of_cells(*n, kind)).collect();
+        if kinds.is_empty() { "no cells".to_owned() } else { kinds.join(", ") }
+    };
+    let size = |facts: &Facts| format!("{} points, {}", count(facts.points), cells(facts));
+    let mut told = Vec::new();
+    if shown.is_series {
+        let span = format!(
+            "{}, time {} to {}",
+            counted(shown.facts.len(), "frame"),
+            time(first.time),
+            time(last.time)
+        );
+        let same = size(first) == size(last);
+        told.push(match same {
+            true => format!("{span}: {}.", size(first)),
+            false => format!("{span}: {} at first, {} at last.", size(first), size(last)),
+        });
+    } else {
+        told.push(format!("{}.", size(first)));
+    }
+    told.extend(quality_sentence(shown));
+    let gap = shown.facts.iter().filter_map(|f| f.least_gap.map(|gap| (gap.0, f.time)));
+    if let Some((gap, at)) = gap.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        let when = if shown.is_series { format!(" at time {}", time(at)) } else { String::new() };
+        told.push(format!("The least gap is {}{when}.", short(gap)));
+    }
+    told
+}
+
+/// So many cells of a kind, in words.
+fn kind_of_cells(n: usize, kind: &str) -> String {
+    match kind {
+        "tetra" => counted(n, "tet"),
+        "hexahedron" | "polyhedron" if n != 1 => format!("{} {}", count(n), kind.replace("hedron", "hedra")),
+        "vertex" if n != 1 => format!("{} vertices", count(n)),
+        kind if kind.chars().all(char::is_alphabetic) => counted(n, kind),
+        kind => format!("{} {kind}", count(n)),
+    }
+}
+
+fn quality_sentence(shown: &Shown) -> Option<String> {
+    let worst = shown.facts.iter().filter_map(|f| f.quality.as_ref().map(|q| (q, f.time)));
+    let (worst, at) = worst.min_by(|a, b| a.0.eas_min.total_cmp(&b.0.eas_min))?;
+    let [x, y, z] = worst.worst_at.map(short);
+    let when = if shown.is_series { format!(" at time {}", time(at)) } else { String::new() };
+    let last = shown.facts.last()?.quality.as_ref()?;
+    let now = if shown.is_series { " in the last frame" } else { "" };
+    Some(format!(
+        "The worst tet has EAS {} (cell {}, near {x}, {y}, {z}{when}); {} of {} are bad{now}, {} inverted.",
+        short(worst.eas_min),
+        worst.worst_cell,
+        count(last.bad),
+        counted(last.tets, "tet"),
+        count(last.inverted),
+    ))
+}
+
+fn charts(shown: &Shown) -> Vec<Drawn> {
+    let x: Vec<f64> = shown.facts.iter().map(|facts| facts.time).collect();
+    let quality = |of: fn(&crate::quality::Quality) -> f64| -> Vec<Option<f64>> {
+        shown.facts.iter().map(|facts| facts.quality.as_ref().map(of)).collect()
+    };
+    let line = |name: &str, y| Line { name: name.to_owned(), y };
+    let chart = |title: &str, lines| Chart {
+        title: title.to_owned(),
+        x_name: "time".to_owned(),
+        x: x.clone(),
+        lines,
+        ..Chart::default()
+    };
+    let eas = Chart {
+        threshold: Some((motet::mesh::BAD_EAS, "bad below 0.2")),
+        from_zero: true,
+        ..chart(
+            "EAS quality: worst and mean",
+            vec![line("worst", quality(|q| q.eas_min)), line("mean", quality(|q| q.eas_mean))],
+        )
+    };
+    let bad = Chart {
+        from_zero: true,
+        ..chart(
+            "Bad and inverted tets",
+            vec![line("bad", quality(|q| q.bad as f64)), line("inverted", quality(|q| q.inverted as f64))],
+        )
+    };
+    let angle = Chart {
+        from_zero: true,
+        ..chart("Smallest dihedral angle, degrees", vec![line("smallest", quality(|q| q.angle_min))])
+    };
+    let tets = chart("Tets", vec![line("tets", quality(|q| q.tets as f64))]);
+    let gap = shown.facts.iter().map(|facts| facts.least_gap.map(|gap| gap.0)).collect();
+    let gap = Chart { from_zero: true, ..chart("Least gap", vec![line("gap", gap)]) };
+    let varies = |chart: &Chart| chart.lines[0].y.windows(2).any(|w| w[0] != w[1]);
+    let tets = Some(tets).filter(varies);
+    let all = [eas, bad, angle].into_iter().chain(tets).chain([gap]);
+    all.filter(Chart::is_worth_it).map(|chart| chart.drawn()).collect()
+}
+
+/// The certificates: a row a frame.
+fn frames(shown: &Shown) -> Grid {
+    let has_quality = shown.facts.iter().any(|facts| facts.quality.is_some());
+    let has_gap = shown.facts.iter().any(|facts| facts.least_gap.is_some());
+    let mut head = vec!["frame", "time", "points", "cells"];
+    if has_quality {
+        head.extend([
+            "tets",
+            "worst EAS",
+            "at cell",
+            "near x, y, z",
+            "mean EAS",
+            "bad",
+            "inverted",
+            "angles, degrees",
+        ]);
+    }
+    if has_gap {
+        head.extend(["least gap", "at x, y, z"]);
+    }
+    let rows = shown.facts.iter().enumerate().map(|(i, facts)| {
+        let n_cells = facts.cells.iter().map(|(_, n)| n).sum();
+        let mut row = vec![count(i), time(facts.time), count(facts.points), count(n_cells)];
+        if has_quality {
+            row.extend(quality_cells(facts));
+        }
+        if has_gap {
+            row.extend(match facts.least_gap {
+                Some((gap, at)) => [short(gap), at.map(short).join(", ")],
+                None => [String::new(), String::new()],
+            });
+        }
+        row
+    });
+    let rows: Vec<_> = rows.collect();
+    let numeric = vec![true; head.len()];
+    let head = head.into_iter().map(str::to_owned).collect();
+    thinned(Grid { name: "Certificate of each frame".into(), head, numeric, rows, note: None })
+}
+
+fn quality_cells(facts: &Facts) -> Vec<String> {
+    let Some(q) = &facts.quality else { return vec![String::new(); 8] };
+    vec![
+        count(q.tets),
+        short(q.eas_min),
+        q.worst_cell.to_string(),
+        q.worst_at.map(short).join(", "),
+        short(q.eas_mean),
+        count(q.bad),
+        count(q.inverted),
+        format!("{} to {}", short(q.angle_min), short(q.angle_max)),
+    ]
+}
+
+/// The part of a report or a log.
+pub(crate) fn of_log(log: &Log) -> Section {
+    let n_rows = log.tables.iter().map(|table| table.n_rows).max().unwrap_or(0);
+    let mut sentences = Vec::new();
+    if n_rows > 0 {
+        sentences.push(format!("{} in {}.", counted(n_rows, "row"), counted(log.tables.len(), "table")));
+    }
+    let mut charts = Vec::new();
+    let mut notes = Vec::new();
+    for table in &log.tables {
+        let (drawn, left) = table_charts(table);
+        charts.extend(drawn);
+        if left > 0 {
+            notes.push(format!(
+                "{} of `{}` have no chart; they are in its table.",
+                counted(left, "column"),
+                table.name
+            ));
+        }
+    }
+    Section {
+        name: name_of(&log.file),
+        view: None,
+        sentences,
+        notes,
+        charts,
+        has_histograms: false,
+        facts: log.facts.clone(),
+        tables: log.tables.iter().map(grid).collect(),
+    }
+}
+
+/// Charts of the columns that change, and how many of these have none.
+fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
+    let (x_name, x) = abscissa(table);
+    let changes = |column: &&Column| {
+        let numbers = column.numbers();
+        let mut there = numbers.iter().flatten().filter(|x| x.is_finite());
+        let first = there.next();
+        !is_id(&column.name) && there.any(|x| Some(x) != first)
+    };
+    let (seconds, mut others): (Vec<&Column>, Vec<&Column>) =
+        table.columns.iter().filter(changes).partition(|column| is_seconds(&column.name));
+    others
+        .sort_by_key(|column| TELLING.iter().position(|name| *name == column.name).unwrap_or(TELLING.len()));
+    let chart = |title: String, columns: &[&Column]| Chart {
+        title,
+        x_name: x_name.clone(),
+        x: x.clone(),
+        lines: columns.iter().map(|c| Line { name: stage(&c.name), y: c.numbers() }).collect(),
+        from_zero: columns.len() > 1,
+        ..Chart::default()
+    };
+    let mut charts: Vec<Chart> =
+        others.iter().take(MOST_CHARTS).map(|column| chart(column.name.clone(), &[*column])).collect();
+    if !seconds.is_empty() {
+        charts.push(chart("seconds by stage".to_owned(), &seconds[..seconds.len().min(8)]));
+    }
+    let left = others.len().saturating_sub(MOST_CHARTS) + seconds.len().saturating_sub(8);
+    let title = |mut drawn: Drawn| {
+        drawn.title =
+            if table.name == "steps" { drawn.title } else { format!("{}: {}", table.name, drawn.title) };
+        drawn
+    };
+    (charts.iter().filter(|c| c.is_worth_it()).map(|c| title(c.drawn())).collect(), left)
+}
+
+/// Whether numbers under a key name something, and have no course worth a line.
+fn is_id(name: &str) -> bool {
+    let last = name.rsplit(['.', ' ']).next().unwrap_or(name);
+    matches!(last, "step" | "time" | "frame" | "cell" | "vertex" | "point" | "tet" | "triangle" | "id")
+}
+
+fn is_seconds(name: &str) -> bool {
+    name.starts_with("seconds") || name.contains(".seconds")
+}
+
+fn stage(name: &str) -> String {
+    name.split_once("seconds.").map_or(name, |(_, stage)| stage).to_owned()
+}
+
+/// What the rows are drawn over: time where it rises, else steps, else their numbers.
+fn abscissa(table: &Table) -> (String, Vec<f64>) {
+    for name in ["time", "step"] {
+        let numbers: Option<Vec<f64>> =
+            table.column(name).and_then(|column| column.numbers().into_iter().collect());
+        if let Some(x) = numbers.filter(|x| x.windows(2).all(|w| w[0] < w[1])) {
+            return (name.to_owned(), x);
+        }
+    }
+    ("row".to_owned(), (0..table.n_rows).map(|i| i as f64).collect())
+}
+
+fn grid(table: &Table) -> Grid {
+    let text = |cell: &Cell| match cell {
+        Cell::None => String::new(),
+        Cell::Number(x) => short(*x),
+        Cell::Text(text) => text.clone(),
+    };
+    let is_numeric = |column: &Column| !column.cells.iter().any(|cell| matches!(cell, Cell::Text(_)));
+    thinned(Grid {
+        name: table.name.clone(),
+        head: table.columns.iter().map(|column| column.name.clone()).collect(),
+        numeric: table.columns.iter().map(is_numeric).collect(),
+        rows: (0..table.n_rows).map(|i| table.columns.iter().map(|c| text(&c.cells[i])).collect()).collect(),
+        note: None,
+    })
+}
+
+fn thinned(mut grid: Grid) -> Grid {
+    let n = grid.rows.len();
+    if n > MOST_ROWS {
+        let kept = |i: usize| i * (n - 1) / (MOST_ROWS - 1);
+        grid.rows = (0..MOST_ROWS).map(|i| grid.rows[kept(i)].clone()).collect();
+        grid.note = Some(format!("{} of {} rows, evenly chosen.", count(MOST_ROWS), count(n)));
+    }
+    grid
+}

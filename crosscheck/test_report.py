@@ -1,0 +1,281 @@
+"""`motet report` in a browser: the page opens without a network, and each act changes the picture."""
+import base64
+import json
+import shutil
+import tempfile
+import time
+
+import pytest
+
+webdriver = pytest.importorskip("selenium.webdriver")
+from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
+from selenium.webdriver.common.keys import Keys  # noqa: E402
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+DRIVER = shutil.which("chromedriver")
+pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER),
+                                reason="no Chromium: apt-get install chromium chromium-driver")
+
+# Software drawing where there is no graphics card; nothing that calls home.
+FLAGS = """--headless=new --no-sandbox --disable-gpu-sandbox --use-angle=swiftshader --enable-unsafe-swiftshader
+--ignore-gpu-blocklist --disable-background-networking --disable-component-update --disable-sync --no-first-run
+--window-size=1400,900""".split()
+
+
+class Page:
+    """A report in a browser of its own, with a log of what it asks for and complains of."""
+
+    def __init__(self, *flags):
+        self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        options = webdriver.ChromeOptions()
+        options.binary_location = CHROMIUM
+        for flag in [*FLAGS, *flags, f"--user-data-dir={self.folder.name}"]:
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        self.driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
+
+    def open(self, path):
+        """Opens the page; the seconds until the first picture."""
+        start = time.monotonic()
+        self.driver.get(path.as_uri())
+        self.settle()
+        return time.monotonic() - start
+
+    def settle(self, seconds=60):
+        """Waits until nothing is unpacked any more and the picture is drawn."""
+        end = time.monotonic() + seconds
+        while self.js("return document.documentElement.dataset.busy") != "0":
+            assert time.monotonic() < end, "the page is not ready"
+            time.sleep(0.02)
+        self.driver.execute_async_script("requestAnimationFrame(() => requestAnimationFrame(arguments[0]))")
+
+    def js(self, script, *words):
+        return self.driver.execute_script(script, *words)
+
+    def element(self, name):
+        return self.driver.find_element("id", name)
+
+    def put(self, name, value, event="change"):
+        """Gives an input a value, as a hand does."""
+        self.js("const e = document.getElementById(arguments[0]); e.value = arguments[1];"
+                "e.dispatchEvent(new Event(arguments[2], { bubbles: true }))", name, str(value), event)
+        self.settle()
+
+    def click(self, name):
+        self.js("document.getElementById(arguments[0]).click()", name)
+        self.settle()
+
+    def picture(self):
+        """The bytes of the picture as PNG."""
+        return base64.b64decode(self.js("return document.getElementById('view').toDataURL().split(',')[1]"))
+
+    def colours(self):
+        """How many different colours the picture has, coarsely, and the part that is not the ground."""
+        return self.js("""
+            const view = document.getElementById("view"), copy = document.createElement("canvas");
+            [copy.width, copy.height] = [200, 120];
+            const pen = copy.getContext("2d");
+            pen.drawImage(view, 0, 0, 200, 120);
+            const data = pen.getImageData(0, 0, 200, 120).data, seen = new Map();
+            for (let i = 0; i < data.length; i += 4) {
+              const key = (data[i] >> 4) + "," + (data[i + 1] >> 4) + "," + (data[i + 2] >> 4);
+              seen.set(key, (seen.get(key) ?? 0) + 1);
+            }
+            return [seen.size, 1 - Math.max(...seen.values()) / (200 * 120)];""")
+
+    def red(self):
+        """How many pixels of a smaller copy are of the red of bad tets."""
+        return self.js("""
+            const view = document.getElementById("view"), copy = document.createElement("canvas");
+            [copy.width, copy.height] = [400, 240];
+            const pen = copy.getContext("2d");
+            pen.drawImage(view, 0, 0, 400, 240);
+            const data = pen.getImageData(0, 0, 400, 240).data;
+            let n = 0;
+            for (let i = 0; i < data.length; i += 4) n += data[i] > 150 && data[i + 1] < 70 && data[i + 2] < 80;
+            return n;""")
+
+    def requests(self):
+        """What was asked for, the page itself left out."""
+        asked = []
+        for entry in self.driver.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            # The browser's own first tab asks for things too.
+            if message["method"] == "Network.requestWillBeSent" and message["params"]["documentURL"].startswith("file:"):
+                asked.append(message["params"]["request"]["url"])
+        assert asked, "the page itself is a request"
+        return [url for url in asked if not url.startswith(("file:", "data:"))]
+
+    def complaints(self):
+        return [entry["message"] for entry in self.driver.get_log("browser") if entry["level"] != "INFO"]
+
+    def close(self):
+        self.driver.quit()
+        self.folder.cleanup()
+
+
+@pytest.fixture
+def page():
+    page = Page()
+    yield page
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def moved(motet, tmp_path_factory):
+    """The page of the demo: a series, with the report of the motion."""
+    folder = tmp_path_factory.mktemp("report")
+    told = folder / "move.json"
+    told.write_text(motet("demo", folder / "demo", "--json").stdout)
+    motet("report", folder / "demo" / "moved.pvd", told, "-o", folder / "moved.html", "--title", "A sphere moves")
+    return folder / "moved.html"
+
+
+def test_each_act_changes_the_picture_and_nothing_is_asked_of_a_network(page, moved):
+    page.open(moved)
+    assert "A sphere moves" in page.driver.title
+    n_colours, drawn = page.colours()
+    assert n_colours > 8 and drawn > 0.1
+    before = {page.picture()}
+
+    def changed(what):
+        picture = page.picture()
+        assert picture not in before, f"{what} changed nothing"
+        before.add(picture)
+
+    arrays = page.js("return [...document.getElementById('array').options].map(o => [o.value, o.text])")
+    patch = next(value for value, name in arrays if name == "patch")
+    page.put("array", patch)
+    changed("colouring by patch")
+    assert page.js("return document.querySelectorAll('#scale li').length") >= 2
+    page.put("array", arrays[0][0])
+    page.put("cut", 1)
+    changed("a cut across y")
+    for place in (300, 420):
+        page.put("part", place, "input")
+        changed("moving the cut")
+    page.put("mode", "slice")
+    changed("a clean slice")
+    page.click("flip")
+    changed("the other side")
+    page.click("edges")
+    changed("no edges")
+    page.put("frame", 10, "input")
+    changed("the last frame")
+    assert "time 10" in page.element("time").text
+    page.click("bad")
+    changed("bad tets")
+    assert page.red() > 20
+    page.put("high", 0.5)
+    changed("another range")
+    ActionChains(page.driver).move_to_element(page.element("view")).click_and_hold().move_by_offset(90, 40).release().perform()
+    page.settle()
+    changed("turning by the mouse")
+    page.element("view").send_keys(Keys.ARROW_LEFT)
+    page.settle()
+    changed("turning by a key")
+    page.element("view").send_keys("+")
+    page.settle()
+    changed("going nearer by a key")
+    page.js("document.querySelector('[data-look=\"+x\"]').click()")
+    page.settle()
+    changed("looking along x")
+    assert page.complaints() == []
+    assert page.requests() == []
+
+
+def test_a_series_plays_and_its_charts_follow(page, moved):
+    page.open(moved)
+    first = page.picture()
+    cursor = "return document.querySelector('[data-view] .chart .cursor').getAttribute('x1')"
+    place, bars = page.js(cursor), page.js("return document.getElementById('eas-0').innerHTML")
+    page.click("play")
+    end = time.monotonic() + 30
+    while page.js("return document.getElementById('frame').value") in ("0", "1"):
+        assert time.monotonic() < end, "it does not play"
+        time.sleep(0.05)
+    page.click("play")
+    frame = page.js("return document.getElementById('frame').value")
+    time.sleep(0.6)
+    assert page.js("return document.getElementById('frame').value") in (frame, str(int(frame) + 1)), "it is paused"
+    page.settle()
+    assert page.picture() != first
+    assert page.js(cursor) != place
+    assert page.js("return document.getElementById('eas-0').innerHTML") != bars
+    assert page.complaints() == []
+
+
+def test_the_page_says_what_motet_info_says(page, moved, motet):
+    page.open(moved)
+    told = motet.json("info", moved.parent / "demo" / "moved_0010.vtu")["quality"]["eas"]
+    rows = page.js("return [...document.querySelectorAll('tbody')[0].rows].map(r => [...r.cells].map(c => c.textContent))")
+    head = page.js("return [...document.querySelectorAll('thead')[0].rows[0].cells].map(c => c.textContent)")
+    last = dict(zip(head, rows[-1]))
+    assert int(last["bad"].replace("\u202f", "")) == told["bad"]
+    assert float(last["worst EAS"]) == pytest.approx(told["min"], rel=1e-3)
+    assert int(last["at cell"]) == told["worst_cell"]
+
+
+def test_cells_of_other_kinds_surfaces_and_logs_share_a_page(page, motet, example, tmp_path):
+    example("shapes").run(tmp_path)
+    (tmp_path / "run.jsonl").write_text("".join(
+        json.dumps({"step": k, "least_gap": 1 / (k + 1), "seconds": {"graph": 0.1, "check": 0.2 + k}, "odd": [{}, 1]}) + "\n"
+        for k in range(5)))
+    motet("report", tmp_path / "ball.vtu", tmp_path / "aneurysm.vtp", tmp_path / "run.jsonl", "-o", tmp_path / "all.html")
+    page.open(tmp_path / "all.html")
+    first = page.picture()
+    page.put("input", 1)
+    assert page.picture() != first and page.colours()[1] > 0.02
+    text = page.js("return document.body.innerText")
+    assert "least_gap" in text and "seconds by stage" in text
+    assert page.complaints() == [] and page.requests() == []
+
+
+def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, motet, tmp_path):
+    motet("demo", tmp_path / "demo")
+    motet("refine", tmp_path / "demo" / "box.vtu", "-o", tmp_path / "fine.vtu", "--all", timeout=900)
+    told = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "fine.html", timeout=900)
+    size = (tmp_path / "fine.html").stat().st_size
+    assert told["payload_bytes"] <= told["budget_bytes"] and size == told["bytes"] < 25e6
+    assert told["inputs"][0]["whole"] == 1
+    assert page.open(tmp_path / "fine.html") < 30
+    assert page.colours()[1] > 0.1
+    before = page.picture()
+    page.put("cut", 0)
+    for place in (250, 600):
+        start = time.monotonic()
+        page.put("part", place, "input")
+        assert time.monotonic() - start < 15
+        assert page.picture() != before
+        before = page.picture()
+    # A fifth of the room: planes in place of all cells, and the page says so.
+    told = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "small.html", "--budget", 6, timeout=900)
+    assert told["payload_bytes"] <= 6e6 and told["inputs"][0]["cut"] == 1
+    page.open(tmp_path / "small.html")
+    page.put("cut", 0)
+    assert "planes along each axis" in page.element("note").text
+    assert page.colours()[1] > 0.1
+    assert page.complaints() == []
+
+
+def test_without_webgl_tables_and_charts_are_left(moved):
+    page = Page("--disable-3d-apis")
+    try:
+        page.open(moved)
+        assert page.element("no-view").is_displayed() and not page.element("viewer").is_displayed()
+        assert page.js("return document.querySelectorAll('tbody tr').length") > 10
+        assert page.element("eas-0").is_displayed()
+    finally:
+        page.close()
+
+
+def test_without_a_script_tables_and_charts_are_left(moved):
+    page = Page("--blink-settings=scriptEnabled=false")
+    try:
+        page.driver.get(moved.as_uri())
+        texts = [e.text for e in page.driver.find_elements("css selector", "noscript, summary, figcaption")]
+        assert any("Certificate of each frame" in text for text in texts)
+        assert any("EAS quality: worst and mean" in text for text in texts)
+        assert not page.element("viewer").is_displayed()
+    finally:
+        page.close()
