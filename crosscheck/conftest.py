@@ -66,3 +66,14 @@ def data():
     if folder is None:
         pytest.skip("no real meshes: set MOTET_DATA")
     return folder
+
+
+@pytest.fixture(scope="session")
+def sphere(motet, tmp_path_factory):
+    """A folder and a report: `box.vtu`, a sphere in a box of 184,320 tets, two patches; `moved.pvd`, the sphere moves to near a wall; `move.json`, the report."""
+    shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
+    folder = tmp_path_factory.mktemp("sphere")
+    shapes.sphere_in_box(16, 20).save(folder / "box.vtu")
+    told = motet("move", folder / "box.vtu", "-o", folder / "moved.pvd", "--translate", "sphere=3,0,0", "--quality", "--json").stdout
+    (folder / "move.json").write_text(told)
+    return folder, json.loads(told)

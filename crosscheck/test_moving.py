@@ -6,8 +6,6 @@ pv = pytest.importorskip("pyvista")
 
 import moving_walls  # noqa: E402
 
-shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
-
 AFFINE = np.array([[1.1, 0.05, -0.02, 0.3], [0.03, 0.9, 0.04, -0.2], [-0.01, 0.02, 1.05, 0.1]])
 
 
@@ -16,16 +14,8 @@ def image(points, part):
     return points + part * (moved - points)
 
 
-@pytest.fixture(scope="module")
-def box(motet, tmp_path_factory):
-    """A folder with a mesh of patches and a series of it, and the report: a sphere that moves to near the wall of a box."""
-    folder = tmp_path_factory.mktemp("sphere")
-    shapes.sphere_in_box(16, 20).save(folder / "box.vtu")
-    return folder, motet.json("move", folder / "box.vtu", "-o", folder / "moved.pvd", "--translate", "sphere=3,0,0", "--quality")
-
-
-def test_a_series_plays(box):
-    folder, report = box
+def test_a_series_plays(sphere):
+    folder, report = sphere
     reader = pv.get_reader(folder / "moved.pvd")
     assert list(reader.time_values) == [step["time"] for step in report["steps"]]
     before = pv.read(folder / "box.vtu")
@@ -41,8 +31,8 @@ def test_a_series_plays(box):
 
 
 @pytest.mark.parametrize("keep_ids", [True, False])
-def test_a_surface_that_pyvista_cut_out_and_displaced_moves_the_mesh(motet, box, tmp_path, keep_ids):
-    source = box[0] / "box.vtu"
+def test_a_surface_that_pyvista_cut_out_and_displaced_moves_the_mesh(motet, sphere, tmp_path, keep_ids):
+    source = sphere[0] / "box.vtu"
     mesh = pv.read(source)
     mesh = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
     mesh.clear_data()
@@ -71,8 +61,8 @@ def dihedral_angles(p):
     return np.degrees(angles).T
 
 
-def test_measures_are_written_for_every_tet(motet, box, tmp_path):
-    motet("info", box[0] / "moved_0010.vtu", "-o", tmp_path / "quality.vtu")
+def test_measures_are_written_for_every_tet(motet, sphere, tmp_path):
+    motet("info", sphere[0] / "moved_0010.vtu", "-o", tmp_path / "quality.vtu")
     mesh = pv.read(tmp_path / "quality.vtu")
     tets = mesh.extract_cells(mesh.celltypes == pv.CellType.TETRA)
     # By definition, not Verdict's minimum angle, which is larger than that on some of these tets.

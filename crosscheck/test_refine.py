@@ -5,7 +5,6 @@ from meshes import assert_same_array, cell_array_of, cells_of, volumes
 from test_remesh import region_volumes, verdict_eas
 
 meshio = pytest.importorskip("meshio")
-shapes = pytest.importorskip("motet", reason="the package is not installed: ./test does it").shapes
 
 FACETS = ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1))
 
@@ -26,11 +25,9 @@ def areas(mesh):
 
 
 @pytest.fixture(scope="module")
-def box(tmp_path_factory):
+def box(sphere):
     """A ball in a box, of two patches."""
-    path = tmp_path_factory.mktemp("box") / "box.vtu"
-    shapes.sphere_in_box(16, 20).save(path)
-    return path
+    return sphere[0] / "box.vtu"
 
 
 def assert_fits(first, fine):

@@ -122,12 +122,10 @@ def page():
 
 
 @pytest.fixture(scope="module")
-def moved(motet, tmp_path_factory):
-    """The page of the demo: a series, with the report of the motion."""
-    folder = tmp_path_factory.mktemp("report")
-    told = folder / "move.json"
-    told.write_text(motet("demo", folder / "demo", "--json").stdout)
-    motet("report", folder / "demo" / "moved.pvd", told, "-o", folder / "moved.html", "--title", "A sphere moves")
+def moved(motet, sphere):
+    """The page of a series, with the report of the motion."""
+    folder = sphere[0]
+    motet("report", folder / "moved.pvd", folder / "move.json", "-o", folder / "moved.html", "--title", "A sphere moves")
     return folder / "moved.html"
 
 
@@ -207,7 +205,7 @@ def test_a_series_plays_and_its_charts_follow(page, moved):
 
 def test_the_page_says_what_motet_info_says(page, moved, motet):
     page.open(moved)
-    told = motet.json("info", moved.parent / "demo" / "moved_0010.vtu")["quality"]["eas"]
+    told = motet.json("info", moved.parent / "moved_0010.vtu")["quality"]["eas"]
     rows = page.js("return [...document.querySelectorAll('tbody')[0].rows].map(r => [...r.cells].map(c => c.textContent))")
     head = page.js("return [...document.querySelectorAll('thead')[0].rows[0].cells].map(c => c.textContent)")
     last = dict(zip(head, rows[-1]))
@@ -231,9 +229,8 @@ def test_cells_of_other_kinds_surfaces_and_logs_share_a_page(page, motet, exampl
     assert page.complaints() == [] and page.requests() == []
 
 
-def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, motet, tmp_path):
-    motet("demo", tmp_path / "demo")
-    motet("refine", tmp_path / "demo" / "box.vtu", "-o", tmp_path / "fine.vtu", "--all", timeout=900)
+def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, motet, sphere, tmp_path):
+    motet("refine", sphere[0] / "box.vtu", "-o", tmp_path / "fine.vtu", "--all", timeout=900)
     told = motet.json("report", tmp_path / "fine.vtu", "-o", tmp_path / "fine.html", timeout=900)
     size = (tmp_path / "fine.html").stat().st_size
     assert told["payload_bytes"] <= told["budget_bytes"] and size == told["bytes"] < 25e6

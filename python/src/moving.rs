@@ -212,6 +212,11 @@ impl MovingMesh {
         change.map(|change| report(py, &change)).transpose()
     }
 
+    fn repair<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let change = self.watched(py, None, |moving, threads| moving.repair(threads))?;
+        change.map(|change| report(py, &change)).transpose()
+    }
+
     fn remembers(&self, step: usize) -> bool {
         self.moving.remembers(step)
     }

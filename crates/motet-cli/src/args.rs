@@ -3,7 +3,9 @@
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
 
-use crate::verbs::{cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, report, run};
+use crate::verbs::{
+    cap, contact, convert, demo, implant, info, meshing, moving, refine, remesh, report, run,
+};
 
 /// motet keeps tetrahedral meshes good while the world in them moves.
 #[derive(Debug, Parser)]

@@ -322,6 +322,26 @@ fn what_comes_near_is_warned_of_before_it_is_there() {
 }
 
 #[test]
+fn what_comes_bad_is_repaired_before_the_first_step() {
+    let mut mesh = box_mesh();
+    // The vertices inside go where they do not belong.
+    let inner = |p: Point| norm(p) > 1.3 && p.iter().all(|x| x.abs() < 4.5);
+    for (i, p) in mesh.points.iter_mut().enumerate().filter(|(_, p)| inner(**p)) {
+        (0..3).for_each(|k| p[k] += 0.16 * ((7 * i + 3 * k) as f64).sin());
+    }
+    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    let before = moving.certify(&threads()).unwrap();
+    assert!(before.bad > 0 && before.inverted == 0, "{before:?}");
+    let change = moving.repair(&threads()).unwrap().expect("something was repaired");
+    assert_eq!((change.why, change.bad_before, change.time), (Why::Repair, before.bad, 0.0));
+    assert_eq!(moving.certify(&threads()).unwrap().bad, 0);
+    assert!(moving.repair(&threads()).unwrap().is_none());
+    assert_eq!(moving.velocity(), vec![[0.0; 3]; moving.mesh().points.len()]);
+    let step = moving.advance(1.0, &sphere_goes(&moving, shift([0.3, 0.0, 0.0])), &threads()).unwrap();
+    assert!(step.complete && step.bad == 0);
+}
+
+#[test]
 fn wedges_at_the_wall_stay_and_tets_inside_are_repaired() {
     let mesh = tube(&TubeOptions { wall_layers: 3, wall_cells: WallCells::Wedges, ..TubeOptions::default() });
     let mut moving = MovingMesh::new(&mesh, Options::default(), &threads()).unwrap();

@@ -198,6 +198,12 @@ class MovingMesh:
         change = self._native.refine(_criteria(**criteria), generations, coarsen)
         return None if change is None else report(change)
 
+    def repair(self) -> Report | None:
+        """Repairs what is bad where the mesh is: of one that came, or was refined. A step does so by itself."""
+        self._mesh = None
+        change = self._native.repair()
+        return None if change is None else report(change)
+
     def remembers(self, step: int) -> bool:
         """Whether all changes since a step are known."""
         return self._native.remembers(step)

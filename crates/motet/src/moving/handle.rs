@@ -163,27 +163,12 @@ impl MovingMesh {
         let begin = Instant::now();
         self.check(time, displacement)?;
         let start = self.clock.time;
-        let mut way = Way {
-            options: &self.options,
-            wall: &self.wall,
-            displacement,
-            times: [start, time],
-            n_first: self.clock.n_first,
-            threads,
-            points: Vec::new(),
-            seconds: Seconds::default(),
-            changes: Vec::new(),
-            legs: 0,
-        };
-        let last = std::mem::replace(&mut self.now.known.before, self.now.mesh.points.clone());
-        let reached = way.go(&self.now);
-        if reached.is_err() {
-            self.now.known.before = last;
-        }
-        let Reached { changed, left, shape, fraction } = reached?;
+        let mut way = self.way(displacement, time, threads);
+        let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
         let Way { points, mut seconds, changes, legs, .. } = way;
-        if let Some(now) = changed {
-            self.now = now;
+        match changed {
+            Some(now) => self.now = now,
+            None => self.now.known.before.clone_from(&self.now.mesh.points),
         }
         if let Some(left) = left {
             self.now.left = left;
@@ -214,6 +199,39 @@ impl MovingMesh {
         Ok(Step { complete: true, fraction: 1.0, gaps, seconds, ..self.certified(&shape) })
     }
 
+    /// Repairs what is bad where the mesh is, at the time that was reached. A step does so by itself; a mesh that came, or was refined, may need it before the first.
+    ///
+    /// # Errors
+    /// When an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    pub fn repair(&mut self, threads: &Threads) -> Result<Option<Change>> {
+        let mut way = self.way(&[], self.clock.time, threads);
+        let Reached { changed, left, .. } = way.stay(&self.now)?;
+        let changes = way.changes;
+        if let Some(left) = left {
+            self.now.left = left;
+        }
+        if let Some(now) = changed {
+            self.now = now;
+            self.remember(&changes);
+        }
+        Ok(changes.into_iter().next())
+    }
+
+    fn way<'a>(&'a self, displacement: &'a [Point], time: f64, threads: &'a Threads) -> Way<'a> {
+        Way {
+            options: &self.options,
+            wall: &self.wall,
+            displacement,
+            times: [self.clock.time, time],
+            n_first: self.clock.n_first,
+            threads,
+            points: Vec::new(),
+            seconds: Seconds::default(),
+            changes: Vec::new(),
+            legs: 0,
+        }
+    }
+
     /// Divides tets and takes divisions back, at the time that was reached, as [`MeshRefinement::reach`] does. What was divided is remembered by arrays of the mesh.
     ///
     /// Where patches are watched, criteria find the point array [`GAP`]: the gap at each of their vertices, no limit elsewhere. As a size it keeps edges of walls as short as the gap
@@ -224,7 +242,7 @@ impl MovingMesh {
     pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
         let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
         let mut given = self.now.mesh.clone();
-        let mut rules = self.now.put_known(&mut given, &self.options.rules);
+        let mut rules = self.now.put_known(&mut given, &self.now.known.before, &self.options.rules);
         if let Some(gap) = self.gap_sizes() {
             given.set_point_field(gap);
             rules.points.insert(GAP.to_owned(), Rule::Interpolate);

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, Threads};
 use crate::geometry::vector::{add, scale, sub};
 use crate::mesh::history::History;
-use crate::moving::now::{LeftBad, Now};
+use crate::moving::now::{Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Why};
@@ -78,12 +78,14 @@ impl Way<'_> {
             }
             effort = if is_stuck { Effort::All } else { Effort::Usual };
             let time = self.times[0] + (self.times[1] - self.times[0]) * gone;
-            let next = match self.repaired(now, &shape, time, effort)? {
+            // The first mesh of a step is where it was as the step began.
+            let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.known.before);
+            let next = match self.repaired(now, before, &shape, time, effort)? {
                 Repaired::Changed(next) => *next,
                 Repaired::Left(left) if is_end => {
                     return Ok(Reached { changed, left: Some(left), shape, fraction: gone });
                 }
-                Repaired::Left(left) => self.re_referenced(now, left)?,
+                Repaired::Left(left) => self.re_referenced(now, before, left)?,
             };
             let shape = self.shape(&next);
             self.points.clone_from(&next.mesh.points);
@@ -92,6 +94,20 @@ impl Way<'_> {
                 return Ok(Reached { changed, left: None, shape, fraction: gone });
             }
         }
+    }
+
+    /// Repairs what is bad without going anywhere.
+    pub(super) fn stay(&mut self, start: &Now) -> Result<Reached> {
+        self.points.clone_from(&start.mesh.points);
+        let shape = self.shape_at(start);
+        let mut reached = Reached { changed: None, left: None, shape, fraction: 1.0 };
+        if self.options.repair.is_some() && !reached.shape.bad.is_empty() {
+            match self.repaired(start, &start.known.before, &reached.shape, self.times[0], Effort::Usual)? {
+                Repaired::Changed(next) => reached.changed = Some(*next),
+                Repaired::Left(left) => reached.left = Some(left),
+            }
+        }
+        Ok(reached)
     }
 
     /// Goes on as far as tets stay well shaped: all the way that is left, or a half of it, and so on. How far, and how the tets are there.
@@ -143,7 +159,14 @@ impl Way<'_> {
     }
 
     /// The mesh with its bad tets repaired where [`Self::points`] has the vertices.
-    fn repaired(&mut self, now: &Now, shape: &Shape, time: f64, effort: Effort) -> Result<Repaired> {
+    fn repaired(
+        &mut self,
+        now: &Now,
+        before: &[Point],
+        shape: &Shape,
+        time: f64,
+        effort: Effort,
+    ) -> Result<Repaired> {
         let begin = Instant::now();
         let options = self.options;
         let is_asked = !shape.bad.is_empty() || effort == Effort::All;
@@ -162,7 +185,7 @@ impl Way<'_> {
             ..asked.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
-        let rules = now.put_known(&mut given, &options.rules);
+        let rules = now.put_known(&mut given, before, &options.rules);
         let outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
         let (report, history, mut mesh) = (outcome.report, Arc::new(outcome.history), outcome.mesh);
         let left = left_of(&report);
@@ -191,10 +214,11 @@ impl Way<'_> {
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.
-    fn re_referenced(&mut self, now: &Now, left: Vec<LeftBad>) -> Result<Now> {
+    fn re_referenced(&mut self, now: &Now, before: &[Point], left: Vec<LeftBad>) -> Result<Now> {
         let begin = Instant::now();
         let mesh = now.moved(&self.points, &self.options.contents);
-        let next = Now::new(mesh, now.known.clone(), left, self.wall, self.options, self.threads);
+        let known = Known { before: before.to_vec(), ..now.known.clone() };
+        let next = Now::new(mesh, known, left, self.wall, self.options, self.threads);
         self.seconds.setup += begin.elapsed().as_secs_f64();
         next
     }

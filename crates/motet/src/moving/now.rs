@@ -148,10 +148,11 @@ impl Now {
         mesh
     }
 
-    /// Gives a mesh that is about to change what has to follow as point arrays; the rules with those for it.
-    pub(super) fn put_known(&self, mesh: &mut Mesh, rules: &Rules) -> Rules {
+    /// Gives a mesh that is about to change what has to follow as point arrays; the rules with those for it. `before` is where the vertices were as the step
+    /// began.
+    pub(super) fn put_known(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
         let mut rules = rules.clone();
-        for (name, values) in [(FIRST, &self.known.first), (BEFORE, &self.known.before)] {
+        for (name, values) in [(FIRST, self.known.first.as_slice()), (BEFORE, before)] {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Interpolate);
         }

@@ -69,7 +69,7 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
     let (mut outcome, mut took) = (Outcome::Done, Vec::new());
     for (what, words) in CALLS {
         let call = call(&args.folder, words);
-        console.say(format_args!("\n# {what}\n$ motet {}\n", words(&call[1..])));
+        console.say(format_args!("\n# {what}\n$ motet {}\n", as_typed(&call[1..])));
         let one = Instant::now();
         if make(&call, common, console)? == Outcome::NotReached {
             outcome = Outcome::NotReached;
@@ -82,7 +82,9 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
 
 /// The words of a call, files in their folder.
 fn call(folder: &Path, words: &[&str]) -> Vec<String> {
-    let is_file = |word: &str| [".vtp", ".vtu", ".toml", ".pvd", ".jsonl", ".html"].iter().any(|ending| word.ends_with(ending));
+    let is_file = |word: &str| {
+        [".vtp", ".vtu", ".toml", ".pvd", ".jsonl", ".html"].iter().any(|ending| word.ends_with(ending))
+    };
     let word = |word: &&str| match is_file(word) {
         true => folder.join(word).to_string_lossy().into_owned(),
         false => (*word).to_owned(),
@@ -91,7 +93,7 @@ fn call(folder: &Path, words: &[&str]) -> Vec<String> {
 }
 
 /// As a shell would have them.
-fn words(call: &[String]) -> String {
+fn as_typed(call: &[String]) -> String {
     let word = |word: &String| if word.contains(' ') { format!("\"{word}\"") } else { word.clone() };
     call.iter().map(word).collect::<Vec<_>>().join(" ")
 }

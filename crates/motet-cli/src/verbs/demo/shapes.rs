@@ -38,18 +38,17 @@ fn stent(aneurysm: &Aneurysm) -> Result<Mesh> {
     // The axis of the vessel is a part of a circle, its middle in the origin.
     let bend = aneurysm.length / aneurysm.bend_deg.to_radians();
     let on_axis = |i: i32| {
-        let angle = aneurysm.bend_deg.to_radians() * (f64::from(i) / 100.0 - 0.5) * 0.4;
+        let angle = aneurysm.bend_deg.to_radians() * (f64::from(i) / 100.0 - 0.5) * 0.25;
         [bend * angle.sin(), bend * (angle.cos() - 1.0), 0.0]
     };
     let axis = CenterLine::new(&(0..=100).map(on_axis).collect::<Vec<_>>())?;
     let lattice = Stent {
         length: axis.length(),
-        rings: 4,
-        crowns: 6,
-        strut_width: 0.15,
-        thickness: 0.12,
-        link_length: 0.2,
-        segments: 4,
+        rings: 5,
+        crowns: 4,
+        strut_width: 0.12,
+        // Thicker or wider ones have narrower triangles, which force bad tets.
+        thickness: 0.1,
         ..Stent::default()
     };
     let mut stent = lattice.mesh(0.72 * aneurysm.radius)?;

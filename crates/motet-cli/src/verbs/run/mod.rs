@@ -47,7 +47,8 @@ pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<
         }
         None => {
             let mut moving = MovingMesh::new(&mesh, options, &threads)?;
-            let changes = refine(&mut moving, &refining, 0, &threads)?;
+            let mut changes = refine(&mut moving, &refining, 0, &threads)?;
+            changes.extend(moving.repair(&threads)?);
             let step = Step { changes, ..moving.certify(&threads)? };
             output.first(&moving, &step)?;
             report.line(&step, console);
@@ -61,7 +62,10 @@ pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<
         let time = job.time(k);
         let mut step = moving.advance(time, &script.at(time / job.time.period), &threads)?;
         if step.complete {
-            let came = refine(&mut moving, &refining, k, &threads)?;
+            let mut came = refine(&mut moving, &refining, k, &threads)?;
+            if !came.is_empty() {
+                came.extend(moving.repair(&threads)?);
+            }
             if !came.is_empty() {
                 let (changes, seconds) = (std::mem::take(&mut step.changes), step.seconds);
                 step = moving.certify(&threads)?;
