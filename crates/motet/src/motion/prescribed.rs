@@ -66,7 +66,7 @@ impl Prescribed {
             }
             Self::Affine(rows) => finite(rows.as_flattened()),
             Self::Bend { hinge, along, towards, length, angle } => {
-                if norm(cross(*along, *towards)) == 0.0 || !(*length > 0.0) {
+                if norm(cross(*along, *towards)) == 0.0 || *length <= 0.0 {
                     return Err(Error::options(
                         "a bend needs a length above 0 and two directions that are not parallel",
                     ));

@@ -187,7 +187,8 @@ pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
         for (cell, corners) in mesh.cells.tets() {
             let of = |points: &[Point]| tet::volume(corners.map(|v| points[v.index()])).abs();
             let grown = of(points) / of(&mesh.points);
-            if grown == 1.0 || !(grown > 0.0 && grown.is_finite()) {
+            let is_number = grown > 0.0 && grown.is_finite();
+            if grown == 1.0 || !is_number {
                 continue;
             }
             for i in cell.index() * n..(cell.index() + 1) * n {

@@ -67,7 +67,7 @@ impl Tets {
                 shape.bad.push((cell, quality));
             }
             // A tet without an angle counts as flat.
-            if !(quality > 0.0) {
+            if quality <= 0.0 || quality.is_nan() {
                 shape.inverted += 1;
             }
             if shape.worst.is_none_or(|(_, worst, _)| quality < worst) {

@@ -300,9 +300,8 @@ impl Job {
                 "add surface = \"adapt\"",
             );
         }
-        if let Some(Contact { warn: Some(warn), .. }) =
-            self.contact.as_ref().filter(|c| c.warn.is_some_and(|w| !(w > 0.0)))
-        {
+        let warn = self.contact.as_ref().and_then(|contact| contact.warn);
+        if let Some(warn) = warn.filter(|warn| *warn <= 0.0 || warn.is_nan()) {
             return off(&format!("contact.warn is {warn}"), "give a distance above 0");
         }
         if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
