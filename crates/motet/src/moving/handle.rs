@@ -289,7 +289,7 @@ impl MovingMesh {
     /// The gap at each vertex, as a size of edges.
     fn gap_sizes(&self) -> Option<Field> {
         let gaps = self.gaps()?;
-        let mut sizes = vec![f64::INFINITY; self.now.mesh.points.len()];
+        let mut sizes = vec![NO_LIMIT; self.now.mesh.points.len()];
         for body in &gaps.bodies {
             for (v, &gap) in body.vertices.iter().zip(&body.gap) {
                 let size = &mut sizes[v.index()];
@@ -359,6 +359,9 @@ impl MovingMesh {
         }
     }
 }
+
+/// No edge is as long. Infinity is no number to interpolate with.
+const NO_LIMIT: f64 = 1e100;
 
 /// The point array that criteria of [`MovingMesh::refine`] find where patches are watched.
 pub const GAP: &str = "moving:gap";
