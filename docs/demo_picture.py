@@ -13,6 +13,7 @@ import pyvista as pv
 from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight
 
 PANEL = (520, 400)
+COPPER = "#b5652f"
 EDGES = dict(show_edges=True, edge_color=INK, line_width=0.6, edge_opacity=0.45, ambient=0.65, diffuse=0.4, specular=0.0)
 
 
@@ -25,8 +26,15 @@ def behind(mesh, axis, at):
     return tets.extract_cells(tets.cell_centers().points[:, axis] < at)
 
 
-def panel(mesh, axis, at, focus, height, offset, up):
+def panel(mesh, axis, at, focus, height, offset, up, sheet=None):
+    """The tets behind a plane, and in front of them a rim of a sheet in copper."""
     plotter = lit(mesh, PANEL)
+    if sheet is not None:
+        label = int(mesh.field_data[f"patch:{sheet}"][0])
+        flap = mesh.extract_cells((mesh.celltypes == pv.CellType.TRIANGLE) & (mesh.cell_data["patch"] == label))
+        rim = flap.extract_cells(abs(flap.cell_centers().points[:, axis] - at) < 0.12)
+        lines = rim.extract_all_edges().translate([1.0 if k == axis else 0.0 for k in range(3)])
+        plotter.add_mesh(lines, color=COPPER, line_width=5.0, lighting=False)
     plotter.add_mesh(behind(mesh, axis, at), scalars="eas", cmap=QUALITY, clim=RANGE, show_scalar_bar=False, **EDGES)
     return seen_straight(plotter, focus, offset, up, height)
 
@@ -47,7 +55,7 @@ def main():
         panels.append((panel(mesh, 2, 0.0, (0.0, 0.9, 0.0), 6.6, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0)), text(mesh, what)))
     for k, what in ((6, "flap up"), (18, "flap down")):
         mesh = frame(folder, "dissection", k)
-        panels.append((panel(mesh, 2, 3.0, (0.0, 0.0, 3.0), 2.2, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0)), text(mesh, what)))
+        panels.append((panel(mesh, 2, 3.0, (0.0, 0.0, 3.0), 2.2, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0), "flap"), text(mesh, what)))
     save_row(panels, HERE / "run.png")
 
 
