@@ -323,15 +323,22 @@ fn what_comes_near_is_warned_of_before_it_is_there() {
 
 #[test]
 fn what_comes_bad_is_repaired_before_the_first_step() {
-    let mut mesh = box_mesh();
-    // The vertices inside go where they do not belong.
-    let inner = |p: Point| norm(p) > 1.3 && p.iter().all(|x| x.abs() < 4.5);
-    for (i, p) in mesh.points.iter_mut().enumerate().filter(|(_, p)| inner(**p)) {
-        (0..3).for_each(|k| p[k] += 0.16 * ((7 * i + 3 * k) as f64).sin());
-    }
-    let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
-    let before = moving.certify(&threads()).unwrap();
-    assert!(before.bad > 0 && before.inverted == 0, "{before:?}");
+    // The vertices inside go astray, a little farther each time, until tets are bad.
+    let astray = |by: f64| {
+        let mut mesh = box_mesh();
+        let inner = |p: Point| norm(p) > 1.01 && p.iter().all(|x| x.abs() < 4.99);
+        for (i, p) in mesh.points.iter_mut().enumerate().filter(|(_, p)| inner(**p)) {
+            (0..3).for_each(|k| p[k] += by * ((7 * i + 3 * k) as f64).sin());
+        }
+        MovingMesh::new(&mesh, options(), &threads()).unwrap()
+    };
+    let certified = (1..20).map(|i| {
+        let mut moving = astray(0.01 * f64::from(i));
+        let step = moving.certify(&threads()).unwrap();
+        (moving, step)
+    });
+    let (mut moving, before) = certified.into_iter().find(|(_, step)| step.bad > 0).unwrap();
+    assert_eq!(before.inverted, 0);
     let change = moving.repair(&threads()).unwrap().expect("something was repaired");
     assert_eq!((change.why, change.bad_before, change.time), (Why::Repair, before.bad, 0.0));
     assert_eq!(moving.certify(&threads()).unwrap().bad, 0);
