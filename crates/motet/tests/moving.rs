@@ -332,12 +332,12 @@ fn what_comes_bad_is_repaired_before_the_first_step() {
         }
         MovingMesh::new(&mesh, options(), &threads()).unwrap()
     };
-    let certified = (1..20).map(|i| {
+    let mut certified = (1..20).map(|i| {
         let mut moving = astray(0.01 * f64::from(i));
         let step = moving.certify(&threads()).unwrap();
         (moving, step)
     });
-    let (mut moving, before) = certified.into_iter().find(|(_, step)| step.bad > 0).unwrap();
+    let (mut moving, before) = certified.find(|(_, step)| step.bad > 0).unwrap();
     assert_eq!(before.inverted, 0);
     let change = moving.repair(&threads()).unwrap().expect("something was repaired");
     assert_eq!((change.why, change.bad_before, change.time), (Why::Repair, before.bad, 0.0));
