@@ -1,0 +1,45 @@
+"""The demo as a user makes it, and its series as VTK reads them: frames with other cells than the ones before."""
+import json
+
+import numpy as np
+import pytest
+
+pv = pytest.importorskip("pyvista")
+
+
+@pytest.fixture(scope="module")
+def demo(motet, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("demo")
+    return folder, motet.json("demo", folder, timeout=900)
+
+
+def has_positive_tets(mesh):
+    a, b, c, d = mesh.points[mesh.cells_dict[pv.CellType.TETRA]].astype(float).transpose(1, 0, 2)
+    return bool((np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) > 0).all())
+
+
+def test_the_demo_keeps_both_meshes_good(demo):
+    folder, told = demo
+    for name, steps in (("aneurysm", 16), ("dissection", 24)):
+        cycle = told[name]
+        assert cycle["steps"] == steps and cycle["most_bad"] == 0 and cycle["inverted"] == 0
+        assert cycle["changed_steps"] > 0 and cycle["warned_steps"] > 0 and cycle["worst_eas"]["all"] >= 0.2
+    assert (folder / "report.html").stat().st_size < 25e6
+
+
+@pytest.mark.parametrize("name", ["aneurysm", "dissection"])
+def test_frames_are_what_the_log_says(demo, name):
+    folder, _ = demo
+    lines = [json.loads(line) for line in (folder / f"{name}.jsonl").read_text().splitlines()]
+    reader = pv.get_reader(folder / f"{name}.pvd")
+    assert len(reader.time_values) == len(lines)
+    counts = set()
+    for time, line in zip(reader.time_values, lines):
+        reader.set_active_time_value(time)
+        mesh = reader.read()[0]
+        tets = mesh.celltypes == pv.CellType.TETRA
+        assert time == pytest.approx(line["time"]) and tets.sum() == line["tets"]
+        assert mesh["eas"][tets].min() == pytest.approx(line["worst"]["eas"], rel=1e-12)
+        assert has_positive_tets(mesh)
+        counts.add(line["tets"])
+    assert len(counts) > 1, "the mesh changes on the way"
