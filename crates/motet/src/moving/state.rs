@@ -47,7 +47,7 @@ impl MovingMesh {
             Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
         ]);
-        // Written after every step, read once: packing would take ten times as long as writing.
+        // Written after every step, read once: not worth packing.
         let options = WriteOptions { compression: Compression::None, ..WriteOptions::default() };
         io::write(path, &file, &options).map(|_| ())
     }

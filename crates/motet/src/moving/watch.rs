@@ -62,7 +62,7 @@ impl Watch {
 const JOINED_WARNINGS: f64 = 4.0;
 
 /// Patches that share vertices are near to each other everywhere along what they share; which of that is a gap is found by ways along the surface. Without a
-/// limit that is the work of the whole wall: 6 s a step for a flap of 336 triangles, 7 ms within four warning distances.
+/// limit that is the work of the whole wall: 6 s a step for a flap of 336 triangles, 7 ms within two warning distances.
 fn within_reach(bodies: &[contact::Body], options: contact::Options) -> contact::Options {
     let Some(warn) = options.warn.filter(|_| options.within == f64::INFINITY) else { return options };
     let vertices = |body: &contact::Body| {
