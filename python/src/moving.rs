@@ -52,9 +52,7 @@ pub(crate) struct Asked {
 
 impl Asked {
     fn options(&self, mesh: &Mesh) -> PyResult<Options> {
-        let labels = |words: &[String]| -> PyResult<Vec<i32>> {
-            words.iter().map(|word| mesh.find_patch(word)).collect::<motet::Result<_>>().or_raise()
-        };
+        let labels = |words: &[String]| mesh.find_patches(words).or_raise();
         let extent = self.rigid_layer.map(Extent::Distance).or(self.rigid_layer_cells.map(Extent::Cells));
         let wall = labels(&self.rigid_layer_at)?;
         let motion = Motion {
@@ -67,13 +65,7 @@ impl Asked {
             rigid_layer: extent.map(|extent| (extent, wall)),
             limits: Limits::default(),
         };
-        let distance = self.distance;
-        let known = [
-            ("keep", SurfaceRule::Keep),
-            ("adapt", SurfaceRule::Adapt { distance }),
-            ("loose", SurfaceRule::Loose { distance }),
-        ];
-        let surface = one_of("surface", &self.surface, &known)?;
+        let surface = SurfaceRule::of_name(&self.surface, self.distance).or_raise()?;
         let repair = remesh::Options { min_eas: self.min_eas, surface, ..remesh::Options::default() };
         let watch = (!self.watch.is_empty()).then(|| Watching {
             patches: self.watch.clone(),

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::border::{Given, parts};
+use crate::error::OrRaise;
 use crate::history::History;
 use crate::report::report;
 use crate::watch::watched;
@@ -38,16 +39,11 @@ pub(crate) fn remesh<'py>(
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
-    let known = [
-        ("keep", SurfaceRule::Keep),
-        ("adapt", SurfaceRule::Adapt { distance }),
-        ("loose", SurfaceRule::Loose { distance }),
-    ];
     let options = Options {
         min_eas,
         min_dihedral_deg,
         goal: one_of("goal", goal, &[("repair", Goal::Repair), ("best", Goal::Best)])?,
-        surface: one_of("surface", surface, &known)?,
+        surface: SurfaceRule::of_name(surface, distance).or_raise()?,
         keep_layers,
         sizes: sizes.map(|sizes| match sizes {
             AskedSizes::Uniform(h) => Sizes::Uniform(h),

@@ -13,9 +13,7 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
     } else {
         io::can_write(output)?;
     }
-    let is_output =
-        |input: &Path| input.canonicalize().ok().is_some_and(|a| output.canonicalize().is_ok_and(|b| a == b));
-    match inputs.into_iter().any(is_output) {
+    match inputs.into_iter().any(|input| io::is_same_file(input, output)) {
         true => Err(Error::options(format!("the result would overwrite {what} it is made from"))
             .in_file(output)
             .remedy("give --output another name")),

@@ -52,7 +52,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// What [`Options::budget`] is if nobody says otherwise: 24 MB, which a browser opens in a second or two.
+    /// What [`Options::budget`] is if nobody says otherwise: 24 MB.
     pub const BUDGET: usize = 24_000_000;
 
     /// A page at `output`, its budget as usual.
@@ -146,10 +146,7 @@ fn check(inputs: &[PathBuf], options: &Options) -> Result<()> {
             .in_file(output)
             .remedy("give --output a name that ends in .html"));
     }
-    let is_input = |input: &PathBuf| {
-        input.canonicalize().ok().is_some_and(|a| output.canonicalize().is_ok_and(|b| a == b))
-    };
-    if inputs.iter().any(is_input) {
+    if inputs.iter().any(|input| io::is_same_file(input, output)) {
         return Err(Error::options("the page would overwrite an input it is made from")
             .in_file(output)
             .remedy("give --output another name"));

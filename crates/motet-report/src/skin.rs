@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use motet::Mesh;
-use motet::base::VertexId;
+use motet::base::{VertexId, rising_list};
 use motet::geometry::vector::is_finite;
 use motet::mesh::{Boundary, CellKind, triangulate};
 
@@ -28,12 +28,12 @@ impl Skin {
         let mut surface: HashMap<Vec<VertexId>, u32> = HashMap::new();
         let of_surface = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
         for (cell, _, vertices) in of_surface() {
-            surface.entry(sorted(vertices)).or_insert(cell.0);
+            surface.entry(rising_list(vertices)).or_insert(cell.0);
         }
         let boundary = Boundary::of(&mesh.cells);
         let mut is_shown = vec![false; mesh.cells.len()];
         for ((cell, &kind), facet) in boundary.cells.iter().zip(&boundary.kinds).zip(boundary.facets.iter()) {
-            let surface_cell = surface.get(&sorted(facet)).copied().unwrap_or(NONE);
+            let surface_cell = surface.get(&rising_list(facet)).copied().unwrap_or(NONE);
             if let Some(is_shown) = is_shown.get_mut(surface_cell as usize) {
                 *is_shown = true;
             }
@@ -92,12 +92,6 @@ fn ring(kind: CellKind, vertices: &[VertexId]) -> Vec<VertexId> {
         _ => return vertices.to_vec(),
     };
     places.iter().filter_map(|&i| vertices.get(i).copied()).collect()
-}
-
-fn sorted(vertices: &[VertexId]) -> Vec<VertexId> {
-    let mut sorted = vertices.to_vec();
-    sorted.sort_unstable();
-    sorted
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
 
@@ -17,71 +17,40 @@ from ._report import Progress, Report, report
 from .errors import OptionsError
 
 
-@dataclass
+@dataclass(kw_only=True)
 class _Asked:
     """What the native handle is told."""
 
-    method: str
-    bodies: list
-    within_walls: bool
-    smooth: int
-    inside: list
-    slide: list
-    rigid_layer: float | None
-    rigid_layer_cells: int | None
-    rigid_layer_at: list
-    repair: bool
-    min_eas: float
-    surface: str
-    distance: float | None
-    margin: float
-    floor: float
-    keep_tets: float
-    contents: list
-    carry: dict
-    watch: list
-    warn: float | None
-    within: float
-    horizon: float | None
-    remembered: int
+    method: str = "delaunay"
+    bodies: Sequence[str | int] = ()
+    within_walls: bool = False
+    smooth: int = 0
+    inside: Sequence[str | int] = ()
+    slide: Sequence[str | int] = ()
+    rigid_layer: float | None = None
+    rigid_layer_cells: int | None = None
+    rigid_layer_at: Sequence[str | int] = ()
+    repair: bool = True
+    min_eas: float = 0.2
+    surface: str = "keep"
+    distance: float | None = None
+    margin: float = 0.05
+    floor: float = 0.05
+    keep_tets: float = 0.9
+    contents: Sequence[str] = ()
+    carry: Mapping[str, Carry] = field(default_factory=dict)
+    watch: Sequence[str | int] = ()
+    warn: float | None = None
+    within: float = float("inf")
+    horizon: float | None = None
+    remembered: int = 64
 
-
-def _asked(
-    *,
-    method: str = "delaunay",
-    bodies: Sequence[str | int] = (),
-    within_walls: bool = False,
-    smooth: int = 0,
-    inside: Sequence[str | int] = (),
-    slide: Sequence[str | int] = (),
-    rigid_layer: float | None = None,
-    rigid_layer_cells: int | None = None,
-    rigid_layer_at: Sequence[str | int] = (),
-    repair: bool = True,
-    min_eas: float = 0.2,
-    surface: str = "keep",
-    distance: float | None = None,
-    margin: float = 0.05,
-    floor: float = 0.05,
-    keep_tets: float = 0.9,
-    contents: Sequence[str] = (),
-    carry: Mapping[str, Carry] | None = None,
-    watch: Sequence[str | int] = (),
-    warn: float | None = None,
-    within: float = float("inf"),
-    horizon: float | None = None,
-    remembered: int = 64,
-) -> _Asked:
-    if rigid_layer is not None and rigid_layer_cells is not None:
-        raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
-
-    def names(words: Sequence[str | int]) -> list[str]:
-        return [str(word) for word in words]
-
-    return _Asked(
-        method, names(bodies), within_walls, smooth, names(inside), names(slide), rigid_layer, rigid_layer_cells, names(rigid_layer_at), repair,
-        min_eas, surface, distance, margin, floor, keep_tets, list(contents), dict(carry or {}), names(watch), warn, within, horizon, remembered,
-    )  # fmt: skip
+    def __post_init__(self) -> None:
+        if self.rigid_layer is not None and self.rigid_layer_cells is not None:
+            raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
+        for patches in ("bodies", "inside", "slide", "rigid_layer_at", "watch"):
+            setattr(self, patches, [str(patch) for patch in getattr(self, patches)])
+        self.contents, self.carry = list(self.contents), dict(self.carry or {})
 
 
 class MovingMesh:
@@ -118,14 +87,14 @@ class MovingMesh:
     """
 
     def __init__(self, mesh: MeshLike, *, threads: int = 0, progress: Progress | None = None, **options: Any):
-        self._native = _motet.MovingMesh(as_mesh(mesh), _asked(**options), threads, progress)
+        self._native = _motet.MovingMesh(as_mesh(mesh), _Asked(**options), threads, progress)
         self._mesh: Mesh | None = None
 
     @classmethod
     def load(cls, path: str | PathLike[str], *, threads: int = 0, **options: Any) -> MovingMesh:
         """Goes on from what :meth:`save` wrote, with the same options, to the same bytes."""
         moving = cls.__new__(cls)
-        moving._native, moving._mesh = _motet.MovingMesh.load(path, _asked(**options), threads), None
+        moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked(**options), threads), None
         return moving
 
     def save(self, path: str | PathLike[str]) -> None:

@@ -1,7 +1,7 @@
 """Adaptive refinement: tets divided where it matters, taken back where it does not."""
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -110,43 +110,34 @@ def refine(
     return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
 
 
-def _criteria(
-    *,
-    everything: bool = False,
-    near: Sequence[tuple[MeshLike, float]] = (),
-    near_size: Sequence[tuple[MeshLike, float] | tuple[MeshLike, float, float]] = (),
-    box: Sequence[tuple[ArrayLike, ArrayLike]] = (),
-    ball: Sequence[tuple[ArrayLike, float]] = (),
-    region: Sequence[str | int] = (),
-    patch: Sequence[str | int | tuple[str | int, float]] = (),
-    size: float | str | None = None,
-    where: Sequence[str] = (),
-    gradient: Sequence[str] = (),
-    vorticity: Sequence[str] = (),
-    q: Sequence[str] = (),
-    jump: Mapping[str, float] | None = None,
-    recovery: Mapping[str, float] | None = None,
-    hessian: Mapping[str | tuple[str, ...], float | str] | None = None,
-    smallest: float | None = None,
-) -> list:
+def _criteria(smallest: float | None = None, **words: Any) -> list:
+    """What the criteria of :func:`refine` mark, by their names; those that are not given mark nothing."""
     make = _motet.Criterion
-    criteria = [make.all()] if everything else []
-    criteria += [make.near(as_mesh(one), distance) for one, distance in near]
-    criteria += [make.near_size(as_mesh(one), h, *(growth or (0.5,))) for one, h, *growth in near_size]
-    criteria += [make.box(point(low), point(high)) for low, high in box]
-    criteria += [make.ball(point(centre), radius) for centre, radius in ball]
-    criteria += [make.region(str(name)) for name in _several(region)]
-    criteria += [make.patch(str(p[0]), p[1]) if isinstance(p, tuple) else make.patch(str(p), None) for p in _several(patch)]
-    if size is not None:
-        criteria.append(make.size_array(size) if isinstance(size, str) else make.size(size))
-    criteria += [make.where(text) for text in _several(where)]
-    criteria += [make.gradient(text) for text in _several(gradient)]
-    criteria += [make.vorticity(text) for text in _several(vorticity)]
-    criteria += [make.q(text) for text in _several(q)]
-    criteria += [make.jump(array, amount) for array, amount in (jump or {}).items()]
-    criteria += [make.recovery(array, amount) for array, amount in (recovery or {}).items()]
-    criteria += [_hessian(arrays, aim, smallest) for arrays, aim in (hessian or {}).items()]
-    return criteria
+    unknown = set(words) - set(_MAKERS)
+    if unknown:
+        raise TypeError(f"no criterion is called {', '.join(sorted(unknown))}; there are {', '.join(_MAKERS)}")
+    given = ((maker, words[name]) for name, maker in _MAKERS.items() if words.get(name) is not None)
+    return [criterion for maker, words in given for criterion in maker(make, words, smallest)]
+
+
+# In the order in which they are asked.
+_MAKERS: dict[str, Callable[[Any, Any, float | None], list]] = {
+    "everything": lambda make, given, _: [make.all()] if given else [],
+    "near": lambda make, given, _: [make.near(as_mesh(one), distance) for one, distance in given],
+    "near_size": lambda make, given, _: [make.near_size(as_mesh(one), h, *(growth or (0.5,))) for one, h, *growth in given],
+    "box": lambda make, given, _: [make.box(point(low), point(high)) for low, high in given],
+    "ball": lambda make, given, _: [make.ball(point(centre), radius) for centre, radius in given],
+    "region": lambda make, given, _: [make.region(str(name)) for name in _several(given)],
+    "patch": lambda make, given, _: [make.patch(str(p[0]), p[1]) if isinstance(p, tuple) else make.patch(str(p), None) for p in _several(given)],
+    "size": lambda make, given, _: [make.size_array(given) if isinstance(given, str) else make.size(given)],
+    "where": lambda make, given, _: [make.where(text) for text in _several(given)],
+    "gradient": lambda make, given, _: [make.gradient(text) for text in _several(given)],
+    "vorticity": lambda make, given, _: [make.vorticity(text) for text in _several(given)],
+    "q": lambda make, given, _: [make.q(text) for text in _several(given)],
+    "jump": lambda make, given, _: [make.jump(array, amount) for array, amount in given.items()],
+    "recovery": lambda make, given, _: [make.recovery(array, amount) for array, amount in given.items()],
+    "hessian": lambda make, given, smallest: [_hessian(arrays, aim, smallest) for arrays, aim in given.items()],
+}
 
 
 def _several(words: Any) -> list:

@@ -75,6 +75,11 @@ impl<T> Csr<T> {
         &self.items
     }
 
+    /// Lists of the same lengths, with `new(item)` for each item.
+    pub(crate) fn with_items<U>(&self, new: impl FnMut(&T) -> U) -> Csr<U> {
+        Csr { offsets: self.offsets.clone(), items: self.items.iter().map(new).collect() }
+    }
+
     /// Adds a list at the end.
     ///
     /// Panics past `u32::MAX` items in all.

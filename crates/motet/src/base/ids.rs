@@ -9,6 +9,13 @@ pub(crate) fn rising<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
     ids
 }
 
+/// The same ids in rising order: the key of a facet that may have any number of corners.
+pub fn rising_list<T: Ord + Clone>(ids: &[T]) -> Vec<T> {
+    let mut ids = ids.to_vec();
+    ids.sort_unstable();
+    ids
+}
+
 /// Whether two triangles of the same vertices run the same way round.
 pub(crate) fn runs_alike<T: PartialEq + Copy>(first: [T; 3], second: [T; 3]) -> bool {
     let [a, b, c] = first;

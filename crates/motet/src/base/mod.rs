@@ -13,7 +13,7 @@ mod watch;
 
 pub use csr::Csr;
 pub use error::{Error, ErrorKind, Result};
-pub use ids::{CellId, Id, TetId, VertexId};
+pub use ids::{CellId, Id, TetId, VertexId, rising_list};
 pub(crate) use ids::{rising, runs_alike};
 pub(crate) use lanewise::lanewise;
 pub(crate) use mixed::mixed;

@@ -94,6 +94,19 @@ impl Gaps {
         all.map(|nearest| nearest.distance).fold(f64::INFINITY, f64::min)
     }
 
+    /// The gap at each of `n_points` points, the least where several bodies have it; infinite where there is none.
+    ///
+    /// Panics when a body has a vertex beyond.
+    pub fn at_points(&self, n_points: usize) -> Vec<f64> {
+        let mut all = vec![f64::INFINITY; n_points];
+        for body in &self.bodies {
+            for (v, &gap) in body.vertices.iter().zip(&body.gap) {
+                all[v.index()] = all[v.index()].min(gap);
+            }
+        }
+        all
+    }
+
     /// Whether anything warns.
     pub fn is_warned(&self) -> bool {
         self.bodies.iter().any(|body| body.warning.contains(&true))

@@ -7,7 +7,7 @@ use super::gap::Gap;
 use super::names::{Names, label};
 use super::origins::history;
 use super::zone::{Draft, Site};
-use crate::base::{CellId, Csr, Id, Result, Threads, VertexId, rising};
+use crate::base::{CellId, Id, Result, Threads, VertexId, rising};
 use crate::geometry::tet::volume;
 use crate::mesh::history::{History, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
@@ -51,7 +51,7 @@ pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<
     let laid = Laid::new(pieces);
     let numbers = Numbers::new(host, draft, &laid.cells);
     let points = numbers.to_draft.iter().map(|v| draft.points[v.index()]).collect();
-    let mut mesh = Mesh::new(points, renumbered(&laid.cells, &numbers.to_new));
+    let mut mesh = Mesh::new(points, laid.cells.renumbered(&numbers.to_new));
     let history = history(pieces, &laid, &mesh, &numbers, threads)?;
     history.transfer(host, &mut mesh, rules)?;
     let vertex_to_old: Vec<u32> = history.vertices.kept().iter().map(|v| v.0).collect();
@@ -136,22 +136,6 @@ impl Numbers {
 fn used(cells: &Cells) -> impl Iterator<Item = VertexId> + '_ {
     let of_faces = cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
     cells.connectivity().items().iter().chain(of_faces).copied()
-}
-
-fn renumbered(cells: &Cells, to_new: &[VertexId]) -> Cells {
-    let mut renumbered = Cells::new();
-    let of = |v: &VertexId| to_new[v.index()];
-    let mut faces = cells.polyhedron_faces().iter();
-    for (_, kind, vertices) in cells.iter() {
-        if kind == CellKind::POLYHEDRON {
-            let mut moved = Csr::default();
-            faces.next().into_iter().flat_map(|f| f.iter()).for_each(|face| moved.push(face.iter().map(of)));
-            renumbered.push_polyhedron(vertices.iter().map(of), moved);
-        } else {
-            renumbered.push(kind, vertices.iter().map(of));
-        }
-    }
-    renumbered
 }
 
 /// The volume of all tets.

@@ -37,7 +37,7 @@ mod vtkxml;
 
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
 pub use nodal::NodalSeries;
-pub use reading::read_as;
+pub use reading::{is_same_file, read_as};
 pub use registry::{can_write, formats, read, read_noted, write};
 pub use replace::{replace, replace_all};
 pub use series::{

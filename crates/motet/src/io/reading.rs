@@ -54,6 +54,12 @@ fn refuse_stand_ins(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
+/// Whether two paths lead to one file that is there.
+pub fn is_same_file(a: impl AsRef<Path>, b: impl AsRef<Path>) -> bool {
+    let [a, b] = [a.as_ref(), b.as_ref()].map(|path| path.canonicalize().ok());
+    a.is_some() && a == b
+}
+
 /// The content of a file that may be missing, such as one that belongs to the file named.
 pub(super) fn read_beside(path: &Path) -> Result<Option<Vec<u8>>> {
     match std::fs::read(path) {

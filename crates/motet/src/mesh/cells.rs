@@ -157,6 +157,16 @@ impl Cells {
         self.counts().iter().filter_map(|(kind, _)| kind.dim()).max()
     }
 
+    /// The same cells with `new[v]` for each vertex `v`.
+    pub(crate) fn renumbered(&self, new: &[VertexId]) -> Self {
+        let of_list = |lists: &Csr<VertexId>| lists.with_items(|v| new[v.index()]);
+        Self {
+            kinds: self.kinds.clone(),
+            vertices: of_list(&self.vertices),
+            polyhedron_faces: self.polyhedron_faces.iter().map(of_list).collect(),
+        }
+    }
+
     /// Checks that every vertex id is below `n_points`.
     ///
     /// # Errors

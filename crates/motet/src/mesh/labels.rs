@@ -103,6 +103,14 @@ impl Mesh {
         find(self.patches(), word, ["patch", "patches"])
     }
 
+    /// The patches that words mean, in their order.
+    ///
+    /// # Errors
+    /// As [`Self::find_patch`].
+    pub fn find_patches(&self, words: &[String]) -> Result<Vec<i32>> {
+        words.iter().map(|word| self.find_patch(word)).collect()
+    }
+
     fn labels_of(&self, dim: usize, arrays: &[&str], names: &BTreeMap<i32, String>) -> Option<Labels> {
         let on_dim: Vec<bool> = self.cells.kinds().iter().map(|k| k.dim() == Some(dim)).collect();
         arrays.iter().find_map(|array| {

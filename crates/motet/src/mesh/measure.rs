@@ -1,6 +1,7 @@
 //! A measure of every tet as a cell array, to be looked at in ParaView.
 
 use crate::base::Point;
+use crate::geometry::tet::volume;
 use crate::mesh::{Field, Mesh};
 
 impl Mesh {
@@ -12,6 +13,16 @@ impl Mesh {
             values[cell.index()] = measure(tet.map(|v| self.points[v.index()]));
         }
         Field::scalars(name, values)
+    }
+
+    /// Whether most tets are numbered the other way round, so that their volumes are negative: some writers do so.
+    pub fn is_turned(&self) -> bool {
+        let (mut n_tets, mut n_negative) = (0usize, 0usize);
+        for (_, tet) in self.cells.tets() {
+            n_tets += 1;
+            n_negative += usize::from(volume(tet.map(|v| self.points[v.index()])) < 0.0);
+        }
+        2 * n_negative > n_tets
     }
 }
 

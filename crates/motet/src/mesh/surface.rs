@@ -45,6 +45,19 @@ impl Surface {
         if surface.triangles.is_empty() { Self::boundary_of(mesh) } else { surface }
     }
 
+    /// Triangles turned as this surface has them, such as outward as a [boundary](Self::boundary_of) is; `None` where one is not among its own.
+    pub fn turned(&self, triangles: &[[VertexId; 3]]) -> Option<Vec<[VertexId; 3]>> {
+        let key = |t: &[VertexId; 3]| {
+            let mut key = *t;
+            key.sort_unstable();
+            key
+        };
+        let mut own = self.triangles.clone();
+        own.sort_by_key(key);
+        let turned = |t| own.binary_search_by_key(&key(t), key).ok().map(|place| own[place]);
+        triangles.iter().map(turned).collect()
+    }
+
     fn from_cells<'a>(
         mesh: &Mesh,
         labels: Option<&Labels>,

@@ -1,19 +1,14 @@
 //! Open rims closed by caps of triangles, the same for every frame of a surface that moves.
 //!
-//! ```text
-//!    o---o---o     rim          Rings of vertices between the rim and the mean of its vertices, each with as many
-//!   / o--o--o \                 as keeps triangles about as long as wide. A vertex of a ring is a fixed mean of
-//!  o-o   x   o-o                vertices of the rim, so caps follow a rim that moves or bends.
-//! ```
+//! A cap is rings of vertices that shrink towards the middle of its rim, each a fixed mean of vertices of the rim: so caps follow a rim that moves or bends.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::vector::{add, distance, scale, sub};
+use crate::geometry::vector::distance;
+use crate::mesh::disc::{disc_of_rings, n_rings};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface, unused_name};
-
-/// The width of a ring over the length of the rim's edges: that of regular triangles.
-const RING: f64 = 0.866;
+use crate::preflight::open_rims;
 
 /// The caps of a surface, made from one frame of it, put on any.
 #[derive(Clone, Debug)]
@@ -31,8 +26,8 @@ pub struct Caps {
 struct Rim {
     /// As the cap's triangles go round it.
     vertices: Vec<VertexId>,
-    /// How many vertices each ring has, from the outermost; the last is the mean of the rim.
-    rings: Vec<usize>,
+    /// How many rings are in it.
+    n_rings: usize,
     label: i32,
 }
 
@@ -41,12 +36,12 @@ impl Caps {
     /// `wall`.
     ///
     /// # Errors
-    /// When there is no rim, or rims touch each other in a vertex.
+    /// When there is no rim, or open edges do not close.
     pub fn of(surface: &Mesh) -> Result<Self> {
         let Surface { triangles, patches, patch_names: mut names, .. } = Surface::of(surface);
-        let mut rims = rims(&triangles)?;
-        let length = |rim: &Vec<VertexId>| edges(rim, &surface.points).iter().sum::<f64>();
-        rims.sort_by(|a, b| length(b).total_cmp(&length(a)).then_with(|| a.cmp(b)));
+        let points = &surface.points;
+        let mut rims = rims(points, &triangles)?;
+        rims.sort_by(|a, b| length(b, points).total_cmp(&length(a, points)).then_with(|| a.cmp(b)));
         let mut patches = patches;
         if patches.contains(&0) {
             let label = 1 + patches.iter().copied().max().unwrap_or(0);
@@ -59,8 +54,8 @@ impl Caps {
             let name =
                 unused_name(&format!("cap_{}", label - first + 1), |name| names.values().any(|n| n == name));
             names.insert(label, name);
-            let rings = rings(&vertices, &surface.points);
-            made.push(Rim { vertices, rings, label });
+            let n_rings = n_rings(points, &vertices);
+            made.push(Rim { vertices, n_rings, label });
         }
         Ok(Self { n_points: surface.points.len(), triangles, patches, names, rims: made })
     }
@@ -91,7 +86,7 @@ impl Caps {
         let (mut points, mut triangles, mut patches) =
             (frame.points.clone(), self.triangles.clone(), self.patches.clone());
         for rim in &self.rims {
-            rim.close(&mut points, &mut triangles);
+            triangles.extend(disc_of_rings(&mut points, &rim.vertices, rim.n_rings));
             patches.resize(triangles.len(), rim.label);
         }
         let cells = Cells::uniform(CellKind::TRIANGLE, triangles.into_flattened())?;
@@ -103,106 +98,23 @@ impl Caps {
     }
 }
 
-/// The lengths of the edges of a rim.
-fn edges(rim: &[VertexId], points: &[Point]) -> Vec<f64> {
-    let next = rim.iter().cycle().skip(1);
-    rim.iter().zip(next).map(|(a, b)| distance(points[a.index()], points[b.index()])).collect()
-}
-
-/// Chains of edges that one triangle alone uses, each turned against its triangle: as a cap goes.
-fn rims(triangles: &[[VertexId; 3]]) -> Result<Vec<Vec<VertexId>>> {
-    let ways = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut uses: HashMap<[VertexId; 2], usize> = HashMap::new();
-    ways().for_each(|[a, b]| *uses.entry([a.min(b), a.max(b)]).or_default() += 1);
-    let mut next: BTreeMap<VertexId, VertexId> = BTreeMap::new();
-    for [a, b] in ways().filter(|[a, b]| uses[&[*a.min(b), *a.max(b)]] == 1) {
-        if next.insert(b, a).is_some() {
-            return Err(Error::input(
-                "two rims of the surface meet here, or its triangles are turned both ways",
-            )
-            .at(format!("point {b}"))
+/// Closed chains of open edges, each as a cap goes round it.
+fn rims(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<Vec<Vec<VertexId>>> {
+    let [closed, torn] = open_rims(points, triangles);
+    if let Some(v) = torn.first().and_then(|rim| rim.first()) {
+        return Err(Error::input("open edges lead nowhere from here: triangles do not face the same side")
+            .at(format!("point {v}"))
             .remedy("mend the surface first: `motet mesh --repair` names what is wrong"));
-        }
     }
-    let mut rims = Vec::new();
-    while let Some((&start, _)) = next.first_key_value() {
-        let (mut rim, mut at) = (Vec::new(), start);
-        while let Some(to) = next.remove(&at) {
-            rim.push(at);
-            at = to;
-        }
-        if at != start || rim.len() < 3 {
-            return Err(Error::input("a rim of the surface does not close").at(format!("point {at}")));
-        }
-        rims.push(rim);
-    }
-    match rims.is_empty() {
+    match closed.is_empty() {
         true => Err(Error::input("has no open rim to cap")),
-        false => Ok(rims),
+        false => Ok(closed),
     }
 }
 
-/// How many vertices each ring has.
-fn rings(rim: &[VertexId], points: &[Point]) -> Vec<usize> {
-    let n = rim.len();
-    let centre = mean(rim, points);
-    let radius = rim.iter().map(|v| distance(points[v.index()], centre)).sum::<f64>() / n as f64;
-    let edge = edges(rim, points).iter().sum::<f64>() / n as f64;
-    let n_rings = if edge > 0.0 { ((radius / (RING * edge)).round() as usize).clamp(1, n) } else { 1 };
-    let inner = (1..n_rings).map(|j| (n * (n_rings - j)).div_ceil(n_rings).max(5));
-    inner.chain([1]).collect()
-}
-
-fn mean(rim: &[VertexId], points: &[Point]) -> Point {
-    let sum = rim.iter().fold([0.0; 3], |sum, v| add(sum, points[v.index()]));
-    scale(sum, 1.0 / rim.len() as f64)
-}
-
-impl Rim {
-    /// Adds the points and the triangles of the cap.
-    fn close(&self, points: &mut Vec<Point>, triangles: &mut Vec<[VertexId; 3]>) {
-        let centre = mean(&self.vertices, points);
-        let mut outer = self.vertices.clone();
-        for (j, &n) in self.rings.iter().enumerate() {
-            let inward = (j + 1) as f64 / self.rings.len() as f64;
-            let first = points.len();
-            for k in 0..n {
-                let on_rim = self.at(k as f64 / n as f64, points);
-                let place = if n == 1 { centre } else { add(on_rim, scale(sub(centre, on_rim), inward)) };
-                points.push(place);
-            }
-            let inner: Vec<VertexId> = (first..points.len()).map(VertexId::new).collect();
-            zip(&outer, &inner, triangles);
-            outer = inner;
-        }
-    }
-
-    /// The place at a part of the way round the rim, by number of vertices.
-    fn at(&self, part: f64, points: &[Point]) -> Point {
-        let n = self.vertices.len();
-        let along = part * n as f64;
-        let k = along.floor() as usize;
-        let [a, b] = [k % n, (k + 1) % n].map(|k| points[self.vertices[k].index()]);
-        add(a, scale(sub(b, a), along - along.floor()))
-    }
-}
-
-/// Triangles between two rings that begin at the same part of the way round.
-fn zip(outer: &[VertexId], inner: &[VertexId], triangles: &mut Vec<[VertexId; 3]>) {
-    let (n, m) = (outer.len(), inner.len());
-    let (mut i, mut j) = (0, 0);
-    // Whichever ring's next vertex comes first on the way round; a ring of one has none.
-    while i < n || (j < m && m > 1) {
-        let is_outer = m == 1 || j == m || (i < n && (2 * i + 1) * m <= (2 * j + 1) * n);
-        let [a, b] = [outer[i % n], inner[j % m]];
-        if is_outer {
-            triangles.push([a, outer[(i + 1) % n], b]);
-            i += 1;
-        } else {
-            triangles.push([a, inner[(j + 1) % m], b]);
-            j += 1;
-        }
-    }
+fn length(rim: &[VertexId], points: &[Point]) -> f64 {
+    let next = rim.iter().cycle().skip(1);
+    rim.iter().zip(next).map(|(a, b)| distance(points[a.index()], points[b.index()])).sum()
 }
 
 #[cfg(test)]
@@ -267,8 +179,9 @@ mod tests {
     fn what_has_no_rim_is_told() {
         let whole = Aneurysm::default().mesh().unwrap();
         assert!(Caps::of(&whole).unwrap_err().to_string().contains("no open rim"));
-        let two = [[0, 1, 2], [0, 3, 4]].map(|t| t.map(VertexId)).as_flattened().to_vec();
-        let touching = Mesh::new(vec![[0.0; 3]; 5], Cells::uniform(CellKind::TRIANGLE, two).unwrap());
-        assert!(Caps::of(&touching).unwrap_err().to_string().starts_with("point 0"));
+        // Two that share an edge and face opposite sides.
+        let two = [[0, 1, 2], [0, 1, 3]].map(|t| t.map(VertexId)).as_flattened().to_vec();
+        let torn = Mesh::new(vec![[0.0; 3]; 4], Cells::uniform(CellKind::TRIANGLE, two).unwrap());
+        assert!(Caps::of(&torn).unwrap_err().to_string().starts_with("point "));
     }
 }

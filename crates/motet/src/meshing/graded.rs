@@ -9,10 +9,10 @@ use super::interior::{AWAY, EDGE_OVER_SIDE};
 use super::octree::{Grid, Octree};
 use super::shadow::Shadow;
 use super::size_field::SizeField;
-use super::sizes::{Grading, edge_lengths};
+use super::sizes::Grading;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::{self, area};
-use crate::mesh::bounds;
+use crate::mesh::{bounds, mean_edge_lengths};
 
 /// Edges of cubes that are not divided are within this factor of their sizes.
 const WITHIN: f64 = std::f64::consts::SQRT_2;
@@ -92,7 +92,7 @@ pub(crate) fn points_between(
     grading: &Grading,
     threads: &Threads,
 ) -> Result<Vec<Point>> {
-    let lengths = edge_lengths(points, triangles);
+    let lengths = mean_edge_lengths(points, triangles.iter().copied());
     let at_corners: Vec<[f64; 3]> = triangles.iter().map(|t| t.map(|v| lengths[v.index()])).collect();
     check(points, triangles, &at_corners, grading)?;
     lattice(points, triangles, &SizeField::new(points, triangles, at_corners, grading, threads), threads)

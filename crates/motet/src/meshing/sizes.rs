@@ -1,9 +1,8 @@
 //! How long edges inside are to be: what a caller can ask for, held against what can be done.
 
 use super::surfaces::Surfaces;
-use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::vector::distance;
-use crate::mesh::{Field, Mesh, Surface, firsts_at_place};
+use crate::base::{Error, Result};
+use crate::mesh::{Field, Mesh, Surface, firsts_at_place, mean_edge_lengths};
 
 /// Sizes that grow faster than this part of the distance mean nothing: neighbours in the lattice differ by a factor of 2 at most. Below it a cube of
 /// the lattice is never so large that what is small within it goes unseen from its middle.
@@ -65,7 +64,7 @@ impl Sizes {
     /// The sizes at the corners of each triangle, where they are not the same everywhere.
     pub(super) fn at_corners(&self, surfaces: &Surfaces) -> Vec<[f64; 3]> {
         let Self::Graded(grading) = self else { return Vec::new() };
-        let of_edges = || edge_lengths(&surfaces.points, &surfaces.triangles);
+        let of_edges = || mean_edge_lengths(&surfaces.points, surfaces.triangles.iter().copied());
         let sizes = grading.at_points.as_ref().map_or_else(of_edges, Vec::clone);
         surfaces.triangles.iter().map(|t| t.map(|v| sizes[v.index()])).collect()
     }
@@ -90,22 +89,6 @@ impl Grading {
             Some(v) => Err(no_length(sizes[v.index()]).at(format!("point {v} of the surfaces"))),
         }
     }
-}
-
-/// The mean length of the edges at each point; of inner edges each counts for both its triangles.
-pub(super) fn edge_lengths(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); points.len()];
-    for &[a, b, c] in triangles {
-        for [a, b] in [[a, b], [b, c], [c, a]] {
-            let length = distance(points[a.index()], points[b.index()]);
-            for end in [a, b] {
-                let (sum, n) = &mut sums[end.index()];
-                *sum += length;
-                *n += 1.0;
-            }
-        }
-    }
-    sums.into_iter().map(|(sum, n)| sum / f64::max(n, 1.0)).collect()
 }
 
 fn is_length(size: f64) -> bool {

@@ -321,7 +321,7 @@ impl FacetSet {
     }
 
     /// The facets cut into triangles, as fans from their first corners.
-    pub(crate) fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
+    pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> + '_ {
         self.rings.iter().flat_map(|ring| {
             let last = ring.len().saturating_sub(1);
             (1..last.max(1)).filter(move |_| ring.len() > 2).map(|i| [ring[0], ring[i], ring[i + 1]])

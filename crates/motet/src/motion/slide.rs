@@ -9,7 +9,7 @@
 
 use std::collections::HashSet;
 
-use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId, rising_list};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, dot, is_finite, norm, scale, sub};
 use crate::mesh::Boundary;
@@ -36,9 +36,7 @@ pub(crate) struct Slide {
 type Key = Vec<VertexId>;
 
 pub(crate) fn key(ring: &[VertexId]) -> Key {
-    let mut key = ring.to_vec();
-    key.sort_unstable();
-    key
+    rising_list(ring)
 }
 
 /// For each set its vertices that slide: those on no boundary facet outside the set.

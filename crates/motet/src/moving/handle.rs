@@ -6,11 +6,11 @@ use std::time::Instant;
 
 use crate::base::{Error, Point, Result, Threads};
 use crate::contact;
-use crate::geometry::vector::{is_finite, scale, sub};
+use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
-use crate::motion::Mover;
-use crate::moving::legs::{Reached, Way, volume_deviation};
+use crate::motion::{Mover, mesh_velocity};
+use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{Known, Now, go_to};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
@@ -97,11 +97,9 @@ impl MovingMesh {
     /// that it came from.
     pub fn velocity(&self) -> Vec<Point> {
         let Self { now, clock, .. } = self;
-        if clock.dt == 0.0 {
-            return vec![[0.0; 3]; now.mesh.points.len()];
-        }
-        let of = |(&p, &before): (&Point, &Point)| scale(sub(p, before), 1.0 / clock.dt);
-        now.mesh.points.iter().zip(&now.known.before).map(of).collect()
+        let points = &now.mesh.points;
+        // In no time there is none.
+        mesh_velocity(&now.known.before, points, clock.dt).unwrap_or_else(|_| vec![[0.0; 3]; points.len()])
     }
 
     /// How far each vertex is from where it was at first.
@@ -264,21 +262,8 @@ impl MovingMesh {
         let known = self.now.known_of(&mut mesh, &history)?;
         let points_before = self.now.mesh.points.clone();
         let now = Now::new(mesh, known, Vec::new(), &self.wall, &self.options, threads)?;
-        let is_kept = |id: &&crate::base::CellId| **id != crate::base::Id::NONE;
-        let n_kept = history.cells.kept().iter().filter(is_kept).count();
-        let change = Change {
-            time: self.clock.time,
-            why: Why::Refinement,
-            tets_before: n_before,
-            tets_after: now.tets.len(),
-            kept_share: n_kept as f64 / self.now.mesh.cells.len().max(1) as f64,
-            bad_before: shape.bad.len(),
-            worst_before: shape.worst.map_or(1.0, |(_, eas, _)| eas),
-            operations: crate::remesh::Counts::default(),
-            volume_deviation: volume_deviation(&history),
-            history,
-            points_before,
-        };
+        let (time, counts) = (self.clock.time, [n_before, now.tets.len()]);
+        let change = Change::new((time, Why::Refinement), counts, &shape, history, points_before);
         self.now = now;
         self.clock.n_first = self.now.tets.len();
         self.now.known.size_anew(&self.now.mesh);
@@ -288,14 +273,8 @@ impl MovingMesh {
 
     /// The gap at each vertex, as a size of edges.
     fn gap_sizes(&self) -> Option<Field> {
-        let gaps = self.gaps()?;
-        let mut sizes = vec![NO_LIMIT; self.now.mesh.points.len()];
-        for body in &gaps.bodies {
-            for (v, &gap) in body.vertices.iter().zip(&body.gap) {
-                let size = &mut sizes[v.index()];
-                *size = size.min(gap.max(f64::MIN_POSITIVE));
-            }
-        }
+        let gaps = self.gaps()?.at_points(self.now.mesh.points.len());
+        let sizes: Vec<f64> = gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
         Some(Field::scalars(GAP, sizes))
     }
 

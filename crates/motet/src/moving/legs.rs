@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, Threads};
 use crate::geometry::vector::{add, scale, sub};
-use crate::mesh::history::History;
 use crate::moving::now::{Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
@@ -195,19 +194,9 @@ impl Way<'_> {
         }
         let begin = Instant::now();
         let known = now.known_of(&mut mesh, &history)?;
-        self.changes.push(Change {
-            time,
-            why: Why::Repair,
-            tets_before: now.tets.len(),
-            tets_after: report.after.tets,
-            kept_share: report.kept_share,
-            bad_before: shape.bad.len(),
-            worst_before: shape.worst.map_or(1.0, |(_, eas, _)| eas),
-            operations: report.operations,
-            volume_deviation: volume_deviation(&history),
-            history,
-            points_before: self.points.clone(),
-        });
+        let counts = [now.tets.len(), report.after.tets];
+        let change = Change::new((time, Why::Repair), counts, shape, history, self.points.clone());
+        self.changes.push(Change { operations: report.operations, ..change });
         let next = Now::new(mesh, known, left, self.wall, options, self.threads)?;
         self.seconds.setup += begin.elapsed().as_secs_f64();
         Ok(Repaired::Changed(Box::new(next)))
@@ -240,10 +229,4 @@ fn left_of(report: &remesh::Report) -> Vec<LeftBad> {
     let mut all: Vec<LeftBad> = report.left.iter().map(of).collect();
     all.sort_by_key(|left| left.cell);
     all
-}
-
-/// By how much new tets took more or less than the volume of old ones, as a part of what changed.
-pub(super) fn volume_deviation(history: &History) -> f64 {
-    let regions = history.ledger.regions.iter().filter(|region| region.volume_before > 0.0);
-    regions.map(|region| region.deviation / region.volume_before).fold(0.0, f64::max)
 }

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
 use crate::geometry::tet;
-use crate::geometry::vector::{add, distance, sub};
+use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
-use crate::mesh::{Field, Mesh};
+use crate::mesh::{Field, Mesh, mean_edge_lengths};
 use crate::motion::Mover;
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
@@ -58,29 +58,18 @@ impl Known {
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
         let mut node = vec![NO_NODE; mesh.points.len()];
         (0..).zip(driven).for_each(|(number, v)| node[v.index()] = number);
-        Self { first: mesh.points.clone(), before: mesh.points.clone(), node, size: mean_lengths(mesh) }
+        Self { first: mesh.points.clone(), before: mesh.points.clone(), node, size: lengths(mesh) }
     }
 
     /// Edges are to be as long as they are now.
     pub(super) fn size_anew(&mut self, mesh: &Mesh) {
-        self.size = mean_lengths(mesh);
+        self.size = lengths(mesh);
     }
 }
 
-/// The mean length of the edges of tets at each vertex, each as often as tets have it; 0 where there is none.
-fn mean_lengths(mesh: &Mesh) -> Vec<f64> {
-    let mut sums = vec![(0.0, 0.0); mesh.points.len()];
-    for (_, tet) in mesh.cells.tets() {
-        for [i, j] in tet::EDGES {
-            let ends = [tet[i], tet[j]];
-            let length = distance(mesh.points[ends[0].index()], mesh.points[ends[1].index()]);
-            for v in ends {
-                sums[v.index()].0 += length;
-                sums[v.index()].1 += 1.0;
-            }
-        }
-    }
-    sums.into_iter().map(|(sum, n): (f64, f64)| if n > 0.0 { sum / n } else { 0.0 }).collect()
+/// How long edges are at each vertex of tets.
+fn lengths(mesh: &Mesh) -> Vec<f64> {
+    mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet))
 }
 
 impl Now {
@@ -107,7 +96,7 @@ impl Now {
         threads: &Threads,
     ) -> Result<Self> {
         let drive = wall.drive(mover.boundary(), &known.first, &known.node, threads)?;
-        let tets = Tets::of(&mesh.cells, mover.reference());
+        let tets = Tets::of(&mesh);
         Ok(Self { mesh, tets, mover, known, drive, left })
     }
 

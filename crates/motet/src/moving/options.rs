@@ -144,18 +144,10 @@ impl Watching {
     /// # Errors
     /// When it has no such patch.
     pub(super) fn bodies(&self, mesh: &Mesh) -> Result<Vec<contact::Body>> {
-        let key = |t: &[VertexId; 3]| {
-            let mut key = *t;
-            key.sort_unstable();
-            key
-        };
-        let mut outward = Surface::boundary_of(mesh).triangles;
-        outward.sort_by_key(key);
-        let turned =
-            |t: &[VertexId; 3]| outward.binary_search_by_key(&key(t), key).ok().map(|place| outward[place]);
+        let boundary = Surface::boundary_of(mesh);
         let bodies = contact::Body::of_mesh(mesh, "surface", &self.patches, 0)?;
         let body = |(mut body, _): (contact::Body, _)| {
-            let all: Option<Vec<[VertexId; 3]>> = body.triangles.iter().map(turned).collect();
+            let all = boundary.turned(&body.triangles);
             if let Some(mut triangles) = all.filter(|triangles| contact::is_closed(triangles)) {
                 // The outer wall is the room; what is closed otherwise is a body in it, and faces the volume.
                 let origin = mesh.points[triangles[0][0].index()];

@@ -3,7 +3,7 @@
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::tet;
-use crate::mesh::Cells;
+use crate::mesh::Mesh;
 
 /// The tets of a mesh, turned so that most are positive, and which cells they are.
 #[derive(Clone, Debug)]
@@ -27,17 +27,12 @@ pub(super) struct Shape {
 const CHUNK: usize = 1 << 13;
 
 impl Tets {
-    pub(super) fn of(cells: &Cells, points: &[Point]) -> Self {
-        let (mut of_cells, mut corners) = (Vec::new(), Vec::new());
-        for (cell, tet) in cells.tets() {
-            of_cells.push(cell);
-            corners.push(tet);
+    pub(super) fn of(mesh: &Mesh) -> Self {
+        let (cells, mut corners): (Vec<_>, Vec<_>) = mesh.cells.tets().unzip();
+        if mesh.is_turned() {
+            corners.iter_mut().for_each(|tet: &mut [VertexId; 4]| tet.swap(0, 1));
         }
-        let is_negative = |tet: &&[VertexId; 4]| tet::volume(tet.map(|v| points[v.index()])) < 0.0;
-        if 2 * corners.iter().filter(is_negative).count() > corners.len() {
-            corners.iter_mut().for_each(|tet| tet.swap(0, 1));
-        }
-        Self { corners, cells: of_cells }
+        Self { corners, cells }
     }
 
     pub(super) fn len(&self) -> usize {
@@ -101,7 +96,7 @@ mod tests {
         for (i, p) in mesh.points.iter_mut().enumerate() {
             (0..3).for_each(|k| p[k] += 0.35 * ((7 * i + 3 * k) as f64).sin());
         }
-        let tets = Tets::of(&mesh.cells, &mesh.points);
+        let tets = Tets::of(&mesh);
         for limit in [0.0, 0.2, 0.9] {
             let shape = tets.shape(&mesh.points, limit, &Threads::single());
             let all: Vec<(CellId, f64)> = (mesh.cells.tets())
@@ -121,8 +116,8 @@ mod tests {
         let mesh = sphere_in_box(2, 2);
         let mut mirrored = mesh.clone();
         mirrored.points.iter_mut().for_each(|p| p[0] = -p[0]);
-        let [a, b] = [&mesh, &mirrored]
-            .map(|m| Tets::of(&m.cells, &m.points).shape(&m.points, 0.2, &Threads::single()).worst.unwrap());
+        let [a, b] =
+            [&mesh, &mirrored].map(|m| Tets::of(m).shape(&m.points, 0.2, &Threads::single()).worst.unwrap());
         assert!(a.1 > 0.0 && (a.1 - b.1).abs() < 1e-12);
     }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::base::{CellId, Point};
+use crate::base::{CellId, Id, Point};
 use crate::mesh::history::History;
+use crate::moving::shapes::Shape;
 use crate::remesh::Counts;
 
 /// What became of a step: the certificate of the mesh as it is now.
@@ -73,7 +74,7 @@ pub struct Change {
     pub tets_before: usize,
     /// Tets after.
     pub tets_after: usize,
-    /// The part of the tets that are as they came, to the bit.
+    /// The part of the cells that are as they came, to the bit.
     pub kept_share: f64,
     /// Bad tets before, by the limit of the step.
     pub bad_before: usize,
@@ -89,6 +90,33 @@ pub struct Change {
     /// Where the vertices of the mesh before were at this time.
     #[serde(skip)]
     pub points_before: Vec<Point>,
+}
+
+impl Change {
+    /// `counts`: tets before and after; `shape`: how the tets before were.
+    pub(super) fn new(
+        (time, why): (f64, Why),
+        [tets_before, tets_after]: [usize; 2],
+        shape: &Shape,
+        history: Arc<History>,
+        points_before: Vec<Point>,
+    ) -> Self {
+        let n_kept = history.cells.kept().iter().filter(|id| **id != Id::NONE).count();
+        let regions = history.ledger.regions.iter().filter(|region| region.volume_before > 0.0);
+        Self {
+            time,
+            why,
+            tets_before,
+            tets_after,
+            kept_share: n_kept as f64 / history.cells.n_old().max(1) as f64,
+            bad_before: shape.bad.len(),
+            worst_before: shape.worst.map_or(1.0, |(_, eas, _)| eas),
+            operations: Counts::default(),
+            volume_deviation: regions.map(|r| r.deviation / r.volume_before).fold(0.0, f64::max),
+            history,
+            points_before,
+        }
+    }
 }
 
 /// How near watched patches are to each other.
@@ -132,4 +160,15 @@ pub struct Seconds {
     pub contact: f64,
     /// All of it.
     pub total: f64,
+}
+
+impl std::ops::AddAssign for Seconds {
+    fn add_assign(&mut self, other: Self) {
+        self.motion += other.motion;
+        self.quality += other.quality;
+        self.repair += other.repair;
+        self.setup += other.setup;
+        self.contact += other.contact;
+        self.total += other.total;
+    }
 }

@@ -1,5 +1,6 @@
 //! What a remesher is told beside the mesh.
 
+use crate::base::{Error, Result};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::remesh::sizes::Sizes;
 
@@ -63,6 +64,24 @@ pub enum SurfaceRule {
 }
 
 impl SurfaceRule {
+    /// The rule of a name: `keep`, `adapt` or `loose`, as the command line has them.
+    ///
+    /// # Errors
+    /// When none is called that, or the surface is kept and a distance is given.
+    pub fn of_name(name: &str, distance: Option<f64>) -> Result<Self> {
+        match (name, distance) {
+            ("keep", None) => Ok(Self::Keep),
+            ("keep", Some(_)) => {
+                Err(Error::options("a distance says how far a surface may stray, and this one is kept")
+                    .remedy("let the surface `adapt`"))
+            }
+            ("adapt", distance) => Ok(Self::Adapt { distance }),
+            ("loose", distance) => Ok(Self::Loose { distance }),
+            _ => Err(Error::options(format!("there is no rule `{name}` for a surface"))
+                .remedy("give one of keep, adapt, loose")),
+        }
+    }
+
     /// How far a wall may stray, given the mesh's largest extent; `None` where it may not.
     pub(super) fn distance(self, extent: impl FnOnce() -> f64) -> Option<f64> {
         match self {

@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use crate::base::{CellId, Csr, Id, Result, Threads, VertexId};
-use crate::geometry::tet::volume;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::dot;
 use crate::kernel::Extract;
@@ -49,7 +48,7 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     report.seconds.extract += assembled;
     report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
     tell_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
-    let is_turned = is_turned(&new);
+    let is_turned = new.is_turned();
     Ok(MeshOutcome { mesh: new, history, report, is_turned })
 }
 
@@ -217,14 +216,4 @@ fn tell_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
     report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
     report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));
     report.left.iter_mut().for_each(|left| left.tet = cell(new, left.tet));
-}
-
-fn is_turned(mesh: &Mesh) -> bool {
-    let is_negative = |tet: [VertexId; 4]| volume(tet.map(|v| mesh.points[v.index()])) < 0.0;
-    let (mut n_tets, mut n_negative) = (0usize, 0usize);
-    for (_, tet) in mesh.cells.tets() {
-        n_tets += 1;
-        n_negative += usize::from(is_negative(tet));
-    }
-    2 * n_negative > n_tets
 }

@@ -4,6 +4,7 @@ mod args;
 mod report;
 
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use motet::implant::{Device, Implanted, Inside, implant};
@@ -35,7 +36,8 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
     let made = implant(&host, &devices, &options, &rules, &threads);
-    let Implanted { mut mesh, history, report } = made.map_err(|e| in_its_file(e, args, &devices))?;
+    let Implanted { mut mesh, history, report } =
+        made.map_err(|e| in_its_file(e, &args.host, &args.devices, &devices))?;
     bar.inc(1);
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
@@ -47,29 +49,44 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
 }
 
-/// The devices, each with a name of its own.
+/// The devices of the call.
 fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Result<Vec<Device>> {
-    let mut names: BTreeSet<String> = taken.regions.values().chain(taken.patches.values()).cloned().collect();
-    let mut devices = Vec::new();
-    for file in &args.devices {
+    let mut names = Names::of(taken);
+    let inside = match (args.hollow, args.fill) {
+        (true, _) => Some(Inside::Hollow),
+        (_, true) => Some(Inside::Filled),
+        _ => None,
+    };
+    args.devices.iter().map(|file| names.device(file, inside, console)).collect()
+}
+
+/// Names of regions and patches that are taken.
+pub(crate) struct Names(BTreeSet<String>);
+
+impl Names {
+    pub(crate) fn of(names: &LabelNames) -> Self {
+        Self(names.regions.values().chain(names.patches.values()).cloned().collect())
+    }
+
+    /// Reads a device, and gives it a name of its own, after its file.
+    pub(crate) fn device(
+        &mut self,
+        file: &Path,
+        inside: Option<Inside>,
+        console: &Console,
+    ) -> motet::Result<Device> {
         let (mesh, notes) = io::read_noted(file)?;
         notes.iter().for_each(|what| console.warn(what));
-        let name = unused_name(&stem(file).unwrap_or_default(), |name| names.contains(name));
+        let name = unused_name(&stem(file).unwrap_or_default(), |name| self.0.contains(name));
         let mut device = Device::new(mesh, name);
-        names.insert(device.name.clone());
-        if args.hollow {
-            device.inside = Inside::Hollow;
-        } else if args.fill {
-            device.inside = Inside::Filled;
-        }
-        devices.push(device);
+        self.0.insert(device.name.clone());
+        device.inside = inside.unwrap_or(device.inside);
+        Ok(device)
     }
-    Ok(devices)
 }
 
 /// An error that names a device is one of its file, any other of the host's.
-fn in_its_file(error: Error, args: &ImplantArgs, devices: &[Device]) -> Error {
+pub(crate) fn in_its_file(error: Error, host: &Path, files: &[PathBuf], devices: &[Device]) -> Error {
     let named = devices.iter().position(|device| error.what().contains(&format!("`{}`", device.name)));
-    let file = named.map_or(&args.host, |k| &args.devices[k]);
-    error.in_file(file)
+    error.in_file(named.map_or(host, |k| &files[k]))
 }

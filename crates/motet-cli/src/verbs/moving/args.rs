@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
+use motet::motion::Extent;
 
-use super::words::{self, LayerWord, PatchFile, Rotate, Translate};
+use super::words::{self, PatchFile, Rotate, Translate};
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
@@ -123,7 +124,7 @@ pub(crate) struct MoveArgs {
     /// Move all within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
     /// for layers of cells
     #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]
-    pub(crate) rigid_layer: Option<LayerWord>,
+    pub(crate) rigid_layer: Option<Extent>,
     /// Patches that have the rigid layer [default: those that move]. Repeatable
     #[arg(long, value_name = "PATCH", requires = "rigid_layer", help_heading = "Volume")]
     pub(crate) rigid_layer_at: Vec<String>,

@@ -5,7 +5,7 @@ mod patches;
 mod plan;
 mod report;
 mod sink;
-mod words;
+pub(crate) mod words;
 
 use std::path::Path;
 use std::time::Instant;
@@ -13,9 +13,7 @@ use std::time::Instant;
 use motet::base::{Point, Threads};
 use motet::io;
 use motet::mesh::Boundary;
-use motet::motion::{
-    self, Certificate, Extent, FacetSet, MethodWords, Mover, Options, RigidLayer, mesh_velocity,
-};
+use motet::motion::{self, Certificate, FacetSet, MethodWords, Mover, Options, RigidLayer, mesh_velocity};
 use motet::{Error, Mesh};
 
 pub(crate) use args::MoveArgs;
@@ -25,7 +23,6 @@ use self::patches::Patches;
 use self::plan::Plan;
 use self::report::{Chosen, Report, Step};
 use self::sink::Sink;
-use self::words::LayerWord;
 use crate::args::Common;
 use crate::console::Console;
 use crate::exit::Outcome;
@@ -81,11 +78,7 @@ fn options(
     let inside = plan.nodes.iter().filter(|v| boundary.vertices.binary_search(v).is_err());
     let rigid_layer = match args.rigid_layer {
         None => None,
-        Some(word) => {
-            let extent = match word {
-                LayerWord::Distance(d) => Extent::Distance(d),
-                LayerWord::Cells(n) => Extent::Cells(n),
-            };
+        Some(extent) => {
             Some(RigidLayer { extent, wall: Some(wall(args, boundary, patches, plan, &sliding)?) })
         }
     };

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::Point;
+use motet::motion::Extent;
 
 use crate::words::{named, number, numbers};
 
@@ -27,15 +28,6 @@ pub(crate) struct Rotate {
 pub(crate) struct PatchFile {
     pub(crate) name: String,
     pub(crate) file: PathBuf,
-}
-
-/// How thick the layer is that moves rigidly with the wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LayerWord {
-    /// In units of the mesh.
-    Distance(f64),
-    /// Layers of cells.
-    Cells(usize),
 }
 
 pub(crate) fn translate(text: &str) -> Result<Translate, String> {
@@ -76,16 +68,17 @@ pub(crate) fn patch_file(text: &str) -> Result<PatchFile, String> {
     }
 }
 
-pub(crate) fn layer(text: &str) -> Result<LayerWord, String> {
+/// A distance, or layers of cells such as `3layers`: how thick the layer is that moves rigidly with the wall.
+pub(crate) fn layer(text: &str) -> Result<Extent, String> {
     let expected = "a distance such as 0.2, or cell layers such as 3layers, is expected";
     if let Some(n) = text.strip_suffix("layers").or_else(|| text.strip_suffix("layer")) {
         return match n.trim().parse() {
-            Ok(n) if n > 0 => Ok(LayerWord::Cells(n)),
+            Ok(n) if n > 0 => Ok(Extent::Cells(n)),
             _ => Err(expected.into()),
         };
     }
     match number(text) {
-        Ok(d) if d > 0.0 => Ok(LayerWord::Distance(d)),
+        Ok(d) if d > 0.0 => Ok(Extent::Distance(d)),
         _ => Err(expected.into()),
     }
 }
@@ -107,9 +100,9 @@ mod tests {
         assert_eq!((turn.patch.as_str(), turn.centre), ("a=b", Some([1.0, 2.0, 3.0])));
         assert_eq!(rotate("a=0,0,1,90").unwrap().centre, None);
         assert_eq!(affine("1 0 0 5; 0 1 0 6; 0 0 1 7").unwrap()[1], [0.0, 1.0, 0.0, 6.0]);
-        assert_eq!(layer("0.25").unwrap(), LayerWord::Distance(0.25));
-        assert_eq!(layer("3layers").unwrap(), LayerWord::Cells(3));
-        assert_eq!(layer("1layer").unwrap(), LayerWord::Cells(1));
+        assert_eq!(layer("0.25").unwrap(), Extent::Distance(0.25));
+        assert_eq!(layer("3layers").unwrap(), Extent::Cells(3));
+        assert_eq!(layer("1layer").unwrap(), Extent::Cells(1));
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! What a run begins with: the mesh with its devices, what its walls do, how it is kept good.
 
+use std::path::PathBuf;
+
 use motet::base::Threads;
 use motet::contact;
-use motet::implant::{self, Device, Inside, implant};
-use motet::mesh::history::{self, Rules};
-use motet::mesh::unused_name;
+use motet::implant::{self, Inside, implant};
+use motet::mesh::history::Rules;
 use motet::motion::{Extent, Method, MethodWords};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
 use motet::refine::{Criterion, Limits, Size, Wanted};
@@ -12,11 +13,11 @@ use motet::remesh::{self, SurfaceRule};
 use motet::{Error, Mesh, Result, io};
 
 use super::course;
-use super::job::{Carry, Job, Layer, Refine, Surface};
-use super::places::labels;
+use super::job::{self, Job, Layer, Refine};
 use crate::console::Console;
+use crate::verbs::implant::{Names, in_its_file};
+use crate::verbs::moving;
 use crate::verbs::refine::{target, words};
-use crate::words::stem;
 
 /// All that a run begins with.
 pub(super) struct Begin {
@@ -39,29 +40,33 @@ impl Begin {
     }
 }
 
-/// The mesh, devices put into it.
+/// The mesh, devices put into it: those that keep their triangles together, since they may lie in each other, then those that get a new surface.
 fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh> {
     let mut mesh = read(job, &job.mesh, console)?;
-    for asked in &job.device {
-        let names = mesh.label_names.regions.values().chain(mesh.label_names.patches.values());
-        let taken: Vec<String> = names.cloned().collect();
-        let name = stem(&asked.file).unwrap_or_default();
-        let name = unused_name(&name, |name| taken.iter().any(|t| t == name));
-        let mut device = Device::new(read(job, &asked.file, console)?, name);
-        if asked.hollow {
-            device.inside = Inside::Hollow;
-        } else if asked.fill {
-            device.inside = Inside::Filled;
-        }
-        let interface = match asked.conform {
+    let matching: Vec<&job::Device> = job.device.iter().filter(|device| device.conform.is_none()).collect();
+    let conforming = job.device.iter().filter(|device| device.conform.is_some()).map(|device| vec![device]);
+    for group in [matching].into_iter().chain(conforming).filter(|group| !group.is_empty()) {
+        let interface = match group[0].conform {
             Some(tolerance) => implant::Interface::Conform { tolerance: Some(tolerance) },
             None => implant::Interface::Match,
         };
+        let mut names = Names::of(&mesh.label_names);
+        let device = |asked: &&job::Device| names.device(&job.path(&asked.file), inside(asked), console);
+        let devices = group.iter().map(device).collect::<Result<Vec<_>>>()?;
+        let files: Vec<PathBuf> = group.iter().map(|asked| job.path(&asked.file)).collect();
         let options = implant::Options { interface, ..implant::Options::default() };
-        let made = implant(&mesh, &[device], &options, &Rules::default(), threads);
-        mesh = made.map_err(|e| e.in_file(job.path(&asked.file)))?.mesh;
+        let made = implant(&mesh, &devices, &options, &Rules::default(), threads);
+        mesh = made.map_err(|e| in_its_file(e, &job.path(&job.mesh), &files, &devices))?.mesh;
     }
     Ok(mesh)
+}
+
+fn inside(asked: &job::Device) -> Option<Inside> {
+    match (asked.hollow, asked.fill) {
+        (true, _) => Some(Inside::Hollow),
+        (_, true) => Some(Inside::Filled),
+        _ => None,
+    }
 }
 
 fn read(job: &Job, file: &std::path::Path, console: &Console) -> Result<Mesh> {
@@ -73,12 +78,7 @@ fn read(job: &Job, file: &std::path::Path, console: &Console) -> Result<Mesh> {
 fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
     let mut rules = Rules::default();
     for (name, carry) in &job.carry {
-        let carry = match carry {
-            Carry::Mean => history::Carry::Mean,
-            Carry::Inherit => history::Carry::Inherit,
-            Carry::Drop => history::Carry::Drop,
-        };
-        rules.carry(mesh, name, carry)?;
+        rules.carry(mesh, name, *carry)?;
     }
     if let Some(name) = job.contents.iter().find(|name| mesh.cell_field(name).is_none()) {
         let known: Vec<&str> = mesh.cell_data.iter().map(|field| field.name.as_str()).collect();
@@ -88,11 +88,7 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
     let repair = &job.repair;
     let asked = remesh::Options {
         min_eas: repair.min_eas,
-        surface: match repair.surface {
-            Surface::Keep => SurfaceRule::Keep,
-            Surface::Adapt => SurfaceRule::Adapt { distance: repair.distance },
-            Surface::Loose => SurfaceRule::Loose { distance: repair.distance },
-        },
+        surface: SurfaceRule::of_name(&repair.surface, repair.distance)?,
         ..remesh::Options::default()
     };
     Ok(Options {
@@ -121,41 +117,32 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
     }
     let rigid_layer = match &asked.rigid_layer {
         None => None,
-        Some(layer) => Some((extent(layer)?, labels(mesh, &asked.rigid_layer_at)?)),
+        Some(layer) => Some((extent(layer)?, mesh.find_patches(&asked.rigid_layer_at)?)),
     };
     Ok(Motion {
         method,
-        bodies: labels(mesh, &asked.bodies)?,
+        bodies: mesh.find_patches(&asked.bodies)?,
         within_walls: asked.within_walls,
         smoothing: asked.smooth,
-        inside: labels(mesh, &asked.inside)?,
-        sliding: labels(mesh, &asked.slide)?,
+        inside: mesh.find_patches(&asked.inside)?,
+        sliding: mesh.find_patches(&asked.slide)?,
         rigid_layer,
         ..Motion::default()
     })
 }
 
+/// A number, or a word as on the command line of `motet move`.
 fn extent(layer: &Layer) -> Result<Extent> {
-    let off = || {
-        Error::input("motion.rigid_layer is neither a distance nor layers")
-            .remedy("give a number above 0, or a text such as \"3layers\"")
+    let word = match layer {
+        Layer::Distance(distance) => distance.to_string(),
+        Layer::Word(word) => word.clone(),
     };
-    match layer {
-        Layer::Distance(distance) if *distance > 0.0 && distance.is_finite() => {
-            Ok(Extent::Distance(*distance))
-        }
-        Layer::Distance(_) => Err(off()),
-        Layer::Word(word) => {
-            let n = word.strip_suffix("layers").or_else(|| word.strip_suffix("layer"));
-            let n = n.and_then(|n| n.trim().parse().ok()).filter(|n| *n > 0);
-            n.map(Extent::Cells).ok_or_else(off)
-        }
-    }
+    moving::words::layer(&word).map_err(|e| Error::input(format!("motion.rigid_layer = {word}: {e}")))
 }
 
 fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
     let Some(asked) = &job.contact else { return Ok(None) };
-    labels(mesh, &asked.patches)?;
+    mesh.find_patches(&asked.patches)?;
     let options = contact::Options {
         warn: asked.warn,
         own: asked.own,

@@ -8,7 +8,6 @@ use motet::moving::{InTime, Motion, Script, normals};
 use motet::{Error, Mesh, Result, io};
 
 use super::job::{Course, Job, Match, Move};
-use super::places::vertices;
 
 /// The script of a job.
 ///
@@ -161,13 +160,15 @@ fn in_time(course: &Course) -> Result<InTime> {
     })
 }
 
-/// Unit normals of the vertices of a patch, away from the volume, however its facets are turned.
+/// Unit normals of the vertices of a patch: away from the volume where it is on the boundary, however its facets are turned; as they are turned inside.
 fn outward(mesh: &Mesh, facets: &FacetSet) -> Vec<Point> {
-    let boundary = Surface::boundary_of(mesh);
-    let is_in = |t: &&[VertexId; 3]| t.iter().all(|v| facets.vertices.binary_search(v).is_ok());
-    let own = boundary.triangles.iter().filter(is_in);
-    let turned = FacetSet::of_rings(facets.name.clone(), own.map(|t| t.as_slice()));
-    let of_turned = normals(&turned, &mesh.points);
-    let of = |v: &VertexId| turned.vertices.binary_search(v).map_or([0.0; 3], |i| of_turned[i]);
-    facets.vertices.iter().map(of).collect()
+    let own: Vec<_> = facets.triangles().collect();
+    let turned = Surface::boundary_of(mesh).turned(&own).unwrap_or(own);
+    normals(&FacetSet::of_rings(facets.name.clone(), turned.iter().map(|t| t.as_slice())), &mesh.points)
+}
+
+/// The vertices of patches, rising.
+fn vertices(mesh: &Mesh, words: &[String]) -> Result<Vec<VertexId>> {
+    let sets = words.iter().map(|word| FacetSet::find(mesh, word)).collect::<Result<Vec<_>>>()?;
+    Ok(FacetSet::joined(sets).unwrap_or_default().vertices)
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use motet::base::Point;
+use motet::mesh::history::Carry;
 use motet::{Error, Result};
 use serde::Deserialize;
 
@@ -152,7 +153,7 @@ impl Default for Course {
 pub(super) struct Repair {
     pub(super) off: bool,
     pub(super) min_eas: f64,
-    pub(super) surface: Surface,
+    pub(super) surface: String,
     pub(super) distance: Option<f64>,
     pub(super) margin: f64,
     pub(super) floor: f64,
@@ -165,21 +166,13 @@ impl Default for Repair {
         Self {
             off: false,
             min_eas: usual.limit(),
-            surface: Surface::Keep,
+            surface: "keep".into(),
             distance: None,
             margin: usual.margin,
             floor: usual.floor,
             keep_tets: usual.keep_tets,
         }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Surface {
-    Keep,
-    Adapt,
-    Loose,
 }
 
 /// Each word as on the command line of `motet refine`.
@@ -215,14 +208,6 @@ pub(super) struct Contact {
     #[serde(default)]
     pub(super) own: bool,
     pub(super) horizon: Option<f64>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Carry {
-    Mean,
-    Inherit,
-    Drop,
 }
 
 impl Job {
@@ -292,12 +277,6 @@ impl Job {
             return off(
                 "a number of [repair] is not between 0 and 1",
                 "min_eas, margin, floor and keep_tets are shares",
-            );
-        }
-        if repair.distance.is_some() && repair.surface == Surface::Keep {
-            return off(
-                "repair.distance says how far the surface may stray, and it is kept",
-                "add surface = \"adapt\"",
             );
         }
         let warn = self.contact.as_ref().and_then(|contact| contact.warn);

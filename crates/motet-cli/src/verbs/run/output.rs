@@ -64,11 +64,11 @@ impl Output {
         for file in [&self.log, &self.times] {
             replace(file, b"")?;
         }
-        self.take(moving, step).map(|_| ())
+        self.take(moving, step)
     }
 
-    /// Writes a step: the frame where one is due, then the lines, then the state. The file of the frame.
-    pub(super) fn take(&mut self, moving: &MovingMesh, step: &Step) -> Result<Option<PathBuf>> {
+    /// Writes a step: the frame where one is due, then the lines, then the state.
+    pub(super) fn take(&mut self, moving: &MovingMesh, step: &Step) -> Result<()> {
         let is_due = step.step.is_multiple_of(self.every) || !step.complete;
         let file =
             is_due.then(|| self.series.add(step.time, &frame(moving))).transpose()?.map(|(file, _)| file);
@@ -82,7 +82,7 @@ impl Output {
         if step.complete {
             moving.save(&self.state)?;
         }
-        Ok(file)
+        Ok(())
     }
 }
 
@@ -99,15 +99,10 @@ fn frame(moving: &MovingMesh) -> Mesh {
     mesh.set_point_field(Field::vectors("displacement", &moving.displacement()));
     mesh.set_point_field(Field::vectors("velocity", &moving.velocity()));
     if let Some(gaps) = moving.gaps() {
-        let mut gap = vec![f64::INFINITY; mesh.points.len()];
-        for body in &gaps.bodies {
-            for (v, &own) in body.vertices.iter().zip(&body.gap) {
-                gap[v.index()] = gap[v.index()].min(own);
-            }
-        }
         // Where nothing is measured there is no number.
-        let gap = gap.into_iter().map(|x| if x.is_finite() { x } else { f64::NAN }).collect::<Vec<_>>();
-        mesh.set_point_field(Field::scalars("gap", gap));
+        let gap =
+            gaps.at_points(mesh.points.len()).into_iter().map(|x| if x.is_finite() { x } else { f64::NAN });
+        mesh.set_point_field(Field::scalars("gap", gap.collect::<Vec<_>>()));
     }
     let quality = mesh.tet_field("eas", eas);
     mesh.set_cell_field(quality);

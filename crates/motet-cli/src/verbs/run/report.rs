@@ -2,130 +2,129 @@
 
 use std::path::PathBuf;
 
-use motet::moving::{Seconds, Step, WorstTet};
+use motet::moving::{Seconds, Step, Why, WorstTet};
 use serde::Serialize;
 
 use super::job::Job;
 use super::output::Output;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time};
 
 /// How a run went.
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Report {
+pub(crate) struct Report {
     job: PathBuf,
     output: PathBuf,
     log: PathBuf,
     /// The step that it went on after; 0 at the begin.
     resumed_after: usize,
-    steps: usize,
+    /// The last step.
+    pub(crate) steps: usize,
     of: usize,
     /// Whether every step was gone to its end.
     complete: bool,
     changes: usize,
     /// Steps in which the mesh changed.
-    changed_steps: usize,
+    pub(crate) changed_steps: usize,
+    /// Bad tets that were there when something was repaired.
+    pub(crate) repaired: usize,
     /// The most bad tets that a step had, those that walls force among them; and without these.
-    most_bad: usize,
+    pub(crate) most_bad: usize,
     most_bad_not_forced: usize,
-    most_inverted: usize,
-    worst: Option<WorstTet>,
+    pub(crate) most_inverted: usize,
+    /// As it came or went on, and of all steps.
+    pub(crate) worst_at_first: Option<WorstTet>,
+    pub(crate) worst: Option<WorstTet>,
     worst_at_step: usize,
     points: usize,
-    tets: [usize; 2],
-    least_gap: Option<f64>,
+    /// As it came or went on, and at the end.
+    pub(crate) tets: [usize; 2],
+    pub(crate) least_gap: Option<f64>,
     least_gap_at: Option<f64>,
     first_warned_at: Option<f64>,
-    frames: usize,
+    /// Steps in which something warned.
+    pub(crate) warned_steps: usize,
     seconds: Seconds,
-    seconds_total: f64,
+    pub(super) seconds_total: f64,
+}
+
+/// A line a step, for people.
+pub(super) fn line(step: &Step, console: &Console) {
+    let worst = step.worst.map_or(f64::NAN, |worst| worst.eas);
+    let mut text = format!(
+        "step {:>4}  time {:<8} {:>11} tets  worst EAS {worst:.4}  {} bad",
+        step.step,
+        time(step.time),
+        count(step.tets),
+        step.bad
+    );
+    if step.forced > 0 {
+        text += &format!(" ({} forced by walls)", step.forced);
+    }
+    if let Some(gaps) = &step.gaps {
+        text += &gaps.least.map_or_else(String::new, |gap| format!("  gap {}", short(gap)));
+        if gaps.warned > 0 {
+            text += " !";
+        }
+    }
+    for change in &step.changes {
+        let part = 100.0 * (1.0 - change.kept_share);
+        text += &format!("  [{:?}: {} bad, {part:.2} % new]", change.why, change.bad_before);
+    }
+    if !step.complete {
+        text += &format!("  gone {:.1} % of the way", 100.0 * step.fraction);
+    }
+    console.say(text);
 }
 
 impl Report {
-    pub(super) fn new(job: &Job) -> Self {
-        Self { job: job.file.clone(), of: job.n_steps(), complete: true, ..Self::default() }
+    pub(super) fn new(job: &Job, output: &Output) -> Self {
+        let (output, log) = (output.series_file.clone(), output.log.clone());
+        Self { job: job.file.clone(), output, log, of: job.n_steps(), complete: true, ..Self::default() }
     }
 
     /// The run goes on after a step.
-    pub(super) fn begin(&mut self, step: usize) {
+    pub(super) fn go_on(&mut self, step: usize) {
         (self.resumed_after, self.steps) = (step, step);
     }
 
-    /// A line a step, for people.
-    pub(super) fn line(&self, step: &Step, console: &Console) {
-        let worst = step.worst.map_or(f64::NAN, |worst| worst.eas);
-        let mut text = format!(
-            "step {:>4}  time {:<8} {:>11} tets  worst EAS {worst:.4}  {} bad",
-            step.step,
-            time(step.time),
-            count(step.tets),
-            step.bad
-        );
-        if step.forced > 0 {
-            text += &format!(" ({} forced by walls)", step.forced);
+    pub(super) fn add(&mut self, step: &Step) {
+        if self.worst_at_first.is_none() {
+            (self.worst_at_first, self.tets[0]) = (step.worst, step.tets);
         }
-        if let Some(gaps) = &step.gaps {
-            text += &gaps.least.map_or_else(String::new, |gap| format!("  gap {}", short(gap)));
-            if gaps.warned > 0 {
-                text += " !";
-            }
-        }
-        for change in &step.changes {
-            let part = 100.0 * (1.0 - change.kept_share);
-            text += &format!("  [{:?}: {} bad, {part:.2} % new]", change.why, change.bad_before);
-        }
-        if !step.complete {
-            text += &format!("  gone {:.1} % of the way", 100.0 * step.fraction);
-        }
-        console.say(text);
-    }
-
-    pub(super) fn add(&mut self, step: Step, file: Option<PathBuf>) {
         self.steps = step.step;
         self.complete &= step.complete;
         self.changes += step.changes.len();
         self.changed_steps += usize::from(!step.changes.is_empty());
+        let repairs = step.changes.iter().filter(|change| change.why == Why::Repair);
+        self.repaired += repairs.map(|change| change.bad_before).sum::<usize>();
         self.most_bad = self.most_bad.max(step.bad);
         self.most_bad_not_forced = self.most_bad_not_forced.max(step.bad - step.forced);
         self.most_inverted = self.most_inverted.max(step.inverted);
         if let Some(worst) = step.worst.filter(|worst| self.worst.is_none_or(|w| worst.eas < w.eas)) {
             (self.worst, self.worst_at_step) = (Some(worst), step.step);
         }
-        self.points = step.points;
-        self.tets = [if self.tets[0] == 0 { step.tets } else { self.tets[0] }, step.tets];
+        (self.points, self.tets[1]) = (step.points, step.tets);
         if let Some(gaps) = &step.gaps {
             if gaps.least.is_some_and(|gap| self.least_gap.is_none_or(|least| gap < least)) {
                 (self.least_gap, self.least_gap_at) = (gaps.least, Some(step.time));
             }
-            if gaps.warned > 0 && self.first_warned_at.is_none() {
-                self.first_warned_at = Some(step.time);
+            if gaps.warned > 0 {
+                self.warned_steps += 1;
+                self.first_warned_at = self.first_warned_at.or(Some(step.time));
             }
         }
-        self.frames += usize::from(file.is_some());
-        let (all, own) = (&mut self.seconds, &step.seconds);
-        for (all, own) in [
-            (&mut all.motion, own.motion),
-            (&mut all.quality, own.quality),
-            (&mut all.repair, own.repair),
-            (&mut all.setup, own.setup),
-            (&mut all.contact, own.contact),
-            (&mut all.total, own.total),
-        ] {
-            *all += own;
-        }
-    }
-
-    pub(super) fn end(&mut self, output: &Output, total: f64) {
-        (self.output, self.log) = (output.series_file.clone(), output.log.clone());
-        self.seconds_total = total;
+        self.seconds += step.seconds;
     }
 
     /// Whether all was gone, and no tet is bad but those that walls force.
-    pub(super) fn is_reached(&self) -> bool {
-        self.complete && self.most_inverted == 0 && self.most_bad_not_forced == 0
+    pub(crate) fn outcome(&self) -> Outcome {
+        let is_reached = self.complete && self.most_inverted == 0 && self.most_bad_not_forced == 0;
+        if is_reached { Outcome::Done } else { Outcome::NotReached }
     }
 
-    pub(super) fn tell(&self, console: &Console) {
+    pub(crate) fn tell(&self, console: &Console) {
         console.report(self);
         let n = self.steps - self.resumed_after;
         console.say(format_args!(
@@ -162,11 +161,6 @@ impl Report {
         ] {
             table.row([name.to_owned(), format!("{s:.2}"), seconds(s / n.max(1) as f64)]);
         }
-        console.say(format_args!(
-            "{table}\nwrote {} ({} frames), {}",
-            self.output.display(),
-            self.frames,
-            self.log.display()
-        ));
+        console.say(format_args!("{table}\nwrote {}, {}", self.output.display(), self.log.display()));
     }
 }

@@ -7,8 +7,8 @@ use super::assemble::assemble;
 use super::line::Keyword;
 use super::model::Model;
 use crate::base::{Error, Result};
-use crate::io::Input;
 use crate::io::text::Text;
+use crate::io::{Input, is_same_file};
 use crate::mesh::Mesh;
 
 /// Files within files at most.
@@ -71,7 +71,7 @@ impl Reader<'_> {
         let refuse = |what: &str| {
             Error::input(format!("the file `{name}` is included, {what}")).remedy("write the file again")
         };
-        if self.open.iter().any(|open| is_same(open, &path)) {
+        if self.open.iter().any(|open| is_same_file(open, &path)) {
             return Err(refuse("which includes the file that names it"));
         }
         self.n_included += 1;
@@ -90,13 +90,6 @@ impl Reader<'_> {
         self.lines(&bytes).map_err(|e| e.in_file(&path))?;
         self.open.pop();
         Ok(())
-    }
-}
-
-fn is_same(a: &Path, b: &Path) -> bool {
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
     }
 }
 

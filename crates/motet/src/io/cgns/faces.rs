@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::base::{Csr, Error, Result};
+use crate::base::{Csr, Error, Result, rising_list};
 use crate::io::cgns::parts::Part;
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Mesh, corners};
@@ -81,10 +81,9 @@ impl Faces {
     }
 }
 
-/// The corners of a ring, rising.
+/// The different corners of a ring, rising: a collapsed quad is the triangle that it meets.
 fn key(ring: &[u32]) -> Vec<u32> {
-    let mut key = ring.to_vec();
-    key.sort_unstable();
+    let mut key = rising_list(ring);
     key.dedup();
     key
 }

@@ -1,9 +1,10 @@
 //! Points in which zones meet, one to one: two that the file says are one become one.
 
-use crate::base::{Csr, Point, Result, Sets, VertexId};
+use crate::base::{Result, Sets, VertexId};
+use crate::geometry::vector::distance;
 use crate::io::cgns::conditions::{Numbers, is_on_points};
 use crate::io::cgns::node::Node;
-use crate::mesh::{CellKind, Cells, Mesh};
+use crate::mesh::Mesh;
 
 /// Points that are one are at most so far apart, by the extent of the mesh: files have coordinates of seven digits.
 const FARTHEST: f64 = 1e-6;
@@ -87,28 +88,7 @@ pub(super) fn join_points(mesh: &mut Mesh, pairs: &[[u32; 2]]) -> usize {
     if kept.len() < new.len() {
         mesh.points = kept.iter().map(|&v| mesh.points[v]).collect();
         mesh.point_data.iter_mut().for_each(|field| *field = field.pick(kept.iter().copied()));
-        mesh.cells = renumbered(&mesh.cells, &new);
+        mesh.cells = mesh.cells.renumbered(&new);
     }
     n_apart
-}
-
-fn distance(a: Point, b: Point) -> f64 {
-    (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
-}
-
-fn renumbered(cells: &Cells, new: &[VertexId]) -> Cells {
-    let mut all = Cells::new();
-    let mut polyhedra = cells.polyhedron_faces().iter();
-    for (_, kind, vertices) in cells.iter() {
-        let vertices = vertices.iter().map(|v| new[v.index()]);
-        if kind == CellKind::POLYHEDRON {
-            let mut faces = Csr::default();
-            let own = polyhedra.next().into_iter().flat_map(Csr::iter);
-            own.for_each(|face| faces.push(face.iter().map(|v| new[v.index()])));
-            all.push_polyhedron(vertices, faces);
-        } else {
-            all.push(kind, vertices);
-        }
-    }
-    all
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::io::Write as _;
 
-use crate::base::{CellId, Csr, Error, Point, Result, VertexId};
+use crate::base::{CellId, Csr, Error, Point, Result, VertexId, rising_list};
 use crate::geometry::vector::is_finite;
 use crate::io::format::{Encoding, WriteOptions, Written};
 use crate::io::select::lost_arrays;
@@ -104,7 +104,7 @@ impl Sorted {
         facets.for_each_shared(|uses| match *uses {
             [only] => {
                 let ring = ring_of(only, is_inverted(only.cell));
-                let label = labels.remove(&key(&ring)).filter(|&label| label != 0).unwrap_or(WITHOUT);
+                let label = labels.remove(&rising_list(&ring)).filter(|&label| label != 0).unwrap_or(WITHOUT);
                 let owner = numbers[only.cell.index()];
                 outer.entry(label).or_default().push(Face { ring, owner, neighbour: NONE });
             }
@@ -144,20 +144,13 @@ impl Sorted {
     }
 }
 
-/// The corners of a ring, rising.
-fn key(ring: &[u32]) -> Vec<u32> {
-    let mut key = ring.to_vec();
-    key.sort_unstable();
-    key
-}
-
 /// The patch of each surface cell, by its corners.
 fn surface_labels(mesh: &Mesh) -> HashMap<Vec<u32>, i32> {
     let patches = mesh.patches();
     let cells = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
     let of = |(cell, kind, vertices): (CellId, CellKind, &[VertexId])| {
         let corners: Vec<u32> = crate::mesh::corners(kind, vertices).iter().map(|v| v.0).collect();
-        (key(&corners), patches.as_ref().map_or(0, |labels| labels.ids[cell.index()]))
+        (rising_list(&corners), patches.as_ref().map_or(0, |labels| labels.ids[cell.index()]))
     };
     cells.map(of).collect()
 }

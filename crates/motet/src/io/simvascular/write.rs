@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use crate::base::{Error, Result, VertexId};
+use crate::base::{Error, Result, VertexId, rising_list};
 use crate::io::format::{WriteOptions, Written};
 use crate::io::select::{facets_alone, of_kinds};
 use crate::io::simvascular::read::node_ids;
@@ -117,7 +117,7 @@ impl<'m> Numbered<'m> {
         let boundary = Boundary::of(&mesh.cells);
         let keys = boundary.facets.iter().zip(&boundary.kinds).zip(&boundary.cells);
         let behind =
-            keys.map(|((facet, kind), cell)| (key(corners(*kind, facet)), element_ids[cell.index()]));
+            keys.map(|((facet, kind), cell)| (rising_list(corners(*kind, facet)), element_ids[cell.index()]));
         Self { mesh, node_ids, behind: behind.collect(), element_ids }
     }
 
@@ -147,7 +147,8 @@ impl<'m> Numbered<'m> {
         let mut face = facets_alone(self.mesh, &used, cells.iter().map(facet), cells);
         let point_rows = used.iter().map(|v| v.index());
         face.set_point_field(Field::scalars(NODE_ID, self.node_ids.clone()).pick(point_rows));
-        let behind = |(kind, vertices)| self.behind.get(&key(corners(kind, vertices))).copied().unwrap_or(0);
+        let behind =
+            |(kind, vertices)| self.behind.get(&rising_list(corners(kind, vertices))).copied().unwrap_or(0);
         let behind: Vec<i64> = cells.iter().map(facet).map(behind).collect();
         let inside = behind.iter().filter(|&&id| id == 0).count();
         face.set_cell_field(Field::scalars(ELEMENT_ID, integers(behind)));
@@ -155,12 +156,6 @@ impl<'m> Numbered<'m> {
         face.set_cell_field(Field::scalars(FACE_ID, face_ids));
         (face, inside)
     }
-}
-
-fn key(corners: &[VertexId]) -> Vec<VertexId> {
-    let mut key = corners.to_vec();
-    key.sort_unstable();
-    key
 }
 
 /// In 32 bits where they fit, as SimVascular has them.

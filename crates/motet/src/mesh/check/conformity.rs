@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::base::{CellId, VertexId};
+use crate::base::{CellId, VertexId, rising_list};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -43,18 +43,13 @@ fn may_be_twins(mesh: &Mesh, x: CellId, y: CellId) -> bool {
 
 /// A cell behind its sorted vertices.
 fn by_vertices(mesh: &Mesh, cell: CellId) -> (Vec<VertexId>, CellId) {
-    (sorted(mesh.cells.vertices(cell).to_vec()), cell)
+    (rising_list(mesh.cells.vertices(cell)), cell)
 }
 
 /// Surface cells of the same vertices as another.
 fn surface_twins(mesh: &Mesh) -> Vec<(CellId, CellId)> {
     let surface = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
     pairs(surface.map(|(cell, ..)| by_vertices(mesh, cell)).collect())
-}
-
-fn sorted(mut vertices: Vec<VertexId>) -> Vec<VertexId> {
-    vertices.sort_unstable();
-    vertices
 }
 
 /// Pairs that follow one another, of equal key, after sorting.
@@ -70,8 +65,8 @@ fn unmerged(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Defect {
     let ring = |i: usize| corners(boundary.kinds[i], boundary.facets.list(i));
     let on_a_double = |i: &usize| ring(*i).iter().any(|&v| canonical.is_doubled(v));
     let candidates = (0..boundary.len()).filter(on_a_double);
-    let keyed =
-        candidates.map(|i| (sorted(ring(i).iter().map(|&v| canonical.first(v)).collect()), i)).collect();
+    let places = |i: usize| ring(i).iter().map(|&v| canonical.first(v)).collect::<Vec<_>>();
+    let keyed = candidates.map(|i| (rising_list(&places(i)), i)).collect();
     for (i, j) in pairs(keyed) {
         defect.add(|| Example::new(&[boundary.cells[i], boundary.cells[j]], ring(i), &mesh.points));
     }

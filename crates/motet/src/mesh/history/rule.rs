@@ -48,7 +48,8 @@ pub struct Rules {
 }
 
 /// What a user says of an array, wherever it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Carry {
     /// On points interpolated, on cells averaged by volume.
     Mean,

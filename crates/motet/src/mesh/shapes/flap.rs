@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{add, cross, distance, norm, scale, sub};
 use crate::mesh::Mesh;
-use crate::mesh::shapes::disc::disc;
+use crate::mesh::disc::disc;
 use crate::mesh::shapes::labelled::skins;
 use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
 

@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{add, cross, dot, scale};
-use crate::mesh::shapes::disc::disc;
+use crate::mesh::disc::disc;
 use crate::mesh::shapes::even_out::{Implicit, even_out};
 
 const UP: Point = [0.0, 0.0, 1.0];

@@ -28,7 +28,6 @@ mod bifurcation;
 mod boxes;
 mod coil;
 mod cubed_sphere;
-mod disc;
 mod even_out;
 mod flap;
 mod frames;

@@ -3,7 +3,7 @@
 use crate::base::{Error, Result, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::Mesh;
-use crate::mesh::shapes::disc::disc;
+use crate::mesh::disc::disc;
 use crate::mesh::shapes::labelled::skins;
 use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
 

@@ -2,11 +2,11 @@
 
 use super::fill::fill;
 use super::report::RepairKind;
-use super::rims::{RimEdge, rims};
 use super::work::{Piece, Work};
 use crate::base::{Threads, VertexId};
 use crate::geometry::vector::is_finite;
 use crate::preflight::crossing::crossings;
+use crate::preflight::rims::{RimEdge, rims};
 use crate::preflight::sides::Side;
 use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;

@@ -6,7 +6,6 @@ mod holes;
 mod merge;
 mod orient;
 mod report;
-mod rims;
 mod work;
 
 use serde::{Deserialize, Serialize};

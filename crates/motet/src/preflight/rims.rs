@@ -1,7 +1,8 @@
 //! The rims of holes: open edges, one after the other, as a triangle in the hole would run along them.
 
-use crate::base::VertexId;
-use crate::preflight::sides::{Side, edges};
+use crate::base::{Point, VertexId};
+use crate::preflight::sides::{Side, edges, sorted_sides};
+use crate::preflight::surfaces::{Role, Surfaces};
 
 /// An open edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -18,6 +19,18 @@ pub(super) struct RimEdge {
 pub(super) struct Rims {
     pub(super) closed: Vec<Vec<RimEdge>>,
     pub(super) torn: Vec<Vec<RimEdge>>,
+}
+
+/// The rims of one surface: vertices in the order in which a triangle in the hole would have them, and those of open edges that lead nowhere, since triangles there
+/// do not face the same side.
+///
+/// Panics when a triangle names a point that is not there.
+pub fn open_rims(points: &[Point], triangles: &[[VertexId; 3]]) -> [Vec<Vec<VertexId>>; 2] {
+    let surface_of = vec![0; triangles.len()];
+    let surfaces = Surfaces::new(points, triangles, &surface_of, &[Role::Boundary]);
+    let rims = rims(points.len(), &sorted_sides(&surfaces, |_| true), |_| true);
+    let vertices = |rim: Vec<RimEdge>| rim.iter().map(|edge| edge.from).collect();
+    [rims.closed, rims.torn].map(|all| all.into_iter().map(vertices).collect())
 }
 
 /// The rims of the surfaces that are asked about.

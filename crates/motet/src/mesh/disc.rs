@@ -5,14 +5,30 @@ use crate::geometry::vector::{add, distance, scale};
 
 /// Triangles between a rim and its middle, counter-clockwise as the rim is; their inner vertices are added to `points`. The rim must be
 /// seen whole from its middle. Triangles have about the size of its edges.
-pub(super) fn disc(points: &mut Vec<Point>, rim: &[VertexId]) -> Vec<[VertexId; 3]> {
+pub(crate) fn disc(points: &mut Vec<Point>, rim: &[VertexId]) -> Vec<[VertexId; 3]> {
+    let n_rings = n_rings(points, rim);
+    disc_of_rings(points, rim, n_rings)
+}
+
+/// How many rings make triangles of about the size of the rim's edges: each has the height of a triangle of equal edges.
+pub(crate) fn n_rings(points: &[Point], rim: &[VertexId]) -> usize {
+    let at = |i: usize| points[rim[i % rim.len()].index()];
+    let (n, middle) = (rim.len() as f64, middle(points, rim));
+    let radius = (0..rim.len()).map(|i| distance(at(i), middle)).sum::<f64>() / n;
+    let edge = (0..rim.len()).map(|i| distance(at(i), at(i + 1))).sum::<f64>() / n;
+    let rings = (radius / (edge * 0.75f64.sqrt())).round() as usize;
+    // Of a rim without a length there is no number; and none needs more rings than it has vertices.
+    rings.clamp(1, rim.len().max(1))
+}
+
+fn middle(points: &[Point], rim: &[VertexId]) -> Point {
+    scale(rim.iter().fold([0.0; 3], |sum, v| add(sum, points[v.index()])), 1.0 / rim.len() as f64)
+}
+
+/// As [`disc()`], with so many rings: the same triangles wherever the rim has gone.
+pub(crate) fn disc_of_rings(points: &mut Vec<Point>, rim: &[VertexId], n_rings: usize) -> Vec<[VertexId; 3]> {
     let corners: Vec<Point> = rim.iter().map(|v| points[v.index()]).collect();
-    let n = rim.len() as f64;
-    let middle = scale(corners.iter().fold([0.0; 3], |sum, p| add(sum, *p)), 1.0 / n);
-    let radius = corners.iter().map(|p| distance(*p, middle)).sum::<f64>() / n;
-    let edge = (0..rim.len()).map(|i| distance(corners[i], corners[(i + 1) % rim.len()])).sum::<f64>() / n;
-    // Rings at the height of a triangle of equal edges.
-    let n_rings = ((radius / (edge * 0.75f64.sqrt())).round() as usize).max(1);
+    let middle = middle(points, rim);
     let (mut triangles, mut outer) = (Vec::new(), rim.to_vec());
     for ring in (1..n_rings).rev() {
         let share = ring as f64 / n_rings as f64;
