@@ -2,14 +2,14 @@
 
 mod common;
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use common::kept::{corners, fits};
 use common::refined::{ball_in_box, facets, nearest, worst};
 use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
-use motet::geometry::tet::centroid;
+use motet::geometry::tet::{FACETS, centroid};
 use motet::geometry::vector::distance;
 use motet::mesh::TetMesh;
 use motet::refine::{Memory, Options, Refinement};
@@ -170,6 +170,71 @@ fn what_others_put_in_between_fits_whatever_is_divided_and_taken_back() {
             coarsest(&mut other);
             assert_eq!(other.mesh().tets.iter().copied().collect::<HashSet<_>>(), coarse, "round {round}");
         }
+    }
+}
+
+/// The same with its tets numbered anew.
+fn shuffled(mesh: &TetMesh, memory: &Memory, numbers: &mut Numbers) -> (TetMesh, Memory) {
+    let mut order: Vec<usize> = (0..mesh.tets.len()).collect();
+    (1..order.len()).for_each(|i| order.swap(i, numbers.next() as usize % (i + 1)));
+    fn by<T: Copy>(order: &[usize], list: &[T]) -> Vec<T> {
+        order.iter().map(|&t| list[t]).collect()
+    }
+    let tets = by(&order, &mesh.tets);
+    let regions = by(&order, &mesh.regions);
+    let memory = Memory {
+        roots: by(&order, &memory.roots),
+        paths: by(&order, &memory.paths),
+        pieces: by(&order, &memory.pieces),
+        asked: by(&order, &memory.asked),
+        ..memory.clone()
+    };
+    (TetMesh { tets, regions, ..mesh.clone() }, memory)
+}
+
+/// With triangles between the tets on both sides of a plane.
+fn with_sheet(mut mesh: TetMesh) -> TetMesh {
+    let is_left: Vec<bool> = mesh.tets.iter().map(|t| centroid(corners(&mesh, *t))[0] < 0.5).collect();
+    let sorted = |mut t: [VertexId; 3]| {
+        t.sort_unstable();
+        t
+    };
+    let mut sides: HashMap<[VertexId; 3], Vec<bool>> = HashMap::new();
+    for (tet, left) in mesh.tets.iter().zip(is_left) {
+        FACETS.iter().for_each(|f| sides.entry(sorted(f.map(|k| tet[k]))).or_default().push(left));
+    }
+    let mut sheet: Vec<[VertexId; 3]> = sides
+        .into_iter()
+        .filter(|(_, sides)| sides.len() == 2 && sides[0] != sides[1])
+        .map(|(t, _)| t)
+        .collect();
+    let there: HashSet<[VertexId; 3]> = mesh.triangles.iter().map(|t| sorted(*t)).collect();
+    sheet.retain(|t| !there.contains(t));
+    sheet.sort_unstable();
+    mesh.patches.extend(sheet.iter().map(|_| SHEET));
+    mesh.triangles.extend(sheet);
+    mesh
+}
+
+const SHEET: i32 = 77;
+
+#[test]
+fn triangles_inside_are_there_once_whichever_side_was_changed() {
+    let first = with_sheet(random_mesh(60, 5));
+    let on_sheet = first.triangles.iter().zip(&first.patches).filter(|(_, p)| **p == SHEET);
+    let on_sheet: Vec<VertexId> = on_sheet.flat_map(|(t, _)| *t).collect();
+    let mut numbers = Numbers(17);
+    for _ in 0..20 {
+        let mut fine = Refinement::new(&first, loose(), &single()).unwrap();
+        fine.refine(&all(&first), &single()).unwrap();
+        let (given, memory) = shuffled(fine.mesh(), &fine.memory_to_keep(&single()), &mut numbers);
+        let place = first.points[on_sheet[numbers.next() as usize % on_sheet.len()].index()];
+        let (memory, gone) = forgets(&memory, &given, &[place], 0.2);
+        assert!(!gone.is_empty());
+        let mut other = Refinement::recall(&given, &memory, loose(), &single()).unwrap();
+        coarsest(&mut other);
+        fits(&given, other.mesh());
+        assert!(other.mesh().tets.len() < given.tets.len(), "something comes back");
     }
 }
 

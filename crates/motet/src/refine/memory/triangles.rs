@@ -5,7 +5,7 @@ use super::super::forest::NONE;
 use super::super::forest::eight;
 use super::trees::{Knot, Trees};
 use super::{Memory, unfit};
-use crate::base::{Result, TetId, VertexId};
+use crate::base::{Result, TetId, VertexId, rising};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
@@ -20,20 +20,23 @@ pub(super) struct Gathered {
 
 /// The triangles as they were, in their order.
 pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<Gathered> {
-    let mut beside: Vec<Option<TetId>> = vec![None; mesh.triangles.len()];
+    let mut beside: Vec<[Option<TetId>; 2]> = vec![[None; 2]; mesh.triangles.len()];
     for_each_tet_facet(&mesh.tets, &mesh.triangles, |sharing| {
-        let tet = sharing.tets.iter().map(|(tet, _)| *tet).min();
-        sharing.triangles.iter().for_each(|&t| beside[t as usize] = tet);
+        let mut tets = [0, 1].map(|k| sharing.tets.get(k).map(|(tet, _)| *tet));
+        tets.sort_unstable();
+        sharing.triangles.iter().for_each(|&t| beside[t as usize] = tets);
     });
     let mut keys = Vec::with_capacity(beside.len());
-    for (t, tet) in beside.iter().enumerate() {
-        let whole = match tet {
-            None => mesh.triangles[t],
-            Some(tet) => whole(mesh.triangles[t], memory.corners[t], trees, *tet)?,
-        };
-        let mut sorted = whole;
-        sorted.sort_unstable();
-        keys.push((sorted, t, whole));
+    for (t, tets) in beside.iter().enumerate() {
+        let (mut whole, mut most) = (mesh.triangles[t], None);
+        // The first tet's corner is remembered. Where it was changed by others' hands, the other still tells what all parts are parts of.
+        for tet in tets.iter().flatten() {
+            let (of_tet, n_divided) = whole_of(mesh.triangles[t], memory.corners[t], trees, *tet)?;
+            if most.is_none_or(|most| n_divided > most) {
+                (whole, most) = (of_tet, Some(n_divided));
+            }
+        }
+        keys.push((rising(whole), t, whole));
     }
     // Triangles that name the same vertices twice over stay apart.
     let mut firsts: Vec<(usize, [VertexId; 3])> = Vec::new();
@@ -60,21 +63,30 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
     Ok(Gathered { triangles: firsts.into_iter().map(|(_, whole)| whole).collect(), patches, part_of })
 }
 
-/// The triangle that a triangle is a part of, if the tet is a part of one.
-fn whole(triangle: [VertexId; 3], corner: u8, trees: &Trees, tet: TetId) -> Result<[VertexId; 3]> {
-    let Some(top) = trees.top_of(tet.index()) else { return Ok(triangle) };
+/// The triangle that a triangle is a part of, if the tet is a part of one, and how often that was divided to come to the part.
+fn whole_of(
+    triangle: [VertexId; 3],
+    corner: u8,
+    trees: &Trees,
+    tet: TetId,
+) -> Result<([VertexId; 3], usize)> {
+    let Some(top) = trees.top_of(tet.index()) else { return Ok((triangle, 0)) };
     let mut knot = &trees.knots[trees.knot_of[tet.index()] as usize];
     let place = |v: &VertexId| knot.vertices.iter().position(|other| other == v).unwrap_or(0);
     let inside = || unfit("a triangle lies inside of a tet that was divided");
-    let mut facet = facet_of([0, 1, 2].map(|i| place(&triangle[i]))).ok_or_else(inside)?;
+    let places = [0, 1, 2].map(|i| place(&triangle[i]));
+    let mut facet = facet_of(places).ok_or_else(inside)?;
+    // A tet that is cut to fit has only a part of the facet, one that was divided with its neighbour the whole of a smaller one.
+    let mut n_divided = usize::from(places.iter().any(|k| *k > 3));
     while knot.parent != NONE && !std::ptr::eq(knot, &trees.knots[top as usize]) {
         let parent = &trees.knots[knot.parent as usize];
         let Some((way, _)) = parent.divided else { break };
         let child = eight(way)[knot.place];
         facet = facet_of(facet.map(|k| usize::from(child[k]))).ok_or_else(inside)?;
         knot = parent;
+        n_divided += 1;
     }
-    Ok(begin_at(facet, corner, knot, triangle))
+    Ok((begin_at(facet, corner, knot, triangle), n_divided))
 }
 
 /// The vertices of a facet, from a corner on if it has that.
