@@ -47,6 +47,7 @@ pub(crate) struct Asked {
     warn: Option<f64>,
     within: f64,
     horizon: Option<f64>,
+    hold: Option<f64>,
     remembered: usize,
 }
 
@@ -71,6 +72,7 @@ impl Asked {
             patches: self.watch.clone(),
             options: contact::Options { warn: self.warn, within: self.within, ..contact::Options::default() },
             horizon: self.horizon,
+            hold: self.hold,
         });
         Ok(Options {
             motion,

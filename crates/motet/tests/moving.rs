@@ -168,6 +168,7 @@ fn a_run_that_is_saved_and_loaded_ends_with_the_same_bytes() {
             patches: vec!["sphere".into(), "box".into()],
             options: contact::Options { warn: Some(1.5), ..contact::Options::default() },
             horizon: Some(3.0),
+            hold: None,
         };
         Options { watch: Some(watch), ..options() }
     };
@@ -304,6 +305,7 @@ fn what_comes_near_is_warned_of_before_it_is_there() {
         patches: vec!["sphere".into(), "box".into()],
         options: contact::Options { warn: Some(1.2), ..contact::Options::default() },
         horizon: Some(100.0),
+        hold: None,
     };
     let mut moving = MovingMesh::new(&mesh, Options { watch: Some(watch), ..options() }, &threads()).unwrap();
     for k in 1..=6 {
@@ -319,6 +321,53 @@ fn what_comes_near_is_warned_of_before_it_is_there() {
         assert_eq!(gaps.pairs[0].patches, ["sphere", "box"]);
         assert!(moving.gaps().unwrap().least() == gaps.least.unwrap());
     }
+}
+
+fn kept_apart(hold: f64) -> Options {
+    let watch = Watching {
+        patches: vec!["sphere".into(), "box".into()],
+        options: contact::Options { warn: Some(1.2), ..contact::Options::default() },
+        horizon: None,
+        hold: Some(hold),
+    };
+    Options { watch: Some(watch), ..options() }
+}
+
+#[test]
+fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.vtu");
+    let mesh = box_mesh();
+    let mut moving = MovingMesh::new(&mesh, kept_apart(0.5), &threads()).unwrap();
+    // In a corner of the box, nearer to both of its walls at last than it may be, and back.
+    for (k, by) in [1.0, 2.0, 3.0, 3.6, 3.8, 3.6, 2.0, 0.0].into_iter().enumerate() {
+        let displacement = sphere_goes(&moving, shift([by, by, 0.0]));
+        let step = moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
+        let gaps = step.gaps.unwrap();
+        assert!(step.complete && step.inverted == 0);
+        assert_eq!(gaps.held > 0, by > 3.5, "{by}");
+        assert!((gaps.least.unwrap() - (4.0 - by).max(0.5)).abs() < 1e-12, "{by}: {:?}", gaps.least);
+        // What was saved goes on alike.
+        moving.save(&file).unwrap();
+        moving = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap();
+    }
+    let came: Vec<Point> = mesh.points.iter().copied().filter(|p| is_sphere(*p)).collect();
+    assert!(came.iter().all(|p| moving.mesh().points.contains(p)), "the sphere is back where it was");
+}
+
+#[test]
+fn walls_that_cannot_be_kept_apart_are_told() {
+    let mesh = box_mesh();
+    for hold in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let told = MovingMesh::new(&mesh, kept_apart(hold), &threads()).unwrap_err();
+        assert_eq!(told.kind(), ErrorKind::Options);
+    }
+    // Saved without: there is nothing to keep apart.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.vtu");
+    MovingMesh::new(&mesh, options(), &threads()).unwrap().save(&file).unwrap();
+    let told = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap_err();
+    assert!(told.to_string().contains("moving:wall_bodies"), "{told}");
 }
 
 #[test]

@@ -43,6 +43,7 @@ class _Asked:
     warn: float | None = None
     within: float = float("inf")
     horizon: float | None = None
+    hold: float | None = None
     remembered: int = 64
 
     def __post_init__(self) -> None:
@@ -77,7 +78,8 @@ class MovingMesh:
     carry : mapping from names to "mean", "inherit" or "drop"
         What becomes of arrays where the mesh changes.
     watch : sequence of patches
-        Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time.
+        Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time; ``hold``: walls stop
+        at this distance, whatever they are told, each patch before those after it.
     remembered : int
         So many changes are remembered for :meth:`history_since`.
     threads : int

@@ -10,6 +10,7 @@ use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{Mover, mesh_velocity};
+use crate::moving::hold::Hold;
 use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{Known, Now, go_to};
 use crate::moving::options::Options;
@@ -32,6 +33,7 @@ pub struct MovingMesh {
     /// Changes of steps up to this one are no longer known.
     pub(super) forgotten: Option<usize>,
     watch: Option<Watch>,
+    hold: Option<Hold>,
 }
 
 /// Where in time a mesh is.
@@ -53,18 +55,26 @@ impl MovingMesh {
     /// As [`Mover::new`]; when a watched patch is not there.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
-        let wall = Wall::of(mesh, mover.boundary(), &options.motion);
+        let wall = Wall::of(mesh, mover.boundary(), &options)?;
         let known = Known::at_first(mesh, mover.boundary());
         let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
         let n_first = now.tets.len();
-        let mut moving = Self::of(options, wall, now, Clock { n_first, ..Clock::default() });
+        let mut moving = Self::of(options, wall, now, Clock { n_first, ..Clock::default() }, threads)?;
         moving.measure_gaps(threads)?;
         Ok(moving)
     }
 
-    pub(super) fn of(options: Options, wall: Wall, now: Now, clock: Clock) -> Self {
-        let watch = options.watch.clone().map(Watch::new);
-        Self { options, wall, now, clock, changes: VecDeque::new(), forgotten: None, watch }
+    pub(super) fn of(
+        options: Options,
+        wall: Wall,
+        now: Now,
+        clock: Clock,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let distance = options.watch.as_ref().and_then(|watch| watch.hold);
+        let hold = distance.map(|distance| Hold::new(distance, &wall.places, &wall.bodies, threads));
+        let (watch, hold) = (options.watch.clone().map(Watch::new), hold.transpose()?);
+        Ok(Self { options, wall, now, clock, changes: VecDeque::new(), forgotten: None, watch, hold })
     }
 
     /// Where the vertices that are driven were at first: those of the boundary, and of patches inside that were asked for, in the
@@ -161,7 +171,10 @@ impl MovingMesh {
         let begin = Instant::now();
         self.check(time, displacement)?;
         let start = self.clock.time;
-        let mut way = self.way(displacement, time, threads);
+        let mut displacement = displacement.to_vec();
+        let hold = self.hold.as_mut();
+        let held = hold.map_or(0, |hold| hold.stop(&self.wall.places, &mut displacement, threads));
+        let mut way = self.way(&displacement, time, threads);
         let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
         let Way { points, mut seconds, changes, legs, .. } = way;
         match changed {
@@ -177,7 +190,7 @@ impl MovingMesh {
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, ..self.clock };
         self.remember(&changes);
         let begin_contact = Instant::now();
-        let gaps = self.measure_gaps(threads)?;
+        let gaps = self.measure_gaps(threads)?.map(|gaps| super::Gaps { held, ..gaps });
         seconds.contact = begin_contact.elapsed().as_secs_f64();
         seconds.total = begin.elapsed().as_secs_f64();
         Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })

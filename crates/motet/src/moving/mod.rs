@@ -8,6 +8,7 @@
 //! | `now` | the mesh between two changes: where it is, what moves it, where each vertex was at first |
 //! | `shapes` | which tets are bad, and how bad the worst is |
 //! | `wall` | the walls as they came: what the caller's displacements are about, however the walls are divided by now |
+//! | `hold` | walls that are kept apart: what would come too near stops in front of it |
 //! | `watch` | how near patches are to each other, and how long surely nothing touches |
 //! | `swept` | the volume that each facet sweeps in a step, exact to rounding: what a flow on a moving mesh has to know |
 //! | `script` | what walls do in time, told in words or by frames |
@@ -50,6 +51,7 @@
 //! whose time integration needs the mesh before and after the change at the same time level finds both in [`Change`].
 
 mod handle;
+mod hold;
 mod legs;
 mod now;
 mod options;

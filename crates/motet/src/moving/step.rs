@@ -128,6 +128,8 @@ pub struct Gaps {
     pub pairs: Vec<Closest>,
     /// Vertices that warn.
     pub warned: usize,
+    /// Nodes of the first mesh that were stopped in front of another patch: see [`Watching::hold`](super::Watching::hold).
+    pub held: usize,
     /// Nothing touches earlier, at the velocities of this step; `None`: not within the horizon.
     pub touch_not_before: Option<f64>,
 }

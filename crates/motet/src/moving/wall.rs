@@ -1,9 +1,10 @@
 //! The walls as they came: what the caller's displacements are about, however the walls are divided by now.
 
-use crate::base::{Point, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::contact;
 use crate::mesh::{Mesh, Surface};
 use crate::motion::{FacetSet, SurfaceCarrier};
-use crate::moving::options::Motion;
+use crate::moving::options::Options;
 
 /// Stands for no node: a vertex that came later.
 pub(super) const NO_NODE: u32 = u32::MAX;
@@ -15,21 +16,35 @@ pub(super) struct Wall {
     pub(super) places: Vec<Point>,
     /// By number of node.
     pub(super) triangles: Vec<[VertexId; 3]>,
+    /// Those of the watched patches, each apart, where they are kept apart: else none.
+    pub(super) bodies: Vec<Vec<[VertexId; 3]>>,
 }
 
 impl Wall {
     /// `driven` are the vertices of the first mesh that the caller moves, rising.
-    pub(super) fn of(mesh: &Mesh, driven: &[VertexId], motion: &Motion) -> Self {
-        let mut triangles = Surface::boundary_of(mesh).triangles;
+    ///
+    /// # Errors
+    /// When a patch that is to be kept apart is not there, or is not driven.
+    pub(super) fn of(mesh: &Mesh, driven: &[VertexId], options: &Options) -> Result<Self> {
+        let Options { motion, watch, .. } = options;
+        let boundary = Surface::boundary_of(mesh);
+        let mut triangles = boundary.triangles.clone();
         for &label in &motion.inside {
             triangles.extend(FacetSet::of_patch(mesh, label).triangles());
         }
         let node = |v: VertexId| driven.binary_search(&v).ok().map(VertexId::new);
         let nodes = |t: &[VertexId; 3]| Some([node(t[0])?, node(t[1])?, node(t[2])?]);
-        Self {
+        let held = watch.as_ref().filter(|watch| watch.hold.is_some());
+        let bodies = held.map_or(Ok(Vec::new()), |watch| watch.bodies(mesh))?;
+        let of_body = |body: contact::Body| {
+            let turned = boundary.turned(&body.triangles).unwrap_or(body.triangles);
+            turned.iter().map(nodes).collect::<Option<Vec<_>>>().ok_or_else(|| not_driven(&body.name))
+        };
+        Ok(Self {
             places: driven.iter().map(|v| mesh.points[v.index()]).collect(),
             triangles: triangles.iter().filter_map(nodes).collect(),
-        }
+            bodies: bodies.into_iter().map(of_body).collect::<Result<_>>()?,
+        })
     }
 
     /// How the driven vertices of a later mesh take their displacements; `first` and `node` are about all of its vertices.
@@ -48,6 +63,11 @@ impl Wall {
         };
         Ok(Drive { node: driven.iter().map(|v| node[v.index()]).collect(), carrier })
     }
+}
+
+fn not_driven(name: &str) -> Error {
+    Error::input(format!("the patch {name} is to be kept apart from others, but is not driven"))
+        .remedy("name it as one inside that moves, or keep patches of the boundary apart")
 }
 
 /// How the driven vertices of a mesh take their displacements from those of the nodes.

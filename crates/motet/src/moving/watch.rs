@@ -88,6 +88,7 @@ fn told(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) ->
     Gaps {
         least: Some(gaps.least()).filter(|least| least.is_finite()),
         pairs: pairs.collect(),
+        held: 0,
         warned: gaps.bodies.iter().map(|body| body.warning.iter().filter(|w| **w).count()).sum(),
         touch_not_before: first.map(|first| first.time),
     }

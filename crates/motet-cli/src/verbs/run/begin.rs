@@ -149,7 +149,8 @@ fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
         within: asked.within.unwrap_or(f64::INFINITY),
         ..contact::Options::default()
     };
-    Ok(Some(Watching { patches: asked.patches.clone(), options, horizon: asked.horizon }))
+    let (horizon, hold) = (asked.horizon, asked.hold);
+    Ok(Some(Watching { patches: asked.patches.clone(), options, horizon, hold }))
 }
 
 /// What an entry of `refine` asks for, and after every how many steps: once, before the first, where it does not say.

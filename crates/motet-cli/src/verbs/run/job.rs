@@ -208,6 +208,8 @@ pub(super) struct Contact {
     #[serde(default)]
     pub(super) own: bool,
     pub(super) horizon: Option<f64>,
+    /// Walls stop at this distance.
+    pub(super) hold: Option<f64>,
 }
 
 impl Job {
@@ -279,9 +281,12 @@ impl Job {
                 "min_eas, margin, floor and keep_tets are shares",
             );
         }
-        let warn = self.contact.as_ref().and_then(|contact| contact.warn);
-        if let Some(warn) = warn.filter(|warn| *warn <= 0.0 || warn.is_nan()) {
-            return off(&format!("contact.warn is {warn}"), "give a distance above 0");
+        let contact = self.contact.as_ref();
+        let distances = contact.map(|contact| [("warn", contact.warn), ("hold", contact.hold)]);
+        for (key, value) in distances.into_iter().flatten() {
+            if let Some(value) = value.filter(|value| *value <= 0.0 || value.is_nan()) {
+                return off(&format!("contact.{key} is {value}"), "give a distance above 0");
+            }
         }
         if self.contact.is_none() && self.refine.iter().any(|refine| refine.gaps) {
             return off(

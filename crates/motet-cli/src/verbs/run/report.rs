@@ -40,6 +40,8 @@ pub(crate) struct Report {
     points: usize,
     /// As it came or went on, and at the end.
     pub(crate) tets: [usize; 2],
+    /// Steps in which walls stopped in front of others.
+    held_steps: usize,
     pub(crate) least_gap: Option<f64>,
     least_gap_at: Option<f64>,
     first_warned_at: Option<f64>,
@@ -66,6 +68,9 @@ pub(super) fn line(step: &Step, console: &Console) {
         text += &gaps.least.map_or_else(String::new, |gap| format!("  gap {}", short(gap)));
         if gaps.warned > 0 {
             text += " !";
+        }
+        if gaps.held > 0 {
+            text += &format!("  {} held", gaps.held);
         }
     }
     for change in &step.changes {
@@ -114,6 +119,7 @@ impl Report {
                 self.warned_steps += 1;
                 self.first_warned_at = self.first_warned_at.or(Some(step.time));
             }
+            self.held_steps += usize::from(gaps.held > 0);
         }
         self.seconds += step.seconds;
     }
@@ -146,7 +152,11 @@ impl Report {
                 Some(first) => format!("warned first at time {}", time(first)),
                 None => "nothing warned".to_owned(),
             };
-            console.say(format_args!("least gap {} at time {at}; {warned}", short(gap)));
+            let held = match self.held_steps {
+                0 => String::new(),
+                n => format!("; walls stopped in {n} steps"),
+            };
+            console.say(format_args!("least gap {} at time {at}; {warned}{held}", short(gap)));
         }
         let mut table = Table::new(["stage", "seconds", "a step"]);
         let all = &self.seconds;
