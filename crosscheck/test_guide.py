@@ -72,11 +72,13 @@ def commands(body, offset):
     return found
 
 
+def timeless(line):
+    return " ".join(TIME.sub("TIME", line).split())
+
+
 def masked(line):
     """Without what differs from machine to machine: times, and numbers but for 0."""
-    line = TIME.sub("TIME", line)
-    line = NUMBER.sub(lambda number: "0" if number.group() == "0" else "N", line)
-    return " ".join(line.split())
+    return NUMBER.sub(lambda number: "0" if number.group() == "0" else "N", timeless(line))
 
 
 def fits(expected, line):
@@ -98,7 +100,7 @@ def matched(expected, lines):
     if not lines or not fits(expected[0], lines[0]):
         return None
     rest = matched(expected[1:], lines[1:])
-    now = lines[0]
+    now = expected[0] if timeless(expected[0]) == timeless(lines[0]) else lines[0]
     if expected[0].endswith("..."):
         now = lines[0][: len(expected[0]) - 3].rstrip() + " ..."
     return None if rest is None else [now, *rest]
