@@ -92,7 +92,9 @@ def matched(expected, lines):
     if not expected:
         return [] if not lines else None
     if expected[0] == "...":
-        for k in range(len(lines) + 1):
+        # Where several lines would do, the one that begins with the same words.
+        named = expected[1].split()[:2] if expected[1:] else []
+        for k in sorted(range(len(lines) + 1), key=lambda k: k == len(lines) or lines[k].split()[:2] != named):
             rest = matched(expected[1:], lines[k:])
             if rest is not None:
                 return ["...", *rest]
