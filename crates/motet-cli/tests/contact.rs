@@ -133,6 +133,8 @@ fn a_series_goes_in_and_a_series_comes_out() {
     assert!(!steps[3]["pairs"][0]["crossings"].as_array().expect("a list").is_empty());
     assert!(steps[4]["pairs"][0]["depth"].as_f64().expect("a depth") > 0.2);
     let frames = read_series(folder.path("out/gaps.pvd")).expect("a series");
+    let call = folder.motet(["contact", "left.vtp", "right.pvd", "-o", "last.vtp"]).assert().code(0);
+    assert!(stderr(&call).contains("the last of 5 frames"), "{}", stderr(&call));
     assert_eq!(frames.len(), 5);
     let last = read(&frames[4].1).expect("a frame");
     assert!(values(&last, "gap").iter().any(|&gap| gap < -0.2));

@@ -197,6 +197,27 @@ fn a_motion_that_cannot_be_gone_to_its_end_is_told() {
 }
 
 #[test]
+fn walls_that_would_meet_stop_where_they_are_told_to() {
+    let folder = folder();
+    let job = JOB
+        .replace("shift = [3, 0, 0]", "shift = [3.8, 0, 0]")
+        .replace("warn = 1.5", "warn = 1.5\nhold = 1.0");
+    folder.write("job.toml", job.as_bytes());
+    let call = folder.motet(["run", "job.toml"]).assert().code(0);
+    assert!(
+        stdout(&call).contains(" held") && stdout(&call).contains("walls stopped in"),
+        "{}",
+        stdout(&call)
+    );
+    let gaps: Vec<Value> =
+        lines(&folder, "out/moved.jsonl").into_iter().map(|line| line["gaps"].clone()).collect();
+    let least = gaps.iter().filter_map(|gaps| gaps["least"].as_f64()).fold(f64::INFINITY, f64::min);
+    assert!((least - 1.0).abs() < 1e-9, "{least}");
+    assert!(gaps.iter().any(|gaps| gaps["held"].as_u64() > Some(0)));
+    assert!(gaps.iter().any(|gaps| gaps["held"].as_u64() == Some(0)));
+}
+
+#[test]
 fn what_is_wrong_with_a_job_is_told_with_its_line() {
     let folder = folder();
     let refused = |from: &str, to: &str, told: &[&str]| {
@@ -220,6 +241,7 @@ fn what_is_wrong_with_a_job_is_told_with_its_line() {
     refused("fixed = [\"box\"]", "fixed = [\"box\", \"sphere\"]", &["no vertex of patch sphere"]);
     refused("contents = [\"dye\"]", "contents = [\"ink\"]", &["ink", "dye"]);
     refused("warn = 1.5", "warn = -1.5", &["contact.warn"]);
+    refused("warn = 1.5", "hold = 0", &["contact.hold"]);
     refused("smooth = 2", "method = \"magic\"", &["magic", "guided"]);
     refused("smooth = 2", "rigid_layer = \"thick\"", &["rigid_layer"]);
     refused("shift = [3, 0, 0]", "swell = 3", &["both swells and goes"]);
@@ -268,19 +290,21 @@ fn measured_walls_are_capped_meshed_and_followed_by_a_mesh_of_its_own_triangles(
     let repaired =
         ["remesh", "lumen.vtu", "-o", "lumen2.vtu", "--surface", "adapt", "--distance", "0.02", "-q"];
     made(folder.motet(repaired).assert());
-    for (mesh, matching) in [("lumen.vtu", "position"), ("lumen2.vtu", "nearest")] {
+    // Without a number of steps there is one for each measured wall.
+    for (mesh, matching, steps) in [("lumen.vtu", "position", "steps = 12\n"), ("lumen2.vtu", "nearest", "")]
+    {
         let job = format!(
-            "mesh = \"{mesh}\"\noutput = \"{matching}.pvd\"\n[time]\nperiod = 0.6\nsteps = 12\n[motion]\nsurfaces = \"wall.pvd\"\nmatch = \"{matching}\"\n"
+            "mesh = \"{mesh}\"\noutput = \"{matching}.pvd\"\n[time]\nperiod = 0.6\n{steps}[motion]\nsurfaces = \"wall.pvd\"\nmatch = \"{matching}\"\n"
         );
         folder.write("job.toml", job.as_bytes());
         let call = folder.motet(["run", "job.toml"]).assert();
         assert!([Some(0), Some(4)].contains(&call.get_output().status.code()), "{}", stderr(&call));
         let frames = read_series(folder.path(&format!("{matching}.pvd"))).unwrap();
-        assert_eq!(frames.len(), 13);
+        let every = if steps.is_empty() { 1 } else { 2 };
+        assert_eq!(frames.len(), 1 + 6 * every);
         let volume = |file: &std::path::Path| Surface::boundary_of(&read(file).unwrap()).enclosed_volume();
         for k in 0..6 {
-            // Every other step is a frame.
-            let [ours, theirs] = [&frames[2 * k].1, &series[k].1].map(|file| volume_of(file, &volume));
+            let [ours, theirs] = [&frames[every * k].1, &series[k].1].map(|file| volume_of(file, &volume));
             assert!((ours - theirs).abs() < 2e-3 * theirs, "{matching} {k}: {ours} {theirs}");
         }
         let lines = lines(&folder, &format!("{matching}.jsonl"));

@@ -35,6 +35,12 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     let threads = common.threads()?;
     let frames = Frames::new(args)?;
     let n = frames.times.len();
+    if n > 1 && !io::can_write_series(&args.output) {
+        console.warn(format_args!(
+            "{} is one file: the last of {n} frames is written there; name a .pvd to keep all",
+            args.output.display()
+        ));
+    }
     let bar = console.bar(n as u64, "measuring");
     let mut report = Report::new(args);
     let mut series =

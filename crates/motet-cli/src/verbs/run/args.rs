@@ -19,7 +19,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
 
   [time]
   period = 1.0                    # in the unit of time of the output
-  steps = 25                      # in a period [for measured walls one a frame]
+  steps = 25                      # in a period [20; for measured walls one a frame]
   periods = 3
 
   [[device]]                      # put into the mesh first, as `motet implant` does

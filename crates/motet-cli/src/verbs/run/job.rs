@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use motet::base::Point;
 use motet::mesh::history::Carry;
-use motet::{Error, Result};
+use motet::{Error, Result, io};
 use serde::Deserialize;
 
 /// All that a job file says.
@@ -220,7 +220,10 @@ impl Job {
     pub(super) fn read(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, &e))?;
         let job = toml::from_str(&text).map_err(|e| off(&text, &e).in_file(file))?;
-        let job = Self { file: file.to_owned(), ..job };
+        let mut job = Self { file: file.to_owned(), ..job };
+        if let (None, Some(series)) = (job.time.steps, &job.motion.surfaces) {
+            job.time.steps = Some(io::read_series(job.path(series))?.len());
+        }
         job.check().map_err(|e| e.in_file(file))?;
         Ok(job)
     }
