@@ -34,6 +34,8 @@ pub struct MovingMesh {
     pub(super) forgotten: Option<usize>,
     watch: Option<Watch>,
     hold: Option<Hold>,
+    /// How many nodes the last step stopped.
+    held: usize,
 }
 
 /// Where in time a mesh is.
@@ -74,7 +76,17 @@ impl MovingMesh {
         let distance = options.watch.as_ref().and_then(|watch| watch.hold);
         let hold = distance.map(|distance| Hold::new(distance, &wall.places, &wall.bodies, threads));
         let (watch, hold) = (options.watch.clone().map(Watch::new), hold.transpose()?);
-        Ok(Self { options, wall, now, clock, changes: VecDeque::new(), forgotten: None, watch, hold })
+        Ok(Self {
+            options,
+            wall,
+            now,
+            clock,
+            changes: VecDeque::new(),
+            forgotten: None,
+            watch,
+            hold,
+            held: 0,
+        })
     }
 
     /// Where the vertices that are driven were at first: those of the boundary, and of patches inside that were asked for, in the
@@ -190,7 +202,8 @@ impl MovingMesh {
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, ..self.clock };
         self.remember(&changes);
         let begin_contact = Instant::now();
-        let gaps = self.measure_gaps(threads)?.map(|gaps| super::Gaps { held, ..gaps });
+        self.held = held;
+        let gaps = self.measure_gaps(threads)?;
         seconds.contact = begin_contact.elapsed().as_secs_f64();
         seconds.total = begin.elapsed().as_secs_f64();
         Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })
@@ -333,7 +346,7 @@ impl MovingMesh {
         let ahead = velocity.as_ref().map(|velocity| (velocity.as_slice(), self.clock.dt));
         let gaps = watch.measure(&self.now.mesh, ahead, threads);
         self.watch = Some(watch);
-        gaps.map(Some)
+        gaps.map(|gaps| Some(super::Gaps { held: self.held, ..gaps }))
     }
 
     fn certified(&self, shape: &Shape) -> Step {

@@ -45,7 +45,7 @@
 //! The mesh of the last change is the *reference*: as long as nothing changes, a step depends on where the walls are and on nothing else, so a
 //! wall that comes back brings every vertex back to the bit. A step that would leave a tet flatter than [`Options::floor`], or inverted, is gone in part;
 //! what is bad there is repaired while it still has a volume, and the mesh as it is then is the new reference. What is bad
-//! at the end of the step is repaired there.
+//! at the end of the step is repaired there; where that leaves what no wall forces, everything is made as good as it gets, once.
 //!
 //! A change of connectivity happens at a time level and is announced: [`Step::changes`] has the time, [`MovingMesh::history_since`] the maps. A solver
 //! whose time integration needs the mesh before and after the change at the same time level finds both in [`Change`].
