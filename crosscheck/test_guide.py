@@ -115,7 +115,7 @@ def environment(motet, folder):
     (programs / "motet").symlink_to(motet)
     (programs / "python").write_text(f'#!/bin/sh\nexec "{sys.executable}" "$@"\n')
     (programs / "python").chmod(0o755)
-    # `--define-prefix` and the loader's path stand for an installation of the reader's own.
+    # The loader's path stands for an installation where the system looks.
     return dict(os.environ, PATH=f"{programs}:{os.environ['PATH']}", PKG_CONFIG_PATH=str(CAPI / "lib" / "pkgconfig"), LD_LIBRARY_PATH=str(CAPI / "lib"))
 
 

@@ -36,6 +36,6 @@ def test_types_change_where_the_paper_has_its_limits(load):
 
 
 def test_table_1_runs_on_its_smallest_size(motet):
-    done = subprocess.run([sys.executable, FOLDER / "table_1.py", "A"], capture_output=True, text=True, env={**os.environ, "MOTET": str(motet.path)})
+    done = subprocess.run([sys.executable, FOLDER / "table_1.py", "A"], capture_output=True, text=True, env={**os.environ, "MOTET_BIN_DIR": str(motet.path.parent)})
     assert done.returncode == 0, done.stderr
     assert "| A | 10,816 | 56,700 | 2,704 |" in done.stdout

@@ -14,9 +14,8 @@ from xml.etree import ElementTree
 import numpy as np
 import pyvista as pv
 from matplotlib.colors import LinearSegmentedColormap
-from PIL import Image, ImageDraw
 
-from pictures import HERE, INK, font, lit, save
+from pictures import HERE, lit, save_sheet, scale_of, shot
 
 PANEL = (420, 330)
 RANGE = (0.0, 0.6)
@@ -42,10 +41,7 @@ def panel(mesh):
     plotter.camera_position = [centre + np.array([-62.0, 4.0, 16.0]), centre + np.array([0.0, -1.2, -0.6]), (0.0, 0.0, 1.0)]
     plotter.camera.view_angle = 15.5
     plotter.enable_depth_peeling(8)
-    plotter.enable_anti_aliasing("ssaa")
-    image = Image.fromarray(plotter.screenshot(return_img=True))
-    plotter.close()
-    return image
+    return shot(plotter)
 
 
 def main():
@@ -53,24 +49,13 @@ def main():
         sys.exit(__doc__)
     folder = Path(sys.argv[1])
     entries = list(ElementTree.parse(folder / "gaps.pvd").iter("DataSet"))
-    width, height = PANEL
-    sheet = Image.new("RGB", (len(STEPS) * width, height + 84), "white")
-    draw = ImageDraw.Draw(sheet)
-    for column, step in enumerate(STEPS):
+    pictures = []
+    for step in STEPS:
         mesh = pv.read(folder / entries[step].get("file"))
-        sheet.paste(panel(mesh), (column * width, 0))
         stent = np.unique(mesh.cells_dict[pv.CellType.TRIANGLE][mesh.cell_data["body"] == 1])
         gap, warned = np.nanmin(mesh["gap"]), int(mesh["warning"][stent].sum())
-        text = f"step {step}: gap {gap:.2f} mm, " + (f"{warned:,} vertices warn" if warned else "no warning")
-        draw.text((column * width + width // 2, height + 6), text, fill=INK, font=font(16), anchor="ma")
-    left, top, long = sheet.width // 2 - 150, height + 42, 300
-    for x in range(long):
-        draw.line([(left + x, top), (left + x, top + 12)], fill=tuple(int(255 * c) for c in GAP(x / (long - 1))[:3]))
-    for value in (0.0, WARN, 0.3, 0.45, 0.6):
-        x = left + int(value / RANGE[1] * (long - 1))
-        draw.text((x, top + 17), f"{value:g}", fill=INK, font=font(14), anchor="ma")
-    draw.text((left - 12, top + 6), "gap", fill=INK, font=font(15), anchor="rm")
-    save(sheet, HERE / "contact.png")
+        pictures.append((panel(mesh), f"step {step}: gap {gap:.2f} mm, " + (f"{warned:,} vertices warn" if warned else "no warning")))
+    save_sheet(pictures, HERE / "contact.png", bar=scale_of(GAP, RANGE, (0.0, WARN, 0.3, 0.45, 0.6), "gap"))
 
 
 if __name__ == "__main__":

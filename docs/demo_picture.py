@@ -10,11 +10,9 @@ import sys
 from pathlib import Path
 
 import pyvista as pv
-from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight
+from pictures import COPPER, EDGES, HERE, QUALITY, RANGE, lit, save_sheet, seen_straight
 
 PANEL = (520, 400)
-COPPER = "#b5652f"
-EDGES = dict(show_edges=True, edge_color=INK, line_width=0.6, edge_opacity=0.45, ambient=0.65, diffuse=0.4, specular=0.0)
 
 
 def frame(folder, name, k):
@@ -56,7 +54,7 @@ def main():
     for k, what in ((6, "flap up"), (18, "flap down")):
         mesh = frame(folder, "dissection", k)
         panels.append((panel(mesh, 2, 3.0, (0.0, 0.0, 3.0), 2.2, (0.0, 0.0, 40.0), (0.0, 1.0, 0.0), "flap"), text(mesh, what)))
-    save_row(panels, HERE / "run.png")
+    save_sheet(panels, HERE / "run.png")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,11 @@
 """Draws the pictures of docs/guide, from what the commands of its pages make.
 
     ./test --setup && pip install ./python                (once, in target/venv)
-    cargo build --workspace --bins
+    cargo build --release
     target/venv/bin/python docs/guide_pictures.py         (writes docs/guide/*.png)
 
 Each page is followed, as `crosscheck/test_guide.py` follows it, until the files of its picture are there.
 """
-import os
 import sys
 import tempfile
 from pathlib import Path
@@ -15,16 +14,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pyvista as pv
 from contact_picture import GAP
-from matplotlib.colors import to_hex
-from pictures import HERE, INK, QUALITY, RANGE, colour_bar, font, lit, save, seen_straight, shot, tets
-from PIL import Image, ImageDraw
+from pictures import COPPER, EDGES, HERE, INK, QUALITY, RANGE, colour_bar, lit, save_sheet, scale_of, seen_straight, shot, tets
+from program import binary
 
 sys.path.insert(0, str(HERE.parent / "crosscheck"))
 from test_guide import follow  # noqa: E402
 
 GUIDE = HERE / "guide"
-MOTET = Path(os.environ.get("MOTET_BIN_DIR") or HERE.parent / "target" / "debug").resolve() / "motet"
-EDGES = dict(show_edges=True, edge_color=INK, line_width=0.9, edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
 SURFACE = dict(color="#dfe6ec", show_edges=True, edge_color=INK, line_width=0.9, edge_opacity=0.45, ambient=0.7, diffuse=0.38)
 PANEL, SQUARE = (600, 390), (440, 440)
 # Where the camera looks, and how much it sees from top to bottom.
@@ -47,18 +43,6 @@ def seen(plotter, view):
     return seen_straight(plotter, view[0], np.array([0.0, 0.0, 40.0]), (0.0, 1.0, 0.0), view[1])
 
 
-def save_panels(pictures, name, bar):
-    """Pictures beside each other, each with its text, and a scale below."""
-    width, height = pictures[0][0].size
-    sheet = Image.new("RGB", (len(pictures) * width, height + 92), "white")
-    draw = ImageDraw.Draw(sheet)
-    for column, (picture, text) in enumerate(pictures):
-        sheet.paste(picture, (column * width, 0))
-        draw.text((column * width + width // 2, height + 8), text, fill=INK, font=font(18), anchor="ma")
-    bar(draw, sheet.width // 2 - 180, height + 46, 360)
-    save(sheet, GUIDE / name)
-
-
 def counted(mesh, what):
     bad = np.count_nonzero(mesh["EAS"] < 0.2)
     return f"{what}: {mesh.n_cells:,} tets, {f'{bad:,}' if bad else 'none'} bad"
@@ -69,7 +53,7 @@ def draw_mesh(folder):
     surface = outside(folder / "vessel.stl")
     plotter = lit(surface, PANEL)
     plotter.add_mesh(surface, **SURFACE)
-    save_panels([(seen(plotter, WHOLE), f"the surface: {surface.n_cells:,} triangles"), (seen(cut(lumen), WHOLE), counted(lumen, "cut open"))], "mesh.png", colour_bar)
+    save_sheet([(seen(plotter, WHOLE), f"the surface: {surface.n_cells:,} triangles"), (seen(cut(lumen), WHOLE), counted(lumen, "cut open"))], GUIDE / "mesh.png", bar=colour_bar)
 
 
 def draw_wall_moves(folder):
@@ -81,9 +65,9 @@ def draw_wall_moves(folder):
         if mesh is frames[1]:
             line = at_rest.copy()
             line.points[:, 2] = 2.0  # before all else
-            plotter.add_mesh(line, color="#b5652f", line_width=4, lighting=False)
+            plotter.add_mesh(line, color=COPPER, line_width=4, lighting=False)
         pictures.append((seen(plotter, WHOLE), counted(mesh, text)))
-    save_panels(pictures, "wall-moves.png", colour_bar)
+    save_sheet(pictures, GUIDE / "wall-moves.png", bar=colour_bar)
 
 
 def draw_device(folder):
@@ -91,9 +75,9 @@ def draw_device(folder):
     for name, text in (("coiled", "put in"), ("fine", "refined"), ("better", "repaired")):
         mesh = tets(folder / f"{name}.vtu")
         plotter = cut(mesh, SQUARE)
-        plotter.add_mesh(outside(folder / "coil.vtp"), color="#b5652f", ambient=0.5, diffuse=0.5, specular=0.2, specular_power=10)
+        plotter.add_mesh(outside(folder / "coil.vtp"), color=COPPER, ambient=0.5, diffuse=0.5, specular=0.2, specular_power=10)
         pictures.append((seen(plotter, SAC), counted(mesh, text)))
-    save_panels(pictures, "device.png", colour_bar)
+    save_sheet(pictures, GUIDE / "device.png", bar=colour_bar)
 
 
 def draw_gaps(folder):
@@ -113,14 +97,7 @@ def draw_gaps(folder):
         least = np.nanmin(mesh["gap"])
         pictures.append((shot(plotter), f"step {step}: least gap {least:.2f}" + (", warns" if least < warn else "")))
 
-    def bar(draw, left, top, width):
-        for x in range(width):
-            draw.line([(left + x, top), (left + x, top + 12)], fill=to_hex(GAP(x / (width - 1))))
-        for value in (0.0, warn, 2 * warn, 4 * warn):
-            draw.text((left + int(value / (4 * warn) * (width - 1)), top + 18), f"{value:g}", fill=INK, font=font(15), anchor="ma")
-        draw.text((left - 14, top + 6), "gap", fill=INK, font=font(16), anchor="rm")
-
-    save_panels(pictures, "gaps.png", bar)
+    save_sheet(pictures, GUIDE / "gaps.png", bar=scale_of(GAP, (0.0, 4 * warn), (0.0, warn, 2 * warn, 4 * warn), "gap"))
 
 
 PICTURES = {"README": ("motet info", draw_mesh), "wall-moves": ("motet move lumen.vtu", draw_wall_moves), "device": ("motet remesh fine.vtu", draw_device), "gaps": ("motet contact stent.pvd", draw_gaps)}
@@ -129,7 +106,7 @@ PICTURES = {"README": ("motet info", draw_mesh), "wall-moves": ("motet move lume
 def main():
     for page, (last, draw) in PICTURES.items():
         with tempfile.TemporaryDirectory() as folder:
-            for command, code, lines in follow(GUIDE / f"{page}.md", MOTET, Path(folder)):
+            for command, code, lines in follow(GUIDE / f"{page}.md", binary(), Path(folder)):
                 if code != command.code:
                     sys.exit(f"$ {command.words}\n" + "\n".join(lines))
                 if command.words.startswith(last):

@@ -16,12 +16,10 @@ from pathlib import Path
 
 import numpy as np
 import pyvista as pv
-from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight, shot, tets
+from pictures import COPPER, EDGES, HERE, QUALITY, RANGE, lit, save_sheet, seen_straight, shot, tets
 
 PANEL = (520, 400)
-COPPER = "#b5652f"
 BLUE = "#2f7fb5"
-EDGES = dict(show_edges=True, edge_color=INK, line_width=0.8, edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
 # Where the camera looks, and how much it sees from top to bottom.
 WHOLE, TURNS, BOX = ((0.0, 0.3, 0.0), 8.2), ((0.75, 2.2, 0.0), 1.8), ((0.0, 0.0, 0.0), 5.9)
 ACROSS = ((0.0, 0.0, 0.0), 2.6)
@@ -65,10 +63,10 @@ def main():
     def text(mesh, what):
         return f"{what}: {mesh.n_cells:,} tets, {int((mesh.cell_data['region'] > 1).sum()):,} in it"
 
-    save_row([(panel(box, BOX), f"a box of {box.n_cells:,} tets"), (panel(with_ball, BOX), text(with_ball, "with a ball"))], HERE / "implant_ball.png")
-    save_row([(panel(host, WHOLE), f"host: {host.n_cells:,} tets"), (panel(with_coil, WHOLE), text(with_coil, "with the coil")),
+    save_sheet([(panel(box, BOX), f"a box of {box.n_cells:,} tets"), (panel(with_ball, BOX), text(with_ball, "with a ball"))], HERE / "implant_ball.png")
+    save_sheet([(panel(host, WHOLE), f"host: {host.n_cells:,} tets"), (panel(with_coil, WHOLE), text(with_coil, "with the coil")),
               (panel(with_coil, TURNS), "turns of the coil")], HERE / "implant.png")
-    save_row([(panel(with_stent, WHOLE), text(with_stent, "with the stent")),
+    save_sheet([(panel(with_stent, WHOLE), text(with_stent, "with the stent")),
               (panel(with_stent, ACROSS, axis=0, offset=(40.0, 6.0, 0.0)), "across the vessel, at the neck"),
               (surface_panel(folder / "with_stent.vtu"), "blue: stent and wall in common")], HERE / "implant_wall.png")
 

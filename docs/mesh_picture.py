@@ -10,7 +10,7 @@ The tets behind a plane along the vessel, coloured by their equi-angle quality; 
 """
 import sys
 
-from pictures import HERE, INK, QUALITY, RANGE, lit, save_row, seen_straight, tets
+from pictures import HERE, INK, QUALITY, RANGE, lit, save_sheet, seen_straight, tets
 
 PANEL = (520, 400)
 # Where the camera looks, and how much it sees from top to bottom.
@@ -32,7 +32,7 @@ def main():
     filled, layered = (tets(path) for path in sys.argv[1:])
     panels = [(filled, WHOLE, f"{filled.n_cells:,} tets, sizes from the surface"), (layered, WHOLE, f"{layered.n_cells:,} tets, four layers on the wall"),
               (layered, NECK, "the neck of the sac")]
-    save_row([(panel(mesh, *view), text) for mesh, view, text in panels], HERE / "mesh.png")
+    save_sheet([(panel(mesh, *view), text) for mesh, view, text in panels], HERE / "mesh.png")
 
 
 if __name__ == "__main__":

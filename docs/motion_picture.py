@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from pictures import HERE, QUALITY, RANGE, lit, save_row, seen_straight, tets
+from pictures import HERE, QUALITY, RANGE, lit, save_sheet, seen_straight, tets
 
 sys.path.append(str(HERE.parent / "bench-compare"))
 PANEL = (520, 470)
@@ -56,7 +56,7 @@ def main():
         sys.exit(__doc__)
     pictures = [panel(path) for path in sys.argv[1:]]
     words = ("a flap in a channel", "bent, --method delaunay", "bent, --method guided")
-    save_row([(picture, f"{text}: {bad} bad tets") for (picture, bad), text in zip(pictures, words)], HERE / "motion.png")
+    save_sheet([(picture, f"{text}: {bad} bad tets") for (picture, bad), text in zip(pictures, words)], HERE / "motion.png")
 
 
 if __name__ == "__main__":

@@ -29,6 +29,9 @@ from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
 HERE = Path(__file__).resolve().parent
 PANEL = (550, 550)
 INK = "#22303c"
+COPPER = "#b5652f"
+# Lines of tets.
+EDGES = dict(show_edges=True, edge_color=INK, line_width=0.8, edge_opacity=0.5, ambient=0.65, diffuse=0.4, specular=0.0)
 RANGE = (0.0, 0.8)
 # Red is bad (below 0.2), sand is fair, blue-green is good; pale enough that the edges stay visible.
 QUALITY = LinearSegmentedColormap.from_list("quality", [
@@ -93,14 +96,19 @@ def seen_straight(plotter, centre, offset, up, height):
     return shot(plotter)
 
 
-def save_row(pictures, path):
-    """Pictures of one size beside each other, each with its text below."""
+def save_sheet(pictures, path, columns=None, bar=None):
+    """Pictures of one size in rows, all in one where no number of columns is said, each with its text below; `bar` draws a scale under all of them."""
     width, height = pictures[0][0].size
-    sheet = Image.new("RGB", (len(pictures) * width, height + 40), "white")
+    columns = columns or len(pictures)
+    rows, foot = -(-len(pictures) // columns), 52 if bar else 0
+    sheet = Image.new("RGB", (columns * width, rows * (height + 40) + foot), "white")
     draw = ImageDraw.Draw(sheet)
-    for column, (picture, text) in enumerate(pictures):
-        sheet.paste(picture, (column * width, 0))
-        draw.text((column * width + width // 2, height + 8), text, fill=INK, font=font(17), anchor="ma")
+    for i, (picture, text) in enumerate(pictures):
+        left, top = i % columns * width, i // columns * (height + 40)
+        sheet.paste(picture, (left, top))
+        draw.text((left + width // 2, top + height + 8), text, fill=INK, font=font(17), anchor="ma")
+    if bar:
+        bar(draw, sheet.width // 2 - 180, sheet.height - foot + 6, 360)
     save(sheet, path)
 
 
@@ -173,16 +181,22 @@ def font(size):
     return ImageFont.truetype(find_font("DejaVu Sans"), size)
 
 
-def colour_bar(draw, left, top, width):
-    """The scale, with the threshold of bad tets."""
-    low, high = RANGE
-    for x in range(width):
-        colour = tuple(int(255 * c) for c in QUALITY(x / (width - 1))[:3])
-        draw.line([(left + x, top), (left + x, top + 12)], fill=colour)
-    for value in (0.0, 0.2, 0.4, 0.6, 0.8):
-        x = left + int((value - low) / (high - low) * (width - 1))
-        draw.text((x, top + 18), f"{value:g}", fill=INK, font=font(15), anchor="ma")
-    draw.text((left - 14, top + 6), "EAS", fill=INK, font=font(16), anchor="rm")
+def scale_of(colours, limits, ticks, name):
+    """What draws a scale of these colours: `(draw, left, top, width)`."""
+    def bar(draw, left, top, width):
+        for x in range(width):
+            colour = tuple(int(255 * c) for c in colours(x / (width - 1))[:3])
+            draw.line([(left + x, top), (left + x, top + 12)], fill=colour)
+        for value in ticks:
+            x = left + int((value - limits[0]) / (limits[1] - limits[0]) * (width - 1))
+            draw.text((x, top + 18), f"{value:g}", fill=INK, font=font(15), anchor="ma")
+        draw.text((left - 14, top + 6), name, fill=INK, font=font(16), anchor="rm")
+
+    return bar
+
+
+# The scale of quality, with the threshold of bad tets.
+colour_bar = scale_of(QUALITY, RANGE, (0.0, 0.2, 0.4, 0.6, 0.8), "EAS")
 
 
 def main():

@@ -12,7 +12,7 @@ import sys
 
 import pyvista as pv
 
-from pictures import HERE, QUALITY, RANGE, lit, save_row, seen_straight, tets
+from pictures import HERE, QUALITY, RANGE, lit, save_sheet, seen_straight, tets
 
 PANEL = (520, 560)
 PLANE = 43.3
@@ -40,7 +40,7 @@ def main():
     cut = mesh.slice(normal="y", origin=(0.0, PLANE, 0.0), generate_triangles=False)
     wall = mesh.extract_surface(algorithm="dataset_surface")
     texts = (f"{mesh.n_cells:,} tets", "the sac, cut through", "one turn of the wire, four tets across")
-    save_row([(panel(cut, coil, wall, *view), text) for view, text in zip(VIEWS, texts)], HERE / "refine.png")
+    save_sheet([(panel(cut, coil, wall, *view), text) for view, text in zip(VIEWS, texts)], HERE / "refine.png")
 
 
 if __name__ == "__main__":

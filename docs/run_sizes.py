@@ -20,9 +20,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from motet import shapes
+from program import binary
 
 HERE = Path(__file__).resolve().parent
-MOTET = HERE.parent / "target/release/motet"
 # Circles of latitude of the sphere, and layers from it to the box.
 SIZES = [(10, 14), (16, 22), (28, 35), (48, 60)]
 STAGES = {"motion": "motion", "quality": "quality", "repair": "repair", "setup": "set-up", "total": "step"}
@@ -46,7 +46,7 @@ def measured(folder, n, layers):
     """Tets, seconds of each stage of a step, and bytes that one run takes."""
     shapes.sphere_in_box(n, layers).save(folder / "box.vtu")
     (folder / "job.toml").write_text(JOB)
-    held = watched([MOTET, "run", "job.toml", "--threads", "2"], folder)
+    held = watched([binary(), "run", "job.toml", "--threads", "2"], folder)
     lines = [json.loads(line) for line in (folder / "out/box.jsonl").read_text().splitlines()][1:]
     times = [json.loads(line)["seconds"] for line in (folder / "out/box.times.jsonl").read_text().splitlines()][1:]
     stages = {name: np.mean([second[key] for second in times]) for key, name in STAGES.items()}

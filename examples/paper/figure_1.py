@@ -7,9 +7,9 @@
 """
 import numpy as np
 import pyvista as pv
-from common import COPPER, DOCS, EDGES, PALE, behind, grid, motet_json, patch_triangles, poly, save_sheet, work
+from common import DOCS, PALE, behind, grid, motet_json, patch_triangles, poly, work
 from matplotlib.colors import LinearSegmentedColormap
-from pictures import INK, lit, seen_straight
+from pictures import COPPER, EDGES, INK, lit, save_sheet, seen_straight
 
 PANEL = (420, 400)
 SHIFT = np.array([1.6, 0.0, 0.0])
@@ -66,7 +66,7 @@ def main():
     told = np.where(is_sphere[:, None], SHIFT, 0.0)
     moved = mesh.copy()
     moved.points = mover.step(told)
-    save_sheet(panels(mesh, moved, at[is_sphere], graph_tets(path)), 3, DOCS / "paper_1.png")
+    save_sheet(panels(mesh, moved, at[is_sphere], graph_tets(path)), DOCS / "paper_1.png", 3)
     before, after = (one.quality()[one.cell_ids("tetra")] for one in (mesh, moved))
     print(f"{mesh.n_points} vertices, {len(at)} on the boundary; worst EAS {before.min():.3f}, moved {after.min():.3f}")
 

@@ -6,8 +6,8 @@ The mesh follows as an elastic body, as in the paper, (a) to (b) in four equal s
 from the first place, each repaired for itself; the second a longer way, repaired after every step of it.
 """
 import numpy as np
-from common import BAD, DOCS, EDGES, behind, grid, patch_triangles, poly, print_table, quality_bar, save_sheet, surface
-from pictures import QUALITY, RANGE, lit, seen_straight
+from common import BAD, DOCS, behind, grid, patch_triangles, poly, print_table, surface
+from pictures import EDGES, QUALITY, RANGE, colour_bar, lit, save_sheet, seen_straight
 
 PANEL = (600, 236)
 RADIUS = 0.5
@@ -95,7 +95,7 @@ def main():
     words[0], words[-1] = f"(a) {words[0]}", f"(b) {words[-1]}"
     meshes = [mesh, *moved, repaired]
     pictures = [panel(one, word) for one, word in zip(meshes, ["the first place", *words, "(c) repaired"])]
-    save_sheet(pictures, 2, DOCS / "paper_11.png", quality_bar())
+    save_sheet(pictures, DOCS / "paper_11.png", 2, colour_bar)
     print()
     step_by_step(mesh)
 

@@ -6,8 +6,8 @@ Refined first, until no edge at the wire is longer than SIZE, then the wire is p
 across it, and through the sac; lumen in the colour of its quality, wire in copper. The last row of the table is of the wire put into the aneurysm as it came, which is how motet does it.
 """
 import numpy as np
-from common import BAD, COPPER, DOCS, grid, patch_triangles, poly, print_table, quality_bar, save_sheet
-from pictures import QUALITY, RANGE, lit, seen_straight, shot
+from common import BAD, DOCS, grid, patch_triangles, poly, print_table
+from pictures import COPPER, QUALITY, RANGE, colour_bar, lit, save_sheet, seen_straight, shot
 
 PANEL = (600, 430)
 SAC = np.array([0.0, 2.2, 0.0])
@@ -70,7 +70,7 @@ def main():
     print(f"volume in it: {device.enclosed:.12g}, of its tets: {device.volume:.12g}; host kept to the bit: {100 * made.report.kept_share:.1f} %")
     drawn = grid(mesh, region=mesh.cell_data["region"][mesh.cell_ids("tetra")])
     pictures = [(whole(mesh), f"(a) aneurysm and coil, {len(mesh.tets):,} tets")]
-    save_sheet(pictures + [(cut(drawn, *view), name) for name, *view in CUTS], 2, DOCS / "paper_12.png", quality_bar())
+    save_sheet(pictures + [(cut(drawn, *view), name) for name, *view in CUTS], DOCS / "paper_12.png", 2, colour_bar)
 
 
 if __name__ == "__main__":

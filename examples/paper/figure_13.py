@@ -6,9 +6,9 @@ The distance of every vertex to the nearest place of the other surface, exact, o
 about to touch. The second table opens it in steps: from where on motet warns, so that a model of contact would be called.
 """
 import numpy as np
-from common import COPPER, DOCS, bar_of, poly, print_table, save_sheet
+from common import DOCS, poly, print_table
 from matplotlib.colors import LinearSegmentedColormap
-from pictures import lit, shot
+from pictures import COPPER, lit, save_sheet, scale_of, shot
 
 PANEL = (600, 400)
 RANGE, WARN = (0.0, 1.2), 0.1
@@ -105,7 +105,7 @@ def draw(vessel, stents, found):
         (panel(*both(last), "stent"), f"(c) opened to radius {RADII[last]:g}: least {found[last].least:.2f}"),
         (panel(*both(last), "wall"), "(d) gaps of the wall then"),
     ]
-    save_sheet(pictures, 2, DOCS / "paper_13.png", bar_of(GAP, RANGE, (0.0, WARN, 0.4, 0.8, 1.2), "gap"))
+    save_sheet(pictures, DOCS / "paper_13.png", 2, scale_of(GAP, RANGE, (0.0, WARN, 0.4, 0.8, 1.2), "gap"))
 
 
 if __name__ == "__main__":

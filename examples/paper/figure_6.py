@@ -8,8 +8,8 @@ remembers what was cut, and where it is made to forget that after each generatio
 """
 import numpy as np
 import pyvista as pv
-from common import COPPER, DOCS, EDGES, grid, print_table, quality_bar, save_sheet
-from pictures import INK, QUALITY, RANGE, lit, seen_straight
+from common import DOCS, grid, print_table
+from pictures import COPPER, EDGES, INK, QUALITY, RANGE, colour_bar, lit, save_sheet, seen_straight
 
 PANEL = (420, 320)
 GENERATIONS = 8
@@ -97,7 +97,7 @@ def main():
         upper.append((upper_panel(parts, one, view), name))
         lower.append((lower_panel(parts, one, view), f"{parts.n_cells} parts, EAS {words(parts['EAS'])}"))
         rows.append([name, f"{whole['EAS'][tet]:.3f}", parts.n_cells, words(parts["EAS"])])
-    save_sheet(upper + lower, 3, DOCS / "paper_6.png", quality_bar())
+    save_sheet(upper + lower, DOCS / "paper_6.png", 3, colour_bar)
     print_table(["tet", "EAS before", "parts", "EAS after"], rows)
     print()
     generations()

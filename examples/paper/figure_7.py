@@ -6,8 +6,8 @@
 (e) what fills it; (f) all of it, in the colour of its quality. Cuts through the middle.
 """
 import numpy as np
-from common import BAD, COPPER, DOCS, EDGES, PALE, behind, grid, patch_triangles, poly, quality_bar, save_sheet
-from pictures import QUALITY, RANGE, lit, seen_straight
+from common import BAD, DOCS, PALE, behind, grid, patch_triangles, poly
+from pictures import COPPER, EDGES, QUALITY, RANGE, colour_bar, lit, save_sheet, seen_straight
 
 PANEL = (420, 330)
 BLUE = "#9fc4d6"
@@ -49,7 +49,7 @@ def main():
 
     host, ball = outer(), shapes.ball(6, 4)
     made = motet.implant(host, {"ball": ball})
-    save_sheet(panels(host, ball, made), 3, DOCS / "paper_7.png", quality_bar())
+    save_sheet(panels(host, ball, made), DOCS / "paper_7.png", 3, colour_bar)
     q = made.mesh.quality()[made.mesh.cell_ids("tetra")]
     report = made.report
     print(f"host: {len(host.tets):,} tets; kept to the bit {100 * report.kept_share:.1f} %; ball: {len(ball.tets):,} tets, its own")

@@ -1,10 +1,10 @@
-//! The triangle: area vector, centre, and the point of it closest to another.
+//! The triangle: area vector, centre, angles, and the point of it closest to another; the normal of a surface where triangles meet.
 
 use std::ops::Range;
 
 use crate::base::Point;
 use crate::geometry::needle;
-use crate::geometry::vector::{add, cross, dot, scale, sub};
+use crate::geometry::vector::{add, cross, dot, norm, scale, sub, unit};
 
 /// Half the cross product: as long as the triangle is large, along its normal
 /// (counter-clockwise seen from its tip).
@@ -29,6 +29,23 @@ pub fn centroid([a, b, c]: [Point; 3]) -> Point {
 #[inline]
 pub fn at([a, b, c]: [Point; 3], weights: [f64; 3]) -> Point {
     add(add(scale(a, weights[0]), scale(b, weights[1])), scale(c, weights[2]))
+}
+
+/// The angle at a corner, in radians.
+pub fn angle_at(triangle: [Point; 3], corner: usize) -> f64 {
+    let [u, v] = [1, 2].map(|k| sub(triangle[(corner + k) % 3], triangle[corner]));
+    norm(cross(u, v)).atan2(dot(u, v))
+}
+
+/// The normal, not of unit length, of a surface at a place that all these triangles have: the sum of their unit normals, at a vertex by their angles there, `corner` being
+/// which of its corners that is. Its sign tells on which side of the surface something is that is nearest to the place (Baerentzen and Aanaes 2005). Triangles
+/// without area count for nothing.
+pub fn normal_where_they_meet(around: impl IntoIterator<Item = ([Point; 3], Option<usize>)>) -> Point {
+    let of = |(triangle, corner): ([Point; 3], Option<usize>)| {
+        let weight = corner.map_or(1.0, |corner| angle_at(triangle, corner));
+        unit(area_vector(triangle)).map_or([0.0; 3], |normal| scale(normal, weight))
+    };
+    around.into_iter().map(of).fold([0.0; 3], add)
 }
 
 /// A triangle is well shaped when its height is more than a tenth of its longest edge (here both are squared). Then the plain

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::{CellId, Point, VertexId};
+use crate::base::{CellId, Point, VertexId, rising};
 use crate::mesh::triangulate::triangulate;
 use crate::mesh::{Boundary, CellKind, Labels, Mesh, cone_volume};
 
@@ -47,11 +47,7 @@ impl Surface {
 
     /// Triangles turned as this surface has them, such as outward as a [boundary](Self::boundary_of) is; `None` where one is not among its own.
     pub fn turned(&self, triangles: &[[VertexId; 3]]) -> Option<Vec<[VertexId; 3]>> {
-        let key = |t: &[VertexId; 3]| {
-            let mut key = *t;
-            key.sort_unstable();
-            key
-        };
+        let key = |t: &[VertexId; 3]| rising(*t);
         let mut own = self.triangles.clone();
         own.sort_by_key(key);
         let turned = |t| own.binary_search_by_key(&key(t), key).ok().map(|place| own[place]);

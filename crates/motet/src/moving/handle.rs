@@ -10,9 +10,10 @@ use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{Mover, mesh_velocity};
+use crate::moving::contents::{go_to, hand_over};
 use crate::moving::hold::Hold;
 use crate::moving::legs::{Reached, Way};
-use crate::moving::now::{Known, Now, go_to};
+use crate::moving::now::{Known, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
@@ -73,9 +74,8 @@ impl MovingMesh {
         clock: Clock,
         threads: &Threads,
     ) -> Result<Self> {
-        let distance = options.watch.as_ref().and_then(|watch| watch.hold);
-        let hold = distance.map(|distance| Hold::new(distance, &wall.places, &wall.bodies, threads));
-        let (watch, hold) = (options.watch.clone().map(Watch::new), hold.transpose()?);
+        let hold = options.watch.as_ref().map(|watch| Hold::of(watch, &wall, threads)).transpose()?.flatten();
+        let watch = options.watch.clone().map(Watch::new);
         Ok(Self {
             options,
             wall,
@@ -285,6 +285,7 @@ impl MovingMesh {
         if mesh.cells == self.now.mesh.cells {
             return Ok(None);
         }
+        hand_over(&given, &mut mesh, &history, &self.options.contents);
         let known = self.now.known_of(&mut mesh, &history)?;
         let points_before = self.now.mesh.points.clone();
         let now = Now::new(mesh, known, Vec::new(), &self.wall, &self.options, threads)?;

@@ -12,8 +12,10 @@
 //! along it. Which side of a wall a node is on is that of its first place, so what is told once is stopped alike at any step.
 
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
-use crate::geometry::triangle;
+use crate::geometry::triangle::normal_where_they_meet;
 use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
+use crate::moving::options::Watching;
+use crate::moving::wall::Wall;
 use crate::spatial::{Closest, NearestTriangle};
 
 /// In a corner a wall stops a node more than once: so often at most, each time nearer to the place that is far enough from all of it.
@@ -48,68 +50,75 @@ struct Kept {
 }
 
 impl Hold {
-    /// `bodies` are triangles between nodes; `places` where the nodes were at first. Of nodes that two bodies share neither is kept from the other.
+    /// Of patches that are watched and to be kept apart. A node that two of them share is kept from neither.
     ///
     /// # Errors
     /// When the distance is not above 0.
-    pub(super) fn new(
-        distance: f64,
-        places: &[Point],
-        bodies: &[Vec<[VertexId; 3]>],
-        threads: &Threads,
-    ) -> Result<Self> {
+    pub(super) fn of(watch: &Watching, wall: &Wall, threads: &Threads) -> Result<Option<Self>> {
+        let Some(distance) = watch.hold else { return Ok(None) };
         if !(distance > 0.0 && distance.is_finite()) {
             return Err(Error::options(format!("walls are to be kept {distance} apart"))
                 .remedy("give a distance above 0"));
         }
-        let stops = (1..bodies.len()).map(|last| {
-            let sheet = Sheet::new(places.len(), bodies[last].clone());
-            let tree = NearestTriangle::new(places, &sheet.triangles, threads);
-            let mut nodes: Vec<VertexId> = bodies[..last].iter().flatten().flatten().copied().collect();
-            nodes.retain(|v| sheet.stars.list(v.index()).is_empty());
-            nodes.sort_unstable();
-            nodes.dedup();
-            let starts: Vec<Point> = nodes.iter().map(|v| places[v.index()]).collect();
-            let found = tree.closest_all(&starts, None, threads);
-            let kept = nodes.iter().zip(&starts).zip(found).filter_map(|((&node, &start), found)| {
-                let found = found?;
-                let off = sub(start, found.point);
-                let side = if dot(off, sheet.normal(places, &found)) < 0.0 { -1.0 } else { 1.0 };
-                Some(Kept { node, side, least: distance.min(norm(off)) })
-            });
-            let kept = kept.collect();
-            Stops { sheet, tree, kept }
-        });
-        Ok(Self { stops: stops.collect() })
+        let bodies: Vec<_> = (0..watch.patches.len() as u32).map(|k| wall.body(k)).collect();
+        let stops = (1..bodies.len()).map(|k| Stops::new(distance, wall, &bodies[..k], &bodies[k], threads));
+        Ok(Some(Self { stops: stops.collect() }))
     }
 
     /// Stops what goes too far; how many nodes that is.
     pub(super) fn stop(&mut self, places: &[Point], displacement: &mut [Point], threads: &Threads) -> usize {
         let mut at: Vec<Point> = places.iter().zip(&*displacement).map(|(&p, &d)| add(p, d)).collect();
-        let mut stopped = Vec::new();
+        let mut is_stopped = vec![false; at.len()];
         // A wall that gives way to a later one is where it will be when earlier ones give way to it.
         for Stops { sheet, tree, kept } in self.stops.iter_mut().rev() {
             tree.refit(&at, threads);
-            let mut open: Vec<Kept> = kept.clone();
+            let mut open = kept.clone();
             for _ in 0..CORNER {
                 let ends: Vec<Point> = open.iter().map(|kept| at[kept.node.index()]).collect();
                 let found = tree.closest_all(&ends, None, threads);
-                let ends = open.iter().zip(&ends).zip(found);
-                let ends = ends.map(|((kept, &end), found)| kept.stop(sheet, &at, end, &found?));
-                let ends: Vec<Option<Point>> = ends.collect();
-                for (kept, end) in open.iter().zip(&ends) {
-                    let Some(end) = *end else { continue };
-                    let i = kept.node.index();
-                    (displacement[i], at[i]) = (sub(end, places[i]), end);
-                    stopped.push(kept.node);
-                }
-                let mut ends = ends.into_iter();
-                open.retain(|_| ends.next().flatten().is_some());
+                let mut places = ends.iter().zip(found);
+                open.retain(|kept| {
+                    let Some((&end, Some(found))) = places.next() else { return false };
+                    let stop = kept.stop(sheet, &at, end, &found);
+                    at[kept.node.index()] = stop.unwrap_or(end);
+                    stop.is_some()
+                });
+                open.iter().for_each(|kept| is_stopped[kept.node.index()] = true);
             }
         }
-        stopped.sort_unstable();
-        stopped.dedup();
-        stopped.len()
+        for (i, d) in displacement.iter_mut().enumerate().filter(|(i, _)| is_stopped[*i]) {
+            *d = sub(at[i], places[i]);
+        }
+        is_stopped.iter().filter(|is_stopped| **is_stopped).count()
+    }
+}
+
+impl Stops {
+    /// `earlier` walls are kept away from triangles of a `later` one.
+    fn new(
+        distance: f64,
+        wall: &Wall,
+        earlier: &[Vec<[VertexId; 3]>],
+        later: &[[VertexId; 3]],
+        threads: &Threads,
+    ) -> Self {
+        let places = &wall.places;
+        let sheet = Sheet::new(places.len(), later.to_vec());
+        let tree = NearestTriangle::new(places, later, threads);
+        let mut nodes = earlier.concat().as_flattened().to_vec();
+        nodes.retain(|v| sheet.stars.list(v.index()).is_empty());
+        nodes.sort_unstable();
+        nodes.dedup();
+        let starts: Vec<Point> = nodes.iter().map(|v| places[v.index()]).collect();
+        let found = tree.closest_all(&starts, None, threads);
+        let kept = |((&node, &start), found): ((&VertexId, &Point), Option<Closest>)| {
+            let found = found?;
+            let off = sub(start, found.point);
+            let side = if dot(off, sheet.normal(places, &found)) < 0.0 { -1.0 } else { 1.0 };
+            Some(Kept { node, side, least: distance.min(norm(off)) })
+        };
+        let kept = nodes.iter().zip(&starts).zip(found).filter_map(kept).collect();
+        Self { sheet, tree, kept }
     }
 }
 
@@ -157,18 +166,15 @@ impl Sheet {
         triangles.filter(|t| between.iter().all(|v| t.contains(v)))
     }
 
-    /// The normal at the nearest place, not of unit length: that of the triangle, of both at an edge, of all at a vertex by their angles there. Its sign tells the side
-    /// of what the place is nearest to (Baerentzen, Aanaes 2005).
+    /// The normal at the nearest place, not of unit length.
     fn normal(&self, at: &[Point], found: &Closest) -> Point {
         let between = self.between(found);
-        let of = |t: [VertexId; 3]| {
-            let normal = unit(triangle::area_vector(t.map(|v| at[v.index()]))).unwrap_or_default();
-            match between.as_slice() {
-                &[v] => scale(normal, angle_at(t, v, at)),
-                _ => normal,
-            }
+        let corner = |t: [VertexId; 3]| match between.as_slice() {
+            &[one] => t.iter().position(|v| *v == one),
+            _ => None,
         };
-        self.round(&between).map(of).fold([0.0; 3], add)
+        let corners = |t: [VertexId; 3]| t.map(|v| at[v.index()]);
+        normal_where_they_meet(self.round(&between).map(|t| (corners(t), corner(t))))
     }
 
     /// Whether the place is on an edge that one triangle alone has, or at an end of one.
@@ -182,14 +188,5 @@ impl Sheet {
             2 => others.len() == 1,
             _ => false,
         }
-    }
-}
-
-fn angle_at(t: [VertexId; 3], v: VertexId, at: &[Point]) -> f64 {
-    let k = t.iter().position(|w| *w == v).unwrap_or(0);
-    let [a, b, c] = [0, 1, 2].map(|i| at[t[(k + i) % 3].index()]);
-    match (unit(sub(b, a)), unit(sub(c, a))) {
-        (Some(x), Some(y)) => dot(x, y).clamp(-1.0, 1.0).acos(),
-        _ => 0.0,
     }
 }

@@ -6,6 +6,7 @@
 //! | `handle` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
 //! | `legs` | a step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on |
 //! | `now` | the mesh between two changes: where it is, what moves it, where each vertex was at first |
+//! | `contents` | what cells hold of something that stays in them, while they move and where they change |
 //! | `shapes` | which tets are bad, and how bad the worst is |
 //! | `wall` | the walls as they came: what the caller's displacements are about, however the walls are divided by now |
 //! | `hold` | walls that are kept apart: what would come too near stops in front of it |
@@ -50,6 +51,7 @@
 //! A change of connectivity happens at a time level and is announced: [`Step::changes`] has the time, [`MovingMesh::history_since`] the maps. A solver
 //! whose time integration needs the mesh before and after the change at the same time level finds both in [`Change`].
 
+mod contents;
 mod handle;
 mod hold;
 mod legs;

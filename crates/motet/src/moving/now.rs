@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
-use crate::geometry::tet;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
 use crate::mesh::{Field, Mesh, mean_edge_lengths};
 use crate::motion::Mover;
+use crate::moving::contents::go_to;
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
 use crate::moving::wall::{Drive, NO_NODE, Wall};
@@ -167,27 +167,6 @@ impl Now {
         };
         Ok(Known { first, before, size, node: history.vertices.kept().iter().map(node).collect() })
     }
-}
-
-/// Puts the vertices of a mesh to `points`. The cell arrays that `contents` names are densities of what stays in its cell.
-pub(super) fn go_to(mesh: &mut Mesh, points: &[Point], contents: &[String]) {
-    for field in mesh.cell_data.iter_mut().filter(|field| contents.contains(&field.name)) {
-        let n = field.components;
-        for (cell, corners) in mesh.cells.tets() {
-            let of = |points: &[Point]| tet::volume(corners.map(|v| points[v.index()])).abs();
-            let grown = of(points) / of(&mesh.points);
-            let is_number = grown > 0.0 && grown.is_finite();
-            if grown == 1.0 || !is_number {
-                continue;
-            }
-            for i in cell.index() * n..(cell.index() + 1) * n {
-                if let Some(value) = field.values.get_f64(i) {
-                    field.values.set_f64(i, value / grown);
-                }
-            }
-        }
-    }
-    mesh.points.copy_from_slice(points);
 }
 
 /// Point arrays that go along while a mesh is changed.

@@ -18,7 +18,6 @@ const REFERENCE: &str = "moving:reference";
 const NODE: &str = "moving:node";
 const PLACES: &str = "moving:wall_places";
 const TRIANGLES: &str = "moving:wall_triangles";
-const BODIES: &str = "moving:wall_bodies";
 const BODY: &str = "moving:wall_body";
 const LEFT: &str = "moving:left";
 const LEFT_EAS: &str = "moving:left_eas";
@@ -49,14 +48,8 @@ impl MovingMesh {
             Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
         ]);
-        if !self.wall.bodies.is_empty() {
-            let all = self.wall.bodies.as_slice().concat();
-            let triangles: Vec<u32> = all.as_flattened().iter().map(|v| v.0).collect();
-            let body = (0u32..).zip(&self.wall.bodies).flat_map(|(k, body)| body.iter().map(move |_| k));
-            file.field_data.extend([
-                Field { components: 3, ..Field::scalars(BODIES, triangles) },
-                Field::scalars(BODY, body.collect::<Vec<_>>()),
-            ]);
+        if !self.wall.body.is_empty() {
+            file.field_data.push(Field::scalars(BODY, self.wall.body.clone()));
         }
         // Written after every step, read once: not worth packing.
         let options = WriteOptions { compression: Compression::None, ..WriteOptions::default() };
@@ -94,8 +87,8 @@ impl MovingMesh {
         let wall = Wall {
             places: taken.vectors(PLACES)?,
             triangles: triangles(&taken.ids(TRIANGLES)?)?,
-            bodies: match options.watch.as_ref().and_then(|watch| watch.hold) {
-                Some(_) => taken.bodies()?,
+            body: match options.watch.as_ref().and_then(|watch| watch.hold) {
+                Some(_) => taken.ids(BODY)?,
                 None => Vec::new(),
             },
         };
@@ -137,19 +130,6 @@ impl Taken {
         }
     }
 
-    fn bodies(&self) -> Result<Vec<Vec<[VertexId; 3]>>> {
-        let (triangles, body) = (triangles(&self.ids(BODIES)?)?, self.ids(BODY)?);
-        if triangles.len() != body.len()
-            || !body.is_sorted()
-            || body.last().is_some_and(|k| *k >= MOST_BODIES)
-        {
-            return Err(no_state(BODY));
-        }
-        let mut bodies = vec![Vec::new(); body.last().map_or(0, |k| *k as usize + 1)];
-        triangles.into_iter().zip(body).for_each(|(t, k)| bodies[k as usize].push(t));
-        Ok(bodies)
-    }
-
     fn left(&self, n_cells: usize) -> Result<Vec<LeftBad>> {
         let (cells, eas, forced) = (self.ids(LEFT)?, self.floats(LEFT_EAS)?, self.floats(LEFT_FORCED)?);
         let is_right = cells.len() == eas.len()
@@ -173,17 +153,16 @@ fn triangles(ids: &[u32]) -> Result<Vec<[VertexId; 3]>> {
     }
 }
 
-/// A file that says more is damaged.
-const MOST_BODIES: u32 = 1 << 16;
-
 fn check(wall: &Wall, known: &Known, n_points: usize) -> Result<()> {
     let n = wall.places.len();
     let is_node = |&node: &u32| node == super::wall::NO_NODE || (node as usize) < n;
     if !known.node.iter().all(is_node) || known.node.len() != n_points {
         return Err(no_state(NODE));
     }
-    let all = wall.bodies.iter().flatten().chain(&wall.triangles);
-    match all.flatten().all(|v| v.index() < n) {
+    if !wall.body.is_empty() && wall.body.len() != wall.triangles.len() {
+        return Err(no_state(BODY));
+    }
+    match wall.triangles.as_flattened().iter().all(|v| v.index() < n) {
         true => Ok(()),
         false => Err(no_state(TRIANGLES)),
     }

@@ -1,13 +1,17 @@
 //! The walls as they came: what the caller's displacements are about, however the walls are divided by now.
 
-use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::contact;
+use std::collections::HashMap;
+
+use crate::base::{Error, Point, Result, Threads, VertexId, rising};
 use crate::mesh::{Mesh, Surface};
 use crate::motion::{FacetSet, SurfaceCarrier};
 use crate::moving::options::Options;
 
 /// Stands for no node: a vertex that came later.
 pub(super) const NO_NODE: u32 = u32::MAX;
+
+/// Stands for none of the watched patches.
+pub(super) const NO_BODY: u32 = u32::MAX;
 
 /// The driven vertices of the first mesh, the *nodes*, and the triangles between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,8 +20,8 @@ pub(super) struct Wall {
     pub(super) places: Vec<Point>,
     /// By number of node.
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// Those of the watched patches, each apart, where they are kept apart: else none.
-    pub(super) bodies: Vec<Vec<[VertexId; 3]>>,
+    /// Where walls are kept apart, which of the watched patches each triangle is of, or [`NO_BODY`]; else empty.
+    pub(super) body: Vec<u32>,
 }
 
 impl Wall {
@@ -27,24 +31,30 @@ impl Wall {
     /// When a patch that is to be kept apart is not there, or is not driven.
     pub(super) fn of(mesh: &Mesh, driven: &[VertexId], options: &Options) -> Result<Self> {
         let Options { motion, watch, .. } = options;
-        let boundary = Surface::boundary_of(mesh);
-        let mut triangles = boundary.triangles.clone();
+        let mut triangles = Surface::boundary_of(mesh).triangles;
         for &label in &motion.inside {
             triangles.extend(FacetSet::of_patch(mesh, label).triangles());
         }
         let node = |v: VertexId| driven.binary_search(&v).ok().map(VertexId::new);
         let nodes = |t: &[VertexId; 3]| Some([node(t[0])?, node(t[1])?, node(t[2])?]);
+        let triangles: Vec<_> = triangles.iter().filter_map(nodes).collect();
         let held = watch.as_ref().filter(|watch| watch.hold.is_some());
-        let bodies = held.map_or(Ok(Vec::new()), |watch| watch.bodies(mesh))?;
-        let of_body = |body: contact::Body| {
-            let turned = boundary.turned(&body.triangles).unwrap_or(body.triangles);
-            turned.iter().map(nodes).collect::<Option<Vec<_>>>().ok_or_else(|| not_driven(&body.name))
-        };
-        Ok(Self {
-            places: driven.iter().map(|v| mesh.points[v.index()]).collect(),
-            triangles: triangles.iter().filter_map(nodes).collect(),
-            bodies: bodies.into_iter().map(of_body).collect::<Result<_>>()?,
-        })
+        let mut body = vec![NO_BODY; if held.is_some() { triangles.len() } else { 0 }];
+        let place: HashMap<_, _> = triangles.iter().map(|t| rising(*t)).zip(0..).collect();
+        for (k, held) in (0..).zip(held.map_or(Ok(Vec::new()), |watch| watch.bodies(mesh))?) {
+            for triangle in &held.triangles {
+                let place = nodes(triangle).and_then(|t| place.get(&rising(t)).copied());
+                body[place.ok_or_else(|| not_driven(&held.name))?] = k;
+            }
+        }
+        let places = driven.iter().map(|v| mesh.points[v.index()]).collect();
+        Ok(Self { places, triangles, body })
+    }
+
+    /// The triangles of a watched patch.
+    pub(super) fn body(&self, k: u32) -> Vec<[VertexId; 3]> {
+        let of = self.triangles.iter().zip(&self.body).filter(|(_, body)| **body == k);
+        of.map(|(t, _)| *t).collect()
     }
 
     /// How the driven vertices of a later mesh take their displacements; `first` and `node` are about all of its vertices.

@@ -52,12 +52,17 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
 /// The devices of the call.
 fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Result<Vec<Device>> {
     let mut names = Names::of(taken);
-    let inside = match (args.hollow, args.fill) {
+    let inside = inside(args.hollow, args.fill);
+    args.devices.iter().map(|file| names.device(file, inside, console)).collect()
+}
+
+/// What is asked for of the inside of a device; `None`: as it is by itself.
+pub(crate) fn inside(hollow: bool, fill: bool) -> Option<Inside> {
+    match (hollow, fill) {
         (true, _) => Some(Inside::Hollow),
         (_, true) => Some(Inside::Filled),
         _ => None,
-    };
-    args.devices.iter().map(|file| names.device(file, inside, console)).collect()
+    }
 }
 
 /// Names of regions and patches that are taken.

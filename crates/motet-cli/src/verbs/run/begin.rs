@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use motet::base::Threads;
 use motet::contact;
-use motet::implant::{self, Inside, implant};
+use motet::implant::{self, implant};
 use motet::mesh::history::Rules;
 use motet::motion::{Extent, Method, MethodWords};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
@@ -15,7 +15,7 @@ use motet::{Error, Mesh, Result, io};
 use super::course;
 use super::job::{self, Job, Layer, Refine};
 use crate::console::Console;
-use crate::verbs::implant::{Names, in_its_file};
+use crate::verbs::implant::{Names, in_its_file, inside};
 use crate::verbs::moving;
 use crate::verbs::refine::{target, words};
 
@@ -51,7 +51,9 @@ fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh>
             None => implant::Interface::Match,
         };
         let mut names = Names::of(&mesh.label_names);
-        let device = |asked: &&job::Device| names.device(&job.path(&asked.file), inside(asked), console);
+        let device = |asked: &&job::Device| {
+            names.device(&job.path(&asked.file), inside(asked.hollow, asked.fill), console)
+        };
         let devices = group.iter().map(device).collect::<Result<Vec<_>>>()?;
         let files: Vec<PathBuf> = group.iter().map(|asked| job.path(&asked.file)).collect();
         let options = implant::Options { interface, ..implant::Options::default() };
@@ -59,14 +61,6 @@ fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh>
         mesh = made.map_err(|e| in_its_file(e, &job.path(&job.mesh), &files, &devices))?.mesh;
     }
     Ok(mesh)
-}
-
-fn inside(asked: &job::Device) -> Option<Inside> {
-    match (asked.hollow, asked.fill) {
-        (true, _) => Some(Inside::Hollow),
-        (_, true) => Some(Inside::Filled),
-        _ => None,
-    }
 }
 
 fn read(job: &Job, file: &std::path::Path, console: &Console) -> Result<Mesh> {

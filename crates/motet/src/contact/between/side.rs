@@ -5,7 +5,8 @@ use super::measure::Part;
 use super::sites::{NO_SITE, Sites};
 use crate::base::Point;
 use crate::geometry::distance::{Feature, point_segment, point_triangle};
-use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::geometry::triangle::{area_vector, normal_where_they_meet};
+use crate::geometry::vector::{dot, norm, scale, sub};
 
 /// Whether the way `along`, from the point of a part with these weights, starts on this side of the body; one within the
 /// surface starts on both.
@@ -52,7 +53,7 @@ impl Star {
         let mut star = Self { triangles: Vec::new(), sites: Vec::new(), reach: f64::INFINITY };
         for t in sites.star_of(body, feature) {
             let corners = sites.corners[t].map(|v| sub(points[v.index()], from));
-            if norm(normal(corners)) == 0.0 {
+            if area_vector(corners) == [0.0; 3] {
                 continue;
             }
             let ids = sites.triangles[t];
@@ -79,25 +80,14 @@ impl Star {
             Feature::Edge(i) => [1, 2].map(|k| self.sites[t][(usize::from(i) + k) % 3]).to_vec(),
             Feature::Vertex(i) => vec![self.sites[t][usize::from(i)]],
         };
-        let around =
-            self.sites.iter().zip(&self.triangles).filter(|(ids, _)| own.iter().all(|s| ids.contains(s)));
-        let sum = around.fold([0.0; 3], |sum, (ids, t)| {
-            let weight = if let &[s] = own.as_slice() { angle_at(s, ids, t) } else { 1.0 };
-            let normal = normal(*t);
-            add(sum, scale(normal, weight / norm(normal)))
-        });
+        let around = self.sites.iter().zip(&self.triangles);
+        let around = around.filter(|(ids, _)| own.iter().all(|s| ids.contains(s)));
+        let corner = |ids: &[u32; 3]| match own.as_slice() {
+            &[one] => ids.iter().position(|&s| s == one && s != NO_SITE),
+            _ => None,
+        };
+        let sum = normal_where_they_meet(around.map(|(ids, t)| (*t, corner(ids))));
         // The offset runs from the place to its nearest point.
         -dot(sum, closest.offset)
     }
-}
-
-fn normal([a, b, c]: [Point; 3]) -> Point {
-    cross(sub(b, a), sub(c, a))
-}
-
-/// The angle of a triangle at the corner with this site.
-fn angle_at(site: u32, ids: &[u32; 3], corners: &[Point; 3]) -> f64 {
-    let i = ids.iter().position(|&s| s == site && s != NO_SITE).unwrap_or(0);
-    let [u, v] = [1, 2].map(|k| sub(corners[(i + k) % 3], corners[i]));
-    norm(cross(u, v)).atan2(dot(u, v))
 }
