@@ -206,6 +206,11 @@ impl MovingMesh {
         change.map(|change| report(py, &change)).transpose()
     }
 
+    fn coarsen<'py>(&mut self, py: Python<'py>, smallest: f64) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let change = self.watched(py, None, |moving, threads| moving.coarsen(smallest, threads))?;
+        change.map(|change| report(py, &change)).transpose()
+    }
+
     fn repair<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let change = self.watched(py, None, |moving, threads| moving.repair(threads))?;
         change.map(|change| report(py, &change)).transpose()

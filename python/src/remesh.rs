@@ -50,6 +50,7 @@ pub(crate) fn remesh<'py>(
             AskedSizes::Points(all) => Sizes::Vertices(all),
         }),
         rounds,
+        ..Options::default()
     };
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;

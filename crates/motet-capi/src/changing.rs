@@ -159,6 +159,7 @@ impl MotetRemeshOptions {
                 }
             },
             rounds: count(self.rounds.into(), "rounds")?,
+            ..remesh::Options::default()
         })
     }
 }

@@ -7,7 +7,7 @@ use motet::Mesh;
 use motet::base::{CellId, Point, VertexId};
 use motet::geometry::vector::is_finite;
 use motet::mesh::adjacency::{FacetUse, Facets};
-use motet::mesh::{CellKind, Cells};
+use motet::mesh::{CellKind, Cells, largest_extent};
 
 use crate::skin::{NONE, Skin, pieces};
 
@@ -178,7 +178,7 @@ fn morton(point: Point, low: Point, high: Point) -> u64 {
     if !is_finite(point) {
         return u64::MAX;
     }
-    let size = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+    let size = largest_extent([low, high]);
     let cell = |i: usize| ((point[i] - low[i]) / size * 2_097_151.0) as u64;
     spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2
 }

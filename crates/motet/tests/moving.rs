@@ -323,6 +323,36 @@ fn what_cells_hold_stays_where_divisions_are_taken_back_after_a_motion() {
 }
 
 #[test]
+fn what_repairs_have_changed_is_taken_back_by_lengths() {
+    let mesh = box_mesh();
+    let held = Options { contents: vec!["dye".into()], ..options() };
+    let mut moving = MovingMesh::new(&mesh, held, &threads()).unwrap();
+    let (first, n_first) = (content(moving.mesh(), "dye"), moving.mesh().cells.tets().count());
+    assert!(moving.coarsen(0.0, &threads()).unwrap().is_none(), "nothing is short");
+    let near = Criterion::Ball { centre: [2.0, 0.0, 0.0], radius: 1.5 };
+    let fine = Wanted { criteria: vec![near], generations: Some(2), ..Wanted::default() };
+    moving.refine(&fine, &threads()).unwrap().expect("something was divided");
+    for (k, by) in [1.0, 2.0, 3.0, 1.5, 0.0].into_iter().enumerate() {
+        let displacement = sphere_goes(&moving, shift([by, 0.0, 0.0]));
+        moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
+    }
+    let back = Wanted { coarsen: true, generations: Some(0), ..Wanted::default() };
+    while moving.refine(&back, &threads()).unwrap().is_some() {}
+    let n_left = moving.mesh().cells.tets().count();
+    assert!(n_left as f64 > 1.3 * n_first as f64, "repairs have changed what was divided: {n_left}");
+    moving.coarsen(0.0, &threads()).unwrap().expect("much is short");
+    let n_now = moving.mesh().cells.tets().count();
+    assert!((n_now as f64) < 0.7 * n_left as f64, "{n_first} tets became {n_left}, then {n_now}");
+    moving.repair(&threads()).unwrap();
+    let step = moving.certify(&threads()).unwrap();
+    assert_eq!((step.bad, step.inverted), (0, 0));
+    let now = content(moving.mesh(), "dye");
+    assert!((now - first).abs() < 1e-13 * first, "{now} for {first}");
+    let volumes = [&mesh, moving.mesh()].map(total_volume);
+    assert!((volumes[0] - volumes[1]).abs() < 1e-9 * volumes[0], "walls keep their place: {volumes:?}");
+}
+
+#[test]
 fn what_comes_near_is_warned_of_before_it_is_there() {
     let mesh = box_mesh();
     let watch = Watching {

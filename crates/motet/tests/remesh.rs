@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Numbers, data_meshes, random_mesh};
-use motet::base::{Point, TetId, Threads, VertexId};
+use motet::base::{CellId, Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::distance;
@@ -130,6 +130,26 @@ proptest! {
         let again = remesh(&mesh, &options, &Threads::single()).unwrap();
         prop_assert_eq!(&again.extract.mesh, &outcome.extract.mesh);
     }
+}
+
+#[test]
+fn where_only_some_are_asked_for_others_stay_bad() {
+    let mut mesh = TetPart::of(&box_grid([8, 8, 8], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
+    shake(&mut mesh, 0.6, 3);
+    let is_left = |t: usize| corners(&mesh, t).iter().all(|p| p[0] < 0.4);
+    let is_bad = |t: &usize| eas(corners(&mesh, *t)) < 0.2;
+    let (left, right): (Vec<usize>, Vec<usize>) =
+        (0..mesh.tets.len()).filter(is_bad).partition(|&t| is_left(t));
+    assert!(left.len() > 10 && right.len() > 10, "{} and {}", left.len(), right.len());
+    let only = Some(left.iter().map(|&t| CellId::new(t)).collect());
+    let outcome = remesh(&mesh, &Options { only, ..Options::default() }, &Threads::single()).unwrap();
+    let is_gone = |t: &usize| outcome.extract.gone_tets.binary_search(&TetId::new(*t)).is_ok();
+    let is_far = |t: &usize| corners(&mesh, *t).iter().all(|p| p[0] > 0.7);
+    assert!(left.iter().all(is_gone), "what was asked for is repaired");
+    assert!(
+        right.iter().any(is_far) && !right.iter().filter(|t| is_far(t)).any(is_gone),
+        "what was not is not"
+    );
 }
 
 #[test]

@@ -169,6 +169,16 @@ class MovingMesh:
         change = self._native.refine(_criteria(**criteria), generations, coarsen)
         return None if change is None else report(change)
 
+    def coarsen(self, *, smallest: float = 0.0) -> Report | None:
+        """Takes back by lengths what ``refine`` cannot, since repairs have changed what was divided; None where nothing changed.
+
+        Edges are collapsed that are shorter than about a third of what they were there at first, and of the gap beside them where patches are watched; no
+        gap asks for less than ``smallest``. Vertices that walls had at first stay.
+        """
+        self._mesh = None
+        change = self._native.coarsen(smallest)
+        return None if change is None else report(change)
+
     def repair(self) -> Report | None:
         """Repairs what is bad where the mesh is: of one that came, or was refined. A step does so by itself."""
         self._mesh = None

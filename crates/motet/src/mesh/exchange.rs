@@ -78,6 +78,11 @@ pub fn bounds(points: &[Point]) -> Option<[Point; 2]> {
     })
 }
 
+/// The longest side of a box.
+pub fn largest_extent([low, high]: [Point; 2]) -> f64 {
+    (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
+}
+
 fn set(fields: &mut Vec<Field>, field: Field) {
     match fields.iter_mut().find(|f| f.name == field.name) {
         Some(old) => *old = field,

@@ -12,7 +12,7 @@ use super::size_field::SizeField;
 use super::sizes::Grading;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::{self, area};
-use crate::mesh::{bounds, mean_edge_lengths};
+use crate::mesh::{bounds, largest_extent, mean_edge_lengths};
 
 /// Edges of cubes that are not divided are within this factor of their sizes.
 const WITHIN: f64 = std::f64::consts::SQRT_2;
@@ -73,8 +73,8 @@ pub(super) fn lattice(
 }
 
 /// The side of the largest cubes: such that cubes of some level fit the largest size, or where there is none that of most triangles.
-fn first_side([low, high]: [Point; 2], field: &SizeField<'_>) -> f64 {
-    let longest = (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max);
+fn first_side(ends: [Point; 2], field: &SizeField<'_>) -> f64 {
+    let longest = largest_extent(ends);
     if let Some(largest) = field.largest() {
         return largest.min(longest) / EDGE_OVER_SIDE;
     }

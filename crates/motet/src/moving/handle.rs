@@ -20,6 +20,7 @@ use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
 use crate::moving::wall::Wall;
 use crate::moving::watch::Watch;
 use crate::refine::{self, MeshRefinement, Wanted};
+use crate::remesh::Counts;
 
 /// A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
 ///
@@ -264,45 +265,61 @@ impl MovingMesh {
     /// # Errors
     /// As there. Then all is as it was before the call.
     pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
-        let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
+        let gaps = self.gaps_here(threads)?;
         let mut given = self.now.mesh.clone();
         let mut rules = self.now.put_known(&mut given, &self.now.known.before, &self.options.rules);
-        if let Some(gap) = self.gap_sizes() {
-            given.set_point_field(gap);
+        if let Some(gaps) = gaps {
+            let sizes: Vec<f64> =
+                gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
+            given.set_point_field(Field::scalars(GAP, sizes));
             rules.points.insert(GAP.to_owned(), Rule::Interpolate);
         }
         let mut refinement = MeshRefinement::new(&given, refine::Options::default(), threads)?;
         let wanted = Wanted { keeps_history: true, ..wanted.clone() };
-        let n_before = self.now.tets.len();
         let reached = refinement.reach(&wanted, &rules, threads, |_| ())?;
-        let history = Arc::new(
-            reached
-                .history
-                .unwrap_or_else(|| History::identity(self.now.mesh.points.len(), self.now.mesh.cells.len())),
-        );
+        let history = reached
+            .history
+            .unwrap_or_else(|| History::identity(self.now.mesh.points.len(), self.now.mesh.cells.len()));
         let mut mesh = refinement.with_memory(threads);
         mesh.point_data.retain(|field| field.name != GAP);
         if mesh.cells == self.now.mesh.cells {
             return Ok(None);
         }
-        hand_over(&given, &mut mesh, &history, &self.options.contents);
+        let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
+        self.take_over(&given, mesh, Arc::new(history), (Why::Refinement, &shape, Counts::default()), threads)
+            .map(Some)
+    }
+
+    /// Goes on with a mesh that came of `given`: the one that is, with all that is known of it as arrays.
+    pub(super) fn take_over(
+        &mut self,
+        given: &Mesh,
+        mut mesh: Mesh,
+        history: Arc<History>,
+        (why, shape, operations): (Why, &Shape, Counts),
+        threads: &Threads,
+    ) -> Result<Change> {
+        hand_over(given, &mut mesh, &history, &self.options.contents);
         let known = self.now.known_of(&mut mesh, &history)?;
-        let points_before = self.now.mesh.points.clone();
+        let (points_before, n_before) = (self.now.mesh.points.clone(), self.now.tets.len());
         let now = Now::new(mesh, known, Vec::new(), &self.wall, &self.options, threads)?;
         let (time, counts) = (self.clock.time, [n_before, now.tets.len()]);
-        let change = Change::new((time, Why::Refinement), counts, &shape, history, points_before);
+        let change = Change::new((time, why), counts, shape, history, points_before);
+        let change = Change { operations, ..change };
         self.now = now;
         self.clock.n_first = self.now.tets.len();
         self.now.known.size_anew(&self.now.mesh);
         self.remember(std::slice::from_ref(&change));
-        Ok(Some(change))
+        Ok(change)
     }
 
-    /// The gap at each vertex, as a size of edges.
-    fn gap_sizes(&self) -> Option<Field> {
-        let gaps = self.gaps()?.at_points(self.now.mesh.points.len());
-        let sizes: Vec<f64> = gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
-        Some(Field::scalars(GAP, sizes))
+    /// The gap at each vertex of the mesh as it is, no limit where there is none; `None` where nothing is watched.
+    pub(super) fn gaps_here(&mut self, threads: &Threads) -> Result<Option<Vec<f64>>> {
+        if self.watch.as_ref().is_some_and(Watch::is_stale) {
+            self.measure_gaps(threads)?;
+        }
+        let n_points = self.now.mesh.points.len();
+        Ok(self.gaps().map(|gaps| gaps.at_points(n_points)))
     }
 
     fn check(&self, time: f64, displacement: &[Point]) -> Result<()> {

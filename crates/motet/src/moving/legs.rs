@@ -18,6 +18,9 @@ const SMALLEST: f64 = 1.0 / 32.0;
 /// And down to this where they would be inverted.
 const LEAST: f64 = 1.0 / 4096.0;
 
+/// So many tets away from a bad one tets are near it.
+const RINGS: usize = 2;
+
 /// On the way of one step.
 pub(super) struct Way<'a> {
     pub(super) options: &'a Options,
@@ -52,6 +55,8 @@ pub(super) struct Reached {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Effort {
     Usual,
+    /// Bad tets were left: everything round them as good as it gets.
+    AllAround,
     /// Nothing could move: everything as good as it gets.
     All,
 }
@@ -97,16 +102,16 @@ impl Way<'_> {
         }
     }
 
-    /// Where repair has left bad tets that no wall forces, all is made as good as it gets, once: the step ends here, and none should be bad where it does. A flap pressed
+    /// Where repair has left bad tets that no wall forces, all round them is made as good as it gets, once: the step ends here, and none should be bad where it does. A flap pressed
     /// to its wall had up to 26 such tets of 150,000, in 32 of 480 steps.
     fn tried_again(&mut self, next: Now, effort: Effort, time: f64) -> Result<(Now, Shape)> {
         let shape = self.shape(&next);
         let n_left = shape.bad.len() - next.n_forced(&shape);
-        if n_left == 0 || effort == Effort::All {
+        if n_left == 0 || effort != Effort::Usual {
             return Ok((next, shape));
         }
         let before = next.known.before.clone();
-        match self.repaired(&next, &before, &shape, time, Effort::All)? {
+        match self.repaired(&next, &before, &shape, time, Effort::AllAround)? {
             Repaired::Left(_) => Ok((next, shape)),
             Repaired::Changed(better) => {
                 let shape = self.shape(&better);
@@ -188,6 +193,7 @@ impl Way<'_> {
     ) -> Result<Repaired> {
         let begin = Instant::now();
         let options = self.options;
+        let only = self.worth_repair(now, shape, effort);
         let is_asked = !shape.bad.is_empty() || effort == Effort::All;
         let Some(asked) = options.repair.as_ref().filter(|_| is_asked) else {
             return Ok(Repaired::Left(Vec::new()));
@@ -200,7 +206,8 @@ impl Way<'_> {
                 asked.sizes.clone()
             },
             min_eas: asked.min_eas + options.margin,
-            goal: if effort == Effort::All { Goal::Best } else { asked.goal },
+            only,
+            goal: if effort == Effort::Usual { asked.goal } else { Goal::Best },
             ..asked.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
@@ -221,6 +228,25 @@ impl Way<'_> {
         let next = Now::new(mesh, known, left, self.wall, options, self.threads)?;
         self.seconds.setup += begin.elapsed().as_secs_f64();
         Ok(Repaired::Changed(Box::new(next)))
+    }
+
+    /// The tets that are to be repaired; `None`: all.
+    fn worth_repair(&mut self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
+        let begin = Instant::now();
+        let limit = self.options.limit();
+        let worth = match effort {
+            Effort::All => return None,
+            Effort::AllAround => now.tets.around(&shape.bad, RINGS),
+            Effort::Usual => {
+                let reference = now.mover.reference();
+                let low = now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
+                let was = now.tets.eas_of(&low, reference);
+                let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
+                fallen.map(|((cell, _), _)| *cell).collect()
+            }
+        };
+        self.seconds.quality += begin.elapsed().as_secs_f64();
+        Some(worth)
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -6,6 +6,7 @@
 //! | `handle` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
 //! | `legs` | a step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on |
 //! | `now` | the mesh between two changes: where it is, what moves it, where each vertex was at first |
+//! | `coarsen` | divisions taken back by lengths, where nobody knows any more what was whole |
 //! | `contents` | what cells hold of something that stays in them, while they move and where they change |
 //! | `shapes` | which tets are bad, and how bad the worst is |
 //! | `wall` | the walls as they came: what the caller's displacements are about, however the walls are divided by now |
@@ -46,11 +47,13 @@
 //! The mesh of the last change is the *reference*: as long as nothing changes, a step depends on where the walls are and on nothing else, so a
 //! wall that comes back brings every vertex back to the bit. A step that would leave a tet flatter than [`Options::floor`], or inverted, is gone in part;
 //! what is bad there is repaired while it still has a volume, and the mesh as it is then is the new reference. What is bad
-//! at the end of the step is repaired there; where that leaves what no wall forces, everything is made as good as it gets, once.
+//! at the end of the step is repaired there; where that leaves what no wall forces, everything round it is made as good as it gets, once. With what is bad goes what soon will be: a tet within
+//! [`Options::margin`] above the limit that would be below it after another fall like the one since the last change.
 //!
 //! A change of connectivity happens at a time level and is announced: [`Step::changes`] has the time, [`MovingMesh::history_since`] the maps. A solver
 //! whose time integration needs the mesh before and after the change at the same time level finds both in [`Change`].
 
+mod coarsen;
 mod contents;
 mod handle;
 mod hold;

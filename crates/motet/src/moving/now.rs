@@ -49,8 +49,10 @@ pub(super) struct Known {
     pub(super) before: Vec<Point>,
     /// The node of the wall that it is, or [`NO_NODE`].
     pub(super) node: Vec<u32>,
-    /// How long edges were there at first.
+    /// How long edges were there at first, or after the last refinement.
     pub(super) size: Vec<f64>,
+    /// How long edges were there at first.
+    pub(super) first_size: Vec<f64>,
 }
 
 impl Known {
@@ -58,7 +60,14 @@ impl Known {
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
         let mut node = vec![NO_NODE; mesh.points.len()];
         (0..).zip(driven).for_each(|(number, v)| node[v.index()] = number);
-        Self { first: mesh.points.clone(), before: mesh.points.clone(), node, size: lengths(mesh) }
+        let size = lengths(mesh);
+        Self {
+            first: mesh.points.clone(),
+            before: mesh.points.clone(),
+            node,
+            size: size.clone(),
+            first_size: size,
+        }
     }
 
     /// Edges are to be as long as they are now.
@@ -145,7 +154,9 @@ impl Now {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Interpolate);
         }
-        mesh.set_point_field(Field::scalars(SIZE, self.known.size.clone()));
+        for (name, values) in [(SIZE, &self.known.size), (FIRST_SIZE, &self.known.first_size)] {
+            mesh.set_point_field(Field::scalars(name, values.clone()));
+        }
         // A rule may name an array that the user has taken off since.
         rules.points.retain(|name, _| mesh.point_field(name).is_some());
         rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
@@ -160,12 +171,19 @@ impl Now {
             Ok(mesh.point_data.remove(place))
         };
         let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
-        let size = take(SIZE)?.values.to_f64().unwrap_or_default();
+        let [size, first_size] =
+            [take(SIZE)?, take(FIRST_SIZE)?].map(|field| field.values.to_f64().unwrap_or_default());
         let node = |old: &VertexId| match *old == VertexId::NONE {
             true => NO_NODE,
             false => self.known.node[old.index()],
         };
-        Ok(Known { first, before, size, node: history.vertices.kept().iter().map(node).collect() })
+        Ok(Known {
+            first,
+            before,
+            size,
+            first_size,
+            node: history.vertices.kept().iter().map(node).collect(),
+        })
     }
 }
 
@@ -173,3 +191,4 @@ impl Now {
 pub(super) const FIRST: &str = "moving:first";
 pub(super) const BEFORE: &str = "moving:before";
 pub(super) const SIZE: &str = "moving:size";
+pub(super) const FIRST_SIZE: &str = "moving:first_size";

@@ -14,8 +14,8 @@ pub struct Options {
     pub motion: Motion,
     /// What is bad, and what may be done about it; `None`: nothing is repaired, and a step ends where a cell would turn over. Default: EAS below 0.2, the surface kept.
     pub repair: Option<remesh::Options>,
-    /// Where something is repaired, tets up to this much above the limit are made better, too, so that the next step does not bring them below it at
-    /// once. Default: 0.05.
+    /// Where something is repaired, it becomes this much better than the limit, and so do tets in between that would be bad after another fall like the one since the last
+    /// change: the next step is not to bring them below it at once. Default: 0.05.
     pub margin: f64,
     /// No step, or part of one, takes a tet that can be repaired below this EAS: it is repaired on the way, as long as that is easy. Default: 0.05.
     pub floor: f64,

@@ -47,6 +47,30 @@ impl Tets {
         parts.into_iter().fold(Shape::default(), Shape::and)
     }
 
+    /// The EAS that some cells have at other places of the vertices.
+    pub(super) fn eas_of(&self, some: &[(CellId, f64)], points: &[Point]) -> Vec<f64> {
+        let of = |(cell, _): &(CellId, f64)| {
+            let tet = self.cells.binary_search(cell).ok().map(|i| self.corners[i]);
+            tet.map_or(1.0, |tet| eas(tet.map(|v| points[v.index()])))
+        };
+        some.iter().map(of).collect()
+    }
+
+    /// Some cells, the tets that share a vertex with them, those that share one with these, and so on.
+    pub(super) fn around(&self, some: &[(CellId, f64)], rings: usize) -> Vec<CellId> {
+        let mut tets: Vec<usize> =
+            some.iter().filter_map(|(cell, _)| self.cells.binary_search(cell).ok()).collect();
+        let n = self.corners.iter().flatten().map(|v| v.index() + 1).max().unwrap_or(0);
+        let mut is_near = vec![false; n];
+        for _ in 0..rings {
+            tets.iter().flat_map(|&t| self.corners[t]).for_each(|v| is_near[v.index()] = true);
+            tets = (0..self.corners.len())
+                .filter(|&t| self.corners[t].iter().any(|v| is_near[v.index()]))
+                .collect();
+        }
+        tets.into_iter().map(|t| self.cells[t]).collect()
+    }
+
     fn look(&self, range: std::ops::Range<usize>, points: &[Point], limit: f64) -> Shape {
         let corners = &self.corners[range.clone()];
         let rough = rough_eas(points, corners);

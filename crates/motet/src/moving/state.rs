@@ -9,7 +9,7 @@ use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
 use crate::moving::handle::{Clock, MovingMesh};
-use crate::moving::now::{BEFORE, FIRST, Known, LeftBad, Now, SIZE};
+use crate::moving::now::{BEFORE, FIRST, FIRST_SIZE, Known, LeftBad, Now, SIZE};
 use crate::moving::options::Options;
 use crate::moving::wall::Wall;
 
@@ -38,7 +38,9 @@ impl MovingMesh {
         }
         file.set_point_field(Field::vectors(REFERENCE, mover.reference()));
         file.set_point_field(Field::scalars(NODE, known.node.clone()));
-        file.set_point_field(Field::scalars(SIZE, known.size.clone()));
+        for (name, sizes) in [(SIZE, &known.size), (FIRST_SIZE, &known.first_size)] {
+            file.set_point_field(Field::scalars(name, sizes.clone()));
+        }
         let triangles: Vec<u32> = self.wall.triangles.as_flattened().iter().map(|v| v.0).collect();
         file.field_data.extend([
             Field::vectors(PLACES, &self.wall.places),
@@ -83,6 +85,7 @@ impl MovingMesh {
             before: taken.vectors(BEFORE)?,
             node: taken.ids(NODE)?,
             size: taken.floats(SIZE)?,
+            first_size: taken.floats(FIRST_SIZE)?,
         };
         let wall = Wall {
             places: taken.vectors(PLACES)?,

@@ -25,6 +25,11 @@ impl Watch {
         self.contact = None;
     }
 
+    /// Whether [`Self::last`] is of triangles that are no more, or there is none.
+    pub(super) fn is_stale(&self) -> bool {
+        self.contact.is_none()
+    }
+
     /// Measures, and looks ahead where there is a velocity and time to look.
     pub(super) fn measure(
         &mut self,

@@ -1,6 +1,6 @@
 //! What a remesher is told beside the mesh.
 
-use crate::base::{Error, Result};
+use crate::base::{CellId, Error, Result, VertexId};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::remesh::sizes::Sizes;
 
@@ -9,6 +9,9 @@ use crate::remesh::sizes::Sizes;
 pub struct Options {
     /// A tet below this EAS is bad. Default: 0.2.
     pub min_eas: f64,
+    /// Only these tets can be bad, and what comes of them: cells of a mesh, tets where there are only tets. Others stay as they are, however bad, where no change takes them along.
+    /// Default: `None`, all tets.
+    pub only: Option<Vec<CellId>>,
     /// A tet is bad, too, when one of its dihedral angles is smaller than this, in degrees. It raises the EAS that is asked to the one that makes sure of
     /// the angle: see [`Self::limit`]. Default: 0.
     pub min_dihedral_deg: f64,
@@ -20,6 +23,8 @@ pub struct Options {
     pub keep_layers: bool,
     /// How long edges are to be; `None`: as they are. Default: `None`.
     pub sizes: Option<Sizes>,
+    /// Vertices that stay where they are, also where walls may change. Default: none.
+    pub held: Vec<VertexId>,
     /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
@@ -28,11 +33,13 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             min_eas: 0.2,
+            only: None,
             min_dihedral_deg: 0.0,
             goal: Goal::Repair,
             surface: SurfaceRule::Keep,
             keep_layers: true,
             sizes: None,
+            held: Vec::new(),
             rounds: 20,
         }
     }

@@ -33,7 +33,10 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
     let taken_out = begin.elapsed().as_secs_f64();
-    let outcome = remesh(&part.mesh, options, threads).map_err(|error| part.at_cell(error))?;
+    let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
+    let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
+    let options = Options { only, ..options.clone() };
+    let outcome = remesh(&part.mesh, &options, threads).map_err(|error| part.at_cell(error))?;
     let mut report = outcome.report;
 
     let begin = Instant::now();

@@ -140,8 +140,8 @@ impl RemeshArgs {
             },
             surface,
             keep_layers: self.layers == Layers::Keep,
-            sizes: None,
             rounds: self.rounds as usize,
+            ..Options::default()
         })
     }
 

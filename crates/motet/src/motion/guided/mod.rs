@@ -39,6 +39,8 @@ const STIFF_TO_TURN: f64 = -1.0;
 /// A tet of the graph counts from this volume on, as a part of its longest edge cubed: gradients of flatter ones mean nothing.
 const FLAT: f64 = 1e-9;
 
+const NO_ROW: u32 = u32::MAX;
+
 /// A graph whose nodes turn.
 #[derive(Debug)]
 pub(crate) struct Guided {
@@ -46,7 +48,10 @@ pub(crate) struct Guided {
     vertices: Vec<VertexId>,
     /// For each node of the graph that is given its place among all nodes; helpers come after them.
     of_graph: Vec<u32>,
-    n_helpers: usize,
+    /// For each node that is not given its row in the system; [`NO_ROW`] where all its tets are flat.
+    row_of: Vec<u32>,
+    /// Those without a row, each with the nodes that it shares flat tets with and goes along with.
+    flat: Vec<(u32, Vec<u32>)>,
     places: Vec<Point>,
     /// The facets whose rotation counts, and the node of the graph for each of their vertices.
     wall: Wall,
@@ -78,7 +83,7 @@ impl Guided {
     /// The nodes of the graph are those that are given, the helpers, and others that it needed; `update` says on which each vertex hangs.
     ///
     /// # Errors
-    /// When a helper has no tet in the graph that is not flat.
+    /// When a system cannot be set up.
     pub(crate) fn new(
         Graph { places, tets }: Graph,
         update: Update,
@@ -105,7 +110,6 @@ impl Guided {
                 kept.push(GraphTet { nodes: *tet, gradients, stiffness: volume * mean(tet, STIFF), weight });
             }
         }
-        let numbers = |range: std::ops::Range<usize>| range.map(VertexId::new).collect::<Vec<_>>();
         let all = places.len();
         let mut node_of = vec![None; points.len()];
         (0u32..)
@@ -120,9 +124,14 @@ impl Guided {
             (facets.triangles()).filter_map(|t| Some([local(t[0])?, local(t[1])?, local(t[2])?])).collect();
         let wall_points: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
         let wall_nodes: Vec<u32> = corners.iter().map(|v| node_of[v.index()].unwrap_or(u32::MAX)).collect();
-        // What is in no tet has no say: nodes in the place of another.
+        // What is in no tet has no say: nodes in the place of another, and those that the graph needed in a flat wall.
         let mut is_on_wall = vec![true; all];
         kept.iter().flat_map(|t| t.nodes).for_each(|n| is_on_wall[n as usize] = false);
+        let (without, rows): (Vec<u32>, Vec<u32>) =
+            (n_given as u32..all as u32).partition(|n| is_on_wall[*n as usize]);
+        let mut row_of = vec![NO_ROW; all - n_given];
+        (0..).zip(&rows).for_each(|(row, &n)| row_of[n as usize - n_given] = row);
+        let fixed: Vec<u32> = (0..n_given as u32).chain(without.iter().copied()).collect();
         wall_nodes.iter().filter(|n| **n != u32::MAX).for_each(|n| is_on_wall[*n as usize] = true);
         let (on_wall, off_wall): (Vec<u32>, Vec<u32>) =
             (0..all as u32).partition(|n| is_on_wall[*n as usize]);
@@ -143,12 +152,12 @@ impl Guided {
         let has_helper = |t: &u32| kept[*t as usize].nodes.iter().any(|n| *n as usize >= n_given);
         let inner: Vec<u32> = every.iter().copied().filter(has_helper).collect();
         let (turn, _) = system(&every, (&ids(&off_wall), &ids(&on_wall)), &|t| turn_stiffness[t])?;
-        let (place, inner_numbers) =
-            system(&inner, (&numbers(n_given..all), &numbers(0..n_given)), &|t| kept[t].stiffness)?;
+        let (place, inner_numbers) = system(&inner, (&ids(&rows), &ids(&fixed)), &|t| kept[t].stiffness)?;
         Ok(Self {
             vertices: nodes.vertices.clone(),
             of_graph: nodes.of_graph.clone(),
-            n_helpers: all - n_given,
+            row_of,
+            flat: companions(&without, &tets),
             wall: Wall::new(&wall_points, triangles),
             wall_nodes,
             off_wall,
@@ -184,10 +193,13 @@ impl Guided {
                 Guide { rotation: rotation(scale(mean, 0.25)), stiffness: tet.stiffness }
             })
             .collect();
-        let mut inner = vec![[0.0; 3]; self.n_helpers];
-        let first = self.solve(&self.place, &guides, &moved, &mut inner, threads)?;
-        let given = moved.len();
-        moved.extend(&inner);
+        let mut inner = vec![[0.0; 3]; self.row_of.len() - self.flat.len()];
+        let n_given = moved.len();
+        // Those without a row have no part in the system, but a place in it.
+        let mut given = moved.clone();
+        given.resize(n_given + self.flat.len(), [0.0; 3]);
+        let first = self.solve(&self.place, &guides, &given, &mut inner, threads)?;
+        self.extend(&mut moved, &inner);
         // Once more: to the rotations that came of it, and what is squeezed made stiffer.
         let guides = threads.map(guides.len(), |i| {
             let tet = &self.tets[self.inner[i] as usize];
@@ -201,15 +213,24 @@ impl Guided {
         stiffer.fill(&self.inner_numbers, |i| {
             laplacian(&self.tets[self.inner[i] as usize].gradients, guides[i].stiffness)
         })?;
-        let second = self.solve(&stiffer, &guides, &moved[..given], &mut inner, threads)?;
-        moved.truncate(given);
-        moved.extend(inner);
+        let second = self.solve(&stiffer, &guides, &given, &mut inner, threads)?;
+        moved.truncate(n_given);
+        self.extend(&mut moved, &inner);
         let maps = self.affine(&moved);
         self.lift.apply(&self.places, from, &maps, out, threads);
         for (v, d) in self.vertices.iter().zip(&*table) {
             out[v.index()] = add(from[v.index()], d.point());
         }
         Ok(iterations + first + second)
+    }
+
+    /// The displacements of nodes that are not given, behind those that are.
+    fn extend(&self, moved: &mut Vec<Point>, inner: &[Point]) {
+        moved.extend(self.row_of.iter().map(|&row| inner.get(row as usize).copied().unwrap_or([0.0; 3])));
+        for (node, near) in &self.flat {
+            let sum = near.iter().fold([0.0; 3], |sum, &n| add(sum, moved[n as usize]));
+            moved[*node as usize] = scale(sum, 1.0 / near.len().max(1) as f64);
+        }
     }
 
     /// Where helpers go so that gradients are nearest to the guides; `inner` holds a guess before. Iterations.
@@ -226,7 +247,8 @@ impl Guided {
         for (&t, guide) in self.inner.iter().zip(guides) {
             let tet = &self.tets[t as usize];
             for (&node, &gradient) in tet.nodes.iter().zip(&tet.gradients) {
-                if let Some(row) = (node as usize).checked_sub(given.len()) {
+                if let Some(row) = (node as usize).checked_sub(self.of_graph.len()) {
+                    let row = self.row_of[row] as usize;
                     let change = sub(times(guide.rotation, gradient), gradient);
                     right[row] = add(right[row], scale(change, guide.stiffness));
                 }
@@ -274,6 +296,19 @@ impl Guided {
         }
         self.lift.affine(&self.places, moved, &sums)
     }
+}
+
+/// Some nodes, each with those that it shares tets with and that are none of them.
+fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
+    let of = |&node: &u32| {
+        let tets = tets.iter().filter(|tet| tet.contains(&node));
+        let mut near: Vec<u32> =
+            tets.flatten().copied().filter(|n| nodes.binary_search(n).is_err()).collect();
+        near.sort_unstable();
+        near.dedup();
+        (node, near)
+    };
+    nodes.iter().map(of).collect()
 }
 
 /// Nodes of which no length is known have the mean of those that they share tets with.

@@ -56,6 +56,8 @@ pub(super) struct Repair {
     surface: Option<Surface>,
     /// Where sizes are asked for.
     pub(super) sizing: Option<Sizing>,
+    /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
+    pub(super) others: Vec<bool>,
     target: f64,
     n_stages: usize,
     candidate: Candidate,
@@ -79,6 +81,7 @@ impl Repair {
             operations: Counts::default(),
             surface,
             sizing: None,
+            others: Vec::new(),
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
@@ -190,9 +193,11 @@ impl Repair {
             }
         }
         let usual = std::mem::replace(&mut self.target, target);
+        // Here all that is near is asked.
+        let others = std::mem::take(&mut self.others);
         around.retain(|&t| self.is_bad(t));
         self.round(&mut around)?;
-        self.target = usual;
+        (self.target, self.others) = (usual, others);
         around.retain(|&t| self.is_bad(t));
         self.came_bad.append(&mut around);
         Ok(())
@@ -208,13 +213,18 @@ impl Repair {
     /// The tets below a quality that may be changed, worst first.
     pub(super) fn below(&self, quality: f64) -> Vec<TetId> {
         let mut below = self.complex.below(quality);
-        below.retain(|&t| !self.complex.is_locked(t));
+        below.retain(|&t| !self.complex.is_locked(t) && !self.is_other(t));
         self.sort(&mut below);
         below
     }
 
     fn is_bad(&self, tet: TetId) -> bool {
-        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < self.target
+        let may_be = self.complex.is_alive(tet) && !self.complex.is_locked(tet) && !self.is_other(tet);
+        may_be && self.complex.quality(tet) < self.target
+    }
+
+    fn is_other(&self, tet: TetId) -> bool {
+        self.others.get(tet.index()).is_some_and(|is_other| *is_other) && self.complex.is_original(tet)
     }
 
     /// Makes the best change for one bad tet; whether there was one.

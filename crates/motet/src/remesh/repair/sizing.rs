@@ -53,7 +53,12 @@ impl Repair {
     /// A short edge is often kept by a neighbour that is hardly better than bad: where no more can be collapsed, what lies round the short ones is made
     /// better.
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
+        let splits = sizing.field.splits;
         self.sizing = Some(sizing);
+        if !splits {
+            self.with_sizing(Self::collapse_short)?;
+            return self.run(self.below(self.target), rounds);
+        }
         let (mut asked, mut before) = (WIDER.iter(), usize::MAX);
         for _ in 0..rounds {
             let n_made = self.with_sizing(Self::split_long)? + self.with_sizing(Self::collapse_short)?;
