@@ -249,6 +249,7 @@ impl MovingMesh {
             displacement,
             times: [self.clock.time, time],
             n_first: self.clock.n_first,
+            is_first: self.clock.step == 0,
             threads,
             points: Vec::new(),
             seconds: Seconds::default(),

@@ -31,6 +31,8 @@ pub(super) struct Way<'a> {
     pub(super) times: [f64; 2],
     /// How many tets there are to be.
     pub(super) n_first: usize,
+    /// Whether no step was made before.
+    pub(super) is_first: bool,
     pub(super) threads: &'a Threads,
     /// Where the vertices are to be: scratch, and the result.
     pub(super) points: Vec<Point>,
@@ -55,6 +57,8 @@ pub(super) struct Reached {
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Effort {
     Usual,
+    /// Nothing is known of how tets fall: all within the margin.
+    Margin,
     /// Bad tets were left: everything round them as good as it gets.
     AllAround,
     /// Nothing could move: everything as good as it gets.
@@ -126,7 +130,8 @@ impl Way<'_> {
         let shape = self.shape_at(start);
         let mut reached = Reached { changed: None, left: None, shape, fraction: 1.0 };
         if self.options.repair.is_some() && !reached.shape.bad.is_empty() {
-            match self.repaired(start, &start.known.before, &reached.shape, self.times[0], Effort::Usual)? {
+            let effort = if self.is_first { Effort::Margin } else { Effort::Usual };
+            match self.repaired(start, &start.known.before, &reached.shape, self.times[0], effort)? {
                 Repaired::Changed(next) => reached.changed = Some(*next),
                 Repaired::Left(left) => reached.left = Some(left),
             }
@@ -207,7 +212,7 @@ impl Way<'_> {
             },
             min_eas: asked.min_eas + options.margin,
             only,
-            goal: if effort == Effort::Usual { asked.goal } else { Goal::Best },
+            goal: if matches!(effort, Effort::Usual | Effort::Margin) { asked.goal } else { Goal::Best },
             ..asked.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
@@ -234,12 +239,14 @@ impl Way<'_> {
     fn worth_repair(&mut self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
         let begin = Instant::now();
         let limit = self.options.limit();
+        let low = |way: &Self| now.tets.shape(&way.points, limit + way.options.margin, way.threads).bad;
         let worth = match effort {
             Effort::All => return None,
             Effort::AllAround => now.tets.around(&shape.bad, RINGS),
+            Effort::Margin => low(self).into_iter().map(|(cell, _)| cell).collect(),
             Effort::Usual => {
                 let reference = now.mover.reference();
-                let low = now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
+                let low = low(self);
                 let was = now.tets.eas_of(&low, reference);
                 let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
                 fallen.map(|((cell, _), _)| *cell).collect()
