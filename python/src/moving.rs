@@ -199,11 +199,11 @@ impl MovingMesh {
         criteria: Vec<Criterion>,
         generations: Option<u32>,
         coarsen: bool,
-    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let criteria = criteria.into_iter().map(|criterion| criterion.0).collect();
         let wanted = Wanted { criteria, generations, coarsen, ..Wanted::default() };
-        let change = self.watched(py, None, |moving, threads| moving.refine(&wanted, threads))?;
-        change.map(|change| report(py, &change)).transpose()
+        let changes = self.watched(py, None, |moving, threads| moving.refine(&wanted, threads))?;
+        changes.iter().map(|change| report(py, change)).collect()
     }
 
     fn coarsen<'py>(&mut self, py: Python<'py>, smallest: f64) -> PyResult<Option<Bound<'py, PyAny>>> {

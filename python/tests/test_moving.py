@@ -50,9 +50,10 @@ def test_it_goes_on_to_the_same_bytes(tmp_path):
 def test_what_is_refined_follows_the_walls():
     moving = motet.MovingMesh(shapes.sphere_in_box(3, 3), smooth=2)
     moving.set_array("dye", np.ones(moving.mesh.n_cells), on="cells")
-    change = moving.refine(ball=[((0.0, 0.0, 0.0), 1.4)])
+    [change] = moving.refine(ball=[((0.0, 0.0, 0.0), 1.4)])
     assert change.why == "refinement" and change.tets_after > change.tets_before
-    assert moving.refine(coarsen=True) is not None
+    assert moving.refine(coarsen=True)
+    assert moving.coarsen() is None
     moving.refine(patch=["sphere"])
     step = moving.advance(1.0, sphere_at(moving, (0.5, 0.0, 0.0)))
     assert step.complete and np.all(moving.mesh.cell_data["dye"] == 1.0)

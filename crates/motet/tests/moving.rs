@@ -270,7 +270,7 @@ fn what_is_refined_moves_on_and_comes_back() {
         ..Wanted::default()
     };
     moving.advance(1.0, &sphere_goes(&moving, shift([0.3, 0.0, 0.0])), &threads()).unwrap();
-    let change = moving.refine(&wanted, &threads()).unwrap().expect("something was divided");
+    let change = moving.refine(&wanted, &threads()).unwrap().pop().expect("something was divided");
     assert!(change.why == Why::Refinement && change.tets_after > change.tets_before && change.time == 1.0);
     let n_divided = moving.mesh().cells.len();
     assert!(check::check(moving.mesh()).is_empty());
@@ -289,7 +289,7 @@ fn what_is_refined_moves_on_and_comes_back() {
         assert!(step.complete && step.bad == 0);
     }
     let back = Wanted { coarsen: true, ..Wanted::default() };
-    moving.refine(&back, &threads()).unwrap().expect("something was taken back");
+    assert_eq!(moving.refine(&back, &threads()).unwrap().len(), 1, "something was taken back");
     println!(
         "{} cells at first, {n_divided} divided, {} at the end",
         mesh.cells.len(),
@@ -306,7 +306,7 @@ fn what_cells_hold_stays_where_divisions_are_taken_back_after_a_motion() {
     let first = content(moving.mesh(), "dye");
     let all = Criterion::Ball { centre: [0.0; 3], radius: 2.0 };
     let fine = Wanted { criteria: vec![all], generations: Some(1), ..Wanted::default() };
-    moving.refine(&fine, &threads()).unwrap().expect("something was divided");
+    assert_eq!(moving.refine(&fine, &threads()).unwrap().len(), 1, "something was divided");
     let mut deviation: f64 = 0.0;
     for (k, by) in [0.4, 0.9, 1.5].into_iter().enumerate() {
         let displacement = sphere_goes(&moving, shift([by, 0.2 * by, 0.0]));
@@ -314,7 +314,7 @@ fn what_cells_hold_stays_where_divisions_are_taken_back_after_a_motion() {
         // Some of it is taken back where it is now.
         let near = Criterion::Ball { centre: [2.0 - by, 0.0, 0.0], radius: 1.0 };
         let back = Wanted { criteria: vec![near], coarsen: true, generations: Some(0), ..Wanted::default() };
-        let change = moving.refine(&back, &threads()).unwrap();
+        let change = moving.refine(&back, &threads()).unwrap().pop();
         deviation = change.map_or(deviation, |change| deviation.max(change.volume_deviation));
         let now = content(moving.mesh(), "dye");
         assert!((now - first).abs() < 1e-13 * first, "{by}: {now} for {first}");
@@ -331,13 +331,13 @@ fn what_repairs_have_changed_is_taken_back_by_lengths() {
     assert!(moving.coarsen(0.0, &threads()).unwrap().is_none(), "nothing is short");
     let near = Criterion::Ball { centre: [2.0, 0.0, 0.0], radius: 1.5 };
     let fine = Wanted { criteria: vec![near], generations: Some(2), ..Wanted::default() };
-    moving.refine(&fine, &threads()).unwrap().expect("something was divided");
+    assert_eq!(moving.refine(&fine, &threads()).unwrap().len(), 1, "something was divided");
     for (k, by) in [1.0, 2.0, 3.0, 1.5, 0.0].into_iter().enumerate() {
         let displacement = sphere_goes(&moving, shift([by, 0.0, 0.0]));
         moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
     }
     let back = Wanted { coarsen: true, generations: Some(0), ..Wanted::default() };
-    while moving.refine(&back, &threads()).unwrap().is_some() {}
+    while !moving.refine(&back, &threads()).unwrap().is_empty() {}
     let n_left = moving.mesh().cells.tets().count();
     assert!(n_left as f64 > 1.3 * n_first as f64, "repairs have changed what was divided: {n_left}");
     moving.coarsen(0.0, &threads()).unwrap().expect("much is short");

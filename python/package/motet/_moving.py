@@ -163,11 +163,10 @@ class MovingMesh:
         self._mesh = None
         return report(self._native.advance(time, np.ascontiguousarray(displacement, np.float64), progress))
 
-    def refine(self, *, generations: int | None = None, coarsen: bool = False, **criteria: Any) -> Report | None:
-        """Divides tets and takes divisions back, by the criteria of :func:`refine`; None where nothing changed."""
+    def refine(self, *, generations: int | None = None, coarsen: bool = False, **criteria: Any) -> list[Report]:
+        """Divides tets and takes divisions back, by the criteria of :func:`refine`; what changed, in order."""
         self._mesh = None
-        change = self._native.refine(_criteria(**criteria), generations, coarsen)
-        return None if change is None else report(change)
+        return [report(change) for change in self._native.refine(_criteria(**criteria), generations, coarsen)]
 
     def coarsen(self, *, smallest: float = 0.0) -> Report | None:
         """Takes back by lengths what ``refine`` cannot, since repairs have changed what was divided; None where nothing changed.

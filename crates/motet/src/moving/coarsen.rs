@@ -1,24 +1,20 @@
 //! Divisions taken back by lengths, where nobody knows any more what was whole.
 
-use std::sync::Arc;
-
 use crate::base::{Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
-use crate::mesh::{TetMesh, TetPart, bounds, largest_extent};
+use crate::mesh::{TetMesh, TetPart};
 use crate::moving::handle::MovingMesh;
-use crate::moving::step::{Change, Why};
+use crate::moving::step::Change;
 use crate::moving::wall::NO_NODE;
 use crate::refine::sizes::SizeLimits;
-use crate::remesh::{self, SHORT, Sizes, SurfaceRule, remesh_mesh};
+use crate::remesh::{self, Goal, SHORT, Sizes, SurfaceRule, remesh_part};
 
 /// Below this part of tets with an edge that is too short nothing is done.
 const ENOUGH: f64 = 0.05;
-/// So much of what a tet may be long is asked for: what is collapsed is not divided again at once. A flap that beats to its wall and back is left with 1.4 times the tets that it had;
-/// with 1 it would be 1.2 times, and each step changes a third more.
+/// So much of what an edge may be long is asked for: what is collapsed is not divided again at once. A flap that beat to its wall and back once was left with 27,017 of 18,924 tets;
+/// with 1 with 22,460, and as its gap became narrow 51 % of the tets changed in a step, with 0.7 30 %.
 const SIZE: f64 = 0.7;
-/// How far walls may stray where vertices that came go again, as a part of the mesh's extent: rounding.
-const IN_PLANE: f64 = 1e-9;
 
 impl MovingMesh {
     /// Takes back by lengths what [`Self::refine`] cannot: where repairs have changed what was divided, nobody knows any more what was whole. Edges are collapsed that are shorter than
@@ -31,7 +27,7 @@ impl MovingMesh {
     pub fn coarsen(&mut self, smallest: f64, threads: &Threads) -> Result<Option<Change>> {
         let gaps = self.gaps_here(threads)?;
         let Self { now, options, .. } = &*self;
-        let part = TetPart::of(&now.mesh)?;
+        let mut part = TetPart::of(&now.mesh)?;
         let mut sizes = now.known.first_size.clone();
         if let Some(gaps) = gaps {
             sizes.iter_mut().zip(gaps).for_each(|(size, gap)| *size = size.min(gap.max(smallest)));
@@ -42,13 +38,15 @@ impl MovingMesh {
             return Ok(None);
         }
         let shape = now.tets.shape(&now.mesh.points, options.limit(), threads);
-        let extent = bounds(&now.mesh.points).map_or(0.0, largest_extent);
         let nodes = (0..).zip(&now.known.node).filter(|(_, node)| **node != NO_NODE);
+        part.mesh.fixed_vertices.extend(nodes.map(|(v, _)| VertexId(v)));
+        part.mesh.fixed_vertices.sort_unstable();
+        part.mesh.fixed_vertices.dedup();
         let repair = options.repair.clone().unwrap_or_default();
         let asked = remesh::Options {
-            sizes: Some(Sizes::AtLeast(sizes)),
-            surface: SurfaceRule::Adapt { distance: Some(IN_PLANE * extent) },
-            held: nodes.map(|(v, _)| VertexId(v)).collect(),
+            goal: Goal::Coarsen,
+            sizes: Some(Sizes::Vertices(sizes)),
+            surface: SurfaceRule::Flat,
             min_eas: repair.min_eas + options.margin,
             // What is bad for the division of a wall alone is repaired here, where that may go.
             only: Some(shape.bad.iter().map(|(cell, _)| *cell).collect()),
@@ -56,12 +54,12 @@ impl MovingMesh {
         };
         let mut given = now.mesh.clone();
         let rules = now.put_known(&mut given, &now.known.before, &options.rules);
-        let outcome = remesh_mesh(&given, &asked, &rules, threads)?;
+        let outcome = remesh_part(&given, &part, &asked, &rules, threads)?;
         if outcome.report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(None);
         }
-        let what = (Why::Refinement, &shape, outcome.report.operations);
-        self.take_over(&given, outcome.mesh, Arc::new(outcome.history), what, threads).map(Some)
+        let what = (&shape, outcome.report.operations);
+        self.take_over((&given, outcome.mesh), outcome.history, what, threads).map(Some)
     }
 }
 

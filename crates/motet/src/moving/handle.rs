@@ -10,7 +10,7 @@ use crate::geometry::vector::{is_finite, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{Mover, mesh_velocity};
-use crate::moving::contents::{go_to, hand_over};
+use crate::moving::contents::go_to;
 use crate::moving::hold::Hold;
 use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{Known, Now};
@@ -19,7 +19,7 @@ use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
 use crate::moving::wall::Wall;
 use crate::moving::watch::Watch;
-use crate::refine::{self, MeshRefinement, Wanted};
+use crate::refine::{self, Criterion, MeshRefinement, Size, Wanted};
 use crate::remesh::Counts;
 
 /// A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
@@ -230,7 +230,7 @@ impl MovingMesh {
     /// When an array cannot be carried, or who watches ends it. Then all is as it was before the call.
     pub fn repair(&mut self, threads: &Threads) -> Result<Option<Change>> {
         let mut way = self.way(&[], self.clock.time, threads);
-        let Reached { changed, left, .. } = way.stay(&self.now)?;
+        let Reached { changed, left, .. } = way.stay(&self.now, self.clock.step == 0)?;
         let changes = way.changes;
         if let Some(left) = left {
             self.now.left = left;
@@ -249,7 +249,6 @@ impl MovingMesh {
             displacement,
             times: [self.clock.time, time],
             n_first: self.clock.n_first,
-            is_first: self.clock.step == 0,
             threads,
             points: Vec::new(),
             seconds: Seconds::default(),
@@ -261,11 +260,24 @@ impl MovingMesh {
     /// Divides tets and takes divisions back, at the time that was reached, as [`MeshRefinement::reach`] does. What was divided is remembered by arrays of the mesh.
     ///
     /// Where patches are watched, criteria find the point array [`GAP`]: the gap at each of their vertices, no limit elsewhere. As a size it keeps edges of walls as short as the gap
-    /// between them is wide, and so the tets in it well shaped; a limit of the smallest edge ends that.
+    /// between them is wide, and so the tets in it well shaped; a limit of the smallest edge ends that. Where that is all that is asked for,
+    /// what is taken back is also taken back [by lengths](Self::coarsen).
     ///
     /// # Errors
     /// As there. Then all is as it was before the call.
-    pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
+    pub fn refine(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Vec<Change>> {
+        let mut changes: Vec<Change> = self.divide(wanted, threads)?.into_iter().collect();
+        let is_gap =
+            |criterion: &Criterion| matches!(criterion, Criterion::Size(Size::Array(name)) if name == GAP);
+        // Only of gaps it is known how long edges may be. What did not move yet was not repaired.
+        let knows_lengths = !wanted.criteria.is_empty() && wanted.criteria.iter().all(is_gap);
+        if wanted.coarsen && knows_lengths && self.clock.step > 0 {
+            changes.extend(self.coarsen(wanted.limits.smallest.unwrap_or(0.0), threads)?);
+        }
+        Ok(changes)
+    }
+
+    fn divide(&mut self, wanted: &Wanted, threads: &Threads) -> Result<Option<Change>> {
         let gaps = self.gaps_here(threads)?;
         let mut given = self.now.mesh.clone();
         let mut rules = self.now.put_known(&mut given, &self.now.known.before, &self.options.rules);
@@ -287,26 +299,22 @@ impl MovingMesh {
             return Ok(None);
         }
         let shape = self.now.tets.shape(&self.now.mesh.points, self.options.limit(), threads);
-        self.take_over(&given, mesh, Arc::new(history), (Why::Refinement, &shape, Counts::default()), threads)
-            .map(Some)
+        self.take_over((&given, mesh), history, (&shape, Counts::default()), threads).map(Some)
     }
 
-    /// Goes on with a mesh that came of `given`: the one that is, with all that is known of it as arrays.
+    /// Goes on with a mesh that was divided or coarsened where it is: it came of `given`, the one that is with all that is known of it as arrays.
     pub(super) fn take_over(
         &mut self,
-        given: &Mesh,
-        mut mesh: Mesh,
-        history: Arc<History>,
-        (why, shape, operations): (Why, &Shape, Counts),
+        came: (&Mesh, Mesh),
+        history: History,
+        (shape, operations): (&Shape, Counts),
         threads: &Threads,
     ) -> Result<Change> {
-        hand_over(given, &mut mesh, &history, &self.options.contents);
-        let known = self.now.known_of(&mut mesh, &history)?;
-        let (points_before, n_before) = (self.now.mesh.points.clone(), self.now.tets.len());
-        let now = Now::new(mesh, known, Vec::new(), &self.wall, &self.options, threads)?;
-        let (time, counts) = (self.clock.time, [n_before, now.tets.len()]);
-        let change = Change::new((time, why), counts, shape, history, points_before);
-        let change = Change { operations, ..change };
+        let now = self.now.next(came, &history, Vec::new(), (&self.wall, &self.options), threads)?;
+        let counts = [&self.now, &now].map(|now| now.tets.len());
+        let points_before = self.now.mesh.points.clone();
+        let (when, history) = ((self.clock.time, Why::Refinement), Arc::new(history));
+        let change = Change { operations, ..Change::new(when, counts, shape, history, points_before) };
         self.now = now;
         self.clock.n_first = self.now.tets.len();
         self.now.known.size_anew(&self.now.mesh);

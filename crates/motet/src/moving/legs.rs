@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, Threads};
 use crate::geometry::vector::{add, scale, sub};
-use crate::moving::contents::hand_over;
 use crate::moving::now::{Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
@@ -31,8 +30,6 @@ pub(super) struct Way<'a> {
     pub(super) times: [f64; 2],
     /// How many tets there are to be.
     pub(super) n_first: usize,
-    /// Whether no step was made before.
-    pub(super) is_first: bool,
     pub(super) threads: &'a Threads,
     /// Where the vertices are to be: scratch, and the result.
     pub(super) points: Vec<Point>,
@@ -124,13 +121,13 @@ impl Way<'_> {
         }
     }
 
-    /// Repairs what is bad without going anywhere.
-    pub(super) fn stay(&mut self, start: &Now) -> Result<Reached> {
+    /// Repairs what is bad without going anywhere; `is_first`: before the first step.
+    pub(super) fn stay(&mut self, start: &Now, is_first: bool) -> Result<Reached> {
         self.points.clone_from(&start.mesh.points);
         let shape = self.shape_at(start);
         let mut reached = Reached { changed: None, left: None, shape, fraction: 1.0 };
         if self.options.repair.is_some() && !reached.shape.bad.is_empty() {
-            let effort = if self.is_first { Effort::Margin } else { Effort::Usual };
+            let effort = if is_first { Effort::Margin } else { Effort::Usual };
             match self.repaired(start, &start.known.before, &reached.shape, self.times[0], effort)? {
                 Repaired::Changed(next) => reached.changed = Some(*next),
                 Repaired::Left(left) => reached.left = Some(left),
@@ -198,7 +195,6 @@ impl Way<'_> {
     ) -> Result<Repaired> {
         let begin = Instant::now();
         let options = self.options;
-        let only = self.worth_repair(now, shape, effort);
         let is_asked = !shape.bad.is_empty() || effort == Effort::All;
         let Some(asked) = options.repair.as_ref().filter(|_| is_asked) else {
             return Ok(Repaired::Left(Vec::new()));
@@ -211,49 +207,43 @@ impl Way<'_> {
                 asked.sizes.clone()
             },
             min_eas: asked.min_eas + options.margin,
-            only,
+            only: self.worth_repair(now, shape, effort),
             goal: if matches!(effort, Effort::Usual | Effort::Margin) { asked.goal } else { Goal::Best },
             ..asked.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
         let rules = now.put_known(&mut given, before, &options.rules);
         let outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
-        let (report, history, mut mesh) = (outcome.report, Arc::new(outcome.history), outcome.mesh);
+        let (report, history) = (outcome.report, Arc::new(outcome.history));
         let left = left_of(&report);
         self.seconds.repair += begin.elapsed().as_secs_f64();
-        if report.kept == now.tets.len() && mesh.points == given.points {
+        if report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(Repaired::Left(left));
         }
         let begin = Instant::now();
-        hand_over(&given, &mut mesh, &history, &options.contents);
-        let known = now.known_of(&mut mesh, &history)?;
+        let next = now.next((&given, outcome.mesh), &history, left, (self.wall, options), self.threads)?;
         let counts = [now.tets.len(), report.after.tets];
         let change = Change::new((time, Why::Repair), counts, shape, history, self.points.clone());
         self.changes.push(Change { operations: report.operations, ..change });
-        let next = Now::new(mesh, known, left, self.wall, options, self.threads)?;
         self.seconds.setup += begin.elapsed().as_secs_f64();
         Ok(Repaired::Changed(Box::new(next)))
     }
 
     /// The tets that are to be repaired; `None`: all.
-    fn worth_repair(&mut self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
-        let begin = Instant::now();
+    fn worth_repair(&self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
         let limit = self.options.limit();
         let low = |way: &Self| now.tets.shape(&way.points, limit + way.options.margin, way.threads).bad;
-        let worth = match effort {
-            Effort::All => return None,
-            Effort::AllAround => now.tets.around(&shape.bad, RINGS),
-            Effort::Margin => low(self).into_iter().map(|(cell, _)| cell).collect(),
+        match effort {
+            Effort::All => None,
+            Effort::AllAround => Some(now.tets.around(&shape.bad, RINGS, self.points.len())),
+            Effort::Margin => Some(low(self).into_iter().map(|(cell, _)| cell).collect()),
             Effort::Usual => {
-                let reference = now.mover.reference();
                 let low = low(self);
-                let was = now.tets.eas_of(&low, reference);
+                let was = now.tets.eas_of(&low, now.mover.reference());
                 let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
-                fallen.map(|((cell, _), _)| *cell).collect()
+                Some(fallen.map(|((cell, _), _)| *cell).collect())
             }
-        };
-        self.seconds.quality += begin.elapsed().as_secs_f64();
-        Some(worth)
+        }
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -1,13 +1,11 @@
 //! The mesh between two changes: where it is, what moves it, where each vertex was at first.
 
-use std::sync::Arc;
-
 use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
 use crate::mesh::{Field, Mesh, mean_edge_lengths};
 use crate::motion::Mover;
-use crate::moving::contents::go_to;
+use crate::moving::contents::{go_to, hand_over};
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
 use crate::moving::wall::{Drive, NO_NODE, Wall};
@@ -109,6 +107,20 @@ impl Now {
         Ok(Self { mesh, tets, mover, known, drive, left })
     }
 
+    /// Goes on with a mesh that came of `given`: this one, with [all that is known of it](Self::put_known) as arrays.
+    pub(super) fn next(
+        &self,
+        (given, mut mesh): (&Mesh, Mesh),
+        history: &History,
+        left: Vec<LeftBad>,
+        (wall, options): (&Wall, &Options),
+        threads: &Threads,
+    ) -> Result<Self> {
+        hand_over(given, &mut mesh, history, &options.contents);
+        let known = self.known_of(&mut mesh, history)?;
+        Self::new(mesh, known, left, wall, options, threads)
+    }
+
     /// Where the mover is to take the driven vertices, for displacements of the nodes of the wall.
     pub(super) fn target(&self, displacement: &[Point]) -> Vec<Point> {
         let carried = self.drive.carry(displacement);
@@ -164,7 +176,7 @@ impl Now {
     }
 
     /// What is known of the vertices of a mesh that came of one with [these arrays](Self::put_known).
-    pub(super) fn known_of(&self, mesh: &mut Mesh, history: &Arc<History>) -> Result<Known> {
+    fn known_of(&self, mesh: &mut Mesh, history: &History) -> Result<Known> {
         let mut take = |name: &str| -> Result<Field> {
             let place = mesh.point_data.iter().position(|field| field.name == name);
             let place = place.ok_or_else(|| Error::input(format!("the array {name} was lost on the way")))?;

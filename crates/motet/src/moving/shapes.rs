@@ -57,11 +57,10 @@ impl Tets {
     }
 
     /// Some cells, the tets that share a vertex with them, those that share one with these, and so on.
-    pub(super) fn around(&self, some: &[(CellId, f64)], rings: usize) -> Vec<CellId> {
+    pub(super) fn around(&self, some: &[(CellId, f64)], rings: usize, n_points: usize) -> Vec<CellId> {
         let mut tets: Vec<usize> =
             some.iter().filter_map(|(cell, _)| self.cells.binary_search(cell).ok()).collect();
-        let n = self.corners.iter().flatten().map(|v| v.index() + 1).max().unwrap_or(0);
-        let mut is_near = vec![false; n];
+        let mut is_near = vec![false; n_points];
         for _ in 0..rings {
             tets.iter().flat_map(|&t| self.corners[t]).for_each(|v| is_near[v.index()] = true);
             tets = (0..self.corners.len())

@@ -37,4 +37,4 @@ pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
 pub use report::{Counts, Operation, Report, Seconds, SizesReport, State, Worst};
 pub use run::{Outcome, remesh};
 pub use sizes::{LONG, SHORT, Sizes};
-pub use whole::{MeshOutcome, remesh_mesh};
+pub use whole::{MeshOutcome, remesh_mesh, remesh_part};

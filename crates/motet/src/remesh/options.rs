@@ -1,6 +1,6 @@
 //! What a remesher is told beside the mesh.
 
-use crate::base::{CellId, Error, Result, VertexId};
+use crate::base::{CellId, Error, Result};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::remesh::sizes::Sizes;
 
@@ -9,8 +9,8 @@ use crate::remesh::sizes::Sizes;
 pub struct Options {
     /// A tet below this EAS is bad. Default: 0.2.
     pub min_eas: f64,
-    /// Only these tets can be bad, and what comes of them: cells of a mesh, tets where there are only tets. Others stay as they are, however bad, where no change takes them along.
-    /// Default: `None`, all tets.
+    /// Only these tets can be bad, and what comes of them: cells of a mesh, tets where there are only tets; ids of anything else say nothing. Others stay as they are, however bad, where no
+    /// change takes them along. Default: `None`, all tets.
     pub only: Option<Vec<CellId>>,
     /// A tet is bad, too, when one of its dihedral angles is smaller than this, in degrees. It raises the EAS that is asked to the one that makes sure of
     /// the angle: see [`Self::limit`]. Default: 0.
@@ -23,8 +23,6 @@ pub struct Options {
     pub keep_layers: bool,
     /// How long edges are to be; `None`: as they are. Default: `None`.
     pub sizes: Option<Sizes>,
-    /// Vertices that stay where they are, also where walls may change. Default: none.
-    pub held: Vec<VertexId>,
     /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
@@ -39,7 +37,6 @@ impl Default for Options {
             surface: SurfaceRule::Keep,
             keep_layers: true,
             sizes: None,
-            held: Vec::new(),
             rounds: 20,
         }
     }
@@ -68,6 +65,8 @@ pub enum SurfaceRule {
         /// As for [`Self::Adapt`].
         distance: Option<f64>,
     },
+    /// They keep their place to rounding, but triangles in one plane may become others: a vertex within a flat part can go.
+    Flat,
 }
 
 impl SurfaceRule {
@@ -96,12 +95,16 @@ impl SurfaceRule {
             Self::Adapt { distance } | Self::Loose { distance } => {
                 Some(distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()))
             }
+            Self::Flat => Some(IN_PLANE * extent()),
         }
     }
 }
 
 /// How far the surface may stray, as a part of the mesh's largest extent, where nobody said.
 pub const DEFAULT_DISTANCE: f64 = 1e-3;
+
+/// The same for what is to keep its place: rounding.
+const IN_PLANE: f64 = 1e-9;
 
 /// How far to go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -110,4 +113,6 @@ pub enum Goal {
     Repair,
     /// The worst tets as good as they get, everywhere.
     Best,
+    /// As [`Self::Repair`]; of [`Options::sizes`] the lower half alone: edges that are too short are collapsed where that brings none that is longer than its size, and none is split.
+    Coarsen,
 }

@@ -3,15 +3,15 @@
 use std::time::Instant;
 
 use crate::base::{CellId, Result, TetId, Threads};
-use crate::kernel::{Complex, Extract, Hold};
+use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds, largest_extent};
 use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
-use crate::remesh::options::{Goal, Options, SurfaceRule};
-use crate::remesh::repair::{Repair, Sizing, passes};
+use crate::remesh::options::{Goal, Options};
+use crate::remesh::repair::{Repair, Sizing, is_among, passes};
 use crate::remesh::report::{Report, SizesReport, State};
-use crate::remesh::sizes::{SizeField, Sizes};
+use crate::remesh::sizes::{LONG, SizeField};
 use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
@@ -39,24 +39,21 @@ pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Ou
 
     let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
     let mut bad = complex.below(min_eas);
-    bad.retain(|t| !others.get(t.index()).is_some_and(|is_other| *is_other));
+    bad.retain(|&t| !is_among(&others, t));
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
-    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh));
+    let splits = options.goal != Goal::Coarsen;
+    let longest = if splits { LONG } else { 1.0 };
+    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh, longest));
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
-    let mut repair = Repair::new(complex, surface, min_eas, threads.watch());
-    repair.others = others;
+    let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
-            repair.bring_to_sizes(Sizing { field, most_tets }, options.rounds)?
+            repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?
         }
         _ => repair.run(bad, options.rounds)?,
     };
-    let passes = match options.sizes {
-        Some(Sizes::AtLeast(_)) => passes(SurfaceRule::Keep),
-        _ => passes(options.surface),
-    };
-    for pass in passes {
+    for pass in passes(options.surface) {
         if !left.is_empty() {
             left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
         }
@@ -113,7 +110,6 @@ fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) 
 /// The surface, where it may change.
 fn adaptable(complex: &mut Complex, mesh: &TetMesh, options: &Options) -> Option<Surface> {
     let distance = options.surface.distance(|| bounds(&mesh.points).map_or(0.0, largest_extent))?;
-    options.held.iter().for_each(|&v| complex.set_hold(v, Hold::Fixed));
     let mut surface = Surface::of(complex, distance);
     surface.hold_features(complex, Crease::SHARP);
     complex.adapt_surface();

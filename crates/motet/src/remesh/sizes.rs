@@ -27,8 +27,6 @@ pub enum Sizes {
     Uniform(f64),
     /// One for each vertex of the mesh; between them linear in its tets.
     Vertices(Vec<f64>),
-    /// The same, but none is split: edges that are too short are collapsed, where that brings none that is longer than its size.
-    AtLeast(Vec<f64>),
 }
 
 impl Sizes {
@@ -41,11 +39,11 @@ impl Sizes {
                 return Err(Error::options(format!("the size {h} is no length of an edge"))
                     .remedy("give a number above 0"));
             }
-            Self::Vertices(sizes) | Self::AtLeast(sizes) if sizes.len() != mesh.points.len() => {
+            Self::Vertices(sizes) if sizes.len() != mesh.points.len() => {
                 let what = format!("{} sizes for {} points", sizes.len(), mesh.points.len());
                 return Err(Error::input(what).remedy("give a size for each point"));
             }
-            Self::Vertices(sizes) | Self::AtLeast(sizes) => {
+            Self::Vertices(sizes) => {
                 let is_off = |v: &&VertexId| !is_size(sizes[v.index()]);
                 if let Some(v) = mesh.tets.as_flattened().iter().filter(is_off).min() {
                     let what = format!("the size {} is no length of an edge", sizes[v.index()]);
@@ -81,7 +79,7 @@ impl Sizes {
     fn root_of_n_tets(&self, mesh: &TetMesh) -> f64 {
         let size = |v: &VertexId| match self {
             Self::Uniform(h) => *h,
-            Self::Vertices(sizes) | Self::AtLeast(sizes) => sizes[v.index()],
+            Self::Vertices(sizes) => sizes[v.index()],
         };
         // In units of the least, so that no cube overflows.
         let least = mesh.tets.as_flattened().iter().map(size).fold(f64::INFINITY, f64::min);
@@ -99,8 +97,8 @@ pub(super) struct SizeField {
     source: Source,
     /// The size of each vertex, and where it was then: what comes or moves is asked for anew.
     known: Vec<(Point, f64)>,
-    /// Whether long edges are split; if not, none may come that is longer than its size.
-    pub(super) splits: bool,
+    /// No collapse brings an edge longer than this part of its size.
+    longest: f64,
     /// Whether a change may leave an edge too short.
     pub(super) may_shorten: bool,
 }
@@ -112,11 +110,11 @@ enum Source {
 }
 
 impl SizeField {
-    /// Of sizes that have been checked.
-    pub(super) fn new(sizes: &Sizes, mesh: &TetMesh) -> Self {
+    /// Of sizes that have been checked. Where nothing is split, `longest` keeps edges from becoming what others would split at once.
+    pub(super) fn new(sizes: &Sizes, mesh: &TetMesh, longest: f64) -> Self {
         let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
-            Sizes::Vertices(sizes) | Sizes::AtLeast(sizes) => {
+            Sizes::Vertices(sizes) => {
                 let of = |tet: &[VertexId; 4]| {
                     (tet.map(|v| mesh.points[v.index()]), tet.map(|v| sizes[v.index()]))
                 };
@@ -126,8 +124,7 @@ impl SizeField {
                 (Source::Tets { tree: BoxTree::new(&boxes), corners }, known)
             }
         };
-        let splits = !matches!(sizes, Sizes::AtLeast(_));
-        Self { source, known, splits, may_shorten: false }
+        Self { source, known, longest, may_shorten: false }
     }
 
     /// The size at a vertex that is, or is to be, at a point.
@@ -163,10 +160,9 @@ impl SizeField {
         self.keeps_within([low, LONG], complex, change)
     }
 
-    /// Whether a change brings no edge that is too long.
+    /// Whether a collapse brings no edge that is too long.
     pub(super) fn lengthens_none(&mut self, complex: &Complex, change: &Change) -> bool {
-        let high = if self.splits { LONG } else { 1.0 };
-        self.keeps_within([0.0, high], complex, change)
+        self.keeps_within([0.0, self.longest], complex, change)
     }
 
     fn keeps_within(&mut self, [low, high]: [f64; 2], complex: &Complex, change: &Change) -> bool {

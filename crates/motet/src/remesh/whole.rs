@@ -33,6 +33,22 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
     let taken_out = begin.elapsed().as_secs_f64();
+    let mut outcome = remesh_part(mesh, &part, options, rules, threads)?;
+    outcome.report.seconds.join += taken_out;
+    Ok(outcome)
+}
+
+/// The same for tets that were taken out before, to hold more of their vertices and edges than those of other cells.
+///
+/// # Errors
+/// As there.
+pub fn remesh_part(
+    mesh: &Mesh,
+    part: &TetPart,
+    options: &Options,
+    rules: &Rules,
+    threads: &Threads,
+) -> Result<MeshOutcome> {
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
     let options = Options { only, ..options.clone() };
@@ -40,14 +56,13 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     let mut report = outcome.report;
 
     let begin = Instant::now();
-    let joined = Joined::of(mesh, &part, &outcome.extract);
+    let joined = Joined::of(mesh, part, &outcome.extract);
     let assembled = begin.elapsed().as_secs_f64();
-    let history = history(mesh, &part, &outcome.extract, &joined, threads)?;
+    let history = history(mesh, part, &outcome.extract, &joined, threads)?;
     let mut new = Mesh::new(outcome.extract.mesh.points, joined.cells);
     history.transfer(mesh, &mut new, rules)?;
     number_anew(&mut new, &outcome.extract.vertex_to_old, &joined.cell_to_old);
 
-    report.seconds.join += taken_out;
     report.seconds.extract += assembled;
     report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
     tell_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);

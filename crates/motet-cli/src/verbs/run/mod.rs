@@ -10,8 +10,8 @@ mod report;
 use std::time::Instant;
 
 use motet::base::Threads;
-use motet::moving::{Change, GAP, MovingMesh, Script, Seconds, Step};
-use motet::refine::{Criterion, Size, Wanted};
+use motet::moving::{Change, MovingMesh, Script, Seconds, Step};
+use motet::refine::Wanted;
 use motet::{Error, Result};
 
 pub(crate) use args::RunArgs;
@@ -119,15 +119,8 @@ impl Run {
     /// Divides and takes back what the job asks for after step `k`; before the first all of it.
     fn refine(&mut self, k: usize, threads: &Threads) -> Result<Vec<Change>> {
         let due = self.refining.iter().filter(|(every, _)| k.is_multiple_of(*every));
-        let mut changes = Vec::new();
-        for (_, wanted) in due {
-            changes.extend(self.moving.refine(wanted, threads)?);
-            // Only of gaps it is known how long edges may be.
-            let by_gap = |criterion: &Criterion| matches!(criterion, Criterion::Size(Size::Array(name)) if name == GAP);
-            if wanted.coarsen && k > 0 && !wanted.criteria.is_empty() && wanted.criteria.iter().all(by_gap) {
-                changes.extend(self.moving.coarsen(wanted.limits.smallest.unwrap_or(0.0), threads)?);
-            }
-        }
-        Ok(changes)
+        let changes =
+            due.map(|(_, wanted)| self.moving.refine(wanted, threads)).collect::<Result<Vec<_>>>()?;
+        Ok(changes.into_iter().flatten().collect())
     }
 }

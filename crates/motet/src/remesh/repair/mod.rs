@@ -43,10 +43,15 @@ pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
     const ALL: [Pass; 5] =
         [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
     match surface {
-        SurfaceRule::Keep => &ALL[..1],
+        SurfaceRule::Keep | SurfaceRule::Flat => &ALL[..1],
         SurfaceRule::Adapt { .. } => &ALL[..4],
         SurfaceRule::Loose { .. } => &ALL,
     }
+}
+
+/// Whether a tet is one of those that are marked; where the list is empty none is.
+pub(super) fn is_among(marks: &[bool], tet: TetId) -> bool {
+    marks.get(tet.index()).is_some_and(|is_marked| *is_marked)
 }
 
 /// What is repaired, and the room that it takes.
@@ -57,7 +62,7 @@ pub(super) struct Repair {
     /// Where sizes are asked for.
     pub(super) sizing: Option<Sizing>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
-    pub(super) others: Vec<bool>,
+    others: Vec<bool>,
     target: f64,
     n_stages: usize,
     candidate: Candidate,
@@ -75,13 +80,19 @@ pub(super) struct Repair {
 }
 
 impl Repair {
-    pub(super) fn new(complex: Complex, surface: Option<Surface>, target: f64, watch: &Watch) -> Self {
+    pub(super) fn new(
+        complex: Complex,
+        surface: Option<Surface>,
+        others: Vec<bool>,
+        target: f64,
+        watch: &Watch,
+    ) -> Self {
         Self {
             complex,
             operations: Counts::default(),
             surface,
             sizing: None,
-            others: Vec::new(),
+            others,
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
@@ -224,7 +235,7 @@ impl Repair {
     }
 
     fn is_other(&self, tet: TetId) -> bool {
-        self.others.get(tet.index()).is_some_and(|is_other| *is_other) && self.complex.is_original(tet)
+        self.complex.is_original(tet) && is_among(&self.others, tet)
     }
 
     /// Makes the best change for one bad tet; whether there was one.

@@ -20,6 +20,8 @@ const ENOUGH: f64 = 0.02;
 /// What sizes are asked for, and how far that may go.
 pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
+    /// Whether long edges are split; if not, short ones are collapsed once.
+    pub(in crate::remesh) splits: bool,
     /// No edge is split once there are so many tets.
     pub(in crate::remesh) most_tets: usize,
 }
@@ -53,7 +55,7 @@ impl Repair {
     /// A short edge is often kept by a neighbour that is hardly better than bad: where no more can be collapsed, what lies round the short ones is made
     /// better.
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
-        let splits = sizing.field.splits;
+        let splits = sizing.splits;
         self.sizing = Some(sizing);
         if !splits {
             self.with_sizing(Self::collapse_short)?;
