@@ -232,13 +232,13 @@ impl Way<'_> {
     /// The tets that are to be repaired; `None`: all.
     fn worth_repair(&self, now: &Now, shape: &Shape, effort: Effort) -> Option<Vec<CellId>> {
         let limit = self.options.limit();
-        let low = |way: &Self| now.tets.shape(&way.points, limit + way.options.margin, way.threads).bad;
+        let low = || now.tets.shape(&self.points, limit + self.options.margin, self.threads).bad;
         match effort {
             Effort::All => None,
             Effort::AllAround => Some(now.tets.around(&shape.bad, RINGS, self.points.len())),
-            Effort::Margin => Some(low(self).into_iter().map(|(cell, _)| cell).collect()),
+            Effort::Margin => Some(low().into_iter().map(|(cell, _)| cell).collect()),
             Effort::Usual => {
-                let low = low(self);
+                let low = low();
                 let was = now.tets.eas_of(&low, now.mover.reference());
                 let fallen = low.iter().zip(was).filter(|((_, is), was)| is - (was - is).max(0.0) < limit);
                 Some(fallen.map(|((cell, _), _)| *cell).collect())
