@@ -1,6 +1,6 @@
 """Draws the pictures of docs/guide, from what the commands of its pages make.
 
-    ./test --setup && pip install ./python                (once, in target/venv)
+    ./test --setup && target/venv/bin/python -m pip install ./python    (once)
     cargo build --release
     target/venv/bin/python docs/guide_pictures.py         (writes docs/guide/*.png)
 

@@ -1,6 +1,6 @@
 """What a step of `motet run` takes against the size of the mesh: prints the table of run.md, and draws docs/run_sizes.png.
 
-    ./test --setup && pip install ./python                (once, in target/venv)
+    ./test --setup && target/venv/bin/python -m pip install ./python    (once)
     cargo build --release
     target/venv/bin/python docs/run_sizes.py              (a few minutes, 2 GB of memory and of disk)
 
