@@ -11,18 +11,20 @@ pub(crate) trait Four:
 
     fn load(machine: Self::Machine, numbers: &[f64; 4]) -> Self;
     fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// The smaller ones; this where either is no number. Of 0 and -0 either.
+    fn min(self, other: Self) -> Self;
+    /// The larger ones, likewise.
+    fn max(self, other: Self) -> Self;
     /// `yes` where this is positive, else `no`.
     fn if_positive(self, yes: Self, no: Self) -> Self;
+    /// This, `other` where it is no number.
+    fn or(self, other: Self) -> Self;
     fn stored(self) -> [f64; 4];
 
     #[inline(always)]
     fn all(machine: Self::Machine, x: f64) -> Self {
         Self::load(machine, &[x; 4])
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        (self - other).if_positive(other, self)
     }
 
     #[inline(always)]
@@ -34,8 +36,25 @@ pub(crate) trait Four:
     #[inline(always)]
     fn least(self) -> f64 {
         let [a, b, c, d] = self.stored();
-        a.min(b).min(c.min(d))
+        smaller(smaller(a, b), smaller(c, d))
     }
+
+    #[inline(always)]
+    fn most(self) -> f64 {
+        let [a, b, c, d] = self.stored();
+        larger(larger(a, b), larger(c, d))
+    }
+}
+
+/// One comparison: `f64::min` takes care of what is no number with two more.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// Four points, or vectors.
@@ -48,6 +67,15 @@ pub(crate) struct Plain([f64; 4]);
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide(pulp::x86::V3, pulp::f64x4);
+
+/// What [`Wide`] needs, where the machine has it: asked for once.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+pub(crate) fn wide() -> Option<pulp::x86::V3> {
+    static FOUND: std::sync::LazyLock<Option<pulp::x86::V3>> =
+        std::sync::LazyLock::new(pulp::x86::V3::try_new);
+    *FOUND
+}
 
 macro_rules! by_each {
     ($($trait:ident $method:ident $operator:tt $simd:ident;)*) => {
@@ -95,12 +123,42 @@ impl Four for Plain {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a.abs(), b.abs(), c.abs(), d.abs()])
+    }
+
+    #[inline(always)]
+    fn min(mut self, other: Self) -> Self {
+        for i in 0..4 {
+            self.0[i] = smaller(other.0[i], self.0[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn max(mut self, other: Self) -> Self {
+        for i in 0..4 {
+            self.0[i] = larger(other.0[i], self.0[i]);
+        }
+        self
+    }
+
+    #[inline(always)]
     fn if_positive(self, yes: Self, no: Self) -> Self {
         let mut chosen = no;
         for i in 0..4 {
             chosen.0[i] = if self.0[i] > 0.0 { yes.0[i] } else { no.0[i] };
         }
         chosen
+    }
+
+    #[inline(always)]
+    fn or(mut self, other: Self) -> Self {
+        for i in 0..4 {
+            self.0[i] = if self.0[i].is_nan() { other.0[i] } else { self.0[i] };
+        }
+        self
     }
 
     #[inline(always)]
@@ -124,9 +182,30 @@ impl Four for Wide {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0, self.0.abs_f64x4(self.1))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0, self.0.min_f64x4(other.1, self.1))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0, self.0.max_f64x4(other.1, self.1))
+    }
+
+    #[inline(always)]
     fn if_positive(self, yes: Self, no: Self) -> Self {
         let is_positive = self.0.cmp_gt_f64x4(self.1, self.0.splat_f64x4(0.0));
         Self(self.0, self.0.select_f64x4(is_positive, yes.1, no.1))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        let is_number = self.0.cmp_eq_f64x4(self.1, self.1);
+        Self(self.0, self.0.select_f64x4(is_number, self.1, other.1))
     }
 
     #[inline(always)]

@@ -6,7 +6,8 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
-use crate::kernel::{Behind, Change, Complex, Hold, VertexChange};
+use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
+use crate::ops::smoothing::Corner;
 use crate::ops::{Anywhere, Smoothing};
 
 /// The cavity has at most so many tets.
@@ -34,9 +35,9 @@ impl Insertion {
         // A cavity that is not good enough yet may become so when the vertex moves: what has to be beaten is asked only after.
         let low = bar.min(0.5 * enough);
         self.find_cavity(complex, seed, point, low, change) && {
-            let rim = self.rim.iter().map(|&(tet, facet, _)| {
+            let rim = self.rim.iter().map(|&(tet, facet, quality)| {
                 let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
-                ([a, c, b, point], 3)
+                Corner { points: [a, c, b, point], place: 3, quality }
             });
             let point = self.smoothing.best_place(complex, rim, point, enough, &Anywhere);
             self.fill(complex, point, change);
@@ -47,9 +48,9 @@ impl Insertion {
     fn fill(&self, complex: &Complex, point: Point, change: &mut Change) {
         change.vertex = VertexChange::Insert(point, Hold::Free);
         let apex = complex.next_vertex();
-        for &(tet, facet, _) in &self.rim {
+        for (&(tet, facet, _), quality) in self.rim.iter().zip(self.smoothing.qualities()) {
             let [a, b, c] = FACETS[facet].map(|corner| complex.vertices(tet)[corner]);
-            change.push(complex, [a, c, b, apex], complex.region(tet));
+            change.fill.push(Fill { vertices: [a, c, b, apex], region: complex.region(tet), quality });
         }
     }
 

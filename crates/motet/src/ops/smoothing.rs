@@ -6,7 +6,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::vector::{add, dot, norm, scale, sub};
-use crate::kernel::{Change, Complex, VertexChange};
+use crate::kernel::{Change, Complex, Fill, VertexChange};
 
 /// Qualities that are at most so far above the worst count as nearly smallest.
 const NEARLY: f64 = 0.03;
@@ -48,15 +48,17 @@ impl Track for Anywhere {
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing {
     tets: Vec<Corner>,
+    /// The qualities of the tets where the vertex was tried last. Measuring a tet again that was measured just before took as much time as all else.
+    tried: Vec<f64>,
     gradients: Vec<Point>,
 }
 
 /// A tet of the star: its points, the place of the vertex, and its quality.
 #[derive(Clone, Copy, Debug)]
-struct Corner {
-    points: [Point; 4],
-    place: usize,
-    quality: f64,
+pub(super) struct Corner {
+    pub(super) points: [Point; 4],
+    pub(super) place: usize,
+    pub(super) quality: f64,
 }
 
 impl Smoothing {
@@ -71,36 +73,36 @@ impl Smoothing {
         track: &impl Track,
         change: &mut Change,
     ) -> bool {
-        let corners = star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex)));
-        let point = self.best_place(complex, corners, complex.point(vertex), enough, track);
+        let corner = |&tet: &TetId| Corner {
+            points: complex.corners(tet),
+            place: complex.place(tet, vertex),
+            quality: complex.quality(tet),
+        };
+        let point = self.best_place(complex, star.iter().map(corner), complex.point(vertex), enough, track);
         change.clear();
         change.vertex = VertexChange::Move(vertex, point);
         change.cavity.extend_from_slice(star);
-        for &tet in star {
-            if !change.push_above(complex, complex.vertices(tet), complex.region(tet), bar) {
-                return false;
-            }
-        }
-        true
+        change.fill.extend(star.iter().zip(self.qualities()).map(|(&tet, quality)| Fill {
+            vertices: complex.vertices(tet),
+            region: complex.region(tet),
+            quality,
+        }));
+        change.worst() > bar
     }
 
-    /// The best place found for a vertex of some tets, of each of which it is the corner given.
-    pub fn best_place(
+    /// The best place found for a vertex of some tets that is at `start`.
+    pub(super) fn best_place(
         &mut self,
         complex: &Complex,
-        star: impl Iterator<Item = ([Point; 4], usize)>,
+        star: impl Iterator<Item = Corner>,
         start: Point,
         enough: f64,
         track: &impl Track,
     ) -> Point {
         self.tets.clear();
-        let mut size = 0.0f64;
-        for (mut points, place) in star {
-            points[place] = start;
-            let quality = complex.measure(points);
-            size = size.max(norm(sub(points[(place + 1) % 4], start)));
-            self.tets.push(Corner { points, place, quality });
-        }
+        self.tets.extend(star);
+        let lengths = self.tets.iter().map(|tet| norm(sub(tet.points[(tet.place + 1) % 4], start)));
+        let size = lengths.fold(0.0, f64::max);
         let mut place = start;
         let mut worst = self.worst();
         let mut gain = 0.05;
@@ -129,8 +131,8 @@ impl Smoothing {
             let Some((trial, quality)) = found else { break };
             gain = quality - worst;
             place = trial;
-            self.move_to(complex, place);
-            worst = self.worst();
+            self.move_to(place);
+            worst = quality;
             if gain < SMALLEST_GAIN {
                 break;
             }
@@ -138,15 +140,23 @@ impl Smoothing {
         place
     }
 
+    /// The qualities that the tets have at the place that was found, in their order.
+    pub(super) fn qualities(&self) -> impl Iterator<Item = f64> + '_ {
+        self.tets.iter().map(|tet| tet.quality)
+    }
+
     fn worst(&self) -> f64 {
-        self.tets.iter().map(|t| t.quality).fold(f64::INFINITY, f64::min)
+        self.qualities().fold(f64::INFINITY, f64::min)
     }
 
     /// The worst quality with the vertex elsewhere; anything at most `bar` where it is not better.
-    fn worst_at(&self, complex: &Complex, place: Point, bar: f64) -> f64 {
+    fn worst_at(&mut self, complex: &Complex, place: Point, bar: f64) -> f64 {
         let mut worst = f64::INFINITY;
+        self.tried.clear();
         for tet in &self.tets {
-            worst = worst.min(tet.at(complex, place));
+            let quality = tet.at(complex, place);
+            self.tried.push(quality);
+            worst = worst.min(quality);
             if worst <= bar {
                 break;
             }
@@ -154,10 +164,11 @@ impl Smoothing {
         worst
     }
 
-    fn move_to(&mut self, complex: &Complex, place: Point) {
-        for tet in &mut self.tets {
+    /// Moves the vertex to where it was tried last, in all tets.
+    fn move_to(&mut self, place: Point) {
+        for (tet, &quality) in self.tets.iter_mut().zip(&self.tried) {
             tet.points[tet.place] = place;
-            tet.quality = complex.measure(tet.points);
+            tet.quality = quality;
         }
     }
 

@@ -49,31 +49,17 @@ fn signed_root(x: f64) -> f64 {
     x.abs().sqrt().copysign(x)
 }
 
-/// The measured parts of a tet: its edges, twice the area vector of each facet
+/// The measured parts of a tet: the lengths of its edges, twice the area vector of each facet
 /// (outward for a positive tet), and six volumes without their sign.
 ///
 /// Loops rather than closures over arrays, and always inlined: half the
 /// instructions of the plainer form.
 pub(super) struct Parts {
-    /// Edges in the order of [`EDGES`].
-    edges: [Point; 6],
+    /// Of the edges in the order of [`EDGES`].
     lengths_squared: [f64; 6],
     normals: [Point; 4],
     volume_6: f64,
 }
-
-/// The edges at each corner of each facet, and the sign of their product as
-/// they leave the corner: +1 when both point away from it or both towards it.
-const CORNERS: [[(usize, usize, f64); 3]; 4] = [
-    // Facet 1 2 3: corners 1, 2, 3.
-    [(3, 4, 1.0), (3, 5, -1.0), (4, 5, 1.0)],
-    // Facet 0 2 3: corners 0, 2, 3.
-    [(1, 2, 1.0), (1, 5, -1.0), (2, 5, 1.0)],
-    // Facet 0 1 3: corners 0, 1, 3.
-    [(0, 2, 1.0), (0, 4, -1.0), (2, 4, 1.0)],
-    // Facet 0 1 2: corners 0, 1, 2.
-    [(0, 1, 1.0), (0, 3, -1.0), (1, 3, 1.0)],
-];
 
 impl Parts {
     #[inline(always)]
@@ -91,7 +77,7 @@ impl Parts {
             cross(edges[0], edges[2]),
             cross(edges[1], edges[0]),
         ];
-        Self { edges, lengths_squared, normals, volume_6: tet.volume_6().abs() }
+        Self { lengths_squared, normals, volume_6: tet.volume_6().abs() }
     }
 
     /// At the edge e between facets with normals m and n, `-m.n`, to which the
@@ -125,39 +111,6 @@ impl Parts {
         Extremes {
             low: signed_root(extremes.low) / self.volume_6,
             high: signed_root(extremes.high) / self.volume_6,
-        }
-    }
-
-    /// The extremes of the cotangents of the twelve angles of the four facets.
-    #[inline(always)]
-    pub(super) fn facet_extremes(&self) -> Extremes {
-        let mut extremes = Extremes::NONE;
-        for (normal, corners) in self.normals.into_iter().zip(CORNERS) {
-            let sine_squared = dot(normal, normal);
-            let mut cosines = Extremes::NONE;
-            for (i, j, sign) in corners {
-                cosines.add(sign * dot(self.edges[i], self.edges[j]));
-            }
-            extremes.add(ratio(signed_square(cosines.low), sine_squared));
-            extremes.add(ratio(signed_square(cosines.high), sine_squared));
-        }
-        Extremes { low: signed_root(extremes.low), high: signed_root(extremes.high) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn corners_of_facets_are_where_their_edges_meet() {
-        for (f, corners) in CORNERS.iter().enumerate() {
-            let others: Vec<usize> = (0..4).filter(|&v| v != f).collect();
-            for (&v, &(i, j, sign)) in others.iter().zip(corners) {
-                let leaves = |e: usize| if EDGES[e][0] == v { 1.0 } else { -1.0 };
-                assert!([i, j].iter().all(|&e| EDGES[e].contains(&v) && !EDGES[e].contains(&f)));
-                assert!(i != j && leaves(i) * leaves(j) == sign);
-            }
         }
     }
 }

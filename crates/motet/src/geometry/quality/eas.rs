@@ -12,5 +12,5 @@ pub fn eas(tet: [Point; 4]) -> f64 {
     if volume_6 == 0.0 {
         return 0.0;
     }
-    (1.0 - skew(&tet)).copysign(volume_6)
+    (1.0 - skew(&tet, volume_6)).copysign(volume_6)
 }
