@@ -2,7 +2,7 @@
 
 use motet::base::{Point, Threads};
 use motet::delaunay::Triangulation;
-use motet::geometry::overlap::{Planes, Solid, overlap};
+use motet::geometry::overlap::{Solid, overlap};
 use motet::geometry::tet;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -137,16 +137,6 @@ fn a_tet_within_another_is_shared_whole_however_small() {
 }
 
 #[test]
-fn planes_part_a_tet_from_what_lies_beyond_a_facet_touching_or_not() {
-    let planes = Planes::new(&Solid::new(UNIT));
-    let beyond =
-        |shift: f64| Solid::new([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0 + shift; 3]]);
-    assert!(planes.part_from(&beyond(0.0)) && !planes.part_from(&beyond(-0.9)));
-    assert!(planes.part_from(&Solid::new(UNIT.map(|p| [p[0] + 2.0, p[1], p[2]]))));
-    assert!(!planes.part_from(&Solid::new(UNIT)));
-}
-
-#[test]
 fn flat_tets_and_ones_without_numbers_share_nothing() {
     let flat = [UNIT[0], UNIT[1], UNIT[2], [0.3, 0.3, 0.0]];
     let point = [[0.1; 3]; 4];
@@ -194,18 +184,6 @@ proptest! {
             prop_assert!((found - expected).abs() <= 1e-14 * smaller, "{} {} of {}", found, expected, smaller);
         } else {
             prop_assert_eq!(found, 0.0);
-        }
-    }
-
-    /// With shared corners a facet's plane is touched, as by neighbours in a mesh.
-    #[test]
-    fn planes_part_tets_that_share_nothing_alone(a in tets(), b in tets(), n_shared in 0usize..4, flip in any::<bool>()) {
-        let mut b = b;
-        b[..n_shared].copy_from_slice(&a[..n_shared]);
-        let a = if flip { mirrored(a) } else { a };
-        if Planes::new(&Solid::new(a)).part_from(&Solid::new(b)) {
-            prop_assert_eq!(overlap_by_surface(a, b), 0.0);
-            prop_assert_eq!(Solid::new(a).real_overlap(&Solid::new(b)), None);
         }
     }
 

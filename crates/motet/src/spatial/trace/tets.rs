@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{CellRow, Labelled, LocalChange, map};
 use crate::base::{Error, Point, Result, Threads};
-use crate::geometry::overlap::{Planes, Solid};
+use crate::geometry::overlap::Solid;
 use crate::geometry::tet;
 use crate::geometry::vector::{dot, sub};
 use crate::mesh::history::RegionLedger;
@@ -76,12 +76,8 @@ fn parts(change: &LocalChange<'_>, removed: &Removed<'_>, tet: &Labelled<4>) -> 
     let mut candidates = Vec::new();
     removed.tree.touching(around(solid.corners()), &mut candidates);
     let mut overlaps: Vec<(usize, f64)> = Vec::new();
-    let planes = Planes::new(&solid);
     for i in candidates.into_iter().map(|i| i as usize).filter(|&i| removed.tets[i].label == tet.label) {
-        let old = &removed.solids[i];
-        if !planes.part_from(old) {
-            overlaps.extend(solid.real_overlap(old).map(|volume| (i, volume)));
-        }
+        overlaps.extend(solid.real_overlap(&removed.solids[i]).map(|volume| (i, volume)));
     }
     let covered: f64 = overlaps.iter().map(|o| o.1).sum();
     let volume = solid.volume();
