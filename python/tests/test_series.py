@@ -8,10 +8,10 @@ from motet import shapes
 
 def test_a_series_is_written_step_by_step_and_read(tmp_path):
     meshes = [shapes.sphere_in_box(), shapes.ball()]
-    writer = motet.SeriesWriter(tmp_path / "run.pvd")
-    for time, mesh in zip([0.0, 0.5], meshes):
-        assert str(writer.add(time, mesh)).endswith(".vtu")
-        assert [at for at, _ in motet.read_series(tmp_path / "run.pvd")][-1] == time
+    with motet.SeriesWriter(tmp_path / "run.pvd") as writer:
+        for time, mesh in zip([0.0, 0.5], meshes):
+            assert str(writer.add(time, mesh)).endswith(".vtu")
+            assert [at for at, _ in motet.read_series(tmp_path / "run.pvd")][-1] == time
     for (_, file), mesh in zip(motet.read_series(tmp_path / "run.pvd"), meshes):
         np.testing.assert_array_equal(motet.read(file).points, mesh.points)
 

@@ -69,6 +69,11 @@ pub(crate) fn count(n: usize) -> String {
     out
 }
 
+/// A count with its noun: `1 frame`, `3 frames`.
+pub(crate) fn counted(n: usize, noun: &str) -> String {
+    format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
+}
+
 /// A time span in the unit that suits it.
 pub(crate) fn seconds(s: f64) -> String {
     match s {

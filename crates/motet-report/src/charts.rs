@@ -90,19 +90,25 @@ impl Chart {
             x.high
         );
         self.put_grid(&mut svg, &x, &y, &ticks);
-        if let Some((value, name)) = self.threshold {
-            let at = y.at(value);
+        if let Some((value, _)) = self.threshold {
+            let (at, end) = (y.at(value), WIDTH - right);
             let _ = write!(
                 svg,
-                "<line class=\"threshold\" x1=\"{left}\" x2=\"{}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>\
-                 <text class=\"threshold\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{name}</text>",
-                WIDTH - right,
-                WIDTH - right,
-                at - 3.0
+                "<line class=\"threshold\" x1=\"{left}\" x2=\"{end}\" y1=\"{at:.1}\" y2=\"{at:.1}\"/>"
             );
         }
         for (i, line) in self.lines.iter().enumerate() {
             self.put_line(&mut svg, line, i, &x, &y);
+        }
+        if let Some((value, name)) = self.threshold {
+            // Lines should stay above it, so that its name stands below, where there is room.
+            let at = y.at(value);
+            let at = if at + 14.0 < HEIGHT - below { at + 11.0 } else { at - 3.0 };
+            let _ = write!(
+                svg,
+                "<text class=\"threshold\" x=\"{}\" y=\"{at:.1}\" text-anchor=\"end\">{name}</text>",
+                WIDTH - right
+            );
         }
         let _ = write!(
             svg,

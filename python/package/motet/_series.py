@@ -19,7 +19,7 @@ def read_series(path: str | os.PathLike[str]) -> list[tuple[float, str]]:
 class SeriesWriter:
     """Meshes over time, as ParaView plays them: a ``.pvd``, and a ``.vtu`` beside it for each time. Points and cells may differ from time to time.
 
-    After each :meth:`add` the series on the disk is whole.
+    After each :meth:`add` the series on the disk is whole: there is nothing to close. In a ``with`` statement it works as files do.
     """
 
     def __init__(self, path: str | os.PathLike[str]):
@@ -29,6 +29,12 @@ class SeriesWriter:
         """Writes a mesh and the series that ends with it; gives the mesh's file."""
         file, _ = self._native.add(time, as_mesh(mesh))
         return file
+
+    def __enter__(self) -> SeriesWriter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
 
 
 def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:

@@ -10,7 +10,7 @@ use serde_json::json;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
-use crate::table::count;
+use crate::table::{count, counted};
 use crate::verbs::convert::WritingArgs;
 
 /// Close the open rims of a surface, or of every frame of one that moves
@@ -68,10 +68,10 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     let whole = caps.close(&first)?;
     let added = whole.points.len() - first.points.len();
     console.say(format_args!(
-        "{}: {} frames, {} rims capped, {} points and {} triangles added",
+        "{}: {}, {} capped, {} points and {} triangles added",
         args.output.display(),
-        frames.len(),
-        caps.len(),
+        counted(frames.len(), "frame"),
+        counted(caps.len(), "rim"),
         count(added),
         count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
     ));

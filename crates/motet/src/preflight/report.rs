@@ -88,7 +88,8 @@ fn count(same: &[Fault]) -> FaultCount {
 impl fmt::Display for Preflight {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let verdict = if self.is_fit() { "fit" } else { "not fit" };
-        write!(f, "{} triangles, {} surfaces: {verdict}", self.n_triangles, self.n_surfaces)?;
+        let plural = if self.n_surfaces == 1 { "" } else { "s" };
+        write!(f, "{} triangles, {} surface{plural}: {verdict}", self.n_triangles, self.n_surfaces)?;
         for FaultCount { kind, fatal, notes } in &self.counts {
             write!(f, "; {}", kind.name())?;
             if *fatal > 0 {
