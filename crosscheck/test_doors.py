@@ -53,12 +53,31 @@ def contact(first, second):
     return {"least": gaps.least, "sum_of_gaps": np.cumsum(gap[np.isfinite(gap)])[-1]}
 
 
+def loop(path, patch, dx, dy, dz, steps):
+    mesh, n_steps, x, changes = motet.read(path), int(steps), None, 0
+    options = {"smooth": 2}
+    moving = motet.MovingMesh(mesh, **options)
+    places = moving.driven_places
+    in_patch = {tuple(point) for point in mesh.points[mesh.patch_vertices(patch)]}
+    shifts = np.array([[float(dx), float(dy), float(dz)] if tuple(place) in in_patch else [0.0] * 3 for place in places])
+    x = np.array(mesh.points[:, 0])
+    for k in range(1, 2 * n_steps + 1):
+        changes += len(moving.advance(k, min(k, 2 * n_steps - k) / n_steps * shifts).changes)
+        if history := moving.history_since(k - 1):
+            x = history.transfer(x, on="points")
+        if k == n_steps:
+            moving.save(f"{path}.state.vtu")
+            moving = motet.MovingMesh.load(f"{path}.state.vtu", **options)
+    velocity = np.cumsum(moving.velocity[:, 0])[-1]
+    return {"changes": changes, "time": moving.time, "sum_velocity": velocity, "sum_carried": np.cumsum(x)[-1], **tell(moving.mesh)}
+
+
 def surface(path):
     mesh = motet.read(path)
     return motet.Mesh(mesh.points, {"triangle": mesh.triangles})
 
 
-PYTHON = {"repair": repair, "implant": implant, "contact": contact}
+PYTHON = {"repair": repair, "implant": implant, "contact": contact, "loop": loop}
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)

@@ -3,6 +3,7 @@
  *   cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is carried along
  *   cases implant HOST DEVICE NAME
  *   cases contact SURFACE SURFACE
+ *   cases loop MESH PATCH DX DY DZ STEPS        a patch goes away in steps and comes back, repaired on the way; saved and loaded where it turns
  */
 #include <math.h>
 #include <stdio.h>
@@ -132,11 +133,73 @@ static void contact(char **words)
     motet_contact_free(contact), motet_mesh_free(first), motet_mesh_free(second);
 }
 
+/* A patch goes away and comes back: each way in so many steps, the state saved and loaded where it turns. */
+static void loop(char **words)
+{
+    motet_mesh *mesh = read_mesh(words[0]);
+    int64_t n_points = motet_mesh_n_points(mesh), n_patch = motet_mesh_n_patch_vertices(mesh, words[1]), n_steps = atoi(words[5]), n, i, k, changes = 0;
+    int32_t *patch = memory(n_patch, sizeof *patch);
+    double *points = memory(3 * n_points, sizeof *points), *x = memory(n_points, sizeof *x), *places, *shifts, *displacement, *velocity, sum = 0;
+    char *state = memory(strlen(words[0]) + sizeof ".state.vtu", 1);
+    motet_moving_options options;
+    motet_moving *moving = NULL;
+    ok(motet_mesh_patch_vertices(mesh, words[1], patch, n_patch, &error));
+    ok(motet_mesh_points(mesh, points, n_points, 3, &error));
+    motet_moving_options_init(&options, sizeof options);
+    options.smooth = 2;
+    ok(motet_moving_new(mesh, &options, &moving, &error));
+    n = motet_moving_n_driven(moving);
+    places = memory(3 * n, sizeof *places), shifts = memory(3 * n, sizeof *shifts), displacement = memory(3 * n, sizeof *displacement);
+    ok(motet_moving_driven_places(moving, places, n, 3, &error));
+    for (i = 0, k = 0; i < n; i++) /* driven vertices and those of the patch both rise */
+        if (k < n_patch && memcmp(places + 3 * i, points + 3 * patch[k], 3 * sizeof *places) == 0) {
+            shifts[3 * i] = atof(words[2]), shifts[3 * i + 1] = atof(words[3]), shifts[3 * i + 2] = atof(words[4]);
+            k++;
+        }
+    for (i = 0; i < n_points; i++) x[i] = points[3 * i];
+    for (k = 1; k <= 2 * n_steps; k++) {
+        double part = (double)(k <= n_steps ? k : 2 * n_steps - k) / (double)n_steps;
+        motet_outcome *outcome = NULL;
+        motet_step step;
+        for (i = 0; i < 3 * n; i++) displacement[i] = part * shifts[i];
+        motet_step_init(&step, sizeof step);
+        ok(motet_moving_advance(moving, (double)k, displacement, n, 3, &step, &error));
+        if (!step.complete || step.bad || step.inverted) exit(4);
+        changes += step.changes;
+        ok(motet_moving_since(moving, k - 1, &outcome, &error)); /* an array of the caller's own follows */
+        if (outcome != NULL) {
+            int64_t n_new = step.points;
+            double *new_x = memory(n_new, sizeof *new_x);
+            ok(motet_outcome_transfer(outcome, MOTET_ON_POINTS, MOTET_RULE_MEAN, x, n_points, 1, new_x, n_new, &error));
+            free(x), x = new_x, n_points = n_new;
+            motet_outcome_free(outcome);
+        }
+        if (k == n_steps) {
+            strcat(strcpy(state, words[0]), ".state.vtu");
+            ok(motet_moving_save(moving, state, &error));
+            motet_moving_free(moving);
+            ok(motet_moving_load(state, &options, &moving, &error));
+        }
+    }
+    velocity = memory(3 * n_points, sizeof *velocity);
+    ok(motet_moving_velocity(moving, velocity, n_points, 3, &error));
+    told("changes", (double)changes);
+    told("time", motet_moving_time(moving));
+    for (i = 0; i < n_points; i++) sum += velocity[3 * i];
+    told("sum_velocity", sum);
+    for (i = 0, sum = 0; i < n_points; i++) sum += x[i];
+    told("sum_carried", sum);
+    tell_mesh(motet_moving_mesh(moving));
+    free(patch), free(points), free(x), free(places), free(shifts), free(displacement), free(velocity), free(state);
+    motet_moving_free(moving), motet_mesh_free(mesh);
+}
+
 int main(int n, char **words)
 {
     if (n == 8 && strcmp(words[1], "repair") == 0) repair(words + 2);
     else if (n == 5 && strcmp(words[1], "implant") == 0) implant(words + 2);
     else if (n == 4 && strcmp(words[1], "contact") == 0) contact(words + 2);
+    else if (n == 8 && strcmp(words[1], "loop") == 0) loop(words + 2);
     else return 2;
     return 0;
 }

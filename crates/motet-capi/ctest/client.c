@@ -404,6 +404,113 @@ static void contact(void)
     CHECK(contact == NULL);
 }
 
+/* The sum of a cell array times the volumes of the tets. */
+static double integral(const motet_mesh *mesh, const char *name)
+{
+    motet_error *error = NULL;
+    int64_t n = motet_mesh_n_cells(mesh), n_points = motet_mesh_n_points(mesh), i;
+    int32_t *tets = malloc(sizeof(int32_t) * 4 * n);
+    double *p = malloc(sizeof(double) * 3 * n_points), *values = malloc(sizeof(double) * n), sum = 0;
+    CHECK(tets && p && values && motet_mesh_n_of_kind(mesh, MOTET_TETRA) == n);
+    OK(motet_mesh_of_kind(mesh, MOTET_TETRA, tets, 4 * n, &error));
+    OK(motet_mesh_points(mesh, p, n_points, 3, &error));
+    OK(motet_mesh_array(mesh, MOTET_ON_CELLS, name, values, n, &error));
+    for (i = 0; i < n; i++) {
+        const double *a = p + 3 * tets[4 * i], *b = p + 3 * tets[4 * i + 1], *c = p + 3 * tets[4 * i + 2], *d = p + 3 * tets[4 * i + 3];
+        double u[3], v[3], w[3];
+        int k;
+        for (k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = d[k] - a[k];
+        sum += values[i] * fabs(u[0] * (v[1] * w[2] - v[2] * w[1]) + u[1] * (v[2] * w[0] - v[0] * w[2]) + u[2] * (v[0] * w[1] - v[1] * w[0])) / 6;
+    }
+    free(tets), free(p), free(values);
+    return sum;
+}
+
+static void loop(void)
+{
+    static const char *const contents[1] = {"density"}, *const watched[1] = {"nowhere"};
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube(), *device = octahedron(0.5, 0.5, 0.1, 0.05);
+    motet_moving_options options;
+    motet_moving *moving = NULL, *none = NULL;
+    motet_outcome *outcome = NULL;
+    motet_step step;
+    int64_t n, n_new, changes = 0, i, k;
+    double *places, *displacement, *density = malloc(sizeof(double) * N_TETS), *x = malloc(sizeof(double) * N_POINTS), *first = malloc(sizeof(double) * 3 * N_POINTS), *now, before;
+    CHECK(density && x && first);
+    OK(motet_mesh_points(mesh, first, N_POINTS, 3, &error));
+    for (i = 0; i < N_TETS; i++) density[i] = 1 + (double)(i % 7);
+    for (i = 0; i < N_POINTS; i++) x[i] = 3 * first[3 * i] - 1;
+    OK(motet_mesh_set_array(mesh, MOTET_ON_CELLS, "density", density, N_TETS, 1, &error));
+    before = integral(mesh, "density");
+    motet_moving_options_init(&options, sizeof options);
+    options.contents = contents, options.n_contents = 1, options.threads = 1;
+    OK(motet_moving_new(mesh, &options, &moving, &error));
+    OK(motet_moving_set_array(moving, MOTET_ON_POINTS, "x", x, N_POINTS, 1, &error));
+    n = motet_moving_n_driven(moving);
+    CHECK(n == N_POINTS - (N - 1) * (N - 1) * (N - 1) && motet_moving_time(moving) == 0 && motet_moving_step(moving) == 0);
+    places = malloc(sizeof(double) * 4 * n), displacement = malloc(sizeof(double) * 3 * n);
+    CHECK(places && displacement);
+    OK(motet_moving_driven_places(moving, places, n, 4, &error));
+
+    /* The floor bulges until tets are bad, and repaired. */
+    for (k = 1; k <= 4; k++) {
+        for (i = 0; i < n; i++) {
+            const double *at = places + 4 * i;
+            displacement[3 * i] = displacement[3 * i + 1] = 0;
+            displacement[3 * i + 2] = at[2] > 0 ? 0 : 0.16 * (double)k * 16 * at[0] * (1 - at[0]) * at[1] * (1 - at[1]);
+        }
+        motet_step_init(&step, sizeof step);
+        OK(motet_moving_advance(moving, 0.25 * (double)k, displacement, n, 3, &step, &error));
+        CHECK(step.step == k && step.complete == 1 && step.inverted == 0 && step.time == 0.25 * (double)k && step.size == sizeof step && isinf(step.gap));
+        changes += step.changes;
+    }
+    CHECK(changes > 0 && step.points == motet_mesh_n_points(motet_moving_mesh(moving)) && motet_moving_remembers(moving, 0) == 1);
+    CHECK(fabs(integral(motet_moving_mesh(moving), "density") / before - 1) < 1e-12); /* what is in it stays */
+    n_new = step.points;
+    now = malloc(sizeof(double) * 3 * n_new);
+    free(first), first = malloc(sizeof(double) * 3 * n_new);
+    free(x), x = malloc(sizeof(double) * n_new);
+    CHECK(now && first && x);
+    OK(motet_mesh_points(motet_moving_mesh(moving), now, n_new, 3, &error));
+    OK(motet_moving_displacement(moving, first, n_new, 3, &error));
+    OK(motet_mesh_array(motet_moving_mesh(moving), MOTET_ON_POINTS, "x", x, n_new, &error));
+    for (i = 0; i < n_new; i++) CHECK(fabs(x[i] - (3 * (now[3 * i] - first[3 * i]) - 1)) < 1e-12); /* linear in the first places */
+    OK(motet_moving_velocity(moving, now, n_new, 3, &error));
+    OK(motet_moving_since(moving, 0, &outcome, &error));
+    CHECK(outcome != NULL && motet_mesh_n_points(motet_outcome_mesh(outcome)) == n_new);
+    motet_outcome_free(outcome);
+    OK(motet_moving_since(moving, 4, &outcome, &error));
+    CHECK(outcome == NULL);
+    OK(motet_moving_repair(moving, &changes, &error));
+    OK(motet_moving_refine_near(moving, device, 0.05, 0.5, 1, &changes, &error));
+    CHECK(changes > 0 && motet_mesh_n_points(motet_moving_mesh(moving)) > n_new);
+    CHECK(fabs(integral(motet_moving_mesh(moving), "density") / before - 1) < 1e-12);
+
+    REFUSED(motet_moving_advance(moving, 1, displacement, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "not after 1");
+    REFUSED(motet_moving_advance(moving, 2, displacement, n - 1, 3, NULL, &error), MOTET_ERROR_OPTIONS, "expected");
+    REFUSED(motet_moving_advance(moving, 2, NULL, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "displacement is NULL");
+    REFUSED(motet_moving_advance(NULL, 2, displacement, n, 3, NULL, &error), MOTET_ERROR_OPTIONS, "moving is NULL");
+    step.size = 0;
+    REFUSED(motet_moving_advance(moving, 2, displacement, n, 3, &step, &error), MOTET_ERROR_OPTIONS, "_init");
+    displacement[5] = NAN;
+    REFUSED(motet_moving_advance(moving, 2, displacement, n, 3, NULL, &error), MOTET_ERROR_INPUT, "driven vertex 1");
+    CHECK(motet_moving_time(moving) == 1 && motet_moving_step(moving) == 4);
+    REFUSED(motet_moving_velocity(moving, now, n_new, 3, &error), MOTET_ERROR_OPTIONS, "expected");
+    REFUSED(motet_moving_set_array(moving, MOTET_ON_POINTS, "x", x, n_new, 1, &error), MOTET_ERROR_INPUT, "rows");
+    REFUSED(motet_moving_refine_gaps(moving, 0, 1, NULL, &error), MOTET_ERROR_OPTIONS, "smallest");
+    REFUSED(motet_moving_since(moving, -1, &outcome, &error), MOTET_ERROR_OPTIONS, "-1 steps");
+    REFUSED(motet_moving_load("nowhere.vtu", &options, &none, &error), MOTET_ERROR_IO, "nowhere.vtu");
+    options.watch = watched, options.n_watch = 1;
+    REFUSED(motet_moving_new(mesh, &options, &none, &error), MOTET_ERROR_OPTIONS, "nowhere");
+    options.n_watch = 0, options.surface = 7;
+    REFUSED(motet_moving_new(mesh, &options, &none, &error), MOTET_ERROR_OPTIONS, "no rule 7");
+    CHECK(none == NULL && motet_moving_mesh(none) == NULL && isnan(motet_moving_time(none)));
+    free(places), free(displacement), free(density), free(x), free(first), free(now);
+    motet_moving_free(moving), motet_moving_free(none);
+    motet_mesh_free(mesh), motet_mesh_free(device);
+}
+
 int main(void)
 {
     CHECK(motet_version() == MOTET_VERSION_MAJOR * 10000 + MOTET_VERSION_MINOR * 100 + MOTET_VERSION_PATCH);
@@ -413,6 +520,7 @@ int main(void)
     changing();
     refinement();
     contact();
+    loop();
     printf("all is as motet.h says\n");
     return 0;
 }

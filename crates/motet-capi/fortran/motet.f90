@@ -71,6 +71,42 @@ module motet
     integer(c_int32_t) :: own = 0, facing = 0, threads = 0
   end type
 
+  ! Options of a moving mesh; members as in motet.h, lists of names as of mover_options.
+  type, bind(c), public :: moving_options
+    integer(c_size_t) :: size = 0
+    integer(c_int32_t) :: method = 0, within_walls = 0, smooth = 0, rigid_layer_cells = 0
+    real(c_double) :: rigid_layer = 0
+    type(c_ptr) :: inside = c_null_ptr
+    integer(c_int64_t) :: n_inside = 0
+    type(c_ptr) :: slide = c_null_ptr
+    integer(c_int64_t) :: n_slide = 0
+    type(c_ptr) :: bodies = c_null_ptr
+    integer(c_int64_t) :: n_bodies = 0
+    type(c_ptr) :: wall = c_null_ptr
+    integer(c_int64_t) :: n_wall = 0
+    integer(c_int32_t) :: no_repair = 0, surface = 0
+    real(c_double) :: distance = 0, min_eas = 0.2_c_double, margin = 0.05_c_double, floor = 0.05_c_double, keep_tets = 0.9_c_double
+    type(c_ptr) :: contents = c_null_ptr
+    integer(c_int64_t) :: n_contents = 0
+    type(c_ptr) :: watch = c_null_ptr
+    integer(c_int64_t) :: n_watch = 0
+    real(c_double) :: warn = 0, within = 0, horizon = 0, hold = 0
+    integer(c_int32_t) :: remembered = 64, threads = 0
+  end type
+
+  ! What became of a step of a moving mesh.
+  type, bind(c), public :: moving_step
+    integer(c_size_t) :: size = 0
+    integer(c_int64_t) :: step = 0
+    real(c_double) :: time = 0
+    integer(c_int32_t) :: complete = 0, legs = 0
+    real(c_double) :: fraction = 0
+    integer(c_int64_t) :: changes = 0, points = 0, tets = 0, bad = 0, forced = 0, inverted = 0, worst_cell = -1
+    real(c_double) :: worst_eas = 0, worst_place(3) = 0, gap = 0
+    integer(c_int64_t) :: warned = 0, held = 0
+    real(c_double) :: touch_not_before = 0, seconds = 0
+  end type
+
   type, public :: mesh
     private
     type(c_ptr) :: handle = c_null_ptr
@@ -143,6 +179,30 @@ module motet
     procedure :: measure => contact_measure
     procedure :: free => contact_free
     final :: contact_final
+  end type
+
+  ! A mesh that moves with its walls and stays good; the mesh as it is by `mesh`, a copy.
+  type, public :: moving_mesh
+    private
+    type(c_ptr) :: handle = c_null_ptr
+  contains
+    procedure :: new => moving_new
+    procedure :: save => moving_save
+    procedure :: load => moving_load
+    procedure :: n_driven => moving_n_driven
+    procedure :: driven_places => moving_driven_places
+    procedure :: time => moving_time
+    procedure :: mesh => moving_mesh_copy
+    procedure :: velocity => moving_velocity
+    procedure :: displacement => moving_displacement
+    procedure :: set_array => moving_set_array
+    procedure :: advance => moving_advance
+    procedure :: repair => moving_repair
+    procedure :: refine_near => moving_refine_near
+    procedure :: refine_gaps => moving_refine_gaps
+    procedure :: since => moving_since
+    procedure :: free => moving_free
+    final :: moving_final
   end type
 
   public :: motet_version
@@ -444,6 +504,122 @@ module motet
       import
       type(c_ptr), value :: contact
     end subroutine
+    function c_moving_new(mesh, options, moving, error) bind(c, name='motet_moving_new')
+      import
+      type(c_ptr), value :: mesh
+      type(moving_options), intent(in) :: options
+      type(c_ptr) :: moving, error
+      integer(c_int32_t) :: c_moving_new
+    end function
+    function c_moving_load(path, options, moving, error) bind(c, name='motet_moving_load')
+      import
+      character(kind=c_char), intent(in) :: path(*)
+      type(moving_options), intent(in) :: options
+      type(c_ptr) :: moving, error
+      integer(c_int32_t) :: c_moving_load
+    end function
+    function c_moving_save(moving, path, error) bind(c, name='motet_moving_save')
+      import
+      type(c_ptr), value :: moving
+      character(kind=c_char), intent(in) :: path(*)
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_save
+    end function
+    subroutine c_moving_free(moving) bind(c, name='motet_moving_free')
+      import
+      type(c_ptr), value :: moving
+    end subroutine
+    function c_moving_n_driven(moving) bind(c, name='motet_moving_n_driven')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int64_t) :: c_moving_n_driven
+    end function
+    function c_moving_time(moving) bind(c, name='motet_moving_time')
+      import
+      type(c_ptr), value :: moving
+      real(c_double) :: c_moving_time
+    end function
+    function c_moving_mesh(moving) bind(c, name='motet_moving_mesh')
+      import
+      type(c_ptr), value :: moving
+      type(c_ptr) :: c_moving_mesh
+    end function
+    function c_moving_driven_places(moving, places, n, stride, error) bind(c, name='motet_moving_driven_places')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), intent(inout) :: places(*)
+      integer(c_int64_t), value :: n, stride
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_driven_places
+    end function
+    function c_moving_velocity(moving, velocity, n, stride, error) bind(c, name='motet_moving_velocity')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), intent(inout) :: velocity(*)
+      integer(c_int64_t), value :: n, stride
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_velocity
+    end function
+    function c_moving_displacement(moving, displacement, n, stride, error) bind(c, name='motet_moving_displacement')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), intent(inout) :: displacement(*)
+      integer(c_int64_t), value :: n, stride
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_displacement
+    end function
+    function c_moving_set_array(moving, on, name, values, n, components, error) bind(c, name='motet_moving_set_array')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int32_t), value :: on, components
+      character(kind=c_char), intent(in) :: name(*)
+      real(c_double), intent(in) :: values(*)
+      integer(c_int64_t), value :: n
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_set_array
+    end function
+    function c_moving_advance(moving, time, displacement, n_driven, stride, step, error) bind(c, name='motet_moving_advance')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), value :: time
+      real(c_double), intent(in) :: displacement(*)
+      integer(c_int64_t), value :: n_driven, stride
+      type(moving_step), intent(inout) :: step
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_advance
+    end function
+    function c_moving_repair(moving, changes, error) bind(c, name='motet_moving_repair')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int64_t), intent(out) :: changes
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_repair
+    end function
+    function c_moving_refine_near(moving, surface, at, growth, coarsen, changes, error) bind(c, name='motet_moving_refine_near')
+      import
+      type(c_ptr), value :: moving, surface
+      real(c_double), value :: at, growth
+      integer(c_int32_t), value :: coarsen
+      integer(c_int64_t), intent(out) :: changes
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_refine_near
+    end function
+    function c_moving_refine_gaps(moving, smallest, coarsen, changes, error) bind(c, name='motet_moving_refine_gaps')
+      import
+      type(c_ptr), value :: moving
+      real(c_double), value :: smallest
+      integer(c_int32_t), value :: coarsen
+      integer(c_int64_t), intent(out) :: changes
+      type(c_ptr) :: error
+      integer(c_int32_t) :: c_moving_refine_gaps
+    end function
+    function c_moving_since(moving, step, outcome, error) bind(c, name='motet_moving_since')
+      import
+      type(c_ptr), value :: moving
+      integer(c_int64_t), value :: step
+      type(c_ptr) :: outcome, error
+      integer(c_int32_t) :: c_moving_since
+    end function
   end interface
 
 contains
@@ -932,6 +1108,212 @@ contains
 
   subroutine contact_final(self)
     type(contact), intent(inout) :: self
+    call self%free()
+  end subroutine
+
+  subroutine moving_new(self, of, options, status, message)
+    class(moving_mesh), intent(inout) :: self
+    class(mesh), intent(in) :: of
+    type(moving_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(moving_options) :: asked
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call self%free()
+    if (present(options)) asked = options
+    asked%size = c_sizeof(asked)
+    code = c_moving_new(of%handle, asked, self%handle, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_save(self, path, status, message)
+    class(moving_mesh), intent(in) :: self
+    character(*), intent(in) :: path
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_moving_save(self%handle, trim(path)//c_null_char, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_load(self, path, options, status, message)
+    class(moving_mesh), intent(inout) :: self
+    character(*), intent(in) :: path
+    type(moving_options), intent(in), optional :: options
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(moving_options) :: asked
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call self%free()
+    if (present(options)) asked = options
+    asked%size = c_sizeof(asked)
+    code = c_moving_load(trim(path)//c_null_char, asked, self%handle, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  function moving_n_driven(self) result(n)
+    class(moving_mesh), intent(in) :: self
+    integer(c_int64_t) :: n
+    n = c_moving_n_driven(self%handle)
+  end function
+
+  ! Allocated here: (3, n_driven).
+  subroutine moving_driven_places(self, places, status, message)
+    class(moving_mesh), intent(in) :: self
+    real(c_double), allocatable, intent(out) :: places(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    allocate(places(3, self%n_driven()))
+    code = c_moving_driven_places(self%handle, places, self%n_driven(), 3_c_int64_t, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  function moving_time(self) result(time)
+    class(moving_mesh), intent(in) :: self
+    real(c_double) :: time
+    time = c_moving_time(self%handle)
+  end function
+
+  subroutine moving_mesh_copy(self, copy, status, message)
+    class(moving_mesh), intent(in) :: self
+    type(mesh), intent(inout) :: copy
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call copy%free()
+    code = c_mesh_copy(c_moving_mesh(self%handle), copy%handle, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  ! Allocated here, and those below: (3, n_points) of the mesh as it is.
+  subroutine moving_velocity(self, velocity, status, message)
+    class(moving_mesh), intent(in) :: self
+    real(c_double), allocatable, intent(out) :: velocity(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    n = c_mesh_n_points(c_moving_mesh(self%handle))
+    allocate(velocity(3, n))
+    code = c_moving_velocity(self%handle, velocity, n, 3_c_int64_t, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_displacement(self, displacement, status, message)
+    class(moving_mesh), intent(in) :: self
+    real(c_double), allocatable, intent(out) :: displacement(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    integer(c_int64_t) :: n
+    n = c_mesh_n_points(c_moving_mesh(self%handle))
+    allocate(displacement(3, n))
+    code = c_moving_displacement(self%handle, displacement, n, 3_c_int64_t, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  ! values (components, n)
+  subroutine moving_set_array(self, on, name, values, status, message)
+    class(moving_mesh), intent(inout) :: self
+    integer(c_int32_t), intent(in) :: on
+    character(*), intent(in) :: name
+    real(c_double), contiguous, intent(in) :: values(:, :)
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_moving_set_array(self%handle, on, trim(name)//c_null_char, values, size(values, 2, c_int64_t), &
+        size(values, 1, c_int32_t), error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  ! displacement (3, n_driven); more rows than three are a stride.
+  subroutine moving_advance(self, time, displacement, step, status, message)
+    class(moving_mesh), intent(inout) :: self
+    real(c_double), intent(in) :: time
+    real(c_double), contiguous, intent(in) :: displacement(:, :)
+    type(moving_step), intent(out) :: step
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    step%size = c_sizeof(step)
+    code = c_moving_advance(self%handle, time, displacement, size(displacement, 2, c_int64_t), size(displacement, 1, c_int64_t), &
+        step, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  ! changes: how often connectivity was changed.
+  subroutine moving_repair(self, changes, status, message)
+    class(moving_mesh), intent(inout) :: self
+    integer(c_int64_t), intent(out) :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_moving_repair(self%handle, changes, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_refine_near(self, surface, at, growth, coarsen, changes, status, message)
+    class(moving_mesh), intent(inout) :: self
+    class(mesh), intent(in) :: surface
+    real(c_double), intent(in) :: at, growth
+    logical, intent(in) :: coarsen
+    integer(c_int64_t), intent(out) :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_moving_refine_near(self%handle, surface%handle, at, growth, merge(1_c_int32_t, 0_c_int32_t, coarsen), changes, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_refine_gaps(self, smallest, coarsen, changes, status, message)
+    class(moving_mesh), intent(inout) :: self
+    real(c_double), intent(in) :: smallest
+    logical, intent(in) :: coarsen
+    integer(c_int64_t), intent(out) :: changes
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    code = c_moving_refine_gaps(self%handle, smallest, merge(1_c_int32_t, 0_c_int32_t, coarsen), changes, error)
+    call tell(code, error, status, message)
+  end subroutine
+
+  ! From the mesh after a step to the mesh as it is; has_changed is false where arrays serve as they are, and `changes` is empty.
+  subroutine moving_since(self, step, changes, has_changed, status, message)
+    class(moving_mesh), intent(in) :: self
+    integer(c_int64_t), intent(in) :: step
+    type(outcome), intent(inout) :: changes
+    logical, intent(out) :: has_changed
+    integer(c_int32_t), intent(out), optional :: status
+    character(*), intent(inout), optional :: message
+    type(c_ptr) :: error
+    integer(c_int32_t) :: code
+    call changes%free()
+    code = c_moving_since(self%handle, step, changes%handle, error)
+    has_changed = c_associated(changes%handle)
+    call tell(code, error, status, message)
+  end subroutine
+
+  subroutine moving_free(self)
+    class(moving_mesh), intent(inout) :: self
+    call c_moving_free(self%handle)
+    self%handle = c_null_ptr
+  end subroutine
+
+  subroutine moving_final(self)
+    type(moving_mesh), intent(inout) :: self
     call self%free()
   end subroutine
 

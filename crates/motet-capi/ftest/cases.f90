@@ -2,8 +2,8 @@
 program cases
   use, intrinsic :: iso_c_binding
   use, intrinsic :: ieee_arithmetic
-  use motet, only: mesh, mover, outcome, contact, mover_options, certificate, MOTET_TRIANGLE, MOTET_TETRA, &
-      MOTET_ON_POINTS, MOTET_RULE_MEAN, MOTET_ERROR_IO
+  use motet, only: mesh, mover, outcome, contact, moving_mesh, mover_options, certificate, moving_options, moving_step, &
+      MOTET_TRIANGLE, MOTET_TETRA, MOTET_ON_POINTS, MOTET_RULE_MEAN, MOTET_ERROR_IO
   implicit none
 
   call errors_are_told()
@@ -14,6 +14,8 @@ program cases
     call put_in()
   case ('contact')
     call measure()
+  case ('loop')
+    call there_and_back()
   case default
     error stop 2
   end select
@@ -145,6 +147,71 @@ contains
     end do
     call told('least', least)
     call told('sum_of_gaps', total)
+  end subroutine
+
+  subroutine there_and_back()
+    type(mesh) :: first, last
+    type(moving_mesh) :: moving
+    type(moving_options) :: options
+    type(moving_step) :: reached
+    type(outcome) :: changes
+    integer(c_int32_t), allocatable :: patch(:)
+    real(c_double), allocatable :: points(:, :), places(:, :), shifts(:, :), x(:, :), carried(:, :), velocity(:, :)
+    real(c_double) :: total, part
+    integer(c_int64_t) :: n_changes, k, n_steps
+    integer :: i, next
+    logical :: has_changed
+    character(:), allocatable :: state
+    n_steps = nint(number(7))
+    state = word(2)//'.state.vtu'
+    call first%read(word(2))
+    call first%points(points)
+    call first%patch_vertices(word(3), patch)
+    options%smooth = 2
+    call moving%new(first, options)
+    call moving%driven_places(places)
+    allocate(shifts, mold=places)
+    shifts = 0
+    next = 1
+    do i = 1, size(places, 2) ! driven vertices and those of the patch both rise
+      if (next > size(patch)) exit
+      if (all(places(:, i) == points(:, patch(next) + 1))) then
+        shifts(:, i) = [number(4), number(5), number(6)]
+        next = next + 1
+      end if
+    end do
+    x = points(1:1, :)
+    n_changes = 0
+    do k = 1, 2*n_steps
+      part = real(min(k, 2*n_steps - k), c_double)/real(n_steps, c_double)
+      call moving%advance(real(k, c_double), part*shifts, reached)
+      if (reached%complete /= 1 .or. reached%bad > 0 .or. reached%inverted > 0) error stop 'a step is not as it should be'
+      n_changes = n_changes + reached%changes
+      call moving%since(k - 1, changes, has_changed)
+      if (has_changed) then
+        call changes%transfer(MOTET_ON_POINTS, MOTET_RULE_MEAN, x, carried)
+        call move_alloc(carried, x)
+      end if
+      if (k == n_steps) then
+        call moving%save(state)
+        call moving%load(state, options)
+      end if
+    end do
+    call moving%velocity(velocity)
+    call told('changes', real(n_changes, c_double))
+    call told('time', moving%time())
+    total = 0
+    do i = 1, size(velocity, 2)
+      total = total + velocity(1, i)
+    end do
+    call told('sum_velocity', total)
+    total = 0
+    do i = 1, size(x, 2)
+      total = total + x(1, i)
+    end do
+    call told('sum_carried', total)
+    call moving%mesh(last)
+    call tell_mesh(last)
   end subroutine
 
 end program

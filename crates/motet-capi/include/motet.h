@@ -352,6 +352,112 @@ motet_status motet_contact_nearest(
 motet_status motet_contact_ahead(
     const motet_contact *contact, const double *velocity, int64_t n_points, int64_t stride, double horizon, double *time, motet_error **error);
 
+/* ---- The loop --------------------------------------------------------------------------------------------------------------------------- */
+
+/* A mesh that moves with its walls and stays good: moved, certified, repaired while what is bad still has a volume, refined, watched, its arrays carried along.
+ * Displacements are always given for the walls as they came, counted from there, whatever the mesh becomes. */
+typedef struct motet_moving motet_moving;
+
+typedef struct motet_moving_options {
+    size_t size;
+    int32_t method;            /* of motion, these as of a mover; default MOTET_DELAUNAY */
+    int32_t within_walls;      /* default 0 */
+    int32_t smooth;            /* default 0 */
+    int32_t rigid_layer_cells; /* default 0: none */
+    double rigid_layer;        /* default 0: none */
+    const char *const *inside; /* names (or labels written out) of patches inside the volume that are driven, such as a flap; default none */
+    int64_t n_inside;
+    const char *const *slide;  /* the others as of a mover */
+    int64_t n_slide;
+    const char *const *bodies;
+    int64_t n_bodies;
+    const char *const *wall;
+    int64_t n_wall;
+    int32_t no_repair;         /* 1: nothing is repaired, a step ends where a cell would turn over; default 0 */
+    int32_t surface;           /* what repair may do to walls, and how far they may stray: as of motet_remesh_options; default 0: kept to the bit */
+    double distance;
+    double min_eas;            /* a tet below is bad; default 0.2 */
+    double margin;             /* tets are repaired up to so much above that; default 0.05 */
+    double floor;              /* no step takes a tet that can be repaired below this; default 0.05 */
+    double keep_tets;          /* with fewer than this part of the first tets a repair brings edges back to the lengths that they had; default 0.9 */
+    const char *const *contents; /* cell arrays that are densities of something that stays in its cell: their integrals are kept; default none */
+    int64_t n_contents;
+    const char *const *watch;  /* patches whose gaps are measured at each step; default none */
+    int64_t n_watch;
+    double warn;               /* gaps below are warned of; default 0: none */
+    double within;             /* how far is looked; default 0: no limit */
+    double horizon;            /* how far ahead, in units of time; default 0: as long as the last step took */
+    double hold;               /* walls stop at this distance, whatever they are told, each patch before those after it; default 0: they do not */
+    int32_t remembered;        /* so many changes are remembered for motet_moving_since; default 64 */
+    int32_t threads;           /* default 0 */
+} motet_moving_options;
+
+void motet_moving_options_init(motet_moving_options *options, size_t size);
+/* Sets up the motion of a mesh with its arrays, which is not needed any longer after. NULL options: the defaults. */
+motet_status motet_moving_new(const motet_mesh *mesh, const motet_moving_options *options, motet_moving **moving, motet_error **error);
+/* Writes all that the next steps depend on, as a .vtu; goes on from there with the same options, to the same bits. Changes before are not remembered. */
+motet_status motet_moving_save(const motet_moving *moving, const char *path, motet_error **error);
+motet_status motet_moving_load(const char *path, const motet_moving_options *options, motet_moving **moving, motet_error **error);
+void motet_moving_free(motet_moving *moving);
+
+/* Where the driven vertices were at first: those of the boundary, and of `inside`. Displacements have a row for each of these, in this order. */
+int64_t motet_moving_n_driven(const motet_moving *moving);
+motet_status motet_moving_driven_places(const motet_moving *moving, double *places, int64_t n, int64_t stride, motet_error **error);
+/* The time that was reached, from 0, and how many steps were made. */
+double motet_moving_time(const motet_moving *moving);
+int64_t motet_moving_step(const motet_moving *moving);
+/* The mesh as it is, with its arrays: borrowed, until the next call that changes it. */
+const motet_mesh *motet_moving_mesh(const motet_moving *moving);
+/* Of each of its vertices: the velocity in the last step; how far it is from where it was at first. */
+motet_status motet_moving_velocity(const motet_moving *moving, double *velocity, int64_t n, int64_t stride, motet_error **error);
+motet_status motet_moving_displacement(const motet_moving *moving, double *displacement, int64_t n, int64_t stride, motet_error **error);
+/* Puts an array of n rows on the mesh, in place of one of the same name: it is carried where the mesh changes. */
+motet_status motet_moving_set_array(
+    motet_moving *moving, int32_t on, const char *name, const double *values, int64_t n, int32_t components, motet_error **error);
+
+/* What became of a step. */
+typedef struct motet_step {
+    size_t size;
+    int64_t step;         /* its number, from 1 */
+    double time;          /* that was reached */
+    int32_t complete;     /* 1: the walls are where they were asked to be */
+    int32_t legs;         /* in how many parts it was gone */
+    double fraction;      /* the part of the way that was gone */
+    int64_t changes;      /* how often connectivity was changed: above 0 the numbers of points and cells are others than before */
+    int64_t points;
+    int64_t tets;
+    int64_t bad;          /* tets with an EAS below the limit; of these, those that walls force */
+    int64_t forced;
+    int64_t inverted;     /* tets that are flat or inverted */
+    int64_t worst_cell;   /* -1 where there is none */
+    double worst_eas;
+    double worst_place[3];
+    double gap;           /* the least of the watched patches; infinite where nothing is within reach, or none is watched */
+    int64_t warned;       /* vertices that warn */
+    int64_t held;         /* driven vertices that were stopped in front of another patch */
+    double touch_not_before; /* nothing touches earlier, at the velocities of this step; infinite: not within the horizon */
+    double seconds;
+} motet_step;
+
+void motet_step_init(motet_step *step, size_t size);
+/* Takes the walls to where they are at a time after the one that was reached; the inside follows, and is repaired on the way where need be. A motion that cannot be gone to
+ * the end is no error: complete is 0. step may be NULL. On an error all is as it was before the call. */
+motet_status motet_moving_advance(
+    motet_moving *moving, double time, const double *displacement, int64_t n_driven, int64_t stride, motet_step *step, motet_error **error);
+/* Repairs what is bad where the mesh is: of one that came, or was refined. A step does so by itself. changes, here and below, may be NULL. */
+motet_status motet_moving_repair(motet_moving *moving, int64_t *changes, motet_error **error);
+/* Divides until no edge is longer than `at` at a surface, and `growth` more per unit of distance from it; coarsen 1: divisions that are not needed are taken back. */
+motet_status motet_moving_refine_near(
+    motet_moving *moving, const motet_mesh *surface, double at, double growth, int32_t coarsen, int64_t *changes, motet_error **error);
+/* Divides until edges at watched patches are no longer than the gap between them is wide, or than `smallest`; coarsen 1: takes back what is not needed. */
+motet_status motet_moving_refine_gaps(motet_moving *moving, double smallest, int32_t coarsen, int64_t *changes, motet_error **error);
+
+/* Whether all changes since a step are known (0: since the first mesh); 1 or 0. */
+int32_t motet_moving_remembers(const motet_moving *moving, int64_t step);
+/* From the mesh after a step to the mesh as it is: carries any array of the caller's own, of any time level in between, by motet_outcome_transfer. The outcome is NULL where
+ * nothing changed, and arrays serve as they are. */
+motet_status motet_moving_since(const motet_moving *moving, int64_t step, motet_outcome **outcome, motet_error **error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -137,19 +137,24 @@ fn given(x: f64) -> Option<f64> {
     (x != 0.0).then_some(x)
 }
 
+/// What a surface may do, by the numbers of the header.
+pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
+    let distance = given(distance);
+    match rule {
+        0 => Ok(SurfaceRule::Keep),
+        1 => Ok(SurfaceRule::Adapt { distance }),
+        2 => Ok(SurfaceRule::Loose { distance }),
+        other => Err(Error::options(format!("there is no rule {other} for surfaces"))),
+    }
+}
+
 impl MotetRemeshOptions {
     fn options(&self) -> Result<remesh::Options> {
-        let distance = given(self.distance);
         Ok(remesh::Options {
             min_eas: self.min_eas,
             min_dihedral_deg: self.min_dihedral_deg,
             goal: if self.best != 0 { Goal::Best } else { Goal::Repair },
-            surface: match self.surface {
-                0 => SurfaceRule::Keep,
-                1 => SurfaceRule::Adapt { distance },
-                2 => SurfaceRule::Loose { distance },
-                other => return Err(Error::options(format!("there is no rule {other} for surfaces"))),
-            },
+            surface: surface_rule(self.surface, self.distance)?,
             keep_layers: self.repair_layers == 0,
             sizes: match (self.sizes.is_null(), given(self.edge_length)) {
                 (true, length) => length.map(remesh::Sizes::Uniform),

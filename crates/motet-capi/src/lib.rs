@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `guard` | statuses and errors; a panic stops here |
 //! | `memory` | what comes by pointer: arrays with strides, texts, handles, structs with a size |
-//! | `mesh`, `motion`, `changing`, `refinement`, `contact` | the calls, as the header has them in order |
+//! | `mesh`, `motion`, `changing`, `refinement`, `contact`, `moving` | the calls, as the header has them in order |
 
 #![allow(unsafe_code, reason = "what a C program gives is pointers; each is looked at in `memory`, once")]
 #![allow(clippy::missing_safety_doc, reason = "the header says what each call needs")]
@@ -16,6 +16,7 @@ mod guard;
 mod memory;
 mod mesh;
 mod motion;
+mod moving;
 mod refinement;
 
 /// The version of this library.

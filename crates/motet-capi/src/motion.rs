@@ -56,16 +56,7 @@ impl MotetMoverOptions {
         let natural = |n: i32, what: &str| count(n.into(), what);
         let wall = FacetSet::joined(find(self.wall, self.n_wall, "wall")?);
         let cells = natural(self.rigid_layer_cells, "cells of the rigid layer")?;
-        let extent = match (self.rigid_layer > 0.0, cells > 0) {
-            (true, true) => {
-                return Err(
-                    Error::options("a rigid layer by a distance and by cells").remedy("give one of them")
-                );
-            }
-            (true, false) => Some(Extent::Distance(self.rigid_layer)),
-            (false, true) => Some(Extent::Cells(cells)),
-            (false, false) => None,
-        };
+        let extent = extent(self.rigid_layer, cells)?;
         let moved = values(self.also_moved, count(self.n_also_moved, "also_moved")?, "also_moved")?;
         let moved = moved.iter().map(|&v| vertex(v, mesh.points.len(), "also_moved"));
         Ok(Options {
@@ -81,12 +72,26 @@ impl MotetMoverOptions {
 
     fn method(&self, wall: Option<FacetSet>, bodies: Vec<FacetSet>) -> Result<Method> {
         let (residual, factor_gib) = (self.residual, self.factor_gib);
-        let all = Method::all(MethodWords { bodies, wall, residual, factor_gib });
-        // The header numbers them in this order.
-        let asked = usize::try_from(self.method).ok().and_then(|k| all.into_iter().nth(k));
-        let what = || format!("there is no method {}", self.method);
-        asked.ok_or_else(|| Error::options(what()).remedy("MOTET_DELAUNAY is 0"))
+        method(self.method, MethodWords { bodies, wall, residual, factor_gib })
     }
+}
+
+/// How far a rigid layer reaches, if there is one.
+pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
+    match (distance > 0.0, cells > 0) {
+        (true, true) => {
+            Err(Error::options("a rigid layer by a distance and by cells").remedy("give one of them"))
+        }
+        (true, false) => Ok(Some(Extent::Distance(distance))),
+        (false, true) => Ok(Some(Extent::Cells(cells))),
+        (false, false) => Ok(None),
+    }
+}
+
+/// A method by its number: the header has them in this order.
+pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
+    let asked = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
+    asked.ok_or_else(|| Error::options(format!("there is no method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
 
 #[unsafe(no_mangle)]

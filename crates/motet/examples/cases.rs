@@ -4,6 +4,7 @@
 //! cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is carried along
 //! cases implant HOST DEVICE NAME
 //! cases contact SURFACE SURFACE
+//! cases loop MESH PATCH DX DY DZ STEPS        a patch goes away in steps and comes back, repaired on the way; saved and loaded where it turns
 //! ```
 
 use motet::base::{Point, Threads, VertexId};
@@ -13,6 +14,7 @@ use motet::implant::{self, Device};
 use motet::mesh::history::Rules;
 use motet::mesh::{CellKind, Field};
 use motet::motion::{self, FacetSet, Mover};
+use motet::moving::{self, Motion, MovingMesh};
 use motet::{Error, Mesh, Result, io, remesh};
 
 fn main() -> Result<()> {
@@ -22,6 +24,7 @@ fn main() -> Result<()> {
         ["repair", mesh, patch, dx, dy, dz, smooth] => repair(mesh, patch, [dx, dy, dz], smooth),
         ["implant", host, device, name] => put_in(host, device, name),
         ["contact", first, second] => measure(first, second),
+        ["loop", mesh, patch, dx, dy, dz, steps] => there_and_back(mesh, patch, [dx, dy, dz], steps),
         _ => Err(Error::options("the head of this file says what is expected")),
     }
 }
@@ -98,5 +101,42 @@ fn measure(first: &str, second: &str) -> Result<()> {
     let mut sum = 0.0;
     gaps.bodies.iter().flat_map(|body| &body.gap).filter(|gap| gap.is_finite()).for_each(|gap| sum += gap);
     told("sum_of_gaps", sum);
+    Ok(())
+}
+
+fn there_and_back(file: &str, patch: &str, by: [&str; 3], steps: &str) -> Result<()> {
+    let threads = Threads::single();
+    let mesh = io::read(file)?;
+    let patch = FacetSet::find(&mesh, patch)?;
+    let by: Point = [number(by[0])?, number(by[1])?, number(by[2])?];
+    let n_steps = number(steps)?;
+    let motion = Motion { smoothing: 2, ..Motion::default() };
+    let options = moving::Options { motion, ..moving::Options::default() };
+    let driven = options.motion.driven(&mesh);
+    let shifts: Vec<Point> = (driven.iter())
+        .map(|v| if patch.vertices.binary_search(v).is_ok() { by } else { [0.0; 3] })
+        .collect();
+    let mut moving = MovingMesh::new(&mesh, options.clone(), &threads)?;
+    let mut x = Field::scalars("x", mesh.points.iter().map(|p| p[0]).collect::<Vec<f64>>());
+    let mut n_changes = 0;
+    for k in 1..=2 * n_steps as usize {
+        let time = k as f64;
+        let part = time.min(2.0 * n_steps - time) / n_steps;
+        let displacement: Vec<Point> = shifts.iter().map(|shift| shift.map(|d| part * d)).collect();
+        n_changes += moving.advance(time, &displacement, &threads)?.changes.len();
+        if let Some(history) = moving.history_since(k - 1) {
+            x = history.transfer_points(&x)?;
+        }
+        if time == n_steps {
+            let state = format!("{file}.state.vtu");
+            moving.save(&state)?;
+            moving = MovingMesh::load(&state, options.clone(), &threads)?;
+        }
+    }
+    told("changes", n_changes as f64);
+    told("time", moving.time());
+    told("sum_velocity", moving.velocity().iter().fold(0.0, |sum, v| sum + v[0]));
+    told("sum_carried", x.values.to_f64().unwrap_or_default().iter().fold(0.0, |sum, x| sum + x));
+    tell(moving.mesh());
     Ok(())
 }

@@ -1,0 +1,416 @@
+//! The loop: a mesh that moves with its walls, step after step, and stays good.
+
+use std::ffi::c_char;
+use std::ptr;
+
+use motet::base::{Point, Threads};
+use motet::motion::{Limits, MethodWords};
+use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
+use motet::refine::{self, Criterion, Size, Target, Wanted};
+use motet::{Error, Mesh, Result, contact, io, remesh};
+use serde_json::json;
+
+use crate::changing::{MotetOutcome, surface_rule};
+use crate::guard::{MotetError, guarded, quiet};
+use crate::memory::{
+    count, expect, fill_rows, free, give, handle, handle_mut, place, put, rows, sized, text, texts, threads,
+    versioned,
+};
+use crate::mesh::{MotetMesh, field, on_points};
+use crate::motion::{extent, method};
+
+/// A moving mesh and the threads that it uses.
+pub(crate) struct MotetMoving {
+    moving: MovingMesh,
+    threads: Threads,
+}
+
+versioned! {
+    /// As in the header.
+    MotetMovingOptions, motet_moving_options_init {
+        method: i32 = 0,
+        within_walls: i32 = 0,
+        smooth: i32 = 0,
+        rigid_layer_cells: i32 = 0,
+        rigid_layer: f64 = 0.0,
+        inside: *const *const c_char = ptr::null(),
+        n_inside: i64 = 0,
+        slide: *const *const c_char = ptr::null(),
+        n_slide: i64 = 0,
+        bodies: *const *const c_char = ptr::null(),
+        n_bodies: i64 = 0,
+        wall: *const *const c_char = ptr::null(),
+        n_wall: i64 = 0,
+        no_repair: i32 = 0,
+        surface: i32 = 0,
+        distance: f64 = 0.0,
+        min_eas: f64 = 0.2,
+        margin: f64 = 0.05,
+        floor: f64 = 0.05,
+        keep_tets: f64 = 0.9,
+        contents: *const *const c_char = ptr::null(),
+        n_contents: i64 = 0,
+        watch: *const *const c_char = ptr::null(),
+        n_watch: i64 = 0,
+        warn: f64 = 0.0,
+        within: f64 = 0.0,
+        horizon: f64 = 0.0,
+        hold: f64 = 0.0,
+        remembered: i32 = 64,
+        threads: i32 = 0,
+    }
+}
+
+impl MotetMovingOptions {
+    fn options(&self, mesh: &Mesh) -> Result<Options> {
+        let surface = surface_rule(self.surface, self.distance)?;
+        let repair = remesh::Options { min_eas: self.min_eas, surface, ..remesh::Options::default() };
+        Ok(Options {
+            motion: self.motion(mesh)?,
+            repair: (self.no_repair == 0).then_some(repair),
+            margin: self.margin,
+            floor: self.floor,
+            keep_tets: self.keep_tets,
+            contents: owned(self.contents, self.n_contents, "contents")?,
+            watch: self.watching()?,
+            remembered: count(self.remembered.into(), "changes to be remembered")?,
+            ..Options::default()
+        })
+    }
+
+    fn motion(&self, mesh: &Mesh) -> Result<Motion> {
+        let labels = |names, n, what: &str| mesh.find_patches(&owned(names, n, what)?);
+        let natural = |n: i32, what: &str| count(n.into(), what);
+        let cells = natural(self.rigid_layer_cells, "cells of the rigid layer")?;
+        let extent = extent(self.rigid_layer, cells)?;
+        let wall = labels(self.wall, self.n_wall, "wall")?;
+        Ok(Motion {
+            method: method(self.method, MethodWords::default())?,
+            bodies: labels(self.bodies, self.n_bodies, "bodies")?,
+            within_walls: self.within_walls != 0,
+            smoothing: natural(self.smooth, "sweeps")?,
+            inside: labels(self.inside, self.n_inside, "inside")?,
+            sliding: labels(self.slide, self.n_slide, "slide")?,
+            rigid_layer: extent.map(|extent| (extent, wall)),
+            limits: Limits::default(),
+        })
+    }
+
+    fn watching(&self) -> Result<Option<Watching>> {
+        let patches = owned(self.watch, self.n_watch, "watch")?;
+        let above_zero = |x: f64| (x > 0.0).then_some(x);
+        let options = contact::Options {
+            warn: above_zero(self.warn),
+            within: above_zero(self.within).unwrap_or(f64::INFINITY),
+            ..contact::Options::default()
+        };
+        let watching =
+            Watching { patches, options, horizon: above_zero(self.horizon), hold: above_zero(self.hold) };
+        Ok((!watching.patches.is_empty()).then_some(watching))
+    }
+}
+
+fn owned(names: *const *const c_char, n: i64, what: &str) -> Result<Vec<String>> {
+    Ok(texts(names, n, what)?.into_iter().map(str::to_owned).collect())
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_new(
+    mesh: *const MotetMesh,
+    options: *const MotetMovingOptions,
+    moving: *mut *mut MotetMoving,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(moving, "moving")?;
+        let mesh = &handle(mesh, "mesh")?.0;
+        mesh.validate()?;
+        let asked = sized(options)?;
+        let threads = threads(asked.threads)?;
+        let moving = MovingMesh::new(mesh, asked.options(mesh)?, &threads)?;
+        give(place, MotetMoving { moving, threads });
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_load(
+    path: *const c_char,
+    options: *const MotetMovingOptions,
+    moving: *mut *mut MotetMoving,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(moving, "moving")?;
+        let path = text(path, "path")?;
+        let asked = sized(options)?;
+        let threads = threads(asked.threads)?;
+        let moving = MovingMesh::load(path, asked.options(&io::read(path)?)?, &threads)?;
+        give(place, MotetMoving { moving, threads });
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_save(
+    moving: *const MotetMoving,
+    path: *const c_char,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || handle(moving, "moving")?.moving.save(text(path, "path")?))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_free(moving: *mut MotetMoving) {
+    free(moving);
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_n_driven(moving: *const MotetMoving) -> i64 {
+    quiet(0, || Some(handle(moving, "moving").ok()?.moving.driven_places().len() as i64))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_time(moving: *const MotetMoving) -> f64 {
+    quiet(f64::NAN, || Some(handle(moving, "moving").ok()?.moving.time()))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_step(moving: *const MotetMoving) -> i64 {
+    quiet(0, || Some(handle(moving, "moving").ok()?.moving.step() as i64))
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_mesh(moving: *const MotetMoving) -> *const MotetMesh {
+    handle(moving, "moving").map_or(ptr::null(), |handle| MotetMesh::of(handle.moving.mesh()))
+}
+
+/// Puts a row for each of some things where the caller has room.
+fn given(all: &[Point], out: *mut f64, n: i64, stride: i64, what: &str) -> Result<()> {
+    expect(n, all.len(), what)?;
+    fill_rows(out, n, stride, what, |out| {
+        out.copy_from_slice(all);
+        Ok(())
+    })
+}
+
+/// What is told of each vertex, or driven vertex, as rows of three.
+macro_rules! rows_out {
+    ($($name:ident, $what:literal, $of:expr;)*) => {
+        $(#[unsafe(no_mangle)]
+        pub(crate) unsafe extern "C" fn $name(
+            moving: *const MotetMoving,
+            out: *mut f64,
+            n: i64,
+            stride: i64,
+            error: *mut *mut MotetError,
+        ) -> i32 {
+            let of: fn(&MovingMesh) -> Vec<Point> = $of;
+            guarded(error, || given(&of(&handle(moving, "moving")?.moving), out, n, stride, $what))
+        })*
+    };
+}
+
+rows_out! {
+    motet_moving_driven_places, "places", |moving| moving.driven_places().to_vec();
+    motet_moving_velocity, "velocities", MovingMesh::velocity;
+    motet_moving_displacement, "displacements", MovingMesh::displacement;
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_set_array(
+    moving: *mut MotetMoving,
+    on: i32,
+    name: *const c_char,
+    values: *const f64,
+    n: i64,
+    components: i32,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetMoving { moving, .. } = handle_mut(moving, "moving")?;
+        let field = field(text(name, "name")?, values, n, components)?;
+        match on_points(on)? {
+            true => moving.set_point_field(field),
+            false => moving.set_cell_field(field),
+        }
+    })
+}
+
+versioned! {
+    /// As in the header.
+    MotetStep, motet_step_init {
+        step: i64 = 0,
+        time: f64 = 0.0,
+        complete: i32 = 0,
+        legs: i32 = 0,
+        fraction: f64 = 0.0,
+        changes: i64 = 0,
+        points: i64 = 0,
+        tets: i64 = 0,
+        bad: i64 = 0,
+        forced: i64 = 0,
+        inverted: i64 = 0,
+        worst_cell: i64 = -1,
+        worst_eas: f64 = f64::NAN,
+        worst_place: [f64; 3] = [f64::NAN; 3],
+        gap: f64 = f64::INFINITY,
+        warned: i64 = 0,
+        held: i64 = 0,
+        touch_not_before: f64 = f64::INFINITY,
+        seconds: f64 = 0.0,
+    }
+}
+
+impl MotetStep {
+    fn of(step: &Step) -> Self {
+        let gaps = step.gaps.as_ref();
+        Self {
+            size: size_of::<Self>(),
+            step: step.step as i64,
+            time: step.time,
+            complete: step.complete.into(),
+            legs: step.legs as i32,
+            fraction: step.fraction,
+            changes: step.changes.len() as i64,
+            points: step.points as i64,
+            tets: step.tets as i64,
+            bad: step.bad as i64,
+            forced: step.forced as i64,
+            inverted: step.inverted as i64,
+            worst_cell: step.worst.map_or(-1, |worst| worst.cell.0.into()),
+            worst_eas: step.worst.map_or(f64::NAN, |worst| worst.eas),
+            worst_place: step.worst.map_or([f64::NAN; 3], |worst| worst.place),
+            gap: gaps.and_then(|gaps| gaps.least).unwrap_or(f64::INFINITY),
+            warned: gaps.map_or(0, |gaps| gaps.warned as i64),
+            held: gaps.map_or(0, |gaps| gaps.held as i64),
+            touch_not_before: gaps.and_then(|gaps| gaps.touch_not_before).unwrap_or(f64::INFINITY),
+            seconds: step.seconds.total,
+        }
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_advance(
+    moving: *mut MotetMoving,
+    time: f64,
+    displacement: *const f64,
+    n_driven: i64,
+    stride: i64,
+    step: *mut MotetStep,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
+        expect(n_driven, moving.driven_places().len(), "displacements")?;
+        let size = sized(step.cast_const())?.size;
+        let reached =
+            moving.advance(time, &rows(displacement, n_driven, stride, "displacement")?, threads)?;
+        put(&MotetStep::of(&reached), step, size);
+        Ok(())
+    })
+}
+
+/// Tells how many changes a call has made, unless that is not asked for.
+fn tell(n_changes: usize, changes: *mut i64) {
+    // SAFETY: the header asks for NULL or a place for a number.
+    if let Some(place) = unsafe { changes.as_mut() } {
+        *place = n_changes as i64;
+    }
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_repair(
+    moving: *mut MotetMoving,
+    changes: *mut i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
+        tell(moving.repair(threads)?.into_iter().count(), changes);
+        Ok(())
+    })
+}
+
+fn refined(
+    moving: *mut MotetMoving,
+    wanted: impl FnOnce(&Threads) -> Result<Wanted>,
+    changes: *mut i64,
+) -> Result<()> {
+    let MotetMoving { moving, threads } = handle_mut(moving, "moving")?;
+    tell(moving.refine(&wanted(threads)?, threads)?.len(), changes);
+    Ok(())
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_refine_near(
+    moving: *mut MotetMoving,
+    surface: *const MotetMesh,
+    at: f64,
+    growth: f64,
+    coarsen: i32,
+    changes: *mut i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let surface = &handle(surface, "surface")?.0;
+        let wanted = |threads: &Threads| {
+            let target = Target::of_mesh(surface, threads)?.into();
+            let criterion = Criterion::NearSize { target, size: at, growth };
+            criterion.check()?;
+            Ok(Wanted { criteria: vec![criterion], coarsen: coarsen != 0, ..Wanted::default() })
+        };
+        refined(moving, wanted, changes)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_refine_gaps(
+    moving: *mut MotetMoving,
+    smallest: f64,
+    coarsen: i32,
+    changes: *mut i64,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        if !(smallest > 0.0 && smallest.is_finite()) {
+            return Err(Error::options(format!("a smallest edge of {smallest}, expected above 0"))
+                .remedy("gaps can be as narrow as they like: say at which length dividing ends"));
+        }
+        let limits = refine::Limits { smallest: Some(smallest), ..refine::Limits::default() };
+        let criteria = vec![Criterion::Size(Size::Array(GAP.to_owned()))];
+        let wanted = Wanted { criteria, limits, coarsen: coarsen != 0, ..Wanted::default() };
+        refined(moving, |_| Ok(wanted), changes)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_remembers(moving: *const MotetMoving, step: i64) -> i32 {
+    quiet(0, || {
+        let moving = &handle(moving, "moving").ok()?.moving;
+        Some(moving.remembers(usize::try_from(step).ok()?).into())
+    })
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_moving_since(
+    moving: *const MotetMoving,
+    step: i64,
+    outcome: *mut *mut MotetOutcome,
+    error: *mut *mut MotetError,
+) -> i32 {
+    guarded(error, || {
+        let place = place(outcome, "outcome")?;
+        let moving = &handle(moving, "moving")?.moving;
+        let step = count(step, "steps")?;
+        if !moving.remembers(step) {
+            return Err(Error::options(format!("the changes since step {step} are not known"))
+                .remedy("ask for a later step, or have more remembered: options.remembered"));
+        }
+        if let Some(history) = moving.history_since(step) {
+            let report = json!({ "since": step, "step": moving.step() });
+            give(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, true)?);
+        }
+        Ok(())
+    })
+}
