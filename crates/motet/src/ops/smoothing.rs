@@ -48,7 +48,7 @@ impl Track for Anywhere {
 #[derive(Clone, Debug, Default)]
 pub struct Smoothing {
     tets: Vec<Corner>,
-    /// The qualities of the tets where the vertex was tried last. Measuring a tet again that was measured just before took as much time as all else.
+    /// The qualities of the tets where the vertex was tried last. Of all measurements in repairs a third were of tets that had been measured just before.
     tried: Vec<f64>,
     gradients: Vec<Point>,
 }
