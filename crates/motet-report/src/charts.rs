@@ -192,7 +192,7 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     match (low, high) {
         _ if low > high => (0.0, 1.0),
         _ if low < high => (low, high),
-        _ if low == 0.0 => (-1.0, 1.0),
+        _ if low == 0.0 => (0.0, 1.0),
         _ => (low - low.abs() / 2.0, low + low.abs() / 2.0),
     }
 }
