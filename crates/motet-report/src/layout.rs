@@ -1,7 +1,7 @@
 //! The order in which vertices, triangles and cells of a mesh are shipped: neighbours beside each other, so that
 //! differences are small, and the vertices that are seen from outside first.
 //!
-//! Frames of the same cells share one layout, and so the same tables of ids.
+//! Frames of the same cells share one layout ([`Layouts`](crate::layouts::Layouts)), and so the same tables of ids.
 
 use motet::Mesh;
 use motet::base::{CellId, Point, VertexId};
@@ -77,9 +77,13 @@ impl Layout {
         layout
     }
 
-    /// Whether another frame, which has the same cells, is laid out the same way.
-    pub(crate) fn fits(&self, mesh: &Mesh) -> bool {
-        self.not_finite == 0 && mesh.points.iter().all(|p| is_finite(*p))
+    /// How many numbers it holds.
+    pub(crate) fn n_ids(&self) -> usize {
+        let of_solids = match &self.solids {
+            Solids::Tets(tets) => 4 * tets.len(),
+            Solids::Facets(solids) => solids.iter().map(|facets| 6 + 4 * facets.len()).sum(),
+        };
+        self.vertices.len() + 6 * self.triangles.len() + self.solid_cells.len() + of_solids
     }
 
     /// Adds the vertices that are used and not taken, along a curve that fills space.

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | `input`, `log` | what is read: meshes one at a time; JSON, whatever its keys |
 //! | `quality`, `arrays` | what is told of a mesh, and what it can be coloured by |
-//! | `skin`, `layout` | what is seen from outside; the order in which all of it is shipped |
+//! | `skin`, `layout`, `layouts` | what is seen from outside; the order in which all of it is shipped, one for frames of the same cells |
 //! | `codec`, `store` | tables of numbers as few bytes, each once |
 //! | `part`, `plan`, `shown` | one frame packed; how much of which frame fits; what came of it |
 //! | `charts`, `sections`, `page` | lines, tables, the page |
@@ -18,6 +18,7 @@ mod charts;
 mod codec;
 mod input;
 mod layout;
+mod layouts;
 mod log;
 mod numbers;
 mod page;

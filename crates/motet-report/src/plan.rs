@@ -1,12 +1,14 @@
 //! Which frames of an input are shipped, and how much of each: the skin of as many frames as fit, then their insides.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 use motet::{Mesh, Result};
 
 use crate::arrays::{self, Array};
 use crate::input::Meshes;
 use crate::layout::Layout;
+use crate::layouts::Layouts;
 use crate::numbers::{count, counted};
 use crate::part::{Frame, Holds, InsidePart, grid};
 use crate::quality::{self, Quality};
@@ -46,7 +48,8 @@ pub(crate) fn shown(
 struct Reader {
     frame: Option<usize>,
     mesh: Mesh,
-    layout: Layout,
+    layouts: Layouts,
+    layout: Rc<Layout>,
     eas: Vec<f32>,
     quality: Option<Quality>,
     notes: Vec<String>,
@@ -58,13 +61,7 @@ impl Reader {
             return Ok(());
         }
         let (mesh, notes) = input.read(frame)?;
-        let is_alike = self.frame.is_some()
-            && mesh.points.len() == self.mesh.points.len()
-            && mesh.cells == self.mesh.cells
-            && self.layout.fits(&mesh);
-        if !is_alike {
-            self.layout = Layout::of(&mesh);
-        }
+        self.layout = self.layouts.of(input, frame, &mesh)?;
         (self.quality, self.eas) = quality::of(&mesh);
         (self.mesh, self.notes, self.frame) = (mesh, notes, Some(frame));
         Ok(())
