@@ -1,6 +1,7 @@
 """`motet report` in a browser: the page opens without a network, and each act changes the picture."""
 import base64
 import json
+import re
 import shutil
 import tempfile
 import time
@@ -227,6 +228,84 @@ def test_cells_of_other_kinds_surfaces_and_logs_share_a_page(page, motet, exampl
     text = page.js("return document.body.innerText")
     assert "least_gap" in text and "seconds by stage" in text
     assert page.complaints() == [] and page.requests() == []
+
+
+# What the page's own script makes of a frame that is cut: the area and the box of the slice, and the box of the whole cells at the cut.
+CUT = """
+const done = arguments[arguments.length - 1], [name, axis, part] = arguments;
+(async () => {
+  const area = ({ places: p, count }) => {
+    let sum = 0;
+    for (let i = 0; i < count; i++) {
+      const at = (c, k) => p[9 * i + 3 * c + k], side = (c) => [0, 1, 2].map((k) => at(c, k) - at(0, k));
+      const [u, v] = [side(1), side(2)];
+      sum += Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
+    }
+    return sum;
+  };
+  const box = ({ places: p, count }) => {
+    const low = [Infinity, Infinity, Infinity], high = low.map((x) => -x);
+    for (let i = 0; i < 9 * count; i++) {
+      low[i % 3] = Math.min(low[i % 3], p[i]);
+      high[i % 3] = Math.max(high[i % 3], p[i]);
+    }
+    return [...low, ...high];
+  };
+  const told = [], none = { skin: null, inside: null, isOnPoints: false };
+  for (const frame of window.parts.manifest.inputs.find((input) => input.name === name).frames) {
+    const loaded = await window.parts.loadFrame(frame), { low, step } = frame.skin;
+    const wanted = low[axis] + part * 1048575 * step[axis], planes = loaded.inside.planes[axis];
+    const nearer = (a, b) => (Math.abs(b - wanted) < Math.abs(a - wanted) ? b : a);
+    const at = planes.length ? planes.reduce(nearer) : wanted, cut = { axis, at, sign: 1, mode: "slice" };
+    const cells = window.parts.crinkle(loaded, none, { ...cut, mode: "cells" });
+    const slice = window.parts.slice(loaded, none, cut);
+    told.push({ frame: frame.frame, at, slice: area(slice), box: box(slice), cells: box(cells) });
+  }
+  done(told);
+})().catch((error) => done(String(error)));"""
+
+
+@pytest.fixture(scope="module")
+def demo(motet, tmp_path_factory):
+    """The folder that `motet demo` writes."""
+    folder = tmp_path_factory.mktemp("demo")
+    motet("demo", folder, timeout=900)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["aneurysm", "dissection"])
+def test_each_frame_of_the_demo_that_is_cut_is_what_vtk_cuts(page, demo, tmp_path, name):
+    pyvista = pytest.importorskip("pyvista")
+    # The page's own functions, where the test can call them.
+    text, end = (demo / "report.html").read_text(), "\n})();\n</script>"
+    assert text.count(end) == 1
+    opened = text.replace(end, "\nwindow.parts = { manifest, loadFrame, slice, crinkle };" + end)
+    (tmp_path / "open.html").write_text(opened)
+    page.open(tmp_path / "open.html")
+    page.driver.set_script_timeout(300)
+    files = [demo / reader for reader in _files(demo / f"{name}.pvd")]
+    for axis in (0, 2):
+        told = page.driver.execute_async_script(CUT, f"{name}.pvd", axis, 0.47)
+        assert isinstance(told, list) and len(told) == len(files), told
+        for frame in told:
+            grid = pyvista.read(files[frame["frame"]])
+            volume = grid.extract_cells(grid.celltypes == pyvista.CellType.TETRA)
+            normal, origin = [0.0, 0.0, 0.0], list(volume.center)
+            normal[axis], origin[axis] = 1.0, frame["at"]
+            cut, where = volume.slice(normal=normal, origin=origin), f"{name}, frame {frame['frame']}"
+            assert frame["slice"] == pytest.approx(cut.area, rel=1e-3), where
+            size = volume.length
+            bounds = [cut.bounds[i] for i in (0, 2, 4, 1, 3, 5)]
+            assert frame["box"] == pytest.approx(bounds, abs=1e-4 * size), where
+            # Whole cells at the cut stay within the mesh: no spikes.
+            outside = [volume.bounds[i] for i in (0, 2, 4, 1, 3, 5)]
+            assert all(a >= b - 1e-4 * size for a, b in zip(frame["cells"][:3], outside[:3])), where
+            assert all(a <= b + 1e-4 * size for a, b in zip(frame["cells"][3:], outside[3:])), where
+    assert page.complaints() == []
+
+
+def _files(series):
+    return re.findall(r'file="([^"]+)"', series.read_text())
 
 
 def test_a_million_tets_open_within_seconds_and_stay_below_the_budget(page, motet, sphere, tmp_path):
