@@ -31,7 +31,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             .collect::<PyResult<Vec<_>>>()
     })?;
     let place = match error.kind() {
-        ErrorKind::Io => 1,
+        ErrorKind::Io | ErrorKind::Output => 1,
         ErrorKind::Options => 2,
         _ => 0,
     };

@@ -11,6 +11,7 @@ use crate::error::{OrRaise, options};
 #[pyfunction]
 pub(crate) fn sphere_in_box(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(layers), 1)?;
+    room([n, n, n + 6 * layers])?;
     parts(py, shapes::sphere_in_box(n, layers))
 }
 
@@ -22,18 +23,21 @@ pub(crate) fn box_grid(
     high: Point,
 ) -> PyResult<Bound<'_, PyDict>> {
     at_least(n[0].min(n[1]).min(n[2]), 1)?;
+    room(n)?;
     parts(py, shapes::box_grid(n, [low, high]))
 }
 
 #[pyfunction]
 pub(crate) fn ball(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(layers), 1)?;
+    room([n, n, n + 6 * layers])?;
     parts(py, shapes::ball(n, layers))
 }
 
 #[pyfunction]
 pub(crate) fn mixed(py: Python<'_>, n: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n, 1)?;
+    room([n; 3])?;
     parts(py, shapes::mixed(n))
 }
 
@@ -48,6 +52,7 @@ pub(crate) fn tube(
     wedges: bool,
 ) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(slices), 1)?;
+    room([n, n + wall_layers, 4 * slices])?;
     let wall_cells = if wedges { WallCells::Wedges } else { WallCells::Tets };
     let options =
         TubeOptions { radius, length, n, slices, wall_layers, wall_cells, ..TubeOptions::default() };
@@ -88,6 +93,11 @@ pub(crate) fn coil(
 ) -> PyResult<Bound<'_, PyDict>> {
     let coil = Coil { centre, radius, pitch, turns, wire_radius };
     parts(py, coil.mesh(steps, around).or_raise()?)
+}
+
+/// Whether memory has room for so many points along three directions.
+fn room(n: [usize; 3]) -> PyResult<()> {
+    shapes::check_count(n.iter().map(|&n| n as f64 + 1.0).product()).or_raise()
 }
 
 /// The largest count along one direction: beyond it ids would not suffice.

@@ -27,7 +27,7 @@ impl MotetError {
         Self {
             status: match error.kind() {
                 ErrorKind::Options => OPTIONS,
-                ErrorKind::Io => IO,
+                ErrorKind::Io | ErrorKind::Output => IO,
                 _ => INPUT,
             },
             message: text(error.to_string()),

@@ -6,6 +6,7 @@ use motet::{Error, ErrorKind};
 use serde_json::json;
 
 use crate::console::Console;
+use crate::words::shown;
 
 /// What a verb came to, where nothing failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +33,7 @@ fn of_kind(kind: ErrorKind) -> u8 {
 
 /// The status of a verb that ran; an error is printed first.
 pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> ExitCode {
-    ExitCode::from(match outcome {
+    let code = match outcome {
         Ok(Outcome::Done) => DONE,
         Ok(Outcome::NotReached) => NOT_REACHED,
         Err(error) => {
@@ -41,13 +42,20 @@ pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> Exit
             console.error(&error);
             code
         }
+    };
+    ExitCode::from(match console.finish() {
+        Ok(()) => code,
+        Err(error) => {
+            console.error(&error);
+            if code == DONE { ELSE } else { code }
+        }
     })
 }
 
 fn described(error: &Error, code: u8) -> serde_json::Value {
     json!({
         "exit": code,
-        "file": error.file(),
+        "file": error.file().map(shown),
         "place": error.place(),
         "what": error.what(),
         "remedy": error.remedy_text(),
@@ -58,13 +66,21 @@ fn described(error: &Error, code: u8) -> serde_json::Value {
 /// The status of a call that could not be read, or that only asked for help.
 pub(crate) fn misread(misread: &clap::Error, json: bool) -> ExitCode {
     let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
-    if json && code != DONE {
+    let console = Console::plain(json);
+    if code == DONE {
+        // Help and versions: for people even where JSON is asked for.
+        console.help(misread);
+    } else {
         let what = misread.to_string();
         let what = what.trim_start_matches("error: ").trim_end();
-        println!("{:#}", json!({ "error": { "exit": code, "what": what, "message": what } }));
-        eprintln!("error: {what}");
-    } else {
-        let _ = misread.print();
+        console.report(&json!({ "error": { "exit": code, "what": what, "message": what } }));
+        console.error(what);
     }
-    ExitCode::from(code)
+    match console.finish() {
+        Err(error) if code == DONE => {
+            console.error(&error);
+            ExitCode::from(ELSE)
+        }
+        _ => ExitCode::from(code),
+    }
 }

@@ -1,6 +1,8 @@
 //! Words that several verbs know: numbers, lists of them, what stands before an equals sign, and names of files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use serde::{Serialize, Serializer};
 
 /// One number.
 pub(crate) fn number(word: &str) -> Result<f64, String> {
@@ -39,6 +41,46 @@ pub(crate) fn named<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a st
 /// The file's name without its ending.
 pub(crate) fn stem(file: &Path) -> Option<String> {
     file.file_stem().map(|stem| stem.to_string_lossy().into_owned())
+}
+
+/// A path as text, for JSON: what is no Unicode in it becomes U+FFFD.
+pub(crate) fn shown(path: impl AsRef<Path>) -> String {
+    path.as_ref().to_string_lossy().into_owned()
+}
+
+/// One path, several, or perhaps one, as [`shown`]: serde itself refuses a path that is no Unicode.
+pub(crate) fn paths<S: Serializer>(paths: &impl Paths, serializer: S) -> Result<S::Ok, S::Error> {
+    paths.texts().serialize(serializer)
+}
+
+/// What [`paths`] takes.
+pub(crate) trait Paths {
+    /// The same as texts.
+    fn texts(&self) -> impl Serialize;
+}
+
+impl Paths for PathBuf {
+    fn texts(&self) -> impl Serialize {
+        shown(self)
+    }
+}
+
+impl Paths for &Path {
+    fn texts(&self) -> impl Serialize {
+        shown(self)
+    }
+}
+
+impl Paths for Option<PathBuf> {
+    fn texts(&self) -> impl Serialize {
+        self.as_ref().map(shown)
+    }
+}
+
+impl Paths for Vec<PathBuf> {
+    fn texts(&self) -> impl Serialize {
+        self.iter().map(shown).collect::<Vec<_>>()
+    }
 }
 
 #[cfg(test)]

@@ -457,7 +457,12 @@ fn pieces_are_joined_and_must_have_the_same_arrays() {
     let (start, end) = (TET.find("    <Piece").unwrap(), TET.find("  </UnstructuredGrid>").unwrap());
     let piece = &TET[start..end];
     let twice = |second: &str| format!("{}{}{}", &TET[..end], second, &TET[end..]);
-    let mesh = read(".vtu", twice(piece).as_bytes()).unwrap();
+    // Points at the same place are one, those of the first piece; elsewhere all stay.
+    let joined = read(".vtu", twice(piece).as_bytes()).unwrap();
+    assert_eq!((joined.points.len(), joined.cells.len()), (4, 2));
+    assert_eq!(joined.cells.connectivity().list(1), [0, 1, 2, 3].map(VertexId));
+    let beside = piece.replace(">0 0 0 1 0 0 0 1 0 0 0 1<", ">5 0 0 6 0 0 5 1 0 5 0 1<");
+    let mesh = read(".vtu", twice(&beside).as_bytes()).unwrap();
     assert_eq!((mesh.points.len(), mesh.cells.len()), (8, 2));
     assert_eq!(mesh.cells.connectivity().list(1), [4, 5, 6, 7].map(VertexId));
     assert_eq!(mesh.point_data[0].values, Values::F32(vec![1.0, 2.0, 3.0, 4.0, 1.0, 2.0, 3.0, 4.0]));

@@ -148,8 +148,13 @@ class Mesh:
         return _motet.quality(self, measure)
 
     def save(self, path: str | os.PathLike[str]) -> list[str]:
-        """Writes the mesh; the format goes by the ending. What it cannot hold, a sentence each."""
-        return _motet.write(path, self)
+        """Writes the mesh; the format goes by the ending. What it cannot hold is warned of, and returned, a sentence each."""
+        import warnings
+
+        lost = _motet.write(path, self)
+        for what in lost:
+            warnings.warn(what, stacklevel=2)
+        return lost
 
     def patch_vertices(self, patch: str | int) -> NDArray[np.uint32]:
         """The vertices of a patch, by its name or label, rising."""

@@ -12,6 +12,7 @@ use crate::exit::Outcome;
 use crate::outputs;
 use crate::table::{count, counted};
 use crate::verbs::convert::WritingArgs;
+use crate::words::shown;
 
 /// Close the open rims of a surface, or of every frame of one that moves
 ///
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
         count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
     ));
     console.report(&json!({
-        "output": args.output,
+        "output": shown(&args.output),
         "frames": frames.len(),
         "rims": caps.len(),
         "points": whole.points.len(),

@@ -10,6 +10,7 @@ use serde_json::json;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{count, seconds};
+use crate::words::shown;
 
 /// Turn a mesh file into another format, told by the file endings
 ///
@@ -107,7 +108,9 @@ fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
     lost.iter().for_each(|what| console.warn(what));
     let n = frames.len();
     console.say(format_args!("{} -> {}: {n} meshes", args.input.display(), args.output.display()));
-    console.report(&json!({ "input": args.input, "output": args.output, "meshes": n, "lost": lost }));
+    console.report(
+        &json!({ "input": shown(&args.input), "output": shown(&args.output), "meshes": n, "lost": lost }),
+    );
     Ok(Outcome::Done)
 }
 
@@ -135,8 +138,8 @@ pub(crate) fn run(args: &ConvertArgs, console: &Console) -> motet::Result<Outcom
         mesh.cell_data.len()
     ));
     console.report(&json!({
-        "input": args.input,
-        "output": args.output,
+        "input": shown(&args.input),
+        "output": shown(&args.output),
         "points": mesh.points.len(),
         "cells": mesh.cells.len(),
         "point_arrays": mesh.point_data.iter().map(|f| &f.name).collect::<Vec<_>>(),

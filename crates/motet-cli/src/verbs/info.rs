@@ -13,6 +13,7 @@ use serde_json::json;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, short, time as time_of};
+use crate::words::{self, shown};
 
 /// Tell what a mesh holds, how good it is, and what is wrong with it
 ///
@@ -77,6 +78,7 @@ fn measured(mut mesh: Mesh) -> Mesh {
 
 #[derive(Serialize)]
 struct Report<'a> {
+    #[serde(serialize_with = "words::paths")]
     file: &'a Path,
     #[serde(flatten)]
     summary: &'a Summary,
@@ -251,7 +253,8 @@ fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
     let mut table = Table::new(["file", "time"]);
     frames.iter().for_each(|(time, file)| table.row([file.display().to_string(), time_of(*time)]));
     console.say(format_args!("{}: a series of {} meshes\n{table}", path.display(), frames.len()));
-    let frames: Vec<_> = frames.iter().map(|(time, file)| json!({ "time": time, "file": file })).collect();
-    console.report(&json!({ "file": path, "series": frames }));
+    let frames: Vec<_> =
+        frames.iter().map(|(time, file)| json!({ "time": time, "file": shown(file) })).collect();
+    console.report(&json!({ "file": shown(path), "series": frames }));
     Ok(Outcome::Done)
 }

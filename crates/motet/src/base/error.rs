@@ -1,5 +1,6 @@
 //! The one error of the library: what went wrong, in which file, where, and what to do.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -13,8 +14,10 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum ErrorKind {
     /// The data cannot be read, or is not what the operation needs.
     Input,
-    /// The operating system refused a file.
+    /// The operating system refused a file that is read, or a place for one that is written.
     Io,
+    /// The operating system refused what was to be written.
+    Output,
     /// A combination of options that means nothing.
     Options,
     /// Whoever [watched](crate::base::Watch) the call ended it.
@@ -69,6 +72,20 @@ impl Error {
         Self::new(ErrorKind::Io, source.to_string()).in_file(file)
     }
 
+    /// The operating system's word on a file that is written.
+    pub fn output(file: impl AsRef<Path>, source: &std::io::Error) -> Self {
+        let error = Self::new(ErrorKind::Output, format!("cannot be written: {source}")).in_file(file);
+        match source.kind() {
+            std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
+                error.remedy("make room, or write elsewhere")
+            }
+            std::io::ErrorKind::PermissionDenied | std::io::ErrorKind::ReadOnlyFilesystem => {
+                error.remedy("change its rights, or write elsewhere")
+            }
+            _ => error,
+        }
+    }
+
     /// Adds the place within the file or the mesh: a line, an element, a cell. The innermost place stays.
     #[must_use]
     pub fn at(mut self, place: impl Into<String>) -> Self {
@@ -119,7 +136,7 @@ impl Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(file) = &self.0.file {
-            write!(f, "{}: ", file.display())?;
+            write!(f, "{}: ", printable(&file.to_string_lossy()))?;
         }
         if let Some(place) = &self.0.place {
             write!(f, "{place}: ")?;
@@ -133,3 +150,20 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+/// Text that a terminal shows as it is: control characters, which could move its cursor or change its colours, are
+/// written as escapes, `\u{1b}` for the one that begins such sequences.
+///
+/// ```
+/// assert_eq!(motet::base::printable("a\u{1b}[2Jb"), r"a\u{1b}[2Jb");
+/// ```
+pub fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if c.is_control() { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    Cow::Owned(shown)
+}

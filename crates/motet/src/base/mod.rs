@@ -12,7 +12,7 @@ mod threads;
 mod watch;
 
 pub use csr::Csr;
-pub use error::{Error, ErrorKind, Result};
+pub use error::{Error, ErrorKind, Result, printable};
 pub use ids::{CellId, Id, TetId, VertexId, rising_list};
 pub(crate) use ids::{rising, runs_alike};
 pub(crate) use lanewise::lanewise;

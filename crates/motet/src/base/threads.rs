@@ -22,12 +22,13 @@ impl Threads {
         Self::default()
     }
 
-    /// `n` threads; 0 means one for each core that the machine offers.
+    /// `n` threads, but no more than the machine offers cores; 0 means one for each.
     ///
     /// # Errors
     /// When the operating system will not start them.
     pub fn new(n: usize) -> Result<Self> {
-        let n = if n == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { n };
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let n = if n == 0 { cores } else { n.min(cores) };
         if n == 1 {
             return Ok(Self::single());
         }

@@ -38,6 +38,15 @@ pub fn is_finite(a: Point) -> bool {
     (a[0] * 0.0 + a[1] * 0.0 + a[2] * 0.0) == 0.0
 }
 
+/// The largest coordinate that is reckoned with: volumes, their products and sums of those stay numbers.
+pub const LARGEST: f64 = 1e60;
+
+/// Whether the coordinates are numbers to reckon with: finite, and none beyond [`LARGEST`].
+#[inline(always)]
+pub fn in_range(a: Point) -> bool {
+    (a[0].abs() <= LARGEST) & (a[1].abs() <= LARGEST) & (a[2].abs() <= LARGEST)
+}
+
 /// `|a|`
 #[inline(always)]
 pub fn norm(a: Point) -> f64 {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::{Error, Result};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::{CellKind, Mesh};
 use crate::meshing::MOST_GROWTH;
 use crate::remesh;
@@ -126,8 +127,11 @@ impl Options {
     /// Names the first number that means nothing.
     pub(super) fn check(&self) -> Result<()> {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
-        if let Some(size) = self.size.filter(|size| !(*size > 0.0 && size.is_finite())) {
-            return refused(format!("a size of {size}, expected a length above 0"), "leave it out");
+        if let Some(size) = self.size.filter(|size| !(*size > 0.0 && *size <= LARGEST)) {
+            return refused(
+                format!("a size of {size}, expected a length above 0 and no more than {LARGEST:e}"),
+                "leave it out",
+            );
         }
         if let Some(stray) = self.stray.filter(|stray| !(*stray >= 0.0 && stray.is_finite())) {
             return refused(
@@ -152,6 +156,6 @@ impl Options {
             );
             return refused(what, "give numbers above 0, the second not below the first");
         }
-        Ok(())
+        self.improve.check()
     }
 }

@@ -112,7 +112,7 @@ impl NodalSeries {
                 out.push(b'\n');
             }
         }
-        replace(path.as_ref(), &out)
+        replace(path.as_ref(), &out).map(drop)
     }
 
     /// The vectors of all nodes at a time.

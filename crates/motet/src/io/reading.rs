@@ -4,13 +4,13 @@ use std::path::Path;
 
 use crate::base::{Error, ErrorKind, Result};
 use crate::io::format::{Format, Input, Notes};
-use crate::io::vtkxml;
+use crate::io::{foreign, ghosts, vtkxml};
 use crate::mesh::Mesh;
 
 /// Reads the file or folder `path` in the given format.
 pub(super) fn read_file(format: &Format, path: &Path, notes: &Notes) -> Result<Mesh> {
     if let Some(tail) = vtkxml::Tail::of(path) {
-        return checked(vtkxml::read_tail(&tail, notes), path);
+        return checked(vtkxml::read_tail(&tail, notes), path, notes);
     }
     let bytes = match format.is_folder() {
         true => Vec::new(),
@@ -30,15 +30,17 @@ pub fn read_as(format: &Format, input: &Input<'_>) -> Result<Mesh> {
     };
     if !format.is_folder() {
         refuse_stand_ins(input.bytes).map_err(|e| e.in_file(input.path))?;
+        foreign::refuse(input.path, input.bytes, format.endings)?;
     }
-    checked(read(input), input.path)
+    checked(read(input), input.path, input.notes)
 }
 
 /// What a reader returned, found to hold together; errors with the file and a remedy.
-pub(super) fn checked(mesh: Result<Mesh>, path: &Path) -> Result<Mesh> {
+pub(super) fn checked(mesh: Result<Mesh>, path: &Path, notes: &Notes) -> Result<Mesh> {
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or was written wrong: write it again");
-    let mesh = mesh.map_err(told)?;
+    let mut mesh = mesh.map_err(told)?;
     mesh.validate().map_err(told)?;
+    ghosts::leave_out(&mut mesh, notes);
     Ok(mesh)
 }
 

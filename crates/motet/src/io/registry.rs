@@ -7,8 +7,8 @@ use crate::io::format::{Format, Notes, WriteOptions};
 use crate::io::reading::{checked, read_file};
 use crate::io::replace::{replace_all, replace_folder, replace_with};
 use crate::io::{
-    abaqus, cgns, dolfin, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen, vtkhdf,
-    vtkxml,
+    abaqus, cgns, dolfin, foreign, legacy, medit, msh, obj, off, ply, polymesh, simvascular, stl, tetgen,
+    vtkhdf, vtkxml,
 };
 use crate::mesh::Mesh;
 
@@ -20,6 +20,7 @@ pub fn formats() -> &'static [Format] {
 const FORMATS: &[Format] = &[
     vtkxml::VTU,
     vtkxml::VTP,
+    vtkxml::PARTS,
     legacy::VTK,
     vtkhdf::FORMAT,
     cgns::FORMAT,
@@ -46,6 +47,9 @@ fn by_ending(path: &Path) -> Result<&'static Format> {
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut all = FORMATS.iter().chain(REFUSED);
     all.find(|f| f.endings.iter().any(|e| name.ends_with(e))).ok_or_else(|| {
+        if let Some(error) = foreign::by_ending(path) {
+            return error;
+        }
         let known: Vec<_> = FORMATS.iter().flat_map(|f| f.endings).copied().collect();
         Error::input("no format has this file ending")
             .in_file(path)
@@ -60,10 +64,21 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
     if polymesh::is_to_be_one(path) {
         return Ok(&polymesh::FORMAT);
     }
-    if ends_with_slash || path.is_dir() {
+    if ends_with_slash {
         return Ok(&simvascular::FORMAT);
     }
-    let format = by_ending(path)?;
+    let format = by_ending(path);
+    if path.is_dir() {
+        return match format {
+            Ok(format) if !format.is_folder() => {
+                Err(Error::options(format!("is a folder, and its name that of a file ({})", format.name))
+                    .in_file(path)
+                    .remedy("give the file another name, or put a slash behind the folder's"))
+            }
+            _ => Ok(&simvascular::FORMAT),
+        };
+    }
+    let format = format?;
     match format.is_folder() {
         true => Err(Error::options("is a mark for ParaView, and no place for a mesh")
             .in_file(path)
@@ -79,7 +94,10 @@ fn for_writing(path: &Path) -> Result<&'static Format> {
 /// Of kind [`ErrorKind::Options`] for the ending, [`ErrorKind::Io`] for the folder.
 pub fn can_write(path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
-    let writable = for_writing(path).is_ok_and(|f| f.write.is_some());
+    let writable = match for_writing(path) {
+        Err(error) if path.is_dir() => return Err(error),
+        format => format.is_ok_and(|f| f.write.is_some()),
+    };
     if !writable {
         let known: Vec<_> =
             FORMATS.iter().filter(|f| f.write.is_some()).flat_map(|f| f.endings).copied().collect();
@@ -128,7 +146,7 @@ pub fn read_noted(path: impl AsRef<Path>) -> Result<(Mesh, Vec<String>)> {
     let path = path.as_ref();
     let notes = Notes::default();
     if let Some(step) = vtkhdf::StepPath::of(path) {
-        let mesh = checked(vtkhdf::read_step(&step, &notes), path)?;
+        let mesh = checked(vtkhdf::read_step(&step, &notes), path, &notes)?;
         return Ok((mesh, notes.into_vec()));
     }
     let format = if path.is_dir() { folder_format(path) } else { by_ending(path)? };
@@ -152,7 +170,9 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
     mesh.validate()?;
     if format.endings == vtkxml::VTU.endings {
         // Straight into the file: large meshes need no second place in memory.
-        return replace_with(path, |sink| vtkxml::write_to(mesh, options, sink));
+        let (mut lost, note) = replace_with(path, |sink| vtkxml::write_to(mesh, options, sink))?;
+        lost.extend(note);
+        return Ok(lost);
     }
     let written = write(mesh, options).map_err(|e| e.in_file(path))?;
     if format.is_folder() {
@@ -161,8 +181,8 @@ pub fn write(path: impl AsRef<Path>, mesh: &Mesh, options: &WriteOptions) -> Res
         return Ok(written.lost);
     }
     let files = written.files.iter().map(|(ending, bytes)| (with_ending(path, ending), bytes.as_slice()));
-    replace_all(&files.collect::<Vec<_>>())?;
-    Ok(written.lost)
+    let notes = replace_all(&files.collect::<Vec<_>>())?;
+    Ok([written.lost, notes].concat())
 }
 
 /// `path`, its ending changed; itself where `ending` is empty.

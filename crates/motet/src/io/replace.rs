@@ -1,17 +1,24 @@
 //! Files that appear whole or not at all: written beside their place, then renamed into it.
+//!
+//! What stands there before is treated as `cp` treats it: a link is followed, rights and owner stay, a device or pipe
+//! is written into, and what may not be written is refused. Only other hard links keep the old content, which is said.
 
-use std::io::Write;
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
 use crate::base::{Error, Result};
 
-/// Writes `bytes` beside `path`, then renames into place.
+/// Links that lead to links; more is a circle.
+const MAX_LINKS: usize = 40;
+
+/// Writes `bytes` beside `path`, then renames into place. Returns what the user should know of what stood there.
 ///
 /// # Errors
 /// When the system refuses the file; what stood at `path` before is then still there.
-pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<Vec<String>> {
     replace_all(&[(path.to_owned(), bytes)])
 }
 
@@ -20,30 +27,38 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// As [`replace`].
-pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<()> {
-    let written: Vec<(&Path, NamedTempFile)> = files
+pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
+    let written: Vec<(&Path, Draft)> = files
         .iter()
-        .map(|(path, bytes)| write_beside(path, bytes).map(|file| (path.as_path(), file)))
+        .map(|(path, bytes)| {
+            let told = |e: std::io::Error| Error::output(path, &e);
+            let mut draft = Draft::new(path)?;
+            draft.sink().write_all(bytes).map_err(told)?;
+            Ok((path.as_path(), draft))
+        })
         .collect::<Result<_>>()?;
-    written.into_iter().try_for_each(|(path, file)| match file.persist(path) {
-        Ok(_) => Ok(()),
-        Err(e) => Err(Error::io(path, &e.error)),
-    })
+    let mut notes = Vec::new();
+    for (path, draft) in written {
+        notes.extend(draft.persist(path)?);
+    }
+    Ok(notes)
 }
 
-/// As [`replace`], with what `write` gives to the file.
-pub(super) fn replace_with<T>(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<T>) -> Result<T> {
-    let mut file = create_beside(path)?;
-    let result = write(&mut file).map_err(|e| e.in_file(path))?;
-    file.persist(path).map_err(|e| Error::io(path, &e.error))?;
-    Ok(result)
+/// As [`replace`], with what `write` gives to the file; returns that, too.
+pub(super) fn replace_with<T>(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<T>,
+) -> Result<(T, Option<String>)> {
+    let mut draft = Draft::new(path)?;
+    let result = write(draft.sink()).map_err(|e| e.in_file(path))?;
+    Ok((result, draft.persist(path)?))
 }
 
 /// Writes a folder of files beside `path`, then renames it into place. Nothing stands at `path`, or an empty folder.
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
-    let told = |e: std::io::Error| Error::io(path, &e);
-    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(parent).map_err(told)?;
+    let told = |e: std::io::Error| Error::output(path, &e);
+    let place = if path.is_dir() { path.canonicalize().map_err(told)? } else { followed(path)? };
+    let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(told)?;
     // Inside a folder that is its owner's alone; the one that is renamed has the rights that the user's umask says.
     let inner = folder.path().join("folder");
     for (name, bytes) in files {
@@ -51,26 +66,109 @@ pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result
         std::fs::create_dir_all(file.parent().unwrap_or(&inner)).map_err(told)?;
         std::fs::write(file, bytes).map_err(told)?;
     }
-    if path.is_dir() {
-        std::fs::remove_dir(path).map_err(told)?;
+    if let Ok(old) = place.metadata() {
+        std::fs::set_permissions(&inner, old.permissions()).map_err(told)?;
+        std::fs::remove_dir(&place).map_err(told)?;
     }
-    std::fs::rename(inner, path).map_err(told)
+    std::fs::rename(inner, &place).map_err(told)
 }
 
-fn write_beside(path: &Path, bytes: &[u8]) -> Result<NamedTempFile> {
-    let mut file = create_beside(path)?;
-    file.write_all(bytes).map_err(|e| Error::io(path, &e))?;
-    Ok(file)
+/// A file on its way to its place.
+enum Draft {
+    /// Beside its place; what stands there now.
+    Beside(NamedTempFile, PathBuf, Option<Box<Metadata>>),
+    /// What is no regular file is written into.
+    Into(File),
 }
 
-fn create_beside(path: &Path) -> Result<NamedTempFile> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".motet-");
-    // As any program creates a file: readable for whom the user's umask says.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder).map_err(|e| Error::io(path, &e))
+impl Draft {
+    fn new(path: &Path) -> Result<Self> {
+        let told = |e: &std::io::Error| Error::output(path, e);
+        let place = followed(path)?;
+        let old = match place.metadata() {
+            Err(e) if e.kind() == ErrorKind::NotFound => None,
+            Err(e) => return Err(told(&e)),
+            Ok(old) => {
+                // What may not be written is not replaced either.
+                let file = OpenOptions::new().write(true).open(&place).map_err(|e| told(&e))?;
+                if !old.is_file() {
+                    return Ok(Self::Into(file));
+                }
+                Some(Box::new(old))
+            }
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".motet-");
+        // As any program creates a file: readable for whom the user's umask says.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder_of(&place)).map_err(|e| told(&e))?;
+        Ok(Self::Beside(file, place, old))
+    }
+
+    fn sink(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Beside(file, ..) => file,
+            Self::Into(file) => file,
+        }
+    }
+
+    /// Puts it in its place.
+    fn persist(self, path: &Path) -> Result<Option<String>> {
+        let Self::Beside(file, place, old) = self else { return Ok(None) };
+        if let Some(old) = &old {
+            keep_rights(file.as_file(), old).map_err(|e| Error::output(path, &e))?;
+        }
+        file.persist(&place).map_err(|e| Error::output(path, &e.error))?;
+        Ok(old.as_deref().map_or(1, hard_links).checked_sub(1).filter(|&n| n > 0).map(|n| {
+            format!(
+                "{}: {n} other hard link(s) of the file that was there keep its old content",
+                path.display()
+            )
+        }))
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Where a path leads, link by link; the last one may lead to nothing yet.
+fn followed(path: &Path) -> Result<PathBuf> {
+    let mut place = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        match place.read_link() {
+            Ok(next) => place = folder_of(&place).join(next),
+            Err(_) => return Ok(place),
+        }
+    }
+    Err(Error::options("links lead round in a circle").in_file(path).remedy("remove the link"))
+}
+
+#[cfg(unix)]
+fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
+    use std::os::unix::fs::MetadataExt;
+    let new = file.metadata()?;
+    if (new.uid(), new.gid()) != (old.uid(), old.gid()) {
+        // Only the superuser may give files away; others keep what they make, as with any editor.
+        let _ = std::os::unix::fs::fchown(file, Some(old.uid()), Some(old.gid()));
+    }
+    file.set_permissions(old.permissions())
+}
+
+#[cfg(not(unix))]
+fn keep_rights(file: &File, old: &Metadata) -> std::io::Result<()> {
+    file.set_permissions(old.permissions())
+}
+
+#[cfg(unix)]
+fn hard_links(old: &Metadata) -> u64 {
+    std::os::unix::fs::MetadataExt::nlink(old)
+}
+
+#[cfg(not(unix))]
+fn hard_links(_: &Metadata) -> u64 {
+    1
 }
 
 #[cfg(test)]
@@ -85,5 +183,37 @@ mod tests {
         assert!(replace_all(&[(good.clone(), b"after"), (bad, b"after")]).is_err());
         assert_eq!(std::fs::read(&good).unwrap(), b"before");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_rights_stay_and_hard_links_are_said() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("deep")).unwrap();
+        std::fs::write(at("deep/file"), b"before").unwrap();
+        std::fs::set_permissions(at("deep/file"), PermissionsExt::from_mode(0o604)).unwrap();
+        symlink("deep/file", at("one")).unwrap();
+        symlink("one", at("two")).unwrap();
+        assert_eq!(replace(&at("two"), b"after").unwrap(), Vec::<String>::new());
+        assert!(at("two").is_symlink() && at("one").is_symlink());
+        assert_eq!(std::fs::read(at("deep/file")).unwrap(), b"after");
+        assert_eq!(std::fs::metadata(at("deep/file")).unwrap().permissions().mode() & 0o777, 0o604);
+
+        symlink("deep/new", at("dangling")).unwrap();
+        replace(&at("dangling"), b"new").unwrap();
+        assert_eq!(std::fs::read(at("deep/new")).unwrap(), b"new");
+
+        std::fs::hard_link(at("deep/file"), at("other")).unwrap();
+        let notes = replace(&at("one"), b"once more").unwrap();
+        assert!(notes[0].contains("1 other hard link"), "{notes:?}");
+        assert_eq!(std::fs::read(at("other")).unwrap(), b"after");
+
+        symlink("round", at("round")).unwrap();
+        assert!(replace(&at("round"), b"").unwrap_err().to_string().contains("circle"));
+        assert!(replace(&at("deep"), b"").is_err(), "a folder is no file");
+        replace(Path::new("/dev/null"), b"gone").unwrap();
+        assert!(!std::fs::metadata("/dev/null").unwrap().is_file());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::base::VertexId;
+use crate::base::{CellId, VertexId};
 use crate::mesh::{Boundary, CellKind, Cells, Field, Mesh, corners};
 
 /// The mesh with those cells whose kind `holds`, and what was left out.
@@ -27,17 +27,24 @@ pub(super) fn keep_cells<'m>(
 
 /// The mesh with those cells whose kind `holds`, and with all its points.
 pub(super) fn of_kinds(mesh: &Mesh, holds: impl Fn(CellKind) -> bool) -> Mesh {
-    let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| holds(mesh.cells.kinds()[i])).collect();
+    of_cells(mesh, |cell| holds(mesh.cells.kind(cell)))
+}
+
+/// The mesh with those cells that `keeps`, and with all its points.
+pub(super) fn of_cells(mesh: &Mesh, keeps: impl Fn(CellId) -> bool) -> Mesh {
+    let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&i| keeps(CellId::new(i))).collect();
     let mut cells = Cells::new();
-    let mut faces = mesh.cells.polyhedron_faces().iter();
-    for (_, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| holds(*kind)) {
+    let mut all_faces = mesh.cells.polyhedron_faces().iter();
+    for (cell, kind, vertices) in mesh.cells.iter() {
+        // Faces stand in the order of the polyhedra, kept or not.
+        let faces = if kind == CellKind::POLYHEDRON { all_faces.next() } else { None };
         let vertices = vertices.iter().copied();
-        match kind {
-            // All polyhedra are of one kind: each is kept, and so their faces stay in step.
-            CellKind::POLYHEDRON => {
-                cells.push_polyhedron(vertices, faces.next().cloned().unwrap_or_default())
+        match (keeps(cell), kind) {
+            (false, _) => {}
+            (true, CellKind::POLYHEDRON) => {
+                cells.push_polyhedron(vertices, faces.cloned().unwrap_or_default())
             }
-            _ => cells.push(kind, vertices),
+            (true, _) => cells.push(kind, vertices),
         }
     }
     Mesh {

@@ -142,8 +142,8 @@ pub fn write_series(
         steps.add(time, &mesh).map_err(|e| e.in_file(path))?;
     }
     let written = steps.into_file(options).map_err(|e| e.in_file(path))?;
-    replace_all(&[(path.to_owned(), written.files[0].1.as_slice())])?;
-    Ok(written.lost)
+    let notes = replace_all(&[(path.to_owned(), written.files[0].1.as_slice())])?;
+    Ok([written.lost, notes].concat())
 }
 
 /// A series that grows frame by frame. The PVD file is replaced after each frame, so
@@ -197,9 +197,9 @@ impl SeriesWriter {
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
         let k = self.frames.len();
         let file = self.frame_path(k);
-        let lost = write(&file, mesh, &self.options)?;
+        let mut lost = write(&file, mesh, &self.options)?;
         self.frames.push((time, self.frame_name(k)));
-        replace(&self.path, self.text().as_bytes())?;
+        lost.extend(replace(&self.path, self.text().as_bytes())?);
         Ok((file, lost))
     }
 

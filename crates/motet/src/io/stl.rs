@@ -5,7 +5,7 @@
 //! `solid` for text, and reads text in single precision only.
 //!
 //! Binary or text is told by the length: a binary file of n triangles has
-//! 84 + 50 n bytes, whatever its header says. Points are merged where all three
+//! 84 + 50 n bytes, whatever its header says; or those and, behind each triangle, as many bytes as its attribute counts. Points are merged where all three
 //! coordinates are equal (0 and -0 are). Normals are not kept: they follow from
 //! the points. Attribute bytes become the cell array `attribute` where they are not 0.
 
@@ -31,12 +31,23 @@ const MAX_NORMAL_WORDS: usize = 4;
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
     let bytes = input.bytes;
+    if let Some(triangles) = with_payload(bytes) {
+        input.notes.add("what another program has put behind each triangle is passed over");
+        let mut mesh = binary(triangles.into_iter())?;
+        // They were counts.
+        mesh.cell_data.clear();
+        return Ok(mesh);
+    }
     let mesh = match (binary_body(bytes), bytes.trim_ascii_start().get(..5)) {
-        (Some((triangles, [])), _) => binary(triangles)?,
+        (Some((triangles, [])), _) => binary(triangles.chunks_exact(TRIANGLE_BYTES))?,
         (_, Some(word)) if word.eq_ignore_ascii_case(b"solid") => ascii(bytes)?,
         (Some((triangles, behind)), _) => {
+            // The count of what follows a triangle stands in its attribute: then this is no run of whole triangles.
+            if triangles.chunks_exact(TRIANGLE_BYTES).any(|t| t[TRIANGLE_BYTES - 2..] != [0, 0]) {
+                return Err(neither(bytes));
+            }
             input.notes.add(format!("{} bytes behind the last triangle are passed over", behind.len()));
-            binary(triangles)?
+            binary(triangles.chunks_exact(TRIANGLE_BYTES))?
         }
         (None, _) => return Err(neither(bytes)),
     };
@@ -51,6 +62,24 @@ fn read(input: &Input<'_>) -> Result<Mesh> {
 fn binary_body(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let n = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?);
     bytes[HEAD_BYTES..].split_at_checked(n as usize * TRIANGLE_BYTES)
+}
+
+/// The triangles of a binary file whose attributes say how many bytes follow each, and which fill it to its end; `None`
+/// for any other.
+fn with_payload(bytes: &[u8]) -> Option<Vec<&[u8]>> {
+    let n = u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?) as usize;
+    let mut rest = &bytes[HEAD_BYTES..];
+    if n == 0 || n > rest.len() / TRIANGLE_BYTES || n * TRIANGLE_BYTES == rest.len() {
+        return None;
+    }
+    let mut triangles = Vec::with_capacity(n);
+    for _ in 0..n {
+        let (triangle, behind) = rest.split_at_checked(TRIANGLE_BYTES)?;
+        let size = u16::from_le_bytes([triangle[TRIANGLE_BYTES - 2], triangle[TRIANGLE_BYTES - 1]]);
+        rest = behind.get(usize::from(size)..)?;
+        triangles.push(triangle);
+    }
+    rest.is_empty().then_some(triangles)
 }
 
 fn neither(bytes: &[u8]) -> Error {
@@ -96,10 +125,10 @@ impl Merged {
     }
 }
 
-fn binary(body: &[u8]) -> Result<Mesh> {
+fn binary<'a>(triangles: impl ExactSizeIterator<Item = &'a [u8]>) -> Result<Mesh> {
     let mut merged = Merged::default();
-    let mut attributes = Vec::with_capacity(body.len() / TRIANGLE_BYTES);
-    for triangle in body.chunks_exact(TRIANGLE_BYTES) {
+    let mut attributes = Vec::with_capacity(triangles.len());
+    for triangle in triangles {
         let (floats, attribute) = triangle.split_at(TRIANGLE_BYTES - 2);
         let (numbers, _) = floats.as_chunks::<4>();
         for corner in numbers[3..].chunks_exact(3) {

@@ -1,7 +1,7 @@
 //! Everything that a mesh file holds.
 
 use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::{Cells, Field, LabelNames};
 
 /// Points, cells of any kinds, and the arrays on them: what a file holds, and
@@ -72,7 +72,7 @@ impl Mesh {
 /// The corners of the smallest box, sides along the axes, around the finite
 /// ones of `points`; `None` when there is none.
 pub fn bounds(points: &[Point]) -> Option<[Point; 2]> {
-    points.iter().filter(|p| is_finite(**p)).fold(None, |bounds, p| {
+    points.iter().filter(|p| in_range(**p)).fold(None, |bounds, p| {
         let [low, high] = bounds.unwrap_or([*p, *p]);
         Some([[0, 1, 2].map(|i| low[i].min(p[i])), [0, 1, 2].map(|i| high[i].max(p[i]))])
     })

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, VertexId};
+use crate::geometry::vector::in_range;
 use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
@@ -211,7 +212,7 @@ fn tet_quality(mesh: &Mesh) -> Option<QualitySummary> {
     let mut n = 0usize;
     for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
         let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
-        if tet.as_flattened().iter().all(|x| x.is_finite()) {
+        if tet.into_iter().all(in_range) {
             n += 1;
             total.get_or_insert_with(QualitySummary::empty).add(cell, tet);
         }

@@ -1,7 +1,7 @@
 //! What verbs that change connectivity work on: tets, labelled triangles, and what must stay as it is.
 
 use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 
 /// A tetrahedral mesh as plain arrays: what a solver hands over and gets back.
 ///
@@ -68,8 +68,8 @@ impl TetMesh {
     }
 
     fn check_numbers(&self) -> Result<()> {
-        let is_off = |tet: &[VertexId; 4]| tet.iter().any(|v| !is_finite(self.points[v.index()]));
-        if self.points.iter().all(|p| is_finite(*p)) {
+        let is_off = |tet: &[VertexId; 4]| tet.iter().any(|v| !in_range(self.points[v.index()]));
+        if self.points.iter().all(|p| in_range(*p)) {
             return Ok(());
         }
         match self.tets.iter().position(is_off) {

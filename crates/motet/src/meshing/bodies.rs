@@ -9,7 +9,7 @@ use crate::base::{Error, Point, Result, VertexId, rising};
 use crate::delaunay::Constrained;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, holds, volume};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::{CellKind, Mesh, bounds, unused_name};
 use crate::preflight::Role;
 
@@ -133,7 +133,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
 
 /// The body that holds a place.
 fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
-    if !is_finite(place) {
+    if !in_range(place) {
         return Err(Error::options("a place needs finite numbers").at(told_place(place)));
     }
     let corners = |tet: &[VertexId; 4]| tet.map(|v| tets.points[v.index()]);

@@ -110,6 +110,7 @@ pub fn fill(
         return Err(error);
     }
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
+    options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     let joined = surfaces.without_shared();
     let triangles = joined.triangles.clone();
     let at_corners = options.sizes.as_ref().map_or_else(Vec::new, |sizes| sizes.at_corners(&joined));

@@ -2,6 +2,7 @@
 
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::{Field, Mesh, Surface, firsts_at_place, mean_edge_lengths};
 
 /// Sizes that grow faster than this part of the distance mean nothing: neighbours in the lattice differ by a factor of 2 at most. Below it a cube of
@@ -92,14 +93,14 @@ impl Grading {
 }
 
 fn is_length(size: f64) -> bool {
-    size > 0.0 && size.is_finite()
+    size > 0.0 && size <= LARGEST
 }
 
 fn check_length(size: f64) -> Result<()> {
     if is_length(size) {
         return Ok(());
     }
-    Err(Error::options(format!("a size of {size}, expected a length above 0")))
+    Err(Error::options(format!("a size of {size}, expected a length above 0 and no more than {LARGEST:e}")))
 }
 
 fn no_length(size: f64) -> Error {

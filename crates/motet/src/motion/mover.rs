@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::geometry::vector::{is_finite, sub};
+use crate::geometry::vector::{in_range, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::bodies::{self, Bodies};
 use crate::motion::check::Check;
@@ -133,7 +133,7 @@ impl Mover {
         let mut is_node = vec![false; mesh.points.len()];
         nodes.vertices.iter().for_each(|v| is_node[v.index()] = true);
         let hanging =
-            (0..mesh.points.len()).filter(|&v| !is_node[v] && is_finite(mesh.points[v])).map(VertexId::new);
+            (0..mesh.points.len()).filter(|&v| !is_node[v] && in_range(mesh.points[v])).map(VertexId::new);
         let mut mover = Self {
             reference: mesh.points.clone(),
             nodes,
@@ -266,7 +266,7 @@ impl Mover {
                 self.nodes.n_driven
             )));
         }
-        match displacement.iter().position(|&d| !is_finite(d)) {
+        match displacement.iter().position(|&d| !in_range(d)) {
             None => Ok(()),
             Some(i) => Err(Error::input("a displacement that is no finite number")
                 .at(format!("vertex {}", self.boundary()[i]))),
@@ -476,7 +476,7 @@ fn check_input(mesh: &Mesh, boundary: &Boundary, options: &Options) -> Result<()
     }
     let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
     let needed = volumes.flat_map(|(_, _, vertices)| vertices).chain(named);
-    match needed.copied().find(|v| !is_finite(mesh.points[v.index()])) {
+    match needed.copied().find(|v| !in_range(mesh.points[v.index()])) {
         None => Ok(()),
         Some(v) => Err(Error::input(format!("has no finite place: {:?}", mesh.points[v.index()]))
             .at(format!("vertex {v}"))

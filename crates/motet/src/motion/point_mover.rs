@@ -1,7 +1,7 @@
 //! Points after nodes, without a mesh: for solvers that have a part of the mesh each.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::motion::graph::{hang, triangulate};
 use crate::motion::update::{Displacements, Update};
 
@@ -92,7 +92,7 @@ impl PointMover {
 }
 
 fn check_finite(points: &[Point], what: &str) -> Result<()> {
-    match points.iter().position(|&p| !is_finite(p)) {
+    match points.iter().position(|&p| !in_range(p)) {
         None => Ok(()),
         Some(i) => Err(Error::input(format!("{:?} is not finite", points[i])).at(format!("{what} {i}"))),
     }

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 
 use crate::base::{Error, Point, Result, Threads, VertexId, rising_list};
 use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{add, cross, dot, is_finite, norm, scale, sub};
+use crate::geometry::vector::{add, cross, dot, in_range, norm, scale, sub};
 use crate::mesh::Boundary;
 use crate::motion::graph::{hang, triangulate};
 use crate::motion::options::FacetSet;
@@ -136,7 +136,7 @@ impl Plane {
         let area = set.triangles().map(|t| area_vector(t.map(|v| points[v.index()])));
         let area = area.fold([0.0; 3], |sum, a| if dot(sum, a) < 0.0 { sub(sum, a) } else { add(sum, a) });
         let normal = scale(area, 1.0 / norm(area));
-        if !is_finite(normal) {
+        if !in_range(normal) {
             return Err(Error::input(format!("its {} facets have no area", set.rings.len()))
                 .remedy("name a patch that the mesh has"));
         }

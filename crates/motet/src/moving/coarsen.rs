@@ -47,7 +47,7 @@ impl MovingMesh {
             goal: Goal::Coarsen,
             sizes: Some(Sizes::Vertices(sizes)),
             surface: SurfaceRule::Flat,
-            min_eas: repair.min_eas + options.margin,
+            min_eas: (repair.min_eas + options.margin).min(1.0),
             // What is bad for the division of a wall alone is repaired here, where that may go.
             only: Some(shape.bad.iter().map(|(cell, _)| *cell).collect()),
             ..repair

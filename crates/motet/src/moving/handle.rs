@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use crate::base::{Error, Point, Result, Threads};
 use crate::contact;
-use crate::geometry::vector::{is_finite, sub};
+use crate::geometry::vector::{in_range, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{Mover, mesh_velocity};
@@ -58,6 +58,7 @@ impl MovingMesh {
     /// # Errors
     /// As [`Mover::new`]; when a watched patch is not there.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
+        options.check()?;
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
         let wall = Wall::of(mesh, mover.boundary(), &options)?;
         let known = Known::at_first(mesh, mover.boundary());
@@ -340,7 +341,7 @@ impl MovingMesh {
             ))
             .remedy("give one for each vertex that was driven at first, whatever the mesh has become"));
         }
-        if let Some(i) = displacement.iter().position(|&d| !is_finite(d)) {
+        if let Some(i) = displacement.iter().position(|&d| !in_range(d)) {
             return Err(
                 Error::input("a displacement that is no finite number").at(format!("driven vertex {i}"))
             );

@@ -206,7 +206,7 @@ impl Way<'_> {
             } else {
                 asked.sizes.clone()
             },
-            min_eas: asked.min_eas + options.margin,
+            min_eas: (asked.min_eas + options.margin).min(1.0),
             only: self.worth_repair(now, shape, effort),
             goal: if matches!(effort, Effort::Usual | Effort::Margin) { asked.goal } else { Goal::Best },
             ..asked.clone()

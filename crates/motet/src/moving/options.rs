@@ -1,6 +1,6 @@
 //! What a moving mesh is told: patches by label, since ids do not outlast a change.
 
-use crate::base::{Result, VertexId};
+use crate::base::{Error, Result, VertexId};
 use crate::contact;
 use crate::mesh::history::Rules;
 use crate::mesh::{Boundary, Mesh, Surface, cone_volume};
@@ -49,6 +49,21 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Refuses numbers that mean nothing.
+    ///
+    /// # Errors
+    /// Names the first of them.
+    pub(super) fn check(&self) -> Result<()> {
+        self.repair.as_ref().map_or(Ok(()), remesh::Options::check)?;
+        for (what, value) in [("margin", self.margin), ("floor", self.floor), ("keep_tets", self.keep_tets)] {
+            if !(0.0..=1.0).contains(&value) {
+                let what = format!("{what} is {value}, expected a number in [0, 1]");
+                return Err(Error::options(what).remedy("leave it out"));
+            }
+        }
+        Ok(())
+    }
+
     /// The EAS below which a tet is bad.
     pub fn limit(&self) -> f64 {
         self.repair.as_ref().map_or(motion::BAD_EAS, remesh::Options::limit)

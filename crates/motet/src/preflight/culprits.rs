@@ -3,7 +3,7 @@
 use super::fault::{Fault, FaultKind};
 use super::report::Preflight;
 use crate::base::{Point, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 /// What stands in the array `triangle` for a vertex or an edge.
@@ -61,7 +61,7 @@ fn connected(cells: &[Cell], used: &[VertexId]) -> Cells {
 fn cells_of(points: &[Point], triangles: &[[VertexId; 3]], i: usize, fault: &Fault) -> Vec<Cell> {
     let lone = |vertices: &[VertexId]| Cell { vertices: vertices.to_vec(), triangle: NO_TRIANGLE, fault: i };
     let corners = || fault.triangles.iter().flat_map(|&t| triangles[t as usize]);
-    let finite = |v: &VertexId| is_finite(points[v.index()]);
+    let finite = |v: &VertexId| in_range(points[v.index()]);
     match fault.kind {
         FaultKind::EmptySurface => Vec::new(),
         _ if !corners().all(|v| finite(&v)) => {

@@ -7,6 +7,7 @@ use pulp::Scalar;
 use crate::base::{Point, VertexId};
 use crate::geometry::predicates::pair::{Pair, U, cross, difference, dot};
 use crate::geometry::unit::unit_of;
+use crate::geometry::vector::in_range;
 use crate::geometry::vector::scale;
 
 /// More than all underflow together can amount to, with coordinates below 2.
@@ -18,7 +19,7 @@ const UNDERFLOW: f64 = 1e-290;
 pub(super) fn volume_sign(points: &[Point], triangles: &[[VertexId; 3]]) -> Option<Ordering> {
     let at = |v: VertexId| points[v.index()];
     let all = || triangles.iter().flatten().map(|&v| at(v));
-    if !all().all(|p| p.iter().all(|x| x.is_finite())) {
+    if !all().all(in_range) {
         return None;
     }
     let Some(origin) = all().next() else { return Some(Ordering::Equal) };

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::base::{Point, VertexId};
-use crate::geometry::vector::{add, is_finite, scale};
+use crate::geometry::vector::{add, in_range, scale};
 
 macro_rules! fault_kinds {
     ($($variant:ident = $name:literal, $meaning:literal, $remedy:literal;)*) => {
@@ -40,7 +40,7 @@ macro_rules! fault_kinds {
 fault_kinds! {
     EmptySurface = "empty_surface", "the surface has no triangles",
         "give it some, or leave it out";
-    NonFinitePoint = "non_finite_point", "a coordinate is infinite or no number",
+    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or no number",
         "give the point a place, or remove it with its triangles";
     RepeatedVertex = "repeated_vertex", "the triangle names a vertex twice",
         "ask for triangles without area to be dropped";
@@ -109,7 +109,7 @@ impl Fault {
 pub(super) fn mean(vertices: &[VertexId], points: &[Point]) -> Option<Point> {
     let part = 1.0 / vertices.len() as f64;
     let sum = vertices.iter().fold([0.0; 3], |sum, v| add(sum, scale(points[v.index()], part)));
-    (is_finite(sum) && !vertices.is_empty()).then_some(sum)
+    (in_range(sum) && !vertices.is_empty()).then_some(sum)
 }
 
 impl fmt::Display for Fault {

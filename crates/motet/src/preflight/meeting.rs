@@ -7,7 +7,7 @@ use super::surfaces::Surfaces;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle;
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 
 /// All pairs of sound triangles. Of several with the same vertices the first one stands for all, and none without area is looked at:
 /// those are told of once, and would meet all that is round them.
@@ -57,5 +57,5 @@ fn beyond_vertex(surfaces: &Surfaces, [a, b]: [[VertexId; 3]; 2]) -> Option<Poin
 /// A point that triangles have in common, up to rounding.
 fn common_point(a: [Point; 3], b: [Point; 3]) -> Option<Point> {
     let at = triangle::at(a, triangle_triangle::closest(a, b).on_a);
-    is_finite(at).then_some(at)
+    in_range(at).then_some(at)
 }

@@ -4,7 +4,7 @@ use super::fault::{Fault, FaultKind};
 use super::surfaces::Surfaces;
 use crate::base::{Csr, Threads, VertexId, rising};
 use crate::geometry::predicates::collinear;
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 
 /// What a triangle is worth by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +26,7 @@ pub(super) fn shapes(surfaces: &Surfaces, threads: &Threads) -> Vec<Shape> {
         let corners = surfaces.corners(t as u32);
         match () {
             () if a == b || b == c || c == a => Shape::Repeated,
-            () if !corners.iter().all(|&p| is_finite(p)) => Shape::NotFinite,
+            () if !corners.iter().all(|&p| in_range(p)) => Shape::NotFinite,
             () if collinear(corners[0], corners[1], corners[2]) => Shape::Flat,
             () => Shape::Sound,
         }
@@ -110,7 +110,7 @@ pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], firsts: &Firsts) -> 
 
 /// One fault for each vertex, with its triangles.
 fn not_finite(surfaces: &Surfaces) -> Vec<Fault> {
-    let is_bad = |v: &VertexId| !is_finite(surfaces.points[v.index()]);
+    let is_bad = |v: &VertexId| !in_range(surfaces.points[v.index()]);
     let vertices: Vec<VertexId> = (0..surfaces.points.len()).map(VertexId::new).filter(is_bad).collect();
     let place = |v: &VertexId| vertices.binary_search(v).ok();
     let triangles = Csr::from_pairs(vertices.len(), || {

@@ -2,6 +2,7 @@
 
 use crate::base::{CellId, Error, Result};
 use crate::geometry::quality::dihedral::REGULAR;
+use crate::geometry::vector::LARGEST;
 use crate::remesh::sizes::Sizes;
 
 /// What is to be repaired, and how.
@@ -43,6 +44,33 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Refuses numbers that mean nothing.
+    ///
+    /// # Errors
+    /// Names the first of them.
+    pub fn check(&self) -> Result<()> {
+        let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
+        if !(0.0..=1.0).contains(&self.min_eas) {
+            let what = format!("an EAS of {} as the least, expected a number in [0, 1]", self.min_eas);
+            return refused(what, "0.2 is the default");
+        }
+        if !(0.0..=REGULAR.to_degrees()).contains(&self.min_dihedral_deg) {
+            let what = format!(
+                "dihedral angles of at least {} degrees, expected a number in [0, 70.5]",
+                self.min_dihedral_deg
+            );
+            return refused(what, "leave it out");
+        }
+        match self.surface {
+            SurfaceRule::Adapt { distance: Some(d) } | SurfaceRule::Loose { distance: Some(d) }
+                if !(0.0..=LARGEST).contains(&d) =>
+            {
+                refused(format!("a surface that may stray by {d}, expected a length from 0"), "leave it out")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The EAS below which a tet is bad. One of EAS q has no dihedral angle below q acos(1/3).
     pub fn limit(&self) -> f64 {
         self.min_eas.max(self.min_dihedral_deg.to_radians() / REGULAR)

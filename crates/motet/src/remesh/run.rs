@@ -29,6 +29,7 @@ pub struct Outcome {
 /// When the mesh is not one (see [`Complex::new`]), when a size is none, and when a mesh of the sizes would have far too many tets: more than ten million and
 /// more than 100 times as many as `mesh`, or more than 2^28.
 pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Outcome> {
+    options.check()?;
     let mut clock = Clock(Instant::now());
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };

@@ -2,6 +2,7 @@
 
 use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::tet::{EDGES, volume};
+use crate::geometry::vector::LARGEST;
 use crate::geometry::vector::{distance, dot};
 use crate::geometry::weights;
 use crate::kernel::{Change, Complex};
@@ -32,7 +33,7 @@ pub enum Sizes {
 impl Sizes {
     /// How many tets a mesh of these sizes may have at most while it is made; an error where a size is none, or where it would have more.
     pub(super) fn check(&self, mesh: &TetMesh) -> Result<usize> {
-        let is_size = |h: f64| h > 0.0 && h.is_finite();
+        let is_size = |h: f64| h > 0.0 && h <= LARGEST;
         match self {
             Self::Uniform(h) if is_size(*h) => {}
             Self::Uniform(h) => {

@@ -30,6 +30,7 @@ pub struct MeshOutcome {
 /// # Errors
 /// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when a rule fits no array.
 pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
+    options.check()?;
     let begin = Instant::now();
     let part = TetPart::of(mesh)?;
     let taken_out = begin.elapsed().as_secs_f64();

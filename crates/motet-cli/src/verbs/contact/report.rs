@@ -10,10 +10,12 @@ use serde::Serialize;
 use super::args::ContactArgs;
 use super::delaunay::Beside;
 use super::frames::Frame;
+use crate::words;
 
 /// All that was found.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
+    #[serde(serialize_with = "words::paths")]
     pub(super) output: PathBuf,
     pub(super) warn: Option<f64>,
     /// Whether something warns in any frame.
@@ -40,6 +42,7 @@ pub(super) struct Stages {
 #[derive(Debug, Serialize)]
 pub(super) struct BodyFacts {
     pub(super) name: String,
+    #[serde(serialize_with = "words::paths")]
     pub(super) file: PathBuf,
     pub(super) vertices: usize,
     pub(super) triangles: usize,
@@ -51,6 +54,7 @@ pub(super) struct BodyFacts {
 #[derive(Debug, Serialize)]
 pub(super) struct Step {
     pub(super) time: f64,
+    #[serde(serialize_with = "words::paths")]
     pub(super) file: Option<PathBuf>,
     /// The least gap of all; 0 where surfaces meet, null where nothing is within reach.
     pub(super) least: Option<f64>,

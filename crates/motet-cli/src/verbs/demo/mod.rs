@@ -15,6 +15,7 @@ use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::verbs::{implant, meshing, report, run};
+use crate::words::shown;
 
 /// See it work: a coiled aneurysm that pulsates beside a stent, and a flap that beats in a dissection
 ///
@@ -151,7 +152,7 @@ fn tell(args: &DemoArgs, cycles: &[run::Report], took: &[(&str, f64)], total: f6
          paraview {folder}/dissection.pvd\nLook closer:\n  motet info {folder}/treated.vtu\n  motet help run"
     ));
     console.report(&json!({
-        "folder": args.folder,
+        "folder": shown(&args.folder),
         "cycles": cycles,
         "seconds": took.iter().map(|(what, s)| json!({ "what": what, "seconds": s })).collect::<Vec<_>>(),
         "seconds_total": total,

@@ -10,14 +10,19 @@ use serde::Serialize;
 use super::args::ImplantArgs;
 use crate::console::Console;
 use crate::table::{Table, count, seconds, short};
+use crate::words;
 
 /// All that implanting came to.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
+    #[serde(serialize_with = "words::paths")]
     host: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     devices: Vec<PathBuf>,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
     /// Where the history went, if anywhere.
+    #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
     /// Whether the mesh is valid, every triangle of the devices a facet, and no bad tet left but those that surfaces force.
     complete: bool,

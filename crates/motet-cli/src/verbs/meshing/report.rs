@@ -10,11 +10,14 @@ use serde::Serialize;
 use super::args::MeshArgs;
 use crate::console::Console;
 use crate::table::{count, seconds, short};
+use crate::words;
 
 /// All that meshing came to.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report<'a> {
+    #[serde(serialize_with = "words::paths")]
     surfaces: Vec<PathBuf>,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
     /// Whether the mesh is what was asked for.
     complete: bool,

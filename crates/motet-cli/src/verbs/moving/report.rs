@@ -11,11 +11,14 @@ use super::args::MoveArgs;
 use super::inverted;
 use crate::console::Console;
 use crate::table::{Table, count, seconds, short, time};
+use crate::words;
 
 /// All that a motion came to.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
+    #[serde(serialize_with = "words::paths")]
     mesh: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
     /// Whether all that was asked was reached.
     complete: bool,
@@ -72,6 +75,7 @@ pub(crate) struct Step {
     pub(crate) step: usize,
     pub(crate) time: f64,
     /// Where it was written, if it was.
+    #[serde(serialize_with = "words::paths")]
     pub(crate) file: Option<PathBuf>,
     #[serde(flatten)]
     pub(crate) certificate: Certificate,

@@ -9,12 +9,16 @@ use serde::Serialize;
 use super::args::RefineArgs;
 use crate::console::Console;
 use crate::table::{Table, count, seconds, short};
+use crate::words;
 
 /// All that a refinement came to.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
+    #[serde(serialize_with = "words::paths")]
     mesh: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
     /// Whether all edges are as short as was asked for.
     complete: bool,

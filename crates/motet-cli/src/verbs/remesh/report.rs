@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use super::args::{RemeshArgs, Surface};
 use crate::console::Console;
 use crate::table::{Table, count, seconds, short};
+use crate::words;
 
 /// How many of the bad tets that are left are told where nobody asks for all.
 const FIRST: usize = 10;
@@ -20,9 +21,12 @@ const FIRST: usize = 10;
 /// All that a remeshing came to.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
+    #[serde(serialize_with = "words::paths")]
     mesh: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
     /// Where the history went, if anywhere.
+    #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
     /// Whether nothing bad is left.
     complete: bool,

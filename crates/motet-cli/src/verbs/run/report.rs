@@ -10,12 +10,16 @@ use super::output::Output;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time};
+use crate::words;
 
 /// How a run went.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Report {
+    #[serde(serialize_with = "words::paths")]
     job: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     output: PathBuf,
+    #[serde(serialize_with = "words::paths")]
     log: PathBuf,
     /// The step that it went on after; 0 at the begin.
     resumed_after: usize,

@@ -7,7 +7,7 @@ use crate::contact::is_closed;
 use crate::geometry::distance::segment_triangle::meet;
 use crate::geometry::tet::{self, EDGES};
 use crate::geometry::triangle::area;
-use crate::geometry::vector::{distance, is_finite};
+use crate::geometry::vector::{distance, in_range};
 use crate::mesh::{Surface, firsts_at_place};
 use crate::preflight::renamed;
 use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, around};
@@ -40,7 +40,7 @@ impl Old {
     /// # Errors
     /// When the surface goes round nothing or has corners that are not finite.
     pub(super) fn new(mut surface: Surface, name: &str, threads: &Threads) -> Result<Self> {
-        let off = surface.vertices().into_iter().find(|v| !is_finite(surface.points[v.index()]));
+        let off = surface.vertices().into_iter().find(|v| !in_range(surface.points[v.index()]));
         if let Some(v) = off {
             return Err(Error::input(format!("the device `{name}` has a coordinate that is no number"))
                 .at(format!("point {v}"))

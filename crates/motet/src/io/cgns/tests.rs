@@ -126,7 +126,9 @@ fn polyhedral() -> Mesh {
 #[test]
 fn polyhedra_come_back_with_their_faces() {
     let mesh = polyhedral();
-    let back = there_and_back(&mesh);
+    let (bytes, lost) = print(&mesh);
+    assert!(matches!(&lost[..], [what] if what.contains("order of the cells")), "{lost:?}");
+    let back = parse(&bytes).unwrap().0;
     assert_eq!(back.cells.counts().len(), 4);
     let facets = crate::mesh::adjacency::Facets::of(&back.cells);
     for (cell, kind, _) in back.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {

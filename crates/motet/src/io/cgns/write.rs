@@ -22,6 +22,14 @@ pub(super) fn write(mesh: &Mesh, _: &WriteOptions) -> Result<Written> {
     });
     let cell_dim = mesh.cells.dim().unwrap_or(1).max(1);
     let parts = parts(&mesh, &mut lost);
+    // Where cells are made of faces, these stand before them.
+    let is_first = |part: &&Part| of_faces && part.dim == 2;
+    let (first, then): (Vec<&Part>, Vec<&Part>) = parts.iter().partition(is_first);
+    let order: Vec<usize> =
+        first.into_iter().chain(then).flat_map(|part| part.cells.iter().copied()).collect();
+    if order.windows(2).any(|w| w[0] > w[1]) {
+        lost.push("the order of the cells: CGNS has those of one region or patch together".into());
+    }
     let ints = Ints::of(&mesh);
     let mut numbered = Numbered { ints, next: 1, sections: Vec::new(), ranges: vec![(0, 0); parts.len()] };
     match of_faces {

@@ -17,11 +17,11 @@
 mod xml;
 
 use std::collections::HashSet;
-use std::io::Read as _;
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector;
 use crate::io::format::{Format, Input, Notes};
+use crate::io::gzip;
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 use xml::{Collection, Document};
 
@@ -29,19 +29,9 @@ pub(super) const FORMAT: Format =
     Format { name: "DOLFIN XML", endings: &[".xml", ".xml.gz"], read: Some(read), write: None };
 
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    let unpacked = if input.bytes.starts_with(b"\x1f\x8b") { Some(unpack(input.bytes)?) } else { None };
+    let unpacked = gzip::is_packed(input.bytes).then(|| gzip::unpack(input.bytes)).transpose()?;
     let document = xml::parse(unpacked.as_deref().unwrap_or(input.bytes), input.notes)?;
     build(document, input.notes)
-}
-
-fn unpack(bytes: &[u8]) -> Result<Vec<u8>> {
-    let mut text = Vec::new();
-    flate2::read::MultiGzDecoder::new(bytes).read_to_end(&mut text).map_err(|e| {
-        Error::input(format!("cannot be unpacked: {e}"))
-            .at(format!("after {} unpacked bytes", text.len()))
-            .remedy("the file is cut off or damaged: get it again")
-    })?;
-    Ok(text)
 }
 
 fn build(document: Document, notes: &Notes) -> Result<Mesh> {

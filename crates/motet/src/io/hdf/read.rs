@@ -4,16 +4,13 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::rc::Rc;
 
 use hdf5_pure::{AttrValue, DType, Dataset, File, is_hdf5_bytes};
 
 use crate::base::{Error, Result};
+use crate::io::room::Room;
 use crate::mesh::Values;
-
-/// zlib makes no more than so many bytes of one (its own documentation: 1032 to 1).
-const MOST_BYTES_OF_ONE: u64 = 1032;
-/// So much may be announced whatever the file's size: values that were never written take no room in a file.
-const ALWAYS_ALLOWED: u64 = 1 << 24;
 
 /// Whether these are the bytes of an HDF5 file.
 pub(in crate::io) fn is_hdf5(bytes: &[u8]) -> bool {
@@ -26,7 +23,8 @@ pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
         return Err(Error::input("is no HDF5 file: its signature is missing").remedy("get the file again"));
     }
     let file = guarded("/", || File::from_bytes(bytes.to_vec()))?;
-    Group::new(guarded("/", || Ok(file.root()))?, String::new(), bytes.len() as u64)
+    let room = Rc::new(Room::of(bytes.len() as u64));
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), room)
 }
 
 /// The root of a file that stays where it is: what is asked for is read, and no more.
@@ -34,7 +32,7 @@ pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
     let told = |e: std::io::Error| Error::io(path, &e);
     let size = std::fs::metadata(path).map_err(told)?.len();
     let file = guarded("/", || File::open_streaming(path))?;
-    Group::new(guarded("/", || Ok(file.root()))?, String::new(), size)
+    Group::new(guarded("/", || Ok(file.root()))?, String::new(), Rc::new(Room::of(size)))
 }
 
 /// Calls the library: its errors get the place, its panics become errors.
@@ -53,11 +51,11 @@ pub(in crate::io) struct Group {
     attributes: HashMap<String, AttrValue>,
     groups: Vec<String>,
     arrays: Vec<String>,
-    file_size: u64,
+    room: Rc<Room>,
 }
 
 impl Group {
-    fn new(inner: hdf5_pure::Group, path: String, file_size: u64) -> Result<Self> {
+    fn new(inner: hdf5_pure::Group, path: String, room: Rc<Room>) -> Result<Self> {
         let place = if path.is_empty() { "/" } else { &path };
         let attributes = guarded(place, || inner.attrs())?;
         let mut groups = guarded(place, || inner.groups())?;
@@ -65,7 +63,7 @@ impl Group {
         // The library lists them as they lie in the file, which has no meaning.
         groups.sort_unstable();
         arrays.sort_unstable();
-        Ok(Self { inner, path, attributes, groups, arrays, file_size })
+        Ok(Self { inner, path, attributes, groups, arrays, room })
     }
 
     /// Where it stands in the file.
@@ -90,7 +88,7 @@ impl Group {
         }
         let path = format!("{}/{name}", self.path);
         let inner = guarded(&path, || self.inner.group(name))?;
-        Self::new(inner, path, self.file_size).map(Some)
+        Self::new(inner, path, self.room.clone()).map(Some)
     }
 
     /// The array of this name, if there is one.
@@ -100,7 +98,7 @@ impl Group {
         }
         let path = format!("{}/{name}", self.path);
         let inner = guarded(&path, || self.inner.dataset(name))?;
-        Array::new(inner, path, self.file_size).map(Some)
+        Array::new(inner, path, &self.room).map(Some)
     }
 
     /// The array of this name, which must be there.
@@ -132,23 +130,18 @@ pub(in crate::io) struct Array {
 }
 
 impl Array {
-    fn new(inner: Dataset, path: String, file_size: u64) -> Result<Self> {
+    fn new(inner: Dataset, path: String, room: &Room) -> Result<Self> {
         let shape = guarded(&path, || inner.shape())?;
         let kind = guarded(&path, || inner.dtype())?;
         let size = guarded(&path, || inner.element_size())?;
         let chunk = guarded(&path, || inner.chunk_shape())?.unwrap_or_default();
-        let filtered = !guarded(&path, || Ok(inner.filters()))?.is_empty();
-        let room = file_size.saturating_mul(if filtered { MOST_BYTES_OF_ONE } else { 1 }).max(ALWAYS_ALLOWED);
+        // Texts of variable length lie elsewhere; each is a `String`.
+        let size =
+            if matches!(kind, DType::VariableLengthString | DType::String) { size.max(40) } else { size };
         // No values, but rows without end, are no less wrong.
         let bytes = |shape: &[u64]| shape.iter().fold(size, |n, &d| n.saturating_mul(d.max(1)));
-        let announced = bytes(&shape).max(bytes(&chunk));
-        if announced > room {
-            return Err(Error::input(format!(
-                "{announced} bytes are announced, but a file of {file_size} bytes holds at most {room}"
-            ))
-            .at(path)
-            .remedy("the file is cut off or damaged: get it again"));
-        }
+        // Values that were never written take no room in a file, and much of it in memory.
+        room.take_once(&path, bytes(&shape).max(bytes(&chunk))).map_err(|e| e.at(path.as_str()))?;
         let fits = shape.iter().map(|&d| usize::try_from(d).ok()).collect::<Option<Vec<_>>>();
         let shape = fits.ok_or_else(|| Error::input("an array that is too large").at(path.as_str()))?;
         Ok(Self { inner, path, shape, kind })

@@ -73,12 +73,12 @@ impl Data {
         self,
         mesh: &mut Mesh,
         nodes: &Tags,
-        elements: Option<&Tags>,
+        elements: Option<&(Tags, Vec<u32>)>,
         notes: &Notes,
     ) -> Result<()> {
-        let (tags, n_rows, what) = match (self.place, elements) {
-            (Place::Node, _) | (_, None) => (nodes, mesh.points.len(), "node"),
-            (Place::Element, Some(elements)) => (elements, mesh.cells.len(), "element"),
+        let (tags, places, n_rows, what) = match (self.place, elements) {
+            (Place::Node, _) | (_, None) => (nodes, &[][..], mesh.points.len(), "node"),
+            (Place::Element, Some((tags, places))) => (tags, &places[..], mesh.cells.len(), "element"),
         };
         let mut values = vec![f64::NAN; self.full_size(n_rows)?];
         let mut missing = vec![true; n_rows];
@@ -88,7 +88,7 @@ impl Data {
                     .at(format!("array {}", self.name))
                     .remedy("the file is damaged: write it again"));
             };
-            let place = place as usize;
+            let place = places.get(place as usize).copied().unwrap_or(place) as usize;
             values[place * self.components..][..self.components].copy_from_slice(row);
             missing[place] = false;
         }

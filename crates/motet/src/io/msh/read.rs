@@ -4,7 +4,9 @@ use super::data::{Data, Place};
 use super::entities::{Entities, Entity};
 use super::kinds::{ElementType, element_types};
 use super::source::{Form, Source};
-use crate::base::{Point, Result, VertexId};
+use std::collections::HashMap;
+
+use crate::base::{CellId, Point, Result, VertexId};
 use crate::io::format::{Input, Notes};
 use crate::io::tags::Tags;
 use crate::io::text::quoted;
@@ -21,6 +23,8 @@ struct Reader {
     entities: Entities,
     cells: Cells,
     element_tags: Vec<u64>,
+    /// The cell of each element, where some elements are one cell; else empty.
+    places: Vec<u32>,
     labels: Vec<Entity>,
     label_names: LabelNames,
     field_data: Vec<Field>,
@@ -231,6 +235,32 @@ impl Reader {
         Ok(())
     }
 
+    /// In version 2 an element of several physical groups stands there once for each: what is the same but for its group is one.
+    fn join_groups(&mut self, notes: &Notes) {
+        let of = |cell: usize| (self.cells.kind(CellId::new(cell)), self.cells.vertices(CellId::new(cell)));
+        let entity = |cell: usize| (self.labels[cell].geometrical, self.labels[cell].partition);
+        let mut firsts: HashMap<_, usize> = HashMap::with_capacity(self.cells.len());
+        let same: Vec<usize> = (0..self.cells.len())
+            .map(|cell| {
+                let first = *firsts.entry((of(cell), entity(cell))).or_insert(cell);
+                // The same group twice is a fault of the mesh, and stays one.
+                if self.labels[first].physical == self.labels[cell].physical { cell } else { first }
+            })
+            .collect();
+        let kept: Vec<usize> = (0..same.len()).filter(|&cell| same[cell] == cell).collect();
+        if kept.len() == same.len() {
+            return;
+        }
+        notes.add("some elements are in several physical groups: their cells keep the first of them");
+        let mut cells = Cells::new();
+        kept.iter().for_each(|&cell| cells.push(of(cell).0, of(cell).1.iter().copied()));
+        let mut places = vec![0; same.len()];
+        kept.iter().enumerate().for_each(|(place, &cell)| places[cell] = place as u32);
+        self.places = same.iter().map(|&first| places[first]).collect();
+        self.labels = kept.iter().map(|&cell| self.labels[cell]).collect();
+        self.cells = cells;
+    }
+
     fn elements4(&mut self, source: &mut Source<'_>) -> Result<()> {
         let types = element_types();
         let n_blocks = source.count("blocks of elements", 4)?;
@@ -292,7 +322,10 @@ impl Reader {
         Ok(())
     }
 
-    fn into_mesh(self, source: &Source<'_>, notes: &Notes) -> Result<Mesh> {
+    fn into_mesh(mut self, source: &Source<'_>, notes: &Notes) -> Result<Mesh> {
+        if self.version == Version::V2 {
+            self.join_groups(notes);
+        }
         let Some(nodes) = &self.nodes else {
             return Err(source
                 .error("there is no section $Nodes")
@@ -315,6 +348,7 @@ impl Reader {
         let of_elements = self.data.iter().any(|d| d.place == Place::Element);
         // Numbers of elements may repeat, so long as no data are given by them.
         let elements = if of_elements { Some(Tags::new(&self.element_tags, "element")?) } else { None };
+        let elements = elements.map(|tags| (tags, self.places));
         for data in self.data {
             data.put(&mut mesh, nodes, elements.as_ref(), notes)?;
         }

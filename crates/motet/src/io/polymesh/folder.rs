@@ -1,12 +1,9 @@
 //! Where the files of a case are.
 
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use crate::base::{Error, Result};
-
-/// zlib makes no more than so many bytes of one (its own documentation: 1032 to 1).
-const MOST_BYTES_OF_ONE: u64 = 1032;
+use crate::io::gzip;
 
 /// Whether a folder is a case, or its `polyMesh`.
 pub(in crate::io) fn is_case(path: &Path) -> bool {
@@ -41,13 +38,9 @@ fn find(folder: &Path, name: &str) -> Option<PathBuf> {
 pub(super) fn load(folder: &Path, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let Some(path) = find(folder, name) else { return Ok(None) };
     let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, &e))?;
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
+    if !gzip::is_packed(&bytes) {
         return Ok(Some((path, bytes)));
     }
-    let (most, mut unpacked) = (MOST_BYTES_OF_ONE * bytes.len() as u64, Vec::new());
-    let read = flate2::read::MultiGzDecoder::new(bytes.as_slice()).take(most).read_to_end(&mut unpacked);
-    read.map_err(|e| {
-        Error::input(format!("cannot be unpacked: {e}")).in_file(&path).remedy("get the file again")
-    })?;
+    let unpacked = gzip::unpack(&bytes).map_err(|e| e.in_file(&path))?;
     Ok(Some((path, unpacked)))
 }

@@ -96,7 +96,7 @@ impl Layout {
         match &with_faces[..] {
             [(_, volume, faces)] => Ok(Self { volume: (*volume).clone(), faces: faces.clone() }),
             [] => Err(Error::input(
-                "holds neither mesh-complete.mesh.vtu with mesh-surfaces/*.vtp nor NAME.vtu with NAME_*.vtp",
+                "is a folder that holds neither mesh-complete.mesh.vtu with mesh-surfaces/*.vtp nor NAME.vtu with NAME_*.vtp",
             )
             .in_file(folder)
             .remedy("name one of the files in it")),

@@ -10,6 +10,7 @@ use crate::io::surplus::trim;
 use crate::io::vtkhdf::SECTIONS;
 use crate::io::vtkhdf::frame::{Frame, Steps, counts};
 use crate::io::vtkhdf::lists::{Part, Source};
+use crate::io::weld::weld;
 use crate::mesh::{CellKind, Cells, Field, Mesh, Values};
 
 pub(super) fn read(input: &Input<'_>) -> Result<Mesh> {
@@ -64,6 +65,11 @@ pub(super) fn mesh_of(root: &Group, frame: &Frame<'_>, notes: &Notes) -> Result<
         cells,
         ..Mesh::default()
     };
+    if n_points.len() > 1 {
+        mesh.validate()?;
+        let starts = n_points.iter().scan(0, |end, n| Some(std::mem::replace(end, *end + n)));
+        weld(&mut mesh, &starts.collect::<Vec<_>>(), notes);
+    }
     take_label_names(&mut mesh);
     Ok(mesh)
 }

@@ -1,10 +1,12 @@
 //! A VTK XML file opened: what it holds, how it lays data down, and its arrays.
 
 use std::borrow::Cow;
+use std::rc::Rc;
 
 use crate::base::{Error, Point, Result};
 use crate::io::format::{Compression, Notes};
 use crate::io::latin::latin_or_utf8;
+use crate::io::room::Room;
 use crate::io::scalar::{ByteOrder, Scalar, extend_ids, to_ids, to_points};
 use crate::io::vtkxml::codec::by_vtk_name;
 use crate::io::vtkxml::document::{Document, Element};
@@ -22,10 +24,16 @@ pub(super) struct File<'a> {
     layout: Layout,
     /// Where arrays start in the appended data, in rising order.
     starts: Vec<usize>,
+    room: Rc<Room>,
 }
 
 impl<'a> File<'a> {
     pub(super) fn open(bytes: &'a [u8], notes: &'a Notes) -> Result<Self> {
+        Self::open_within(bytes, notes, Rc::new(Room::of(bytes.len() as u64)))
+    }
+
+    /// Opens a file that is one of those that make up a mesh, and shares their room.
+    pub(super) fn open_within(bytes: &'a [u8], notes: &'a Notes, room: Rc<Room>) -> Result<Self> {
         let document = Document::parse(bytes)?;
         let root = &document.root;
         if root.name != "VTKFile" {
@@ -37,12 +45,13 @@ impl<'a> File<'a> {
         let mut starts = Vec::new();
         collect_starts(root, &mut starts);
         starts.sort_unstable();
-        Ok(Self { document, notes, tail: None, layout, starts })
+        Ok(Self { document, notes, tail: None, layout, starts, room })
     }
 
     /// Opens a file whose appended data is read array by array.
     pub(super) fn open_tail(tail: &'a Tail, notes: &'a Notes) -> Result<Self> {
-        Ok(Self { tail: Some(tail), ..Self::open(&tail.head, notes)? })
+        let room = Rc::new(Room::of((tail.head.len() + tail.len) as u64));
+        Ok(Self { tail: Some(tail), ..Self::open_within(&tail.head, notes, room)? })
     }
 
     /// What the file holds: `UnstructuredGrid`, `PolyData`, `Collection`, ...
@@ -252,13 +261,20 @@ impl<'s, 'a> Array<'s, 'a> {
         match (self.content()?, self.kind) {
             (Content::Ascii(text), Type::Number(kind)) => read_ascii(text, kind, expected),
             (Content::Ascii(text), Type::Bit) => read_ascii(text, Scalar::U8, expected),
-            (Content::Ascii(text), Type::Text) => split_texts(&ascii_characters(text)?, expected),
+            (Content::Ascii(text), Type::Text) => self.texts(&ascii_characters(text)?, expected),
             (Content::Binary(payload), Type::Number(kind)) => {
                 read_binary(&payload, kind, self.file.layout, expected)
             }
             (Content::Binary(payload), Type::Bit) => read_bits(&payload, expected),
-            (Content::Binary(payload), Type::Text) => split_texts(&payload.to_bytes()?, expected),
+            (Content::Binary(payload), Type::Text) => self.texts(&payload.to_bytes()?, expected),
         }
+    }
+
+    fn texts(&self, bytes: &[u8], expected: Option<usize>) -> Result<Values> {
+        // A byte alone may end a text, and each has a place of its own in memory.
+        let n = bytes.iter().filter(|&&b| b == 0).count() as u64;
+        self.file.room.take(n.saturating_mul(2 * size_of::<String>() as u64))?;
+        split_texts(bytes, expected)
     }
 
     fn empty(&self) -> Result<Values> {
@@ -269,7 +285,17 @@ impl<'s, 'a> Array<'s, 'a> {
         }
     }
 
+    /// The data, whose size is known and has its room.
     fn content(&self) -> Result<Content<'s>> {
+        let content = self.packed()?;
+        if let Content::Binary(payload) = &content {
+            let each = if self.kind == Type::Bit { 8 } else { 1 };
+            self.file.room.take((payload.len() as u64).saturating_mul(each))?;
+        }
+        Ok(content)
+    }
+
+    fn packed(&self) -> Result<Content<'s>> {
         match self.element.attribute("format").unwrap_or("ascii") {
             "ascii" => std::str::from_utf8(self.element.text)
                 .map(Content::Ascii)

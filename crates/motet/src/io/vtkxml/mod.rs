@@ -13,6 +13,7 @@
 //! | `codec` | zlib, lz4, xz |
 //! | `tail` | large raw data, left in the file until an array is read |
 //! | `file` | the file's layout; arrays as values |
+//! | `pieces`, `parts` | pieces of a file, and files that name others, joined |
 //! | `polyhedra` | faces of polyhedra, in both layouts |
 //! | `vtu`, `vtp` | the two kinds of meshes |
 //! | `writer` | elements and arrays out |
@@ -20,6 +21,7 @@
 mod codec;
 mod document;
 mod file;
+mod parts;
 mod payload;
 mod pieces;
 mod polyhedra;
@@ -48,17 +50,26 @@ pub(super) const VTU: Format = Format {
 pub(super) const VTP: Format =
     Format { name: "VTK XML polygonal data", endings: &[".vtp"], read: Some(read), write: Some(write_vtp) };
 
+/// Files that name others, which together are a mesh.
+pub(super) const PARTS: Format = Format {
+    name: "VTK XML in several files",
+    endings: &[".pvtu", ".pvtp", ".vtm", ".vtmb", ".vtpd"],
+    read: Some(read),
+    write: None,
+};
+
 /// Kinds of VTK XML files that are known, so that they can be refused with advice.
 pub(super) const OTHERS: Format = Format {
     name: "VTK XML",
-    endings: &[".vti", ".vtr", ".vts", ".vtm", ".vtmb", ".pvtu", ".pvtp", ".pvti", ".pvtr", ".pvts", ".vtpd"],
+    endings: &[".vti", ".vtr", ".vts", ".pvti", ".pvtr", ".pvts"],
     read: Some(read),
     write: None,
 };
 
 /// Reads whichever kind of mesh the file says it holds.
 fn read(input: &Input<'_>) -> Result<Mesh> {
-    read_file(&file::File::open(input.bytes, input.notes)?)
+    let file = file::File::open(input.bytes, input.notes)?;
+    if parts::is_of_parts(file.kind()) { parts::read(&file, input) } else { read_file(&file) }
 }
 
 /// As [`read`], from a file whose appended data is read array by array.
@@ -78,15 +89,9 @@ fn read_file(file: &file::File<'_>) -> Result<Mesh> {
 
 fn remedy(kind: &str) -> &'static str {
     match kind {
-        "PUnstructuredGrid" | "PPolyData" => {
-            "it only names its pieces: read those, or open it in ParaView and save the data as one file"
-        }
         "Collection" => "it is a series: read the files that it names",
         "ImageData" | "RectilinearGrid" | "StructuredGrid" => {
             "in ParaView, apply `Append Datasets` (or vtkAppendFilter) to turn it into a .vtu"
-        }
-        "vtkMultiBlockDataSet" | "vtkPartitionedDataSet" | "vtkPartitionedDataSetCollection" => {
-            "in ParaView, apply `Merge Blocks` and save the data as .vtu"
         }
         _ => "save it as .vtu or .vtp",
     }

@@ -1,10 +1,12 @@
 //! Several pieces of one file become one mesh.
 
 use crate::base::{Csr, Error, Result, VertexId};
+use crate::io::format::Notes;
 use crate::io::labels::take_label_names;
 use crate::io::scalar::append;
 use crate::io::vtkxml::document::Element;
 use crate::io::vtkxml::file::File;
+use crate::io::weld::weld;
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
 /// Reads every `Piece` of the data set with `read_piece` and joins them in the
@@ -14,27 +16,88 @@ pub(super) fn read_pieces<'a>(
     read_piece: impl Fn(&File<'a>, &Element<'a>) -> Result<Mesh>,
 ) -> Result<Mesh> {
     let data_set = file.data_set()?;
-    let mut whole: Option<Mesh> = None;
+    let mut whole = Whole::default();
     let mut field_data = file.fields(data_set.child("FieldData"), None)?;
     for element in data_set.children_named("Piece") {
         field_data.extend(file.fields(element.child("FieldData"), None)?);
-        let piece = read_piece(file, element)?;
-        let empty = piece.points.is_empty() && piece.cells.is_empty();
-        whole = match whole {
-            None => Some(piece),
-            Some(whole) if empty => Some(whole),
-            Some(whole) if whole.points.is_empty() && whole.cells.is_empty() => Some(piece),
-            Some(whole) => {
-                // Before ids are raised: afterwards they would be found among another piece's points.
-                piece.validate().and_then(|()| whole.validate()).map_err(|e| e.at(element.place()))?;
-                Some(join(whole, piece).map_err(|e| e.at(element.place()))?)
-            }
-        };
+        whole.add(read_piece(file, element)?).map_err(|e| e.at(element.place()))?;
     }
-    let mut mesh = whole.unwrap_or_default();
+    let (mut mesh, starts) = whole.into_parts();
+    if starts.len() > 1 {
+        mesh.validate()?;
+        weld(&mut mesh, &starts, file.notes);
+    }
     mesh.field_data = field_data;
     take_label_names(&mut mesh);
     Ok(mesh)
+}
+
+/// Pieces joined so far, and where the points of each begin.
+#[derive(Default)]
+pub(super) struct Whole {
+    mesh: Option<Mesh>,
+    starts: Vec<usize>,
+}
+
+impl Whole {
+    /// Adds a piece. One that is empty says nothing about arrays.
+    pub(super) fn add(&mut self, piece: Mesh) -> Result<()> {
+        let is_empty = |mesh: &Mesh| mesh.points.is_empty() && mesh.cells.is_empty();
+        self.mesh = match self.mesh.take() {
+            Some(whole) if is_empty(&piece) => Some(whole),
+            Some(whole) if !is_empty(&whole) => {
+                // Before ids are raised: afterwards they would be found among another piece's points.
+                piece.validate()?;
+                if self.starts.len() == 1 {
+                    whole.validate()?;
+                }
+                self.starts.push(whole.points.len());
+                Some(join(whole, piece)?)
+            }
+            _ => {
+                self.starts = vec![0];
+                Some(piece)
+            }
+        };
+        Ok(())
+    }
+
+    /// The mesh, and where the points of each piece begin.
+    pub(super) fn into_parts(self) -> (Mesh, Vec<usize>) {
+        (self.mesh.unwrap_or_default(), self.starts)
+    }
+}
+
+/// Leaves the arrays that all of the meshes have, but for those that are empty, and tells which others there were.
+pub(super) fn common_arrays<'m>(meshes: impl Iterator<Item = &'m mut Mesh>, notes: &Notes) {
+    let mut meshes: Vec<_> = meshes.filter(|mesh| !mesh.points.is_empty()).collect();
+    for (what, of) in [("point", point_data as fn(&mut Mesh) -> &mut Vec<Field>), ("cell", cell_data)] {
+        let kind = |f: &Field| (f.name.clone(), f.components, std::mem::discriminant(&f.values));
+        let each: Vec<Vec<_>> = meshes.iter_mut().map(|mesh| of(mesh).iter().map(kind).collect()).collect();
+        let is_common = |f: &Field| each.iter().all(|kinds| kinds.contains(&kind(f)));
+        let mut left_out: Vec<String> = Vec::new();
+        for mesh in &mut meshes {
+            of(mesh).retain(|f| {
+                let is_common = is_common(f);
+                if !is_common && !left_out.contains(&f.name) {
+                    left_out.push(f.name.clone());
+                }
+                is_common
+            });
+        }
+        if !left_out.is_empty() {
+            notes
+                .add(format!("{what} arrays that not all blocks have are left out: {}", left_out.join(", ")));
+        }
+    }
+}
+
+fn point_data(mesh: &mut Mesh) -> &mut Vec<Field> {
+    &mut mesh.point_data
+}
+
+fn cell_data(mesh: &mut Mesh) -> &mut Vec<Field> {
+    &mut mesh.cell_data
 }
 
 fn join(mut whole: Mesh, piece: Mesh) -> Result<Mesh> {
@@ -48,6 +111,13 @@ fn join(mut whole: Mesh, piece: Mesh) -> Result<Mesh> {
     join_fields(&mut whole.cell_data, piece.cell_data, "cell")?;
     whole.points.extend(piece.points);
     push_cells(&mut whole.cells, &piece.cells, shift as u32)?;
+    whole.label_names.regions.extend(piece.label_names.regions);
+    whole.label_names.patches.extend(piece.label_names.patches);
+    for field in piece.field_data {
+        if !whole.field_data.iter().any(|f| f.name == field.name) {
+            whole.field_data.push(field);
+        }
+    }
     Ok(whole)
 }
 

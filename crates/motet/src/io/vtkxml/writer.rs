@@ -93,7 +93,7 @@ impl Data<'_> {
 }
 
 fn give(sink: &mut dyn Write, bytes: &[u8]) -> Result<()> {
-    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Io, e.to_string()))
+    sink.write_all(bytes).map_err(|e| Error::new(ErrorKind::Output, format!("cannot be written: {e}")))
 }
 
 /// A file on its way out.

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::base::{CellId, Point, VertexId};
 use crate::geometry::predicates::{collinear, orient3d};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -59,7 +59,7 @@ fn measure(
     points: &[Point],
 ) -> Option<(usize, Ordering)> {
     let dim = kind.dim().filter(|dim| *dim >= 2 && !is_unknown(kind))?;
-    if !vertices.iter().all(|v| is_finite(points[v.index()])) {
+    if !vertices.iter().all(|v| in_range(points[v.index()])) {
         return None;
     }
     let sign = |x: f64| x.total_cmp(&0.0).then(Ordering::Equal);

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 
 macro_rules! defect_kinds {
     ($($variant:ident = $name:literal, $meaning:literal;)*) => {
@@ -30,7 +30,7 @@ macro_rules! defect_kinds {
 }
 
 defect_kinds! {
-    NonFinitePoint = "non_finite_point", "a coordinate is infinite or no number";
+    NonFinitePoint = "non_finite_point", "a coordinate is infinite, beyond 1e60 or no number";
     OrphanPoint = "orphan_point", "no cell uses the point";
     DuplicatePoint = "duplicate_point", "points at exactly the same place";
     UnknownKind = "unknown_kind", "volume cells of a kind that motet cannot look into";
@@ -99,7 +99,7 @@ impl Example {
         for v in vertices {
             (0..3).for_each(|k| at[k] += points[v.index()][k] / vertices.len() as f64);
         }
-        let finite = is_finite(at) && !vertices.is_empty();
+        let finite = in_range(at) && !vertices.is_empty();
         let mut cells = cells.to_vec();
         // A cell may meet itself.
         cells.dedup();

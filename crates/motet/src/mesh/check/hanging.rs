@@ -6,7 +6,7 @@
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::triangle;
 use crate::geometry::vector::distance;
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::{Boundary, Mesh, bounds, triangulate};
 
@@ -28,7 +28,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
     for (i, facet) in boundary.facets.iter().enumerate() {
         triangulate(boundary.kinds[i], facet, &mesh.points, &mut |corners| {
             let at = corners.map(|v| mesh.points[v.index()]);
-            if at.iter().all(|p| is_finite(*p)) && budget > 0 {
+            if at.iter().all(|p| in_range(*p)) && budget > 0 {
                 grid.for_each_near(at, &mut budget, |v| {
                     if !facet.contains(&v) && lies_on(at, mesh.points[v.index()]) {
                         found.push((v, i));
@@ -68,7 +68,7 @@ impl Grid {
         let cell = [0, 1, 2].map(|k| (high[k] - low[k]) / n as f64);
         let mut grid = Self { low, cell, n: [n; 3], vertices: Csr::default() };
         let index = |p: Point| grid.index(grid.place(p));
-        let finite = || vertices.iter().zip(&places).filter(|(_, p)| is_finite(**p));
+        let finite = || vertices.iter().zip(&places).filter(|(_, p)| in_range(**p));
         grid.vertices = Csr::from_pairs(n * n * n, || finite().map(|(&v, &p)| (index(p), v)));
         Some(grid)
     }

@@ -1,7 +1,7 @@
 //! Points that are no place, that nothing uses, or that lie on one another.
 
 use crate::base::VertexId;
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::coincident::firsts_at_place;
@@ -40,7 +40,7 @@ pub(super) fn defects(mesh: &Mesh, canonical: &Canonical) -> Vec<Defect> {
     let mut duplicate = Defect::none(DefectKind::DuplicatePoint);
     for (i, point) in mesh.points.iter().enumerate() {
         let v = VertexId::new(i);
-        if !is_finite(*point) {
+        if !in_range(*point) {
             non_finite.add(|| Example::new(&[], &[v], &mesh.points));
         }
         if !used[i] {

@@ -3,6 +3,7 @@
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh::Mesh;
+use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
 use crate::mesh::shapes::junction::{Arm, junction};
 use crate::mesh::shapes::labelled::skins;
@@ -52,6 +53,10 @@ impl Aneurysm {
     /// rise over the vessel or does not touch it, or is near the vessel's ends.
     pub fn mesh(&self) -> Result<Mesh> {
         self.check()?;
+        check_count(
+            (self.around as f64).powi(2) * (self.length + self.sac_height + self.sac_radius)
+                / self.radius.min(self.sac_radius),
+        )?;
         let curvature = self.bend_deg.to_radians() / self.length;
         let half = |heading, curvature| Arm {
             heading,

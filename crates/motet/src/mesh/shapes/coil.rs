@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::base::{Point, Result, VertexId};
-use crate::geometry::vector::add;
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{LARGEST, add};
 use crate::mesh::Mesh;
-use crate::mesh::shapes::wire;
+use crate::mesh::shapes::{check_count, wire};
 
 /// A helix about a line along z. Lengths in one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +38,26 @@ impl Coil {
     /// Its surface, closed, of the patch `wire`: `steps` pieces a turn, `around` sides.
     ///
     /// # Errors
-    /// As for [`wire`].
+    /// As for [`wire`]; when a number is not finite, and when the coil would have more points than a shape may.
     pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
+        let n_points = self.turns * steps as f64 * around as f64;
+        let sizes = [
+            self.radius,
+            self.pitch,
+            self.turns,
+            self.wire_radius,
+            self.centre[0],
+            self.centre[1],
+            self.centre[2],
+        ];
+        if !sizes.iter().all(|x| x.abs() <= LARGEST) || self.turns < 0.0 {
+            return Err(Error::options(format!(
+                "{} turns of radius {} and pitch {}",
+                self.turns, self.radius, self.pitch
+            ))
+            .remedy("give finite numbers, and turns from 0 on"));
+        }
+        check_count(n_points)?;
         let line = self.line(steps);
         let segments: Vec<[VertexId; 2]> =
             (1..line.len()).map(|i| [VertexId::new(i - 1), VertexId::new(i)]).collect();

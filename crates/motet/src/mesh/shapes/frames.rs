@@ -1,7 +1,7 @@
 //! Frames along a curve that do not twist, and bending what was built along z onto a curve.
 
 use crate::base::{Error, Point, Result};
-use crate::geometry::vector::{add, cross, distance, dot, is_finite, norm, scale, sub};
+use crate::geometry::vector::{add, cross, distance, dot, in_range, norm, scale, sub};
 
 /// Two directions across the curve and the one along it: orthonormal, right-handed.
 pub(super) type Frame = [Point; 3];
@@ -133,7 +133,7 @@ fn check_line(points: &[Point]) -> Result<()> {
         return Err(Error::input(format!("a line needs two points, and there are {}", points.len()))
             .remedy("give the centre line as a list of points"));
     }
-    if let Some(i) = points.iter().position(|p| !is_finite(*p)) {
+    if let Some(i) = points.iter().position(|p| !in_range(*p)) {
         return Err(Error::input(format!("has the coordinates {:?}", points[i]))
             .at(format!("point {i} of the line"))
             .remedy("give finite numbers"));

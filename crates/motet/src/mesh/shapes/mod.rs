@@ -57,3 +57,20 @@ pub use stent::Stent;
 pub use thick_tube::ThickTube;
 pub use tube::{TubeOptions, WallCells, tube};
 pub use wire::{Chain, chains, wire};
+
+use crate::base::{Error, Result};
+
+/// More points than this nobody asks of a shape on purpose, and few machines hold.
+const MOST_POINTS: f64 = (1u64 << 26) as f64;
+
+/// Refuses to make a shape of so many points, before memory is asked for.
+///
+/// # Errors
+/// When they are too many, or no number.
+pub fn check_count(n_points: f64) -> Result<()> {
+    if n_points <= MOST_POINTS {
+        return Ok(());
+    }
+    Err(Error::options(format!("a shape of {n_points:.3e} points, expected at most {MOST_POINTS:.0}"))
+        .remedy("ask for fewer"))
+}

@@ -14,6 +14,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::mesh::Mesh;
+use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::labelled::skin;
 
 /// What a stent looks like. It lies along z from 0; its radius is told where points are asked for.
@@ -145,11 +146,7 @@ impl Stent {
         }
         // Beyond this ids would not fit; nobody means it.
         let n = [self.rings, self.crowns, self.segments].map(|n| n as f64).iter().product::<f64>() * 8.0;
-        if n > 1e9 {
-            return Err(
-                Error::options(format!("{n:.0} vertices")).remedy("ask for fewer rings, crowns or segments")
-            );
-        }
+        check_count(n)?;
         let lengths = [self.length, self.strut_width, self.thickness, self.link_length];
         if lengths.iter().any(|x| !(*x > 0.0 && x.is_finite())) {
             return Err(Error::options(format!(

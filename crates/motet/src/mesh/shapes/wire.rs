@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::base::{Csr, Error, Point, Result, VertexId};
-use crate::geometry::vector::{add, distance, dot, is_finite, norm, scale, sub};
+use crate::geometry::vector::{add, distance, dot, in_range, norm, scale, sub};
 use crate::mesh::Mesh;
 use crate::mesh::shapes::frames::{directions, frames};
 use crate::mesh::shapes::labelled::skin;
@@ -135,7 +135,7 @@ fn check(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usiz
             return refuse(format!("names point {v}, but there are {}", points.len()));
         }
         let [a, b] = segment.map(|v| points[v.index()]);
-        if !is_finite(a) || !is_finite(b) {
+        if !in_range(a) || !in_range(b) {
             return refuse("has an end whose coordinates are no numbers".into());
         }
         if distance(a, b) == 0.0 {

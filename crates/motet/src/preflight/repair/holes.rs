@@ -4,7 +4,7 @@ use super::fill::fill;
 use super::report::RepairKind;
 use super::work::{Piece, Work};
 use crate::base::{Threads, VertexId};
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::preflight::crossing::crossings;
 use crate::preflight::rims::{RimEdge, rims};
 use crate::preflight::sides::Side;
@@ -47,7 +47,7 @@ fn tell(work: &mut Work, kind: RepairKind, rim: &[RimEdge]) {
 /// The triangles that fill a rim; each takes after the one beyond the rim where its first corner is.
 fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
     let ring: Vec<VertexId> = rim.iter().map(|edge| edge.from).collect();
-    if !ring.iter().all(|v| is_finite(work.points[v.index()])) {
+    if !ring.iter().all(|v| in_range(work.points[v.index()])) {
         return None;
     }
     let surface = rim[0].surface;

@@ -3,7 +3,7 @@
 use super::report::RepairKind;
 use super::work::Work;
 use crate::base::VertexId;
-use crate::geometry::vector::{distance, is_finite};
+use crate::geometry::vector::{distance, in_range};
 use crate::mesh::firsts_at_place;
 use crate::spatial::{Bounds, BoxTree};
 
@@ -42,7 +42,7 @@ fn near(work: &Work, is_used: &[bool], within: f64) -> Vec<VertexId> {
     let tree = BoxTree::new(&(0..points.len()).map(of).collect::<Vec<_>>());
     let mut kept: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
     let mut found = Vec::new();
-    for v in (0..points.len()).filter(|&v| is_used[v] && is_finite(points[v])) {
+    for v in (0..points.len()).filter(|&v| is_used[v] && in_range(points[v])) {
         if kept[v].index() != v {
             continue;
         }

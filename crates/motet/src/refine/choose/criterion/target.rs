@@ -3,7 +3,7 @@
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::tet::{self, FACETS};
-use crate::geometry::vector::{distance, is_finite};
+use crate::geometry::vector::{distance, in_range};
 use crate::mesh::{Mesh, Surface};
 use crate::spatial::{Closest, NearestTriangle};
 
@@ -27,7 +27,7 @@ impl Target {
             )
             .remedy("give triangles or other surface cells"));
         }
-        let is_astray = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !is_finite(*p));
+        let is_astray = |v: &&VertexId| points.get(v.index()).is_none_or(|p| !in_range(*p));
         if let Some(v) = triangles.as_flattened().iter().find(is_astray) {
             return Err(Error::input("has no place: a coordinate is missing, or no finite number")
                 .at(format!("point {v}"))

@@ -1,0 +1,171 @@
+//! Files of other programs that motet does not read: named for what they are, with the program that turns them into one it does.
+
+use std::path::Path;
+
+use crate::base::{Error, Result};
+
+/// What such a file is, and how it becomes one that can be read; `FILE` stands for its name.
+struct Foreign {
+    name: &'static str,
+    endings: &'static [&'static str],
+    remedy: &'static str,
+}
+
+const MESHIO: &str = "convert it with meshio (pip install meshio): meshio convert FILE mesh.vtu";
+const MESHIO_HDF: &str = "convert it with meshio (pip install meshio[all]): meshio convert FILE mesh.vtu";
+const FLUENT: &str =
+    "convert it with meshio (pip install meshio): meshio convert --input-format ansys FILE mesh.vtu";
+const PARAVIEW: &str = "open it in ParaView and save the data as .vtu";
+const CAD: &str = "it has to be meshed first: gmsh -2 -format stl FILE -o surface.stl (a surface), or gmsh -3 -format msh41 FILE -o mesh.msh";
+const GEOMETRY: &str = "a geometry has to be meshed first: gmsh -3 -format msh41 FILE -o mesh.msh";
+const TRIMESH: &str = "convert it with trimesh (pip install trimesh) or Blender, to .stl, .obj or .ply";
+
+const FOREIGN: &[Foreign] = &[
+    Foreign { name: "a mesh of Ansys Fluent", endings: &[".cas", ".cas.gz"], remedy: FLUENT },
+    Foreign {
+        name: "a case of Ansys Fluent (HDF5)",
+        endings: &[".cas.h5", ".msh.h5", ".dat.h5"],
+        remedy: PARAVIEW,
+    },
+    Foreign {
+        name: "an Exodus II file",
+        endings: &[".e", ".ex2", ".exo", ".exii", ".g", ".gen"],
+        remedy: MESHIO_HDF,
+    },
+    Foreign { name: "an XDMF file", endings: &[".xdmf", ".xmf", ".xdmf2", ".xdmf3"], remedy: MESHIO_HDF },
+    Foreign { name: "a Nastran file", endings: &[".bdf", ".nas", ".fem", ".nastran"], remedy: MESHIO },
+    Foreign { name: "a MED file (Salome, Code_Aster)", endings: &[".med"], remedy: MESHIO_HDF },
+    Foreign { name: "a MOAB file", endings: &[".h5m"], remedy: MESHIO_HDF },
+    Foreign { name: "an SU2 mesh", endings: &[".su2"], remedy: MESHIO },
+    Foreign { name: "a Netgen mesh", endings: &[".vol", ".vol.gz"], remedy: MESHIO },
+    Foreign { name: "a UGRID file", endings: &[".ugrid"], remedy: MESHIO },
+    Foreign { name: "a FLAC3D grid", endings: &[".f3grid"], remedy: MESHIO },
+    Foreign { name: "a Kratos model part", endings: &[".mdpa"], remedy: MESHIO },
+    Foreign { name: "an AVS-UCD file", endings: &[".avs"], remedy: MESHIO },
+    Foreign { name: "a Permas file", endings: &[".post", ".post.gz", ".dato", ".dato.gz"], remedy: MESHIO },
+    Foreign { name: "a Tecplot file", endings: &[".plt", ".szplt", ".tec"], remedy: PARAVIEW },
+    Foreign { name: "a file of EnSight", endings: &[".case", ".encas", ".geo.ensight"], remedy: PARAVIEW },
+    Foreign { name: "a file of LS-DYNA", endings: &[".k", ".key", ".dyn", ".d3plot"], remedy: PARAVIEW },
+    Foreign {
+        name: "an I-DEAS universal file",
+        endings: &[".unv"],
+        remedy: "open it in Gmsh or Salome: gmsh -3 -format msh41 FILE -o mesh.msh",
+    },
+    Foreign {
+        name: "an archive of Ansys Mechanical",
+        endings: &[".cdb", ".rst"],
+        remedy: "convert it with ansys-mapdl-reader (pip install ansys-mapdl-reader), which saves .vtk",
+    },
+    Foreign {
+        name: "a file of COMSOL",
+        endings: &[".mphtxt", ".mphbin"],
+        remedy: "export it from COMSOL as .nas, and convert that with meshio",
+    },
+    Foreign { name: "a geometry of Gmsh", endings: &[".geo", ".geo_unrolled"], remedy: GEOMETRY },
+    Foreign { name: "a CAD model", endings: &[".step", ".stp", ".iges", ".igs", ".brep"], remedy: CAD },
+    Foreign {
+        name: "a surface of a 3D scene",
+        endings: &[".3mf", ".glb", ".gltf", ".dae", ".fbx", ".usd", ".usdz", ".x3d", ".wrl", ".3ds", ".amf"],
+        remedy: TRIMESH,
+    },
+    Foreign {
+        name: "an image",
+        endings: &[".nii", ".nii.gz", ".nrrd", ".mha", ".mhd", ".dcm", ".tif", ".tiff"],
+        remedy: "segment it first, such as with 3D Slicer, and save the surface as .stl or .vtp",
+    },
+    Foreign {
+        name: "a packed file",
+        endings: &[".gz", ".zip", ".bz2", ".xz", ".zst", ".tar", ".7z"],
+        remedy: "unpack it first",
+    },
+];
+
+/// The error for a file of another program, known by its ending; `None` where it is not.
+pub(super) fn by_ending(path: &Path) -> Option<Error> {
+    let name = path.file_name()?.to_string_lossy().to_lowercase();
+    FOREIGN
+        .iter()
+        .find(|f| f.endings.iter().any(|e| name.ends_with(e)))
+        .map(|f| unread(f.name, f.remedy, path))
+}
+
+fn unread(what: &str, remedy: &str, path: &Path) -> Error {
+    let file = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    Error::input(format!("is {what}, which motet does not read"))
+        .in_file(path)
+        .remedy(remedy.replace("FILE", &file))
+}
+
+/// Refuses content that is another program's, whatever the ending says; `endings` are those of the format that it should be in.
+pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> {
+    let is = |ending: &str| endings.contains(&ending);
+    let start = bytes.trim_ascii_start();
+    let told = |what: &str, remedy: &str| Err(unread(what, remedy, path));
+    if bytes.starts_with(b"CDF\x01") || bytes.starts_with(b"CDF\x02") || bytes.starts_with(b"CDF\x05") {
+        return told("a netCDF file, perhaps Exodus II", MESHIO_HDF);
+    }
+    if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
+        return told("a packed file", "unpack it first");
+    }
+    if bytes.starts_with(b"\x1f\x8b") && !is(".xml.gz") {
+        return told("packed by gzip", "unpack it first: gunzip -c FILE");
+    }
+    if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {
+        return told("an HDF5 file", "give it the ending of what it holds: .vtkhdf or .cgns");
+    }
+    if start.starts_with(b"ISO-10303-21") {
+        return told("a CAD model (STEP)", CAD);
+    }
+    let is_section = |text: &[u8]| {
+        text.first() == Some(&b'(') && text[1..].trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
+    };
+    if is(".msh") && is_section(start) {
+        return told("a mesh of Ansys Fluent", FLUENT);
+    }
+    let head = &start[..start.len().min(400)];
+    let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
+    if has(b"<xdmf") {
+        return told("an XDMF file", MESHIO_HDF);
+    }
+    if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
+        return told("no mesh of Medit", "give it the ending of its own format, such as .msh for Gmsh");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_others_are_named_with_what_converts_them() {
+        let of = |name: &str| by_ending(Path::new(name)).map(|e| e.to_string()).unwrap_or_default();
+        assert!(
+            of("a/Wing.EXO").contains("Exodus II")
+                && of("a/Wing.EXO").contains("meshio convert Wing.EXO mesh.vtu")
+        );
+        assert!(
+            of("x.xdmf").contains("XDMF")
+                && of("x.step").contains("gmsh")
+                && of("x.cas.h5").contains("ParaView")
+        );
+        assert!(by_ending(Path::new("x.docx")).is_none());
+    }
+
+    #[test]
+    fn content_tells_what_an_ending_hides() {
+        let refused = |bytes: &[u8], ending: &str| {
+            refuse(Path::new("f.msh"), bytes, &[ending]).err().map(|e| e.to_string()).unwrap_or_default()
+        };
+        for head in ["(0 \"by another\")\n(2 3)\n", "\n (1 \"x\")", "( 2 3)"] {
+            assert!(refused(head.as_bytes(), ".msh").contains("Ansys Fluent"), "{head}");
+        }
+        assert!(refused(b"CDF\x01", ".vtu").contains("netCDF"));
+        assert!(
+            refused(b"\x1f\x8b\x08", ".vtu").contains("gunzip")
+                && refused(b"\x1f\x8b\x08", ".xml.gz").is_empty()
+        );
+        assert!(refused(b"<?xml version='1.0'?><Xdmf>", ".xml").contains("XDMF"));
+        assert!(refused(b"$MeshFormat\n", ".msh").is_empty() && refused(b"<VTKFile", ".vtu").is_empty());
+    }
+}

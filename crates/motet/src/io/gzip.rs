@@ -1,0 +1,29 @@
+//! Files packed by gzip, unpacked as far as there is room.
+
+use std::io::Read as _;
+
+use flate2::read::MultiGzDecoder;
+
+use crate::base::{Error, Result};
+use crate::io::room::Room;
+
+/// Whether these bytes begin as those of a packed file.
+pub(super) fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// The content of a packed file.
+///
+/// # Errors
+/// When it is damaged, or unpacks to more than files of its size may.
+pub(super) fn unpack(bytes: &[u8]) -> Result<Vec<u8>> {
+    let room = Room::of(bytes.len() as u64);
+    let most = room.left();
+    let mut content = Vec::new();
+    MultiGzDecoder::new(bytes).take(most.saturating_add(1)).read_to_end(&mut content).map_err(|e| {
+        Error::input(format!("cannot be unpacked: {e}"))
+            .at(format!("after {} unpacked bytes", content.len()))
+            .remedy("the file is cut off or damaged: get it again")
+    })?;
+    if content.len() as u64 > most { Err(room.exceeded()) } else { Ok(content) }
+}

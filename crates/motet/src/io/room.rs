@@ -1,0 +1,135 @@
+//! How much memory the content of a file may take once it is unpacked.
+//!
+//! Packed bytes may become a thousand times as many, so a file of a few megabytes could fill any machine. What a mesh
+//! needs is known before it is unpacked, and no mesh packs that well: what is beyond the limit is refused.
+
+use std::collections::HashSet;
+use std::sync::{Mutex, PoisonError};
+
+use crate::base::{Error, Result};
+
+/// The environment variable that sets another limit, in bytes or with a unit: `MOTET_READ_LIMIT=16G`.
+const VARIABLE: &str = "MOTET_READ_LIMIT";
+/// So many bytes may come out of any file: values that are all the same pack well.
+const ALWAYS: u64 = 256 << 20;
+/// And so many for each byte of the file.
+const FOR_EACH_BYTE: u64 = 64;
+
+/// What may still be taken.
+#[derive(Debug)]
+pub(super) struct Room {
+    state: Mutex<State>,
+    asked: Option<u64>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    file_bytes: u64,
+    taken: u64,
+    known: HashSet<String>,
+}
+
+impl Room {
+    /// The room that a file of so many bytes has.
+    pub(super) fn of(file_bytes: u64) -> Self {
+        let asked = std::env::var(VARIABLE).ok().and_then(|text| bytes(&text));
+        Self { state: Mutex::new(State { file_bytes, ..State::default() }), asked }
+    }
+
+    /// Adds that of another file, which belongs to the same mesh; of each name only once.
+    pub(super) fn add_file(&self, name: &str, file_bytes: u64) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        if state.known.insert(name.to_owned()) {
+            state.file_bytes = state.file_bytes.saturating_add(file_bytes);
+        }
+    }
+
+    /// Takes so many bytes, before they are allocated.
+    ///
+    /// # Errors
+    /// When all that was taken is more than the limit.
+    pub(super) fn take(&self, bytes: u64) -> Result<()> {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.taken = state.taken.saturating_add(bytes);
+        let limit = self.limit(&state);
+        if state.taken <= limit { Ok(()) } else { Err(refused(state.taken, &state, limit)) }
+    }
+
+    /// As [`take`](Self::take), for something that has a name and is there only once.
+    ///
+    /// # Errors
+    /// As [`take`](Self::take).
+    pub(super) fn take_once(&self, name: &str, bytes: u64) -> Result<()> {
+        let is_new = self.state.lock().unwrap_or_else(PoisonError::into_inner).known.insert(name.to_owned());
+        if is_new { self.take(bytes) } else { Ok(()) }
+    }
+
+    /// How much is left.
+    pub(super) fn left(&self) -> u64 {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        self.limit(&state).saturating_sub(state.taken)
+    }
+
+    /// The error for a stream that goes on beyond what was left.
+    pub(super) fn exceeded(&self) -> Error {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let limit = self.limit(&state);
+        refused(limit.saturating_add(1), &state, limit)
+    }
+
+    fn limit(&self, state: &State) -> u64 {
+        self.asked.unwrap_or_else(|| ALWAYS.saturating_add(state.file_bytes.saturating_mul(FOR_EACH_BYTE)))
+    }
+}
+
+fn refused(needed: u64, state: &State, limit: u64) -> Error {
+    Error::input(format!(
+        "unpacks to {needed} bytes or more; a file of {} bytes may to {limit}",
+        state.file_bytes
+    ))
+    .remedy(format!(
+        "where the file is as it should be, set the environment variable {VARIABLE}, such as {VARIABLE}=16G"
+    ))
+}
+
+/// A number of bytes, perhaps with a unit: `K`, `M`, `G` or `T`, each 1024 times the one before.
+fn bytes(text: &str) -> Option<u64> {
+    let text = text.trim().to_ascii_uppercase();
+    let text = text.trim_end_matches('B').trim_end_matches('I');
+    let unit = text.chars().last().and_then(|unit| "KMGT".find(unit));
+    let (number, shift) = unit.map_or((text, 0), |i| (&text[..text.len() - 1], 10 * (i + 1)));
+    number.trim().parse::<u64>().ok()?.checked_mul(1 << shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_that_is_taken_counts_and_names_once() {
+        let room = Room { state: Mutex::default(), asked: Some(100) };
+        room.take(60).unwrap();
+        room.take_once("a", 40).unwrap();
+        room.take_once("a", 40).unwrap();
+        assert_eq!(room.left(), 0);
+        let told = room.take(1).unwrap_err().to_string();
+        assert!(told.contains("unpacks to 101 bytes") && told.contains("MOTET_READ_LIMIT=16G"), "{told}");
+    }
+
+    #[test]
+    fn the_limit_grows_with_the_files() {
+        let room = Room { state: Mutex::default(), asked: None };
+        let before = room.left();
+        room.add_file("b", 1000);
+        room.add_file("b", 1000);
+        assert_eq!(room.left(), before + 1000 * FOR_EACH_BYTE);
+    }
+
+    #[test]
+    fn units_are_powers_of_1024() {
+        assert_eq!(
+            ["7", "2K", "3 mb", "1GiB", "x", "-1", ""].map(bytes),
+            [Some(7), Some(2048), Some(3 << 20), Some(1 << 30), None, None, None]
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! Files that name others: the parts of a parallel run (`.pvtu`, `.pvtp`), blocks of several meshes (`.vtm`, `.vtpd`).
+
+use std::path::Path;
+use std::rc::Rc;
+
+use crate::base::{Error, Result};
+use crate::io::format::Input;
+use crate::io::labels::take_label_names;
+use crate::io::room::Room;
+use crate::io::vtkxml::document::Element;
+use crate::io::vtkxml::file::File;
+use crate::io::vtkxml::pieces::{Whole, common_arrays};
+use crate::io::vtkxml::{vtp, vtu};
+use crate::io::weld::weld;
+use crate::mesh::{CellKind, Field, Labels, Mesh};
+
+/// Blocks lie within blocks, and may name files of parts; more is a circle.
+const MAX_DEPTH: usize = 4;
+
+/// Whether a kind of file names others.
+pub(super) fn is_of_parts(kind: &str) -> bool {
+    matches!(kind, "PUnstructuredGrid" | "PPolyData") || is_of_blocks(kind)
+}
+
+fn is_of_blocks(kind: &str) -> bool {
+    matches!(
+        kind,
+        "vtkMultiBlockDataSet"
+            | "vtkPartitionedDataSet"
+            | "vtkPartitionedDataSetCollection"
+            | "vtkMultiPieceDataSet"
+    )
+}
+
+/// One part: what it is called, and its mesh.
+struct Part {
+    name: String,
+    mesh: Mesh,
+}
+
+struct Reader<'a> {
+    input: &'a Input<'a>,
+    room: Rc<Room>,
+}
+
+/// Reads all files that `file` names, in its order, and joins them.
+pub(super) fn read(file: &File<'_>, input: &Input<'_>) -> Result<Mesh> {
+    let reader = Reader { input, room: Rc::new(Room::of(input.bytes.len() as u64)) };
+    let mut parts = Vec::new();
+    reader.parts(file, input.path, 0, &mut parts)?;
+    let is_of_blocks = is_of_blocks(file.kind());
+    if is_of_blocks {
+        label_blocks(&mut parts);
+        common_arrays(parts.iter_mut().map(|part| &mut part.mesh), input.notes);
+    }
+    let mut whole = Whole::default();
+    for part in parts {
+        whole.add(part.mesh).map_err(|e| e.at(part.name))?;
+    }
+    let (mut mesh, starts) = whole.into_parts();
+    weld(&mut mesh, &starts, input.notes);
+    take_label_names(&mut mesh);
+    Ok(mesh)
+}
+
+impl Reader<'_> {
+    fn parts(&self, file: &File<'_>, path: &Path, depth: usize, parts: &mut Vec<Part>) -> Result<()> {
+        if depth > MAX_DEPTH {
+            return Err(Error::input(format!("files name files more than {MAX_DEPTH} deep"))
+                .in_file(path)
+                .remedy("write the data as one file"));
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut sources = Vec::new();
+        collect(file.data_set()?, "", &mut sources);
+        for (name, source, line) in sources {
+            let path = folder.join(&source);
+            let place = || format!("line {line}");
+            self.part(&name, &path, depth, parts).map_err(|e| e.in_file(&path).at(place()))?;
+        }
+        Ok(())
+    }
+
+    fn part(&self, name: &str, path: &Path, depth: usize, parts: &mut Vec<Part>) -> Result<()> {
+        let bytes = std::fs::read(path).map_err(|e| {
+            Error::io(path, &e)
+                .remedy(format!("{} names it: keep its files together", self.input.path.display()))
+        })?;
+        self.room.add_file(&path.to_string_lossy(), bytes.len() as u64);
+        self.room.take(bytes.len() as u64)?;
+        let file = File::open_within(&bytes, self.input.notes, self.room.clone())?;
+        let mesh = match file.kind() {
+            "UnstructuredGrid" => vtu::read(&file)?,
+            "PolyData" => vtp::read(&file)?,
+            kind if is_of_parts(kind) => return self.parts(&file, path, depth + 1, parts),
+            other => {
+                self.input.notes.add(format!(
+                    "{}: {other} has no cells that motet knows, and is left out",
+                    path.display()
+                ));
+                return Ok(());
+            }
+        };
+        mesh.validate()?;
+        parts.push(Part { name: name.to_owned(), mesh });
+        Ok(())
+    }
+}
+
+/// The name, file and line of all that an element names, however deep, in the order of the file.
+fn collect(element: &Element<'_>, name: &str, found: &mut Vec<(String, String, usize)>) {
+    let own = element.attribute("name").or(element.attribute("Name")).unwrap_or(name);
+    let file = match element.name.as_str() {
+        "Piece" => element.attribute("Source"),
+        "DataSet" => element.attribute("file"),
+        _ => None,
+    };
+    if let Some(file) = file {
+        found.push((own.to_owned(), file.to_owned(), element.line));
+    }
+    element.children.iter().for_each(|child| collect(child, own, found));
+}
+
+type LabelsOf = fn(&Mesh) -> Option<Labels>;
+
+/// Names of blocks become labels where the blocks have none: regions of volume cells, patches of surface cells.
+fn label_blocks(parts: &mut [Part]) {
+    let labels: [(usize, &str, LabelsOf); 2] = [(3, "region", Mesh::regions), (2, "patch", Mesh::patches)];
+    for (dim, array, of) in labels {
+        let holds = |part: &Part| part.mesh.cells.kinds().iter().any(|kind| kind.dim() == Some(dim));
+        if parts.iter().filter(|part| holds(part)).count() < 2 && dim == 3
+            || parts.iter().any(|part| of(&part.mesh).is_some())
+        {
+            continue;
+        }
+        for (label, part) in (1..).zip(parts.iter_mut()) {
+            let is_of = |kind: &CellKind| if kind.dim() == Some(dim) { label } else { 0 };
+            let ids: Vec<i32> = part.mesh.cells.kinds().iter().map(is_of).collect();
+            if ids.iter().any(|&id| id != 0) && !part.name.is_empty() {
+                part.mesh.field_data.push(Field::scalars(format!("{array}:{}", part.name), vec![label]));
+            }
+            part.mesh.set_cell_field(Field::scalars(array, ids));
+        }
+    }
+}
