@@ -110,6 +110,20 @@ fn flatness_is_decided_exactly() {
 }
 
 #[test]
+fn a_tet_folded_onto_its_neighbour() {
+    let points = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.3, 0.2, 2.], [0.2, 0.3, -1.]];
+    let of = |x: &[u32], y: &[u32]| check(&mesh(&points, &[(CellKind::TETRA, x), (CellKind::TETRA, y)]));
+    let folded = of(&[0, 1, 2, 3], &[0, 1, 2, 4]);
+    let defect = folded.iter().find(|d| d.kind == DefectKind::FoldedFacet).expect("it is found");
+    assert_eq!((defect.count, &defect.examples[0].cells[..]), (1, &[CellId(0), CellId(1)][..]));
+    assert!(!is_conforming(&folded));
+    // Side by side, numbered either way, nothing is folded; nor is a tet that was turned inside out.
+    for other in [[0, 2, 1, 5], [0, 1, 2, 5], [0, 2, 1, 4]] {
+        assert!(of(&[0, 1, 2, 3], &other).iter().all(|d| d.kind != DefectKind::FoldedFacet), "{other:?}");
+    }
+}
+
+#[test]
 fn cells_that_do_not_fit_together() {
     let above: Vec<Point> =
         CUBE.iter().copied().chain([[0.5, 0.5, 2.0], [0.5, 0.5, 3.0], [0.5, 0.5, 4.0]]).collect();

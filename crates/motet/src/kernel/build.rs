@@ -3,12 +3,12 @@
 use std::cell::Cell;
 
 use crate::base::{Error, Result, TetId, VertexId};
-use crate::geometry::quality::rough_eas;
+use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
 use crate::kernel::journal::Journal;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
-use crate::kernel::orientation::orient;
+use crate::kernel::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 
@@ -29,7 +29,7 @@ impl Complex {
         let mut joined = Joined::of(&tets, regions, triangles, patches)?;
         let mut rough = rough_eas(points, &tets);
         let mut n_turned = 0;
-        if rough.iter().any(|&q| q <= 0.0) {
+        if joined.is_folded || rough.iter().any(|&q| q <= 0.0) {
             n_turned = orient(&mut tets, &joined.across(), points)?;
             if n_turned > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches)?;
@@ -37,6 +37,8 @@ impl Complex {
             }
         }
         let n_tets = tets.len();
+        let mut vertex_to_n_tets = vec![0u32; points.len()];
+        tets.as_flattened().iter().for_each(|v| vertex_to_n_tets[v.index()] += 1);
         let mut vertex_to_tet = vec![NO_TET; points.len()];
         for (t, tet) in tets.iter().enumerate() {
             tet.iter().for_each(|v| vertex_to_tet[v.index()] = TetId::new(t));
@@ -50,12 +52,13 @@ impl Complex {
             vertex_came: vec![false; points.len()],
             points: points.clone(),
             vertex_to_tet,
+            vertex_to_n_tets,
             is_new: vec![false; tets.len()],
             tets,
             links: joined.links,
             regions: regions.clone(),
             qualities: vec![Cell::new(UNMEASURED); n_tets],
-            is_tangled: rough.iter().any(|&q| q <= 0.0),
+            is_tangled: rough.iter().any(|&q| f64::from(q) <= ROUGH_EAS_ERROR),
             rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
@@ -101,6 +104,8 @@ impl Complex {
 struct Joined {
     links: Vec<[Link; 4]>,
     walls: Vec<Wall>,
+    /// Whether two tets see their facet from the same side: one is numbered the other way round, or lies on the other.
+    is_folded: bool,
 }
 
 impl Joined {
@@ -110,11 +115,16 @@ impl Joined {
         triangles: &[[VertexId; 3]],
         patches: &[i32],
     ) -> Result<Self> {
-        let mut joined = Self { links: vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()], walls: Vec::new() };
+        let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
+        let mut joined = Self { links, walls: Vec::new(), is_folded: false };
         let mut fault = None;
         // Most meshes have but one, and then two reads from anywhere in memory are spared a facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
         for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
+            if let [(t, i), (u, j)] = *uses {
+                let [x, y] = [(t, i), (u, j)].map(|(t, i)| orientation::facet(&tets[t.index()], i));
+                joined.is_folded |= !see_from_opposite_sides(x, y);
+            }
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
             let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];
             match *uses {

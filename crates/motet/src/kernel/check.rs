@@ -169,6 +169,13 @@ impl Complex {
         if let Some(v) = moved.filter(|&v| is_held(v)) {
             return Err(Reject::Held(v));
         }
+        // Where tets overlap, tets of a vertex may hang together by it alone: no walk by facets finds them all.
+        if let Some(v) = moved.filter(|_| self.is_tangled) {
+            let n = change.cavity.iter().filter(|&&t| self.vertices(t).contains(&v)).count();
+            if n != self.vertex_to_n_tets[v.index()] as usize {
+                return Err(Reject::Vertex(v));
+            }
+        }
         let gone = match change.vertex {
             VertexChange::Remove(v) => Some(v),
             _ => None,
@@ -218,7 +225,7 @@ impl Complex {
         Ok(())
     }
 
-    /// Whether a tet that is not in the cavity has all of some vertices.
+    /// Whether a tet that is not in the cavity has all of some vertices, or may have: where the tets of the first do not all hang together by facets.
     fn is_outside(&self, vertices: &[VertexId], change: &Change) -> bool {
         // A vertex to come is not in the lists yet, or has no tet.
         let is_there = |v: &VertexId| v.index() < self.points.len() && self.is_used(*v);
@@ -240,7 +247,7 @@ impl Complex {
                 }
             }
         }
-        false
+        found.len() != self.vertex_to_n_tets[vertices[0].index()] as usize
     }
 
     /// Joins every facet of the fill to what lies behind it.

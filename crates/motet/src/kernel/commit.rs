@@ -79,19 +79,30 @@ impl Complex {
     fn write_tet(&mut self, tet: TetId, fill: &Fill) {
         self.note_tet(tet);
         let i = tet.index();
-        self.tets[i] = fill.vertices;
+        self.set_vertices(tet, fill.vertices);
         self.regions[i] = fill.region;
         self.qualities[i].set(fill.quality);
         self.is_new[i] = true;
     }
 
-    fn free_tet(&mut self, tet: TetId) {
+    pub(super) fn free_tet(&mut self, tet: TetId) {
         self.note_tet(tet);
         let i = tet.index();
-        self.tets[i] = FREE;
+        self.set_vertices(tet, FREE);
         self.is_new[i] = true;
         self.free_tets.push(tet);
         self.note(|_| Entry::FreedTet);
+    }
+
+    /// Writes the vertices of a slot, and counts them.
+    pub(super) fn set_vertices(&mut self, tet: TetId, vertices: [VertexId; 4]) {
+        let before = std::mem::replace(&mut self.tets[tet.index()], vertices);
+        if before != FREE {
+            before.iter().for_each(|v| self.vertex_to_n_tets[v.index()] -= 1);
+        }
+        if vertices != FREE {
+            vertices.iter().for_each(|v| self.vertex_to_n_tets[v.index()] += 1);
+        }
     }
 
     fn note_tet(&mut self, tet: TetId) {
@@ -139,7 +150,7 @@ impl Complex {
         }
     }
 
-    fn add_wall(&mut self, sides: [HalfFacet; 2], new: NewWall) {
+    pub(super) fn add_wall(&mut self, sides: [HalfFacet; 2], new: NewWall) {
         let id = self.take_wall_slot();
         self.set_wall(id, Wall { sides, patch: new.patch, triangle: new.triangle, is_new: true });
     }
@@ -156,7 +167,7 @@ impl Complex {
         }
     }
 
-    fn free_wall(&mut self, id: WallId) {
+    pub(super) fn free_wall(&mut self, id: WallId) {
         self.note(|c| Entry::Wall(id, c.walls[id.index()]));
         let wall = std::mem::replace(&mut self.walls[id.index()], Wall::FREE);
         if !wall.is_new && wall.triangle != NO_TRIANGLE {
@@ -173,7 +184,7 @@ impl Complex {
     }
 
     #[inline]
-    fn set_tet_of(&mut self, vertex: VertexId, tet: TetId) {
+    pub(super) fn set_tet_of(&mut self, vertex: VertexId, tet: TetId) {
         if self.vertex_to_tet[vertex.index()] != tet {
             self.note(|c| Entry::VertexToTet(vertex, c.vertex_to_tet[vertex.index()]));
             self.vertex_to_tet[vertex.index()] = tet;
@@ -205,6 +216,7 @@ impl Complex {
         self.vertex_is_new.push(true);
         self.vertex_came.push(true);
         self.vertex_to_tet.push(NO_TET);
+        self.vertex_to_n_tets.push(0);
         VertexId::new(self.points.len() - 1)
     }
 

@@ -30,6 +30,8 @@ pub struct Complex {
     pub(super) holds: Vec<Hold>,
     /// A tet of each vertex; [`NO_TET`] for those without.
     pub(super) vertex_to_tet: Vec<TetId>,
+    /// How many tets each vertex has: where tets overlap, more than hang together by facets at it.
+    pub(super) vertex_to_n_tets: Vec<u32>,
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) links: Vec<[Link; 4]>,
     pub(super) regions: Vec<i32>,

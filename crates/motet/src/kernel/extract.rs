@@ -117,7 +117,7 @@ impl Complex {
             extract.mesh.patches.push(patch);
             extract.triangle_to_old.push(old);
         };
-        let mut is_gone = vec![false; if self.keeps_surface { 0 } else { first.triangles.len() }];
+        let mut is_gone = vec![false; if self.gone_triangles.is_empty() { 0 } else { first.triangles.len() }];
         self.gone_triangles.iter().for_each(|&t| is_gone[t as usize] = true);
         for (t, &vertices) in first.triangles.iter().enumerate() {
             if !is_gone.get(t).copied().unwrap_or(false) {

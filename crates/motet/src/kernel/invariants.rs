@@ -96,12 +96,13 @@ impl Complex {
     }
 
     fn verify_vertices(&self) -> Result<(), String> {
-        let mut is_used = vec![false; self.points.len()];
-        self.tets().flat_map(|t| self.vertices(t)).for_each(|v| is_used[v.index()] = true);
+        let mut n_tets = vec![0u32; self.points.len()];
+        self.tets().flat_map(|t| self.vertices(t)).for_each(|v| n_tets[v.index()] += 1);
         for v in (0..self.points.len()).map(VertexId::new) {
-            let tet = self.tet_of(v);
-            if is_used[v.index()] != (tet != NO_TET) {
-                return Err(format!("vertex {v} has the tet {tet}, used: {}", is_used[v.index()]));
+            let (tet, n) = (self.tet_of(v), n_tets[v.index()]);
+            if (n > 0) != (tet != NO_TET) || n != self.vertex_to_n_tets[v.index()] {
+                let counted = self.vertex_to_n_tets[v.index()];
+                return Err(format!("vertex {v} has the tet {tet} and {n} tets, counted: {counted}"));
             }
             if tet != NO_TET && !self.vertices(tet).contains(&v) {
                 return Err(format!("vertex {v} is not in its tet {tet}"));

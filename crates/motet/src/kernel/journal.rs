@@ -86,7 +86,7 @@ impl Complex {
         match entry {
             Entry::Tet(t, record) => {
                 let i = t.index();
-                self.tets[i] = record.vertices;
+                self.set_vertices(t, record.vertices);
                 self.links[i] = record.links;
                 self.regions[i] = record.region;
                 self.qualities[i].set(record.quality);
@@ -114,6 +114,7 @@ impl Complex {
                 self.vertex_is_new.truncate(n);
                 self.vertex_came.truncate(n);
                 self.vertex_to_tet.truncate(n);
+                self.vertex_to_n_tets.truncate(n);
             }
             Entry::WallSlots(n) => self.walls.truncate(n),
             Entry::TookTet(t) => self.free_tets.push(t),

@@ -19,6 +19,7 @@ mod invariants;
 mod journal;
 mod link;
 mod orientation;
+mod peel;
 mod star;
 
 pub use change::{Change, Fill, NewWall, VertexChange};

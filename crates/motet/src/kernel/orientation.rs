@@ -58,12 +58,12 @@ pub(super) fn orient(
     Ok(is_turned.iter().filter(|turned| **turned).count())
 }
 
-fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
+pub(super) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
     FACETS[i].map(|place| tet[place])
 }
 
 /// Whether one is an odd permutation of the other.
-fn see_from_opposite_sides(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+pub(super) fn see_from_opposite_sides(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let start = b.iter().position(|&v| v == a[0]).unwrap_or(0);
     b[(start + 1) % 3] == a[2]
 }

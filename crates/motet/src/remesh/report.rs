@@ -30,6 +30,8 @@ pub enum Operation {
     Smoothing,
     /// A vertex inserted.
     Insertion,
+    /// A tet removed that was folded over the mesh.
+    Peeling,
 }
 
 /// How often each operation was made.
@@ -44,10 +46,15 @@ pub struct Counts {
     pub split_edge: usize,
     pub smoothing: usize,
     pub insertion: usize,
+    pub peeling: usize,
 }
 
 impl Counts {
     pub(super) fn add(&mut self, operation: Operation) {
+        self.add_many(operation, 1);
+    }
+
+    pub(super) fn add_many(&mut self, operation: Operation, n: usize) {
         *match operation {
             Operation::EdgeRemoval => &mut self.edge_removal,
             Operation::FaceRemoval => &mut self.face_removal,
@@ -57,7 +64,8 @@ impl Counts {
             Operation::SplitEdge => &mut self.split_edge,
             Operation::Smoothing => &mut self.smoothing,
             Operation::Insertion => &mut self.insertion,
-        } += 1;
+            Operation::Peeling => &mut self.peeling,
+        } += n;
     }
 }
 

@@ -10,7 +10,7 @@ use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Options};
 use crate::remesh::repair::{Repair, Sizing, is_among, passes};
-use crate::remesh::report::{Report, SizesReport, State};
+use crate::remesh::report::{Operation, Report, SizesReport, State};
 use crate::remesh::sizes::{LONG, SizeField};
 use crate::remesh::surface::{Crease, Surface};
 
@@ -35,7 +35,6 @@ pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Ou
     let mut report = Report { min_eas, ..Report::default() };
     let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     let mut complex = Complex::new(mesh)?;
-    let surface = adaptable(&mut complex, mesh, options);
     report.seconds.join = clock.lap();
 
     let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
@@ -43,11 +42,15 @@ pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Ou
     bad.retain(|&t| !is_among(&others, t));
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
+    let n_peeled = complex.peel();
+    bad.retain(|&t| complex.is_alive(t));
+    let surface = adaptable(&mut complex, mesh, options);
     let splits = options.goal != Goal::Coarsen;
     let longest = if splits { LONG } else { 1.0 };
     let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh, longest));
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
+    repair.operations.add_many(Operation::Peeling, n_peeled);
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
             repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?

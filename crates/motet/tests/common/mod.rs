@@ -11,6 +11,7 @@ pub(crate) mod hard;
 pub(crate) mod kept;
 pub(crate) mod refined;
 pub(crate) mod solid_angle;
+pub(crate) mod wreck;
 
 use std::path::PathBuf;
 

@@ -219,6 +219,7 @@ impl Report {
             split_edge,
             smoothing,
             insertion,
+            peeling,
         } = self.operations;
         let made = [
             ("edges removed", edge_removal),
@@ -229,6 +230,7 @@ impl Report {
             ("edges split", split_edge),
             ("vertices moved", smoothing),
             ("vertices inserted", insertion),
+            ("folded tets removed", peeling),
         ];
         let made: Vec<String> =
             made.into_iter().filter(|m| m.1 > 0).map(|(what, n)| format!("{what} {}", count(n))).collect();

@@ -2,16 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use crate::base::{CellId, VertexId, rising_list};
+use crate::base::{CellId, Point, VertexId, rising_list};
+use crate::geometry::predicates::orient3d;
+use crate::geometry::vector::is_finite;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::check::hanging;
 use crate::mesh::check::points::Canonical;
-use crate::mesh::{Boundary, Mesh};
+use crate::mesh::{Boundary, CellKind, Mesh};
 
 pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Vec<Defect> {
     let mut overshared = Defect::none(DefectKind::OversharedFacet);
+    let mut folded = Defect::none(DefectKind::FoldedFacet);
     let mut twins: BTreeSet<(CellId, CellId)> = BTreeSet::new();
     let facets = Facets::of(&mesh.cells);
     facets.for_each_shared(|uses| {
@@ -19,6 +22,13 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -
             let cells: Vec<_> = uses.iter().map(|u| u.cell).collect();
             overshared
                 .add(|| Example::new(&cells, &facets.corners(uses[0]).collect::<Vec<_>>(), &mesh.points));
+        }
+        if let [x, y] = *uses
+            && is_folded(mesh, x.cell, y.cell)
+        {
+            folded.add(|| {
+                Example::new(&[x.cell, y.cell], &facets.corners(x).collect::<Vec<_>>(), &mesh.points)
+            });
         }
         // Cells of the same vertices share every facet, so their pairs show here.
         match uses {
@@ -32,7 +42,25 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -
     for (x, y) in twins {
         duplicate.add(|| Example::new(&[x, y], mesh.cells.vertices(x), &mesh.points));
     }
-    vec![duplicate, overshared, unmerged(mesh, boundary, canonical), hanging::defects(mesh, boundary)]
+    vec![duplicate, overshared, folded, unmerged(mesh, boundary, canonical), hanging::defects(mesh, boundary)]
+}
+
+/// Whether two tets that share a facet lie on the same side of it, though their volumes have one sign.
+fn is_folded(mesh: &Mesh, x: CellId, y: CellId) -> bool {
+    let is_tet = |cell| mesh.cells.kind(cell) == CellKind::TETRA;
+    if !is_tet(x) || !is_tet(y) {
+        return false;
+    }
+    let [x, y] = [x, y].map(|cell| mesh.cells.vertices(cell));
+    let corners = |ids: &[VertexId]| [0, 1, 2, 3].map(|i| mesh.points[ids[i].index()]);
+    let sign = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d).signum();
+    let apart = |of: &[VertexId], other: &[VertexId]| of.iter().position(|v| !other.contains(v));
+    let (Some(i), Some(j)) = (apart(x, y), apart(y, x)) else { return false };
+    let (of_x, of_y) = (corners(x), corners(y));
+    let mut across = of_x;
+    across[i] = of_y[j];
+    let finite = of_x.iter().chain(&of_y).all(|p| is_finite(*p));
+    finite && sign(of_x) != 0 && sign(across) == sign(of_x) && sign(of_y) == sign(of_x)
 }
 
 /// A quick look before the sorting: nearly all neighbours fail it.

@@ -40,6 +40,7 @@ defect_kinds! {
     ZeroAreaCell = "zero_area_cell", "the surface cell has no area";
     DuplicateCell = "duplicate_cell", "cells of the same vertices";
     OversharedFacet = "overshared_facet", "more than two volume cells use the facet";
+    FoldedFacet = "folded_facet", "two tets lie on the same side of the facet, one over the other";
     UnmergedFacet = "unmerged_facet", "boundary facets at exactly the same place, their vertices not shared";
     HangingVertex = "hanging_vertex", "the vertex lies on a boundary facet of which it is no corner";
     NonManifoldEdge = "non_manifold_edge", "more than two surface facets meet at the edge";

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | points | not finite, used by no cell, two at one place |
 //! | cells | of unknown kind, a vertex named twice, inverted, flat, without area, twice there |
-//! | facets | more than two cells, unmerged, with hanging vertices |
+//! | facets | more than two cells, two tets on one side, unmerged, with hanging vertices |
 //! | surface | open, misoriented and non-manifold edges, pinched vertices |
 //! | the whole | separate parts |
 //!
@@ -52,6 +52,7 @@ pub fn is_conforming(defects: &[Defect]) -> bool {
         matches!(
             kind,
             DefectKind::OversharedFacet
+                | DefectKind::FoldedFacet
                 | DefectKind::UnmergedFacet
                 | DefectKind::HangingVertex
                 | DefectKind::DuplicateCell

@@ -1,0 +1,80 @@
+//! Broken meshes end as meshes, or are refused with a place, or the report counts what is left.
+
+mod common;
+
+use common::wreck::{End, Wreck, sound_connectivity};
+use common::{Numbers, random_mesh};
+use motet::base::{Threads, VertexId};
+use motet::mesh::shapes::box_grid;
+use motet::mesh::{TetMesh, TetPart};
+use motet::remesh::{Options, SurfaceRule, remesh};
+
+#[test]
+fn wrecks_end_valid_told_or_refused() {
+    let mut n_valid = 0;
+    for seed in 0..100 {
+        let wreck = Wreck::new(seed);
+        let surface = if seed % 4 == 0 { SurfaceRule::Adapt { distance: None } } else { SurfaceRule::Keep };
+        match wreck.end(surface) {
+            Ok(end) => n_valid += usize::from(end == End::Valid),
+            Err(why) => panic!("wreck {seed}, {:?}: {why}", wreck.damage),
+        }
+    }
+    assert!(n_valid > 30, "{n_valid} of 100 are meshes again");
+}
+
+#[test]
+fn two_tets_on_one_side_of_a_facet_become_one() {
+    let points = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.3, 0.2, 2.]];
+    let tets = [[0, 1, 2, 3], [0, 1, 2, 4]].map(|tet| tet.map(VertexId)).to_vec();
+    let outcome = remesh(&TetMesh::new(points, tets), &Options::default(), &Threads::single()).unwrap();
+    assert_eq!((outcome.extract.mesh.tets.len(), outcome.report.operations.peeling), (1, 1));
+    assert_eq!((outcome.report.before.inverted, outcome.report.after.inverted), (1, 0));
+}
+
+#[test]
+fn a_tet_folded_over_a_mesh_is_removed_and_the_rest_stays() {
+    let mesh = TetPart::of(&box_grid([4; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
+    let mut folded = mesh.clone();
+    // The facet x = 0 of a tet, joined to a vertex far inside.
+    let is_on = |v: &VertexId| mesh.points[v.index()][0] == 0.0;
+    let facet = mesh.tets.iter().find_map(|tet| {
+        let on: Vec<_> = tet.iter().copied().filter(is_on).collect();
+        <[VertexId; 3]>::try_from(on).ok()
+    });
+    let [a, b, c] = facet.unwrap();
+    folded.points.push([0.9, 0.4, 0.4]);
+    folded.tets.push([a, b, c, VertexId::new(mesh.points.len())]);
+    folded.regions.push(0);
+    let outcome = remesh(&folded, &Options::default(), &Threads::single()).unwrap();
+    assert_eq!(outcome.report.operations.peeling, 1);
+    let new = &outcome.extract.mesh;
+    assert!(new.points == mesh.points && new.tets == mesh.tets, "the rest is as it was, to the bit");
+    let labelled = |mesh: &TetMesh| {
+        let sorted = |t: &[VertexId; 3]| {
+            let mut t = *t;
+            t.sort_unstable();
+            t
+        };
+        let mut all: Vec<_> = mesh.triangles.iter().map(sorted).zip(mesh.patches.clone()).collect();
+        all.sort_unstable();
+        all
+    };
+    assert!(labelled(new) == labelled(&mesh), "every triangle keeps its patch");
+}
+
+/// Of this one a tet named a vertex that had been removed.
+#[test]
+fn a_shaken_mesh_that_lost_a_vertex_keeps_it() {
+    for part in [0.07662673500271387, 0.5, 0.9] {
+        let seed = 15308308045394861619;
+        let mut mesh = random_mesh(39, seed);
+        let mut numbers = Numbers(seed);
+        for p in mesh.points.iter_mut().skip(8) {
+            p.iter_mut().for_each(|x| *x += part * (numbers.unit() - 0.5));
+        }
+        let outcome = remesh(&mesh, &Options::default(), &Threads::single()).unwrap();
+        let n_wrong = sound_connectivity(&outcome.extract.mesh).unwrap();
+        assert_eq!(n_wrong > 0, outcome.report.after.inverted > 0);
+    }
+}
