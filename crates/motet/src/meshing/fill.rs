@@ -14,6 +14,7 @@ use super::sizes::Sizes;
 use super::surfaces::Surfaces;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
+use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::volume;
 use crate::mesh::history::Rules;
@@ -222,7 +223,7 @@ fn not_positive(mesh: &Mesh) -> usize {
         (CellKind::TETRA, &[a, b, c, d]) => Some([a, b, c, d].map(|v| mesh.points[v.index()])),
         _ => None,
     });
-    tets.filter(|tet| volume(*tet) <= 0.0).count()
+    tets.filter(|&[a, b, c, d]| orient3d(a, b, c, d) <= 0 || volume([a, b, c, d]) <= 0.0).count()
 }
 
 /// `n_points` were given; behind them are those on edges.

@@ -39,16 +39,16 @@ pub(super) struct Cut {
 pub(super) struct Stuck;
 
 impl Cut {
-    /// Finds the tets cut by a part of the plane of `corners`, which has `edge` and near it lies on the side of `beyond`.
+    /// Finds the tets cut by a part of the plane of `corners`, which has `edge` and near it lies on the side of `beyond`; `own` are facets in that plane.
     pub(super) fn find(
         &mut self,
         tets: &mut Tets,
         sites: &Sites,
-        corners: [VertexId; 3],
+        (corners, own): ([VertexId; 3], &[[VertexId; 3]]),
         (edge, beyond): ([VertexId; 2], VertexId),
         is_wall: impl Fn([VertexId; 3]) -> bool,
     ) -> Result<(), Stuck> {
-        self.sides.begin(corners);
+        self.sides.begin(corners, own);
         self.sides.grow(sites);
         let first = self.first(tets, sites, edge, beyond).ok_or(Stuck)?;
         self.spread(tets, sites, first)?;

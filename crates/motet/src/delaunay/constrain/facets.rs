@@ -49,7 +49,7 @@ pub(super) fn recover(
             _ if may_swap => {
                 work.make(tets, sites, segments, flat.iter().copied().zip(all).collect(), &mut own)
             }
-            _ => work.recover(tets, sites, first, missing),
+            _ => work.recover(tets, sites, (first, &own), missing),
         };
         done.map_err(|_: Stuck| stuck(sites, flat[0], first))?;
         work.walls.extend(own.iter().copied().map(rising));
@@ -156,19 +156,19 @@ impl Work {
         }
         // Swaps may have taken parts away that were there.
         let missing = self.missing(tets, own);
-        if self.recover(tets, sites, first, missing).is_err() {
+        if self.recover(tets, sites, (first, own), missing).is_err() {
             let kept = Walls { segments, walls: &self.walls };
             *own = pierce.run(tets, sites, &kept).ok_or(Stuck)?;
         }
         Ok(())
     }
 
-    /// Makes the missing parts of a triangle facets, those together between which there is no edge.
+    /// Makes the missing parts of a flat facet, with a triangle that tells its plane, facets of tets; those together between which there is no edge.
     fn recover(
         &mut self,
         tets: &mut Tets,
         sites: &Sites,
-        triangle: [VertexId; 3],
+        plane: ([VertexId; 3], &[[VertexId; 3]]),
         mut missing: Vec<[VertexId; 3]>,
     ) -> Result<(), Stuck> {
         while let Some(part) = missing.pop() {
@@ -187,7 +187,7 @@ impl Work {
                     }
                 }
             }
-            self.insert(tets, sites, triangle, &group, rim.ok_or(Stuck)?)?;
+            self.insert(tets, sites, plane, &group, rim.ok_or(Stuck)?)?;
         }
         Ok(())
     }
@@ -197,11 +197,11 @@ impl Work {
         &mut self,
         tets: &mut Tets,
         sites: &Sites,
-        triangle: [VertexId; 3],
+        plane: ([VertexId; 3], &[[VertexId; 3]]),
         group: &[[VertexId; 3]],
         rim: ([VertexId; 2], VertexId),
     ) -> Result<(), Stuck> {
-        self.cut.find(tets, sites, triangle, rim, |face| self.walls.contains(&rising(face)))?;
+        self.cut.find(tets, sites, plane, rim, |face| self.walls.contains(&rising(face)))?;
         let old: Vec<_> = self.cut.tets.iter().map(|&tet| tets.vertices(tet)).collect();
         let at: Vec<_> = group.as_flattened().iter().map(|&v| (v, tets.at(v))).collect();
         self.cut.tets.iter().for_each(|&tet| tets.remove(tet));

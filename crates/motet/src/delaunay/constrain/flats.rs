@@ -1,61 +1,175 @@
-//! Flat facets: triangles of the surface that hang together and lie in one plane, exactly.
+//! Flat facets: triangles of the surface that hang together and lie in one plane, exactly or but for the rounding of their coordinates.
 //!
 //! An edge between two of them shapes nothing, so it need not be an edge of tets while facets are made. That matters: of the faces of a box
 //! cut into two triangles each, half have the diagonal that Delaunay tets do not, and points on it would be in the way
 //! of others, and so on. What the triangles were is put right afterwards (`keep`).
+//!
+//! What a program has turned, shifted, or written with few digits is flat no more to the last bit. Such a facet grows from its largest triangle: a vertex
+//! belongs to it if it could have been in one plane with the corners of that triangle before all four were rounded. That decides only
+//! what is tried first: which tets are positive is always asked with exact signs.
 
+use super::plane::Plane;
 use super::sites::Sites;
 use super::unmade::Part;
-use crate::base::{Csr, Sets, VertexId, rising};
+use crate::base::{Csr, Point, Sets, VertexId, rising};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{cross, dot, norm, sub};
+
+/// Which triangles are one flat facet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Merge {
+    /// Each triangle is one of its own.
+    None,
+    /// Those in one plane.
+    Exact,
+    /// Those that were in one plane before coordinates were rounded, by so much at most along each axis.
+    Rounded(Point),
+}
 
 /// The flat facets and the edges around them.
 #[derive(Clone)]
 pub(super) struct Flats {
-    /// The triangles of each.
+    /// The triangles of each; the first one tells the plane.
     pub(super) triangles: Csr<u32>,
     /// The edges that are not within one of them, smaller end first; rising.
     pub(super) creases: Vec<[VertexId; 2]>,
 }
 
 impl Flats {
-    /// Finds them; each triangle is one of its own where they are not to be `merged`.
-    pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], merged: bool) -> Self {
+    /// Finds them.
+    pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], merge: Merge) -> Self {
         let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
         for (i, &[a, b, c]) in triangles.iter().enumerate() {
             edges.extend([[a, b], [b, c], [c, a]].map(|e| (rising(e), i as u32)));
         }
         edges.sort_unstable();
-        let mut flats = Sets::new(triangles.len());
-        let mut creases = Vec::new();
-        for run in edges.chunk_by(|a, b| a.0 == b.0) {
-            match *run {
-                [(edge, i), (_, j)]
-                    if merged && is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) =>
-                {
-                    flats.join(i, j);
-                }
-                _ => creases.push(run[0].0),
-            }
-        }
-        let mut number = vec![u32::MAX; triangles.len()];
-        let mut count = 0;
-        let flat_of: Vec<u32> = (0..triangles.len() as u32)
-            .map(|i| {
-                let of = &mut number[flats.root(i) as usize];
-                if *of == u32::MAX {
-                    *of = count;
-                    count += 1;
-                }
-                *of
-            })
-            .collect();
-        let pairs = || flat_of.iter().enumerate().map(|(i, &flat)| (flat as usize, i as u32));
-        Self { triangles: Csr::from_pairs(count as usize, pairs), creases }
+        let pair = |run: &[([VertexId; 2], u32)]| match *run {
+            [(edge, i), (_, j)] if merge != Merge::None => Some((edge, [i, j])),
+            _ => None,
+        };
+        let pairs: Vec<Pair> = edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect();
+        let (number, firsts) = match merge {
+            Merge::Rounded(rounding) => grown(sites, triangles, &pairs, rounding),
+            _ => joined(sites, triangles, &pairs),
+        };
+        let is_within =
+            |run: &[_]| pair(run).is_some_and(|(_, [i, j])| number[i as usize] == number[j as usize]);
+        let runs = edges.chunk_by(|a, b| a.0 == b.0).filter(|run| !is_within(run));
+        let creases = runs.map(|run| run[0].0).collect();
+        let is_first = |i: &u32| firsts[number[*i as usize] as usize] == *i;
+        let others = || (0..triangles.len() as u32).filter(|i| !is_first(i));
+        let in_order = || firsts.iter().copied().chain(others());
+        let triangles =
+            Csr::from_pairs(firsts.len(), || in_order().map(|i| (number[i as usize] as usize, i)));
+        Self { triangles, creases }
     }
 
     /// Whether a part is a triangle of a flat facet.
     pub(super) fn has(&self, flat: usize, part: Part) -> bool {
         matches!(part, Part::Triangle(i) if self.triangles.list(flat).contains(&i))
+    }
+}
+
+/// The edge at which two triangles meet and no other, and the two.
+type Pair = ([VertexId; 2], [u32; 2]);
+
+/// Triangles that meet and lie in one plane exactly: the number of the flat facet of each, and the first triangle of each facet.
+fn joined(sites: &Sites, triangles: &[[VertexId; 3]], pairs: &[Pair]) -> (Vec<u32>, Vec<u32>) {
+    let mut flats = Sets::new(triangles.len());
+    for &(edge, [i, j]) in pairs {
+        if is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) {
+            flats.join(i, j);
+        }
+    }
+    let (mut of_root, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
+    let number = (0..triangles.len() as u32).map(|i| {
+        let of = &mut of_root[flats.root(i) as usize];
+        if *of == u32::MAX {
+            *of = firsts.len() as u32;
+            firsts.push(i);
+        }
+        *of
+    });
+    (number.collect(), firsts)
+}
+
+/// The same for triangles that lie in one plane but for rounding.
+fn grown(
+    sites: &Sites,
+    triangles: &[[VertexId; 3]],
+    pairs: &[Pair],
+    rounding: Point,
+) -> (Vec<u32>, Vec<u32>) {
+    let neighbors = Csr::from_pairs(triangles.len(), || {
+        pairs.iter().flat_map(|&(_, [i, j])| [(i as usize, j), (j as usize, i)])
+    });
+    let corners = |i: u32| triangles[i as usize].map(|v| sites.near(v));
+    let mut seeds: Vec<(f64, u32)> =
+        (0..triangles.len() as u32).map(|i| (norm(area_vector(corners(i))), i)).collect();
+    seeds.sort_unstable_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
+    let (mut number, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
+    for (_, seed) in seeds {
+        if number[seed as usize] != u32::MAX {
+            continue;
+        }
+        let flat = firsts.len() as u32;
+        firsts.push(seed);
+        number[seed as usize] = flat;
+        let plane = Plane::new(sites, triangles[seed as usize]);
+        let band = Band::new(corners(seed), rounding);
+        let mut todo = vec![(seed, triangles[seed as usize])];
+        while let Some((i, from)) = todo.pop() {
+            for &j in neighbors.list(i as usize) {
+                let to = turned_alike(from, triangles[j as usize]);
+                if number[j as usize] == u32::MAX && band.holds(corners(j)) && plane.turn(to) > 0 {
+                    number[j as usize] = flat;
+                    todo.push((j, to));
+                }
+            }
+        }
+    }
+    (number, firsts)
+}
+
+/// A triangle, turned as its neighbour is.
+fn turned_alike(from: [VertexId; 3], [a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
+    let edges = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]];
+    let runs_the_same_way = edges([a, b, c]).iter().any(|e| edges(from).contains(e));
+    if runs_the_same_way { [a, c, b] } else { [a, b, c] }
+}
+
+/// Points that could have been in the plane of a triangle before coordinates were rounded.
+struct Band {
+    corners: [Point; 3],
+    /// As long as twice the area.
+    normal: Point,
+    /// How far rounding moves a point along the normal.
+    width: f64,
+}
+
+impl Band {
+    fn new(corners: [Point; 3], rounding: Point) -> Self {
+        let [a, b, c] = corners;
+        let normal = cross(sub(b, a), sub(c, a));
+        let length = norm(normal);
+        let width = (0..3).map(|i| (normal[i] / length).abs() * rounding[i]).sum();
+        Self { corners, normal, width }
+    }
+
+    fn holds(&self, triangle: [Point; 3]) -> bool {
+        triangle.iter().all(|&p| self.has(p))
+    }
+
+    /// The plane is off at `p` by as much as its corners are, times their barycentric coordinates there.
+    fn has(&self, p: Point) -> bool {
+        if self.corners.contains(&p) {
+            return true;
+        }
+        let [a, b, c] = self.corners.map(|corner| sub(corner, p));
+        let weight = |[u, v]: [Point; 2]| dot(cross(u, v), self.normal).abs();
+        let weights: f64 = [[a, b], [b, c], [c, a]].into_iter().map(weight).sum();
+        let squared = dot(self.normal, self.normal);
+        dot(a, self.normal).abs() <= self.width * (1.0 + weights / squared) * squared.sqrt()
     }
 }
 

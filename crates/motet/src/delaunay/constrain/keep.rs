@@ -1,8 +1,8 @@
 //! The surface put right: points on its edges and in its triangles move inside, and flat facets get back the triangles that they were.
 //!
 //! What it takes is a point inside on each side that has tets (`recone`). A point stays on its edge where a side has no room for one, such as
-//! at the free edge of a membrane. Tets outside are made anew like the others, but nobody asks whether they are positive: they only keep together what
-//! lies around an edge or a vertex, and are left out in the end.
+//! at the free edge of a membrane. Tets outside go first: nothing can be in their way. Only where triangles have nothing enclosed on either side do they
+//! stay, to keep together what lies around an edge or a vertex; then they are made anew like the others, but nobody asks whether they are positive.
 
 use hashbrown::HashMap;
 
@@ -29,10 +29,12 @@ pub(super) struct Keep<'a> {
     pub(super) sites: &'a mut Sites,
     pub(super) bodies: &'a mut Bodies,
     /// The triangles given, and the flat facet of each.
-    triangles: &'a [[VertexId; 3]],
-    flats: &'a Flats,
+    pub(super) triangles: &'a [[VertexId; 3]],
+    pub(super) flats: &'a Flats,
     /// The flat facet of each facet of the surface, vertices rising.
-    walls: HashMap<[VertexId; 3], u32>,
+    pub(super) walls: HashMap<[VertexId; 3], u32>,
+    /// The tets of each vertex, with some that it has no more.
+    incident: Vec<Vec<TetId>>,
 }
 
 impl<'a> Keep<'a> {
@@ -48,11 +50,13 @@ impl<'a> Keep<'a> {
             list.iter().map(|&part| (rising(part), flat as u32)).collect::<Vec<_>>()
         };
         let walls = parts.iter().enumerate().flat_map(of_flat).collect();
-        Self { tets, sites, bodies, triangles, flats, walls }
+        Self { tets, sites, bodies, triangles, flats, walls, incident: Vec::new() }
     }
 
     /// Puts all right that can be; answers the facets of each flat facet, and whether all of those have their triangles.
     pub(super) fn run(mut self, segments: &Segments, watch: &Watch) -> Result<(Csr<[VertexId; 3]>, bool)> {
+        self.shed();
+        self.leave_out();
         let on_segments = segments.points(self.sites);
         let mut chains: Vec<(u32, Vec<VertexId>)> = (0..on_segments.len() as u32)
             .map(|s| (s, on_segments.list(s as usize).to_vec()))
@@ -75,9 +79,45 @@ impl<'a> Keep<'a> {
         for (flat, list) in lists.iter_mut().enumerate() {
             is_whole &= self.flats.triangles.list(flat).len() == 1 || self.restore(flat, list).is_some();
         }
+        self.remove_flat();
         let mut csr = Csr::default();
         lists.into_iter().for_each(|list| csr.push(list));
         Ok((csr, is_whole))
+    }
+
+    /// Removes the tets outside, where each triangle has a body at it: nobody asks for them any more. Notes the others by vertex, since those of one vertex need
+    /// not hang together then.
+    fn leave_out(&mut self) {
+        if self.bodies.sides.iter().all(|sides| *sides != [0; 2]) {
+            let is_outside = |tet: &TetId| self.bodies.of_slot[tet.index()] == 0;
+            let outside: Vec<TetId> = self.tets.iter().map(|(tet, _)| tet).filter(is_outside).collect();
+            for tet in outside {
+                for half in Tets::facets(tet) {
+                    self.tets.join(HalfFacet::NONE, self.tets.across(half));
+                }
+                self.tets.remove(tet);
+            }
+        }
+        let all: Vec<TetId> = self.tets.iter().map(|(tet, _)| tet).collect();
+        all.into_iter().for_each(|tet| self.note(tet));
+    }
+
+    fn note(&mut self, tet: TetId) {
+        for v in self.tets.vertices(tet) {
+            if self.incident.len() <= v.index() {
+                self.incident.resize(v.index() + 1, Vec::new());
+            }
+            self.incident[v.index()].push(tet);
+        }
+    }
+
+    /// All tets of a vertex.
+    pub(super) fn star(&mut self, vertex: VertexId) -> Vec<TetId> {
+        let Some(star) = self.incident.get_mut(vertex.index()) else { return Vec::new() };
+        star.sort_unstable();
+        star.dedup();
+        star.retain(|&tet| self.tets.vertices(tet).contains(&vertex));
+        star.clone()
     }
 
     /// Moves the points of a segment inside, those that can be; the others are left in the list.
@@ -94,7 +134,7 @@ impl<'a> Keep<'a> {
     }
 
     /// The facets of the surface by flat facet, each list turned as its plane and in order.
-    fn lists(&self) -> Vec<Vec<[VertexId; 3]>> {
+    pub(super) fn lists(&self) -> Vec<Vec<[VertexId; 3]>> {
         let mut lists = vec![Vec::new(); self.flats.triangles.len()];
         self.walls.iter().for_each(|(&face, &flat)| lists[flat as usize].push(face));
         for (list, flat) in lists.iter_mut().zip(self.flats.triangles.iter()) {
@@ -112,8 +152,7 @@ impl<'a> Keep<'a> {
 
     /// Moves a point on an edge inside, whose neighbours `ends` on the edge are joined, or one in a triangle. `None` where that cannot be.
     fn free(&mut self, vertex: VertexId, ends: Option<[VertexId; 2]>) -> Option<()> {
-        let mut star = Vec::new();
-        self.tets.star(vertex, &mut star);
+        let star = self.star(vertex);
         let fans = self.fans(vertex, &star);
         let mut base: Vec<(u32, [VertexId; 3])> = Vec::new();
         let mut i = 0;
@@ -138,7 +177,7 @@ impl<'a> Keep<'a> {
             for half in Tets::facets(tet) {
                 let face = self.tets.inward(half);
                 if face.contains(&vertex)
-                    && let Some(&flat) = self.walls.get(&rising(face))
+                    && let Some(flat) = self.wall(half)
                 {
                     fans.push((flat, rising(face)));
                 }
@@ -152,7 +191,17 @@ impl<'a> Keep<'a> {
         fans
     }
 
-    fn plane(&self, flat: u32) -> Plane<'_> {
+    /// The flat facet that a facet of a tet is of. Tets outside may overlap, so that others of the same vertices lie between them.
+    pub(super) fn wall(&self, half: HalfFacet) -> Option<u32> {
+        let flat = *self.walls.get(&rising(self.tets.inward(half)))?;
+        let other = self.tets.across(half);
+        let behind = if other.is_none() { 0 } else { self.bodies.of_slot[other.tet().index()] };
+        let bodies = [self.bodies.of_slot[half.tet().index()], behind];
+        let [a, b] = self.bodies.sides[flat as usize];
+        (bodies == [a, b] || bodies == [b, a]).then_some(flat)
+    }
+
+    pub(super) fn plane(&self, flat: u32) -> Plane<'_> {
         Plane::new(self.sites, self.triangles[self.flats.triangles.list(flat as usize)[0] as usize])
     }
 
@@ -199,7 +248,7 @@ impl<'a> Keep<'a> {
 
     /// The sides of a part of the surface, of facets `old`, that is to have the triangles `base`: the tets in `star` that hang together without crossing
     /// the surface. `is_around` tells which of their facets stay. `None` where one tet lies on both sides.
-    fn sides(
+    pub(super) fn sides(
         &mut self,
         star: &[TetId],
         old: &[[VertexId; 3]],
@@ -222,7 +271,7 @@ impl<'a> Keep<'a> {
                     let (face, other) = (self.tets.inward(half), self.tets.across(half));
                     if is_around(self.tets, half) {
                         side.shell.push((other, face));
-                    } else if let Some(&flat) = self.walls.get(&rising(face)) {
+                    } else if let Some(flat) = self.wall(half) {
                         if !old.contains(&rising(face)) {
                             return None;
                         }
@@ -248,7 +297,7 @@ impl<'a> Keep<'a> {
     }
 
     /// Makes all sides anew, if each has room for a point.
-    fn commit(
+    pub(super) fn commit(
         &mut self,
         sides: Vec<Side>,
         middle: Point,
@@ -287,6 +336,7 @@ impl<'a> Keep<'a> {
         let made = side.make(self.tets, apex);
         self.bodies.of_slot.resize(self.tets.n_slots(), Bodies::NONE);
         made.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = body);
+        made.iter().for_each(|&tet| self.note(tet));
         made
     }
 
@@ -348,8 +398,8 @@ impl<'a> Keep<'a> {
 
     /// Replaces the edge a b within a flat facet by p q.
     fn flip(&mut self, flat: u32, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> Option<()> {
-        let mut star = Vec::new();
-        self.tets.around([a, b], &mut star);
+        let mut star = self.star(a);
+        star.retain(|&tet| self.tets.vertices(tet).contains(&b));
         let old = [rising([a, b, p]), rising([b, a, q])];
         let base = [(flat, [p, a, q]), (flat, [q, b, p])];
         let is_around = |tets: &Tets, half: HalfFacet| {

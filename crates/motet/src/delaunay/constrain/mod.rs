@@ -8,8 +8,9 @@
 //! | bodies | `bodies` | what the surfaces part |
 //! | surface | `keep`, `recone` | points on edges and in triangles move inside |
 //!
-//! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, all begins anew, with
-//! each triangle for itself.
+//! Triangles in one plane, but for the rounding of their coordinates (`rounding`), are one flat facet at first (`flats`). Flat tets in it
+//! belong to the outside (`shed`). Where the triangles do not come out of it as they were, all begins anew, with those in one plane exactly, then with
+//! each triangle for itself; the best counts. Tets inside that have no volume in the digits of their coordinates are made anew (`flat_tets`).
 //!
 //! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
 //! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
@@ -28,6 +29,7 @@ mod cut;
 mod edges;
 mod facets;
 mod finish;
+mod flat_tets;
 mod flats;
 mod hollow;
 mod insert;
@@ -35,8 +37,10 @@ mod keep;
 mod pierce;
 mod plane;
 mod recone;
+mod rounding;
 mod segments;
 mod share;
+mod shed;
 mod sides;
 mod sites;
 mod split;
@@ -53,7 +57,7 @@ use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
-use flats::Flats;
+use flats::{Flats, Merge};
 use keep::Keep;
 use segments::Segments;
 use sites::Sites;
@@ -142,16 +146,25 @@ pub fn constrain(
     };
     let fill = |flats: &Flats| Order::retried(moves, threads.watch(), |order| fill(flats, order));
     let sites = Sites::new(given.clone(), &sorted);
-    let flats = Flats::find(&sites, triangles, moves);
-    let has_merged = flats.triangles.len() < triangles.len();
-    let filled = match fill(&flats) {
-        // With each triangle for itself all its edges are there, if in pieces.
-        merged if has_merged && !merged.as_ref().is_ok_and(Filled::is_kept) => {
-            let each = fill(&Flats::find(&sites, triangles, false));
-            each.or_else(|error| merged.ok().filter(|merged| merged.is_whole).ok_or(error))?
+    let merges = [Merge::Rounded(back.rounding(rounding::of(points))), Merge::Exact, Merge::None];
+    let mut best: Option<Result<Filled>> = None;
+    let mut tried: Vec<Flats> = Vec::new();
+    for merge in merges.into_iter().filter(|merge| moves || *merge == Merge::None) {
+        let flats = Flats::find(&sites, triangles, merge);
+        if tried.iter().any(|tried| tried.triangles == flats.triangles) {
+            continue;
         }
-        filled => filled?,
-    };
+        let filled = fill(&flats);
+        tried.push(flats);
+        let is_done = filled.as_ref().is_ok_and(Filled::is_kept);
+        if best.as_ref().is_none_or(|best| is_better(&filled, best)) {
+            best = Some(filled);
+        }
+        if is_done {
+            break;
+        }
+    }
+    let filled = best.unwrap_or_else(|| fill(&Flats::find(&sites, triangles, Merge::None)))?;
     Ok(filled.finish(points, triangles, back))
 }
 
@@ -179,6 +192,15 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
         .remedy("merge points that coincide"))
 }
 
+/// Whether what was made is better than something else: whether more triangles are facets as they came. With each triangle for itself
+/// all its edges are there, if in pieces.
+fn is_better(filled: &Result<Filled>, than: &Result<Filled>) -> bool {
+    let key = |filled: &Result<Filled>| {
+        filled.as_ref().map_or((false, 0), |filled| (filled.is_whole, usize::MAX - filled.n_in_pieces()))
+    };
+    key(filled) > key(than)
+}
+
 /// What gives points their own scale back.
 #[derive(Clone, Copy)]
 struct Back {
@@ -187,6 +209,11 @@ struct Back {
 }
 
 impl Back {
+    /// A length along each axis, in the scale that points have been given.
+    fn rounding(&self, length: f64) -> Point {
+        std::array::from_fn(|i| length / (self.by_axis[i] * self.all[0] * self.all[1]))
+    }
+
     fn of(&self, p: Point) -> Point {
         std::array::from_fn(|i| p[i] * self.by_axis[i] * self.all[0] * self.all[1])
     }
@@ -265,6 +292,12 @@ impl Filled {
             (parts, is_whole) = keep.run(&segments, &order.watch)?;
         }
         Ok(Self { tets, sites, segments, flats, bodies, parts, is_whole })
+    }
+
+    /// How many facets more there are than triangles.
+    fn n_in_pieces(&self) -> usize {
+        let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
+        self.parts.items().len().saturating_sub(n)
     }
 
     /// Whether each triangle is a facet as it came.

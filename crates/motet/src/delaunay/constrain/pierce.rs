@@ -65,7 +65,7 @@ impl<K: Kept> Wanted for Whole<'_, K> {
 
     fn meets_edge(&self, [u, v]: [VertexId; 2]) -> u32 {
         let is_cut = self.sides.of(self.sites, u) * self.sides.of(self.sites, v) < 0;
-        u32::from(is_cut && self.parts.iter().any(|&part| is_in(self.sites, [u, v], part)))
+        u32::from(is_cut && self.parts.iter().any(|&part| pierces(self.sites, [u, v], part)))
     }
 }
 
@@ -73,6 +73,12 @@ impl<K: Kept> Wanted for Whole<'_, K> {
 fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
     let turns = [[a, b], [b, c], [c, a]].map(|[p, q]| sites.orient3d([u, v, p, q]));
     turns.iter().all(|&t| t >= 0) || turns.iter().all(|&t| t <= 0)
+}
+
+/// Whether an edge passes through a triangle, from one side of it to the other.
+fn pierces(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
+    // Of a facet that is flat but for rounding each part has a plane of its own.
+    is_in(sites, [u, v], [a, b, c]) && sites.orient3d([a, b, c, u]) * sites.orient3d([a, b, c, v]) < 0
 }
 
 impl Pierce {
@@ -88,7 +94,7 @@ impl Pierce {
         points.sort_unstable();
         points.dedup();
         let mut sides = Sides::default();
-        sides.begin(triangles[0].1);
+        sides.begin(triangles[0].1, parts);
         Self {
             sides,
             triangles,
@@ -138,7 +144,7 @@ impl Pierce {
         for i in 0..n {
             let (tet, edge) = self.piercing[(n / 2 + i) % n];
             tets.around_from(edge, tet, &mut self.star);
-            let Some((number, triangle)) = self.triangles.iter().copied().find(|t| is_in(sites, edge, t.1))
+            let Some((number, triangle)) = self.triangles.iter().copied().find(|t| pierces(sites, edge, t.1))
             else {
                 continue;
             };
@@ -146,6 +152,7 @@ impl Pierce {
             let vertex = sites.add_in(number, triangle, shares);
             if self.split.insert(tets, sites, vertex, (&self.star, &self.star), kept) {
                 self.points.push(vertex);
+                self.sides.add(vertex);
                 self.n_added += 1;
                 return Some(());
             }
@@ -256,6 +263,25 @@ impl Pierce {
         [s, t]
     }
 
+    /// The vertex that with an edge, whose tets are at hand, makes a facet in the plane, on the left of it. Where rounding has left flat tets in the plane
+    /// there may be several: that of the facet in front of which there is none.
+    fn frontmost(&self, tets: &Tets, sites: &Sites, [a, b]: [VertexId; 2]) -> Option<VertexId> {
+        let mut any = None;
+        for v in self.star.iter().map(|&tet| tets.vertices(tet)) {
+            let mut others = v.into_iter().filter(|&c| c != a && c != b);
+            let (c, d) = (others.next()?, others.next()?);
+            for (c, beyond) in [(c, d), (d, c)] {
+                if self.side(sites, c) == 0 && self.turn(sites, [a, b, c]) > 0 {
+                    if self.side(sites, beyond) > 0 {
+                        return Some(c);
+                    }
+                    any = Some(c);
+                }
+            }
+        }
+        any
+    }
+
     /// The facets that the triangle is made of, from its edges inwards.
     pub(super) fn facets(&mut self, tets: &mut Tets, sites: &Sites) -> Option<Vec<[VertexId; 3]>> {
         let mut facets: Vec<[VertexId; 3]> = Vec::new();
@@ -268,9 +294,7 @@ impl Pierce {
                 continue;
             }
             tets.around([a, b], &mut self.star);
-            let mut others = self.star.iter().flat_map(|&tet| tets.vertices(tet));
-            let c = others
-                .find(|&c| c != a && c != b && self.side(sites, c) == 0 && self.turn(sites, [a, b, c]) > 0)?;
+            let c = self.frontmost(tets, sites, [a, b])?;
             facets.push([a, b, c]);
             done.extend([[a, b], [b, c], [c, a]]);
             todo.extend([[b, c], [c, a]].into_iter().filter(|e| !outline.contains(e)).map(|[p, q]| [q, p]));

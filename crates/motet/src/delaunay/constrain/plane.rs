@@ -142,6 +142,19 @@ impl Net {
         self.left.insert([c, a], (i, b));
     }
 
+    /// How many directed edges there are: three a triangle, where no two have the same.
+    pub(super) fn len(&self) -> usize {
+        self.left.len()
+    }
+
+    /// The edges with no triangle on their right; rising.
+    pub(super) fn outline(&self) -> Vec<[VertexId; 2]> {
+        let outer = self.left.keys().filter(|[a, b]| !self.left.contains_key(&[*b, *a]));
+        let mut edges: Vec<_> = outer.copied().collect();
+        edges.sort_unstable();
+        edges
+    }
+
     /// All edges between two triangles, each once; rising.
     pub(super) fn edges(&self) -> Vec<[VertexId; 2]> {
         let inner = self.left.keys().filter(|[a, b]| a < b && self.left.contains_key(&[*b, *a]));

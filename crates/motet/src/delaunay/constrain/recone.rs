@@ -4,6 +4,7 @@
 //! facets around them and to the new triangles fill the same room (a cone). So the surface can be cut otherwise at the price of a point
 //! inside, whatever tets there are.
 
+use super::flat_tets::{is_flat, is_needle};
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId};
@@ -105,7 +106,10 @@ impl Side {
             let p = sites.near(apex);
             let mut faces = self.faces().filter(|face| !face.contains(&apex));
             let worst = faces.clone().map(|face| share(sites, face, p)).fold(f64::INFINITY, f64::min);
-            if worst > best.0 && faces.all(|[a, b, c]| sites.orient3d([a, b, c, apex]) > 0) {
+            let sees = |[a, b, c]: [VertexId; 3]| {
+                sites.orient3d([a, b, c, apex]) > 0 && !makes_flat(sites, [a, b, c], p)
+            };
+            if worst > best.0 && faces.all(sees) {
                 best = (worst, Some(apex));
             }
         }
@@ -131,6 +135,11 @@ impl Side {
         self.faces().all(is_seen)
     }
 
+    /// Whether one of the tets from a point may have no volume but for rounding; those aside that have none wherever the point is.
+    pub(super) fn is_flat_from(&self, sites: &Sites, p: Point) -> bool {
+        self.faces().any(|face| makes_flat(sites, face, p))
+    }
+
     /// Makes the tets to `apex`, a new vertex or one of those around; with a new one there is one for each facet of the shell, then one for each
     /// triangle of the base.
     pub(super) fn make(&self, tets: &mut Tets, apex: VertexId) -> Vec<TetId> {
@@ -138,6 +147,12 @@ impl Side {
         let base = self.base.iter().map(|&face| (HalfFacet::NONE, face));
         tets.cone(apex, self.shell.iter().copied().chain(base), &mut Vec::new())
     }
+}
+
+/// Whether the tet of a face to a point may have no volume but for rounding, though the face has an area.
+fn makes_flat(sites: &Sites, face: [VertexId; 3], p: Point) -> bool {
+    let [a, b, c] = face.map(|v| sites.near(v));
+    is_flat([a, b, c, p]) && !is_needle([a, b, c])
 }
 
 /// Six times the volume of the tet of a face, seen from p, over the cube of its longest edge.

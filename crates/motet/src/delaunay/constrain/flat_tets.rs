@@ -1,0 +1,91 @@
+//! Tets too flat to have a volume in the digits of their coordinates go.
+//!
+//! Delaunay tets of four vertices that were in one plane before rounding are positive, by 1e-16 of their size. Such a tet has two edges that cross
+//! but for that; where all tets around one of them are made anew from a point inside, the room that the point has is that of their
+//! other sides.
+
+use super::keep::Keep;
+use super::recone::Side;
+use super::tets::Tets;
+use crate::base::{Point, TetId, VertexId, rising};
+use crate::geometry::tet::{EDGES, volume};
+use crate::geometry::triangle::area;
+use crate::geometry::vector::{add, distance, scale};
+
+/// Six times a volume below this, times the largest coordinate and the square of the longest edge, may be rounding alone.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// So often, since tets that come may be flat as well.
+const ROUNDS: usize = 4;
+
+impl Keep<'_> {
+    /// Makes tets that have no volume anew, where that can be.
+    pub(super) fn remove_flat(&mut self) {
+        for _ in 0..ROUNDS {
+            let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
+            let all =
+                self.tets.iter().filter(|(tet, v)| is_inside(tet) && is_flat(v.map(|v| self.sites.near(v))));
+            let flat: Vec<(TetId, [VertexId; 4])> = all.collect();
+            let mut has_changed = false;
+            for (tet, v) in flat {
+                has_changed |= self.tets.vertices(tet) == v
+                    && EDGES.iter().any(|&[i, j]| self.remove_at([v[i], v[j]]).is_some());
+            }
+            if !has_changed {
+                return;
+            }
+        }
+    }
+
+    /// Makes the tets around an edge anew, if then none of them is flat.
+    fn remove_at(&mut self, [a, b]: [VertexId; 2]) -> Option<()> {
+        let mut star = self.star(a);
+        star.retain(|&tet| self.tets.vertices(tet).contains(&b));
+        let mut old = Vec::new();
+        let mut base = Vec::new();
+        for half in star.iter().flat_map(|&tet| Tets::facets(tet)) {
+            let face = self.tets.inward(half);
+            if let Some(flat) = self.wall(half).filter(|_| face.contains(&a) && face.contains(&b))
+                && !old.contains(&rising(face))
+            {
+                old.push(rising(face));
+                base.push((flat, self.plane(flat).turned(face)));
+            }
+        }
+        let sides = self.sides(&star, &old, &base, |tets, half| {
+            let apex = tets.vertices(half.tet())[half.facet()];
+            apex == a || apex == b
+        })?;
+        let [p, q] = [a, b].map(|v| self.sites.near(v));
+        let middle = scale(add(p, q), 0.5);
+        let is_good = |side: &Side| {
+            self.bodies.of_slot[side.tets[0].index()] == 0
+                || side.place(self.sites, middle).is_some_and(|p| !side.is_flat_from(self.sites, p))
+        };
+        if !sides.iter().all(is_good) {
+            return None;
+        }
+        self.commit(sides, middle, &old, &base)
+    }
+}
+
+/// Whether a tet may have no volume but for rounding.
+pub(super) fn is_flat(corners: [Point; 4]) -> bool {
+    let longest = longest(&corners);
+    6.0 * volume(corners) <= rounding(&corners) * longest * longest
+}
+
+/// Whether no tet on a triangle has a volume that can be told from rounding.
+pub(super) fn is_needle(corners: [Point; 3]) -> bool {
+    2.0 * area(corners) <= rounding(&corners) * longest(&corners)
+}
+
+fn rounding(corners: &[Point]) -> f64 {
+    ROUNDING * corners.as_flattened().iter().fold(0.0f64, |largest, x| largest.max(x.abs()))
+}
+
+fn longest(corners: &[Point]) -> f64 {
+    let to_others =
+        |(i, p): (usize, &Point)| corners[..i].iter().map(|q| distance(*p, *q)).fold(0.0, f64::max);
+    corners.iter().enumerate().map(to_others).fold(0.0, f64::max)
+}

@@ -1,0 +1,87 @@
+//! Flat tets in a flat facet belong to the outside, where one of its sides is outside.
+//!
+//! Rounding leaves vertices of one facet 1e-16 above and below its plane, and Delaunay tets of four of them between. They are positive, but too flat for
+//! anything to be done with: no number lies between their vertices. Which way the facet passes them is free to choose. Where all of them are outside,
+//! each tet inside on the facet has an apex away from it, and the triangles of the facet can be changed as if it were flat to the last bit (`keep`).
+
+use hashbrown::HashSet;
+
+use super::keep::Keep;
+use super::plane::Net;
+use super::tets::Tets;
+use crate::base::{TetId, VertexId, rising};
+
+impl Keep<'_> {
+    /// Gives the flat tets in flat facets to the outside, as far as that leaves facets that are as they should be.
+    pub(super) fn shed(&mut self) {
+        let mut star = Vec::new();
+        for (flat, list) in self.lists().into_iter().enumerate() {
+            let is_outside = self.bodies.sides[flat].map(|body| body == 0);
+            if list.len() > 1 && is_outside[0] != is_outside[1] {
+                self.shed_one(flat as u32, &list, &mut star);
+            }
+        }
+    }
+
+    fn shed_one(&mut self, flat: u32, list: &[[VertexId; 3]], star: &mut Vec<TetId>) {
+        let own: HashSet<VertexId> = list.as_flattened().iter().copied().collect();
+        let (flat_tets, sheet) = match self.flat_tets(&own, list, star) {
+            Some((tets, sheet)) if !tets.is_empty() => (tets, sheet),
+            _ => return,
+        };
+        let plane = self.plane(flat);
+        let sheet: Vec<_> = sheet.into_iter().map(|face| plane.turned(face)).collect();
+        if !covers_the_same(&sheet, list) {
+            return;
+        }
+        flat_tets.iter().for_each(|tet| self.bodies.of_slot[tet.index()] = 0);
+        list.iter().for_each(|&face| _ = self.walls.remove(&rising(face)));
+        self.walls.extend(sheet.into_iter().map(|face| (rising(face), flat)));
+    }
+
+    /// The tets inside of which all vertices are `own`, that hang together with the facets of `list`; and the facets that are left when they are outside. `None`
+    /// where one of them is at another part of the surface.
+    fn flat_tets(
+        &mut self,
+        own: &HashSet<VertexId>,
+        list: &[[VertexId; 3]],
+        star: &mut Vec<TetId>,
+    ) -> Option<(Vec<TetId>, Vec<[VertexId; 3]>)> {
+        let (mut found, mut sheet) = (Vec::new(), Vec::new());
+        let mut done: HashSet<TetId> = HashSet::new();
+        let is_inside = |keep: &Self, tet: TetId| keep.bodies.of_slot[tet.index()] != 0;
+        let is_flat = |keep: &Self, tet: TetId| keep.tets.vertices(tet).iter().all(|v| own.contains(v));
+        for &face in list {
+            let half = self.tets.find_facet(face, star)?;
+            let half = if is_inside(self, half.tet()) { half } else { self.tets.across(half) };
+            if !is_flat(self, half.tet()) {
+                sheet.push(face);
+            } else if done.insert(half.tet()) {
+                found.push(half.tet());
+            }
+        }
+        let mut next = 0;
+        while let Some(&tet) = found.get(next) {
+            next += 1;
+            for half in Tets::facets(tet) {
+                let (face, other) = (self.tets.inward(half), self.tets.across(half));
+                if let Some(flat) = self.wall(half) {
+                    if flat != self.walls[&rising(list[0])] {
+                        return None;
+                    }
+                } else if !is_flat(self, other.tet()) {
+                    sheet.push(face);
+                } else if done.insert(other.tet()) {
+                    found.push(other.tet());
+                }
+            }
+        }
+        Some((found, sheet))
+    }
+}
+
+/// Whether two lists of triangles, all turned alike, have the same number and the same outline.
+fn covers_the_same(a: &[[VertexId; 3]], b: &[[VertexId; 3]]) -> bool {
+    let [of_a, of_b] = [a, b].map(|list| (Net::new(list).outline(), Net::new(list).len()));
+    a.len() == b.len() && of_a == of_b && of_a.1 == 3 * a.len()
+}
