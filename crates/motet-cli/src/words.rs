@@ -55,7 +55,7 @@ pub(crate) fn paths<S: Serializer>(paths: &impl Paths, serializer: S) -> Result<
 
 /// What [`paths`] takes.
 pub(crate) trait Paths {
-    /// The same as texts.
+    /// The paths as texts, as [`shown`] writes each.
     fn texts(&self) -> impl Serialize;
 }
 

@@ -93,7 +93,8 @@ fn joined(sites: &Sites, triangles: &[[VertexId; 3]], pairs: &[Pair]) -> (Vec<u3
     (number.collect(), firsts)
 }
 
-/// The same for triangles that lie in one plane but for rounding.
+/// The flat facet of each triangle, and the first triangle of each facet, where triangles lie in one plane but for `rounding` along each axis: a facet grows from its
+/// largest triangle, whose plane its vertices keep to.
 fn grown(
     sites: &Sites,
     triangles: &[[VertexId; 3]],
