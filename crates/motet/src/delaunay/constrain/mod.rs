@@ -8,9 +8,9 @@
 //! | bodies | `bodies` | what the surfaces part |
 //! | surface | `keep`, `recone` | points on edges and in triangles move inside |
 //!
-//! Triangles in one plane, but for the rounding of their coordinates (`rounding`), are one flat facet at first (`flats`). Flat tets in it
-//! belong to the outside (`shed`). Where the triangles do not come out of it as they were, all begins anew, with those in one plane exactly, then with
-//! each triangle for itself; the best counts. Tets inside that have no volume in the digits of their coordinates are made anew (`flat_tets`).
+//! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, or with tets that have no volume in the
+//! digits of their coordinates, all begins anew, with triangles in one plane but for the rounding of their coordinates (`rounding`): flat tets there
+//! belong to the outside (`shed`). At last each triangle is for itself; the best counts. Flat tets inside are made anew (`flat_tets`).
 //!
 //! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
 //! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
@@ -52,11 +52,12 @@ mod wrap;
 
 use super::Triangulation;
 use super::input::{self, Scaled};
-use crate::base::{Csr, Error, Point, Result, Threads, VertexId};
+use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId};
 use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
+use flat_tets::is_flat;
 use flats::{Flats, Merge};
 use keep::Keep;
 use segments::Segments;
@@ -146,7 +147,7 @@ pub fn constrain(
     };
     let fill = |flats: &Flats| Order::retried(moves, threads.watch(), |order| fill(flats, order));
     let sites = Sites::new(given.clone(), &sorted);
-    let merges = [Merge::Rounded(back.rounding(rounding::of(points))), Merge::Exact, Merge::None];
+    let merges = [Merge::Exact, Merge::Rounded(back.rounding(rounding::of(points))), Merge::None];
     let mut best: Option<Result<Filled>> = None;
     let mut tried: Vec<Flats> = Vec::new();
     for merge in merges.into_iter().filter(|merge| moves || *merge == Merge::None) {
@@ -156,7 +157,8 @@ pub fn constrain(
         }
         let filled = fill(&flats);
         tried.push(flats);
-        let is_done = filled.as_ref().is_ok_and(Filled::is_kept);
+        let is_done =
+            filled.as_ref().is_ok_and(|filled| filled.is_kept() && (!moves || filled.n_flat() == 0));
         if best.as_ref().is_none_or(|best| is_better(&filled, best)) {
             best = Some(filled);
         }
@@ -192,13 +194,14 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
         .remedy("merge points that coincide"))
 }
 
-/// Whether what was made is better than something else: whether more triangles are facets as they came. With each triangle for itself
-/// all its edges are there, if in pieces.
+/// Whether what was made is better than something else: whether more triangles are facets as they came, then whether fewer tets are flat. With each
+/// triangle for itself all its edges are there, if in pieces.
 fn is_better(filled: &Result<Filled>, than: &Result<Filled>) -> bool {
-    let key = |filled: &Result<Filled>| {
-        filled.as_ref().map_or((false, 0), |filled| (filled.is_whole, usize::MAX - filled.n_in_pieces()))
+    let faults = |filled: &Result<Filled>| {
+        let of = |filled: &Filled| (!filled.is_whole, filled.n_in_pieces(), filled.n_flat());
+        filled.as_ref().map_or((true, usize::MAX, usize::MAX), of)
     };
-    key(filled) > key(than)
+    faults(filled) < faults(than)
 }
 
 /// What gives points their own scale back.
@@ -298,6 +301,13 @@ impl Filled {
     fn n_in_pieces(&self) -> usize {
         let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
         self.parts.items().len().saturating_sub(n)
+    }
+
+    /// How many tets inside have no volume in the digits of their coordinates.
+    fn n_flat(&self) -> usize {
+        let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
+        let near = |v: [VertexId; 4]| v.map(|v| self.sites.near(v));
+        self.tets.iter().filter(|(tet, v)| is_inside(tet) && is_flat(near(*v))).count()
     }
 
     /// Whether each triangle is a facet as it came.

@@ -45,8 +45,11 @@ mod tests {
         assert!(of(&[third]) < 1e-14);
         let single = of(&[third.map(|x| f64::from(x as f32))]);
         assert!((5e-8..2e-7).contains(&single), "{single}");
-        let decimals = of(&[[0.333333, 0.666667, 1.0]]);
+        let decimals = of(&[[0.333333, 0.666667, 0.9]]);
         assert!((0.9e-6..1.1e-6).contains(&decimals), "{decimals}");
+        // Six digits of a number that is not below one are five decimals.
+        let decimals = of(&[[0.333333, 0.666667, 1.0]]);
+        assert!((0.9e-5..1.1e-5).contains(&decimals), "{decimals}");
         let digits = of(&[[0.00123456, 0.654321, 0.5]]);
         assert!((0.9e-6..1.1e-6).contains(&digits), "{digits}");
         // Few digits are meant so.
