@@ -279,6 +279,7 @@ def test_pieces_become_one_mesh(motet, tmp_path):
     parts = []
     for i in (1, 2):
         grid = mixed_grid(polyhedra=False)  # VTK does not raise the ids of faces by the points of earlier pieces
+        vtk_to_numpy(grid.GetPoints().GetData())[:] += 100 * i  # points at one place would be one point
         vtk_write_xml(grid, tmp_path / f"part{i}.vtu", "Ascii", "None")
         parts.append((tmp_path / f"part{i}.vtu").read_text())
     start, end = parts[1].index("<Piece"), parts[1].index("</Piece>") + len("</Piece>")
