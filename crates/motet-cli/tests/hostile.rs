@@ -52,8 +52,8 @@ fn a_full_disk_behind_standard_output_is_told() {
             .output()
             .unwrap();
         assert_eq!(ran.status.code(), Some(1), "{words:?}");
-        let told = String::from_utf8_lossy(&ran.stderr).into_owned();
-        assert!(told.contains("error: standard output: cannot be written"), "{words:?}: {told}");
+        let message = String::from_utf8_lossy(&ran.stderr).into_owned();
+        assert!(message.contains("error: standard output: cannot be written"), "{words:?}: {message}");
     }
 }
 
@@ -165,9 +165,9 @@ fn coordinates_beyond_numbers_are_a_defect_and_no_volume() {
     mesh.points.iter_mut().flatten().for_each(|x| *x *= 1e120);
     let name = folder.mesh("far.vtu", &mesh);
     let call = folder.motet(["info", &name, "--json"]).assert().code(0);
-    let told = object(&stdout(&call));
-    assert!(told["volume"].is_number(), "{told}");
-    assert!(told["defects"].to_string().contains("non_finite_point"), "{told}");
+    let summary = object(&stdout(&call));
+    assert!(summary["volume"].is_number(), "{summary}");
+    assert!(summary["defects"].to_string().contains("non_finite_point"), "{summary}");
     for verb in [&["remesh"][..], &["refine", "--all"], &["move", "--affine", "1,0,0,0,0,1,0,0,0,0,1,0.1"]] {
         let call =
             folder.motet(verb.iter().copied().chain([name.as_str(), "-o", "out.vtu"])).assert().code(3);

@@ -210,14 +210,14 @@ fn zeros(n_blocks: usize) -> Vec<u8> {
 fn what_unpacks_to_far_more_than_it_is_is_refused_before_it_is_unpacked() {
     let folder = Folder::new();
     assert_eq!(read(folder.write("some.vtu", zeros(4))).0.points.len(), 4 << 16);
-    let told = refused(folder.write("bomb.vtu", zeros(800)));
-    assert!(told.contains("1258291200 bytes") && told.contains("MOTET_READ_LIMIT"), "{told}");
+    let message = refused(folder.write("bomb.vtu", zeros(800)));
+    assert!(message.contains("1258291200 bytes") && message.contains("MOTET_READ_LIMIT"), "{message}");
 
     let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
     packer.write_all(&vec![b' '; 1 << 22]).unwrap();
     let packed = packer.finish().unwrap();
-    let told = refused(folder.write("bomb.xml.gz", packed.repeat(100)));
-    assert!(told.contains("MOTET_READ_LIMIT"), "{told}");
+    let message = refused(folder.write("bomb.xml.gz", packed.repeat(100)));
+    assert!(message.contains("MOTET_READ_LIMIT"), "{message}");
 }
 
 #[test]
@@ -227,8 +227,8 @@ fn many_arrays_of_the_same_bytes_count_each() {
     bytes.extend((1u64 << 17).to_le_bytes());
     bytes.extend([0; 1 << 17]);
     bytes.extend(b"</AppendedData></VTKFile>");
-    let told = refused(Folder::new().write("same.vtu", bytes));
-    assert!(told.contains("MOTET_READ_LIMIT"), "{told}");
+    let message = refused(Folder::new().write("same.vtu", bytes));
+    assert!(message.contains("MOTET_READ_LIMIT"), "{message}");
 }
 
 #[test]

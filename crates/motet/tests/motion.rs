@@ -536,8 +536,7 @@ fn ends_slide_in_their_planes_with_a_wall_that_widens() {
     let mesh = solid(6, CellKind::TETRA);
     let ends = tube_ends(&mesh);
     let on_wall = |p: Point| p[..2].iter().any(|&x| x == 0.0 || x == 6.0);
-    let widen =
-        |p: Point| if on_wall(p) { [0.2 * (p[0] - 3.0), 0.2 * (p[1] - 3.0), 0.0] } else { [f64::MAX; 3] };
+    let widen = |p: Point| if on_wall(p) { [0.2 * (p[0] - 3.0), 0.2 * (p[1] - 3.0), 0.0] } else { [1e59; 3] };
     let mut options = Options { sliding: ends.to_vec(), ..Options::default() };
     let moved = step(&mover(&mesh, &options), widen);
     for end in &ends {

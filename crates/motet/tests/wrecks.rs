@@ -5,6 +5,7 @@ mod common;
 use common::wreck::{End, Wreck, sound_connectivity};
 use common::{Numbers, random_mesh};
 use motet::base::{Threads, VertexId};
+use motet::geometry::predicates::orient3d;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::{Options, SurfaceRule, remesh};
@@ -61,6 +62,65 @@ fn a_tet_folded_over_a_mesh_is_removed_and_the_rest_stays() {
         all
     };
     assert!(labelled(new) == labelled(&mesh), "every triangle keeps its patch");
+}
+
+/// A tet with a facet to each of four more, so that each of those is at the boundary with three of its facets.
+fn star() -> TetMesh {
+    let points = vec![
+        [1., 1., 1.],
+        [1., -1., -1.],
+        [-1., 1., -1.],
+        [-1., -1., 1.],
+        [-1.2, -1.2, -1.2],
+        [-1.2, 1.2, 1.2],
+        [1.2, -1.2, 1.2],
+        [1.2, 1.2, -1.2],
+    ];
+    let tets = [[0, 1, 3, 2], [1, 2, 3, 4], [0, 3, 2, 5], [0, 1, 3, 6], [0, 2, 1, 7]];
+    let mut mesh = TetMesh::new(points, tets.map(|tet| tet.map(VertexId)).to_vec());
+    for tet in &mut mesh.tets {
+        let [a, b, c, d] = tet.map(|v| mesh.points[v.index()]);
+        if orient3d(a, b, c, d) < 0 {
+            tet.swap(2, 3);
+        }
+    }
+    assert_eq!(sound_connectivity(&mesh), Ok(0));
+    mesh
+}
+
+#[test]
+fn a_tet_that_motion_has_inverted_at_the_boundary_is_repaired_and_not_removed() {
+    let mut mesh = star();
+    mesh.points[4] = [0.3; 3];
+    let outcome = remesh(&mesh, &Options::default(), &Threads::single()).unwrap();
+    assert_eq!((outcome.report.before.inverted, outcome.report.after.inverted), (1, 0));
+    assert_eq!((outcome.report.operations.peeling, outcome.extract.mesh.tets.len()), (0, 6));
+}
+
+#[test]
+fn a_folded_tet_with_a_labelled_triangle_stays_and_a_heap_of_others_is_removed() {
+    let mut folded = star();
+    let positive = |points: &[[f64; 3]], mut tet: [VertexId; 4]| {
+        let [a, b, c, d] = tet.map(|v| points[v.index()]);
+        if orient3d(a, b, c, d) < 0 {
+            tet.swap(2, 3);
+        }
+        tet
+    };
+    // On the facet 1, 2, 4 of the second tet, on the side of that tet; and one more on it, on its far side.
+    folded.points.extend([[-0.5, -0.5, 0.4], [-1.0, -1.0, 2.0]]);
+    folded.tets.push(positive(&folded.points, [1, 2, 4, 8].map(VertexId)));
+    folded.tets.push(positive(&folded.points, [1, 2, 8, 9].map(VertexId)));
+    folded.regions = vec![0; folded.tets.len()];
+    let [first, second] = [5, 6].map(|t: usize| folded.tets[t]);
+    let outcome = remesh(&folded, &Options::default(), &Threads::single()).unwrap();
+    assert_eq!(outcome.report.operations.peeling, 2, "{first:?} {second:?}");
+    assert_eq!(outcome.extract.mesh.tets, star().tets);
+    folded.triangles = vec![[2, 8, 9].map(VertexId)];
+    folded.patches = vec![1];
+    let outcome = remesh(&folded, &Options::default(), &Threads::single()).unwrap();
+    assert_eq!((outcome.report.operations.peeling, outcome.extract.mesh.triangles.len()), (0, 1));
+    assert!(outcome.report.after.inverted > 0);
 }
 
 /// Of this one a tet named a vertex that had been removed.

@@ -100,35 +100,35 @@ fn unread(what: &str, remedy: &str, path: &Path) -> Error {
 pub(super) fn refuse(path: &Path, bytes: &[u8], endings: &[&str]) -> Result<()> {
     let is = |ending: &str| endings.contains(&ending);
     let start = bytes.trim_ascii_start();
-    let told = |what: &str, remedy: &str| Err(unread(what, remedy, path));
+    let named = |what: &str, remedy: &str| Err(unread(what, remedy, path));
     if bytes.starts_with(b"CDF\x01") || bytes.starts_with(b"CDF\x02") || bytes.starts_with(b"CDF\x05") {
-        return told("a netCDF file, perhaps Exodus II", MESHIO_HDF);
+        return named("a netCDF file, perhaps Exodus II", MESHIO_HDF);
     }
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xfd7zXZ\x00") || bytes.starts_with(b"BZh") {
-        return told("a packed file", "unpack it first");
+        return named("a packed file", "unpack it first");
     }
     if bytes.starts_with(b"\x1f\x8b") && !is(".xml.gz") {
-        return told("packed by gzip", "unpack it first: gunzip -c FILE");
+        return named("packed by gzip", "unpack it first: gunzip -c FILE");
     }
     if bytes.starts_with(b"\x89HDF\r\n\x1a\n") && !is(".cgns") && !is(".vtkhdf") {
-        return told("an HDF5 file", "give it the ending of what it holds: .vtkhdf or .cgns");
+        return named("an HDF5 file", "give it the ending of what it holds: .vtkhdf or .cgns");
     }
     if start.starts_with(b"ISO-10303-21") {
-        return told("a CAD model (STEP)", CAD);
+        return named("a CAD model (STEP)", CAD);
     }
     let is_section = |text: &[u8]| {
         text.first() == Some(&b'(') && text[1..].trim_ascii_start().first().is_some_and(u8::is_ascii_digit)
     };
     if is(".msh") && is_section(start) {
-        return told("a mesh of Ansys Fluent", FLUENT);
+        return named("a mesh of Ansys Fluent", FLUENT);
     }
     let head = &start[..start.len().min(400)];
     let has = |word: &[u8]| head.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word));
     if has(b"<xdmf") {
-        return told("an XDMF file", MESHIO_HDF);
+        return named("an XDMF file", MESHIO_HDF);
     }
     if is(".mesh") && (start.starts_with(b"<") || start.starts_with(b"$MeshFormat")) {
-        return told("no mesh of Medit", "give it the ending of its own format, such as .msh for Gmsh");
+        return named("no mesh of Medit", "give it the ending of its own format, such as .msh for Gmsh");
     }
     Ok(())
 }

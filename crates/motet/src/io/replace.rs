@@ -31,9 +31,9 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     let written: Vec<(&Path, Draft)> = files
         .iter()
         .map(|(path, bytes)| {
-            let told = |e: std::io::Error| Error::output(path, &e);
+            let failed = |e: std::io::Error| Error::output(path, &e);
             let mut draft = Draft::new(path)?;
-            draft.sink().write_all(bytes).map_err(told)?;
+            draft.sink().write_all(bytes).map_err(failed)?;
             Ok((path.as_path(), draft))
         })
         .collect::<Result<_>>()?;
@@ -56,21 +56,21 @@ pub(super) fn replace_with<T>(
 
 /// Writes a folder of files beside `path`, then renames it into place. Nothing stands at `path`, or an empty folder.
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
-    let told = |e: std::io::Error| Error::output(path, &e);
-    let place = if path.is_dir() { path.canonicalize().map_err(told)? } else { followed(path)? };
-    let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(told)?;
+    let failed = |e: std::io::Error| Error::output(path, &e);
+    let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { followed(path)? };
+    let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(failed)?;
     // Inside a folder that is its owner's alone; the one that is renamed has the rights that the user's umask says.
     let inner = folder.path().join("folder");
     for (name, bytes) in files {
         let file = inner.join(name);
-        std::fs::create_dir_all(file.parent().unwrap_or(&inner)).map_err(told)?;
-        std::fs::write(file, bytes).map_err(told)?;
+        std::fs::create_dir_all(file.parent().unwrap_or(&inner)).map_err(failed)?;
+        std::fs::write(file, bytes).map_err(failed)?;
     }
     if let Ok(old) = place.metadata() {
-        std::fs::set_permissions(&inner, old.permissions()).map_err(told)?;
-        std::fs::remove_dir(&place).map_err(told)?;
+        std::fs::set_permissions(&inner, old.permissions()).map_err(failed)?;
+        std::fs::remove_dir(&place).map_err(failed)?;
     }
-    std::fs::rename(inner, &place).map_err(told)
+    std::fs::rename(inner, &place).map_err(failed)
 }
 
 /// A file on its way to its place.
@@ -83,14 +83,14 @@ enum Draft {
 
 impl Draft {
     fn new(path: &Path) -> Result<Self> {
-        let told = |e: &std::io::Error| Error::output(path, e);
+        let failed = |e: &std::io::Error| Error::output(path, e);
         let place = followed(path)?;
         let old = match place.metadata() {
             Err(e) if e.kind() == ErrorKind::NotFound => None,
-            Err(e) => return Err(told(&e)),
+            Err(e) => return Err(failed(&e)),
             Ok(old) => {
                 // What may not be written is not replaced either.
-                let file = OpenOptions::new().write(true).open(&place).map_err(|e| told(&e))?;
+                let file = OpenOptions::new().write(true).open(&place).map_err(|e| failed(&e))?;
                 if !old.is_file() {
                     return Ok(Self::Into(file));
                 }
@@ -102,7 +102,7 @@ impl Draft {
         // As any program creates a file: readable for whom the user's umask says.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder_of(&place)).map_err(|e| told(&e))?;
+        let file = builder.tempfile_in(folder_of(&place)).map_err(|e| failed(&e))?;
         Ok(Self::Beside(file, place, old))
     }
 

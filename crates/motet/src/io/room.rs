@@ -112,8 +112,11 @@ mod tests {
         room.take_once("a", 40).unwrap();
         room.take_once("a", 40).unwrap();
         assert_eq!(room.left(), 0);
-        let told = room.take(1).unwrap_err().to_string();
-        assert!(told.contains("unpacks to 101 bytes") && told.contains("MOTET_READ_LIMIT=16G"), "{told}");
+        let message = room.take(1).unwrap_err().to_string();
+        assert!(
+            message.contains("unpacks to 101 bytes") && message.contains("MOTET_READ_LIMIT=16G"),
+            "{message}"
+        );
     }
 
     #[test]

@@ -28,12 +28,14 @@ impl Complex {
         let mut tets = mesh.tets.clone();
         let mut joined = Joined::of(&tets, regions, triangles, patches)?;
         let mut rough = rough_eas(points, &tets);
-        let mut n_turned = 0;
-        if joined.is_folded || rough.iter().any(|&q| q <= 0.0) {
-            n_turned = orient(&mut tets, &joined.across(), points)?;
+        let (mut n_turned, mut folded) = (0, Vec::new());
+        if joined.is_one_sided || rough.iter().any(|&q| q <= 0.0) {
+            let is_turned = orient(&mut tets, &joined.across(), points)?;
+            n_turned = is_turned.iter().filter(|turned| **turned).count();
             if n_turned > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches)?;
                 rough = rough_eas(points, &tets);
+                folded = orientation::folded(&tets, points, &is_turned, &joined.across());
             }
         }
         let n_tets = tets.len();
@@ -67,6 +69,7 @@ impl Complex {
             is_locked: Vec::new(),
             fixed_edges,
             spared: Vec::new(),
+            folded,
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,
             gone_triangles: Vec::new(),
@@ -105,7 +108,7 @@ struct Joined {
     links: Vec<[Link; 4]>,
     walls: Vec<Wall>,
     /// Whether two tets see their facet from the same side: one is numbered the other way round, or lies on the other.
-    is_folded: bool,
+    is_one_sided: bool,
 }
 
 impl Joined {
@@ -116,14 +119,14 @@ impl Joined {
         patches: &[i32],
     ) -> Result<Self> {
         let links = vec![[Link::tet(HalfFacet::NONE); 4]; tets.len()];
-        let mut joined = Self { links, walls: Vec::new(), is_folded: false };
+        let mut joined = Self { links, walls: Vec::new(), is_one_sided: false };
         let mut fault = None;
         // Most meshes have but one, and then two reads from anywhere in memory are spared a facet.
         let one_region = regions.windows(2).all(|pair| pair[0] == pair[1]);
         for_each_tet_facet(tets, triangles, |Sharing { tets: uses, triangles }| {
             if let [(t, i), (u, j)] = *uses {
                 let [x, y] = [(t, i), (u, j)].map(|(t, i)| orientation::facet(&tets[t.index()], i));
-                joined.is_folded |= !see_from_opposite_sides(x, y);
+                joined.is_one_sided |= !see_from_opposite_sides(x, y);
             }
             let half = |i: usize| HalfFacet::new(uses[i].0, uses[i].1);
             let same_region = |x: TetId, y: TetId| one_region || regions[x.index()] == regions[y.index()];

@@ -55,6 +55,8 @@ pub struct Complex {
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
     /// Qualities that count as good, in rising order; see [`Complex::spare`].
     pub(super) spared: Vec<f64>,
+    /// Tets of the first mesh that are folded over others, in rising order.
+    pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
     /// Whether a tet of the first mesh was flat or inverted: then tets may overlap.

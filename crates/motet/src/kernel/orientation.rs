@@ -4,17 +4,21 @@
 //! must see it from opposite sides: that tells one that is only *numbered* the other way from one that the motion has turned inside
 //! out, which keeps the orientation of its neighbours and has a negative volume.
 
-use crate::base::{Error, Point, Result, VertexId};
+use crate::base::{Error, Point, Result, TetId, VertexId};
+use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, volume_6};
 use crate::kernel::link::HalfFacet;
 
-/// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns how many it turned.
+/// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns which it turned.
 /// `across` has the facet behind each facet.
+///
+/// # Errors
+/// When the tets around one cannot all be turned the same way.
 pub(super) fn orient(
     tets: &mut [[VertexId; 4]],
     across: &[[HalfFacet; 4]],
     points: &[Point],
-) -> Result<usize> {
+) -> Result<Vec<bool>> {
     let mut is_turned = vec![false; tets.len()];
     let mut is_seen = vec![false; tets.len()];
     let mut part = Vec::new();
@@ -55,7 +59,51 @@ pub(super) fn orient(
         }
     }
     tets.iter_mut().zip(&is_turned).filter(|(_, turned)| **turned).for_each(|(tet, _)| tet.swap(2, 3));
-    Ok(is_turned.iter().filter(|turned| **turned).count())
+    Ok(is_turned)
+}
+
+/// The tets that are folded over others, in rising order: in the file they were positive like those that they share a facet with, and lay on the same
+/// side of it. `tets` are as [`orient`] has turned them, and `across` has the facet behind each facet.
+///
+/// Where the file numbers tets now one way, now the other, nothing tells such a tet from one that a motion has inverted: then there are none.
+pub(super) fn folded(
+    tets: &[[VertexId; 4]],
+    points: &[Point],
+    is_turned: &[bool],
+    across: &[[HalfFacet; 4]],
+) -> Vec<TetId> {
+    let is_positive = |t: usize| {
+        let [a, b, c, d] = tets[t].map(|v| points[v.index()]);
+        orient3d(a, b, c, d) > 0
+    };
+    let neighbors =
+        |t: usize| across[t].iter().filter(|other| !other.is_none()).map(|other| other.tet().index());
+    let (mut is_folded, mut found) = (vec![false; tets.len()], Vec::new());
+    for t in 0..tets.len() {
+        for o in neighbors(t).filter(|&o| is_turned[o] != is_turned[t]) {
+            match (is_positive(t), is_positive(o)) {
+                (true, true) => return Vec::new(),
+                (false, true) if !is_folded[t] => {
+                    is_folded[t] = true;
+                    found.push(t);
+                }
+                _ => {}
+            }
+        }
+    }
+    // What lies on a folded tet is folded with it.
+    let mut next = 0;
+    while let Some(&t) = found.get(next) {
+        next += 1;
+        for o in neighbors(t) {
+            if !is_folded[o] && is_turned[o] == is_turned[t] && !is_positive(o) {
+                is_folded[o] = true;
+                found.push(o);
+            }
+        }
+    }
+    found.sort_unstable();
+    found.into_iter().map(TetId::new).collect()
 }
 
 pub(super) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {

@@ -1,42 +1,39 @@
-//! Inverted tets removed that hang on a mesh by one facet: folded back over it, they fill no room that it does not fill already.
+//! Tets removed that are folded over a mesh and hang on it by one facet: they fill no room that it does not fill already.
 
 use crate::base::{TetId, VertexId};
-use crate::geometry::predicates::orient3d;
 use crate::kernel::change::NewWall;
 use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::link::{Behind, HalfFacet, NO_TRIANGLE, Wall};
 
 impl Complex {
-    /// Removes the tets that are flat or inverted and have no tet behind three of their facets; answers how many. The facet behind which there is one
-    /// bounds the mesh then. Triangles at the other three are removed with the tet.
+    /// Removes the tets of the first mesh that are folded over others and have no tet behind three of their facets, one after the other; returns how many.
+    /// The facet behind which there is a tet bounds the mesh then.
+    ///
+    /// A tet that a motion has inverted is none of these, nor is one with a labelled triangle at an outer facet or a fixed vertex of its own: such a tet is
+    /// part of a boundary that somebody knows.
     pub fn peel(&mut self) -> usize {
-        if !self.is_tangled {
-            return 0;
-        }
-        let mut candidates: Vec<TetId> = self.tets().collect();
+        let mut folded = std::mem::take(&mut self.folded);
         let mut n_peeled = 0;
-        while let Some(tet) = candidates.pop() {
-            if let Some(behind) = self.peelable(tet) {
-                self.peel_off(tet, behind);
-                candidates.push(behind.tet());
-                n_peeled += 1;
-            }
+        while let Some((i, behind)) = (0..folded.len()).find_map(|i| Some((i, self.peelable(folded[i])?))) {
+            self.peel_off(folded.remove(i), behind);
+            n_peeled += 1;
         }
         n_peeled
     }
 
     /// The one facet behind a tet that may be peeled.
     fn peelable(&self, tet: TetId) -> Option<HalfFacet> {
-        if !self.is_alive(tet) {
-            return None;
-        }
-        let mut behind = [0, 1, 2, 3].map(|i| self.across(tet, i)).into_iter().filter(|half| !half.is_none());
+        let mut behind = (0..4).map(|i| self.across(tet, i)).filter(|half| !half.is_none());
         let (Some(only), None) = (behind.next(), behind.next()) else { return None };
-        let corners = self.facet(only);
-        let is_fixed = |v: &VertexId| !corners.contains(v) && self.hold(*v) == Hold::Fixed;
-        let [a, b, c, d] = self.corners(tet);
-        (orient3d(a, b, c, d) <= 0 && !self.is_locked(tet) && !self.vertices(tet).iter().any(is_fixed))
-            .then_some(only)
+        let inner = self.facet(only);
+        let is_fixed = |v: &VertexId| !inner.contains(v) && self.hold(*v) == Hold::Fixed;
+        let is_labelled = |i: usize| match self.behind(tet, i) {
+            Behind::Wall(wall) => self.across(tet, i).is_none() && self.wall(wall).triangle != NO_TRIANGLE,
+            Behind::Tet(_) => false,
+        };
+        let may_go =
+            !self.is_locked(tet) && !self.vertices(tet).iter().any(is_fixed) && !(0..4).any(is_labelled);
+        may_go.then_some(only)
     }
 
     fn peel_off(&mut self, tet: TetId, behind: HalfFacet) {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::base::{CellId, Point, VertexId, rising_list};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::vector::is_finite;
+use crate::geometry::vector::in_range;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
@@ -59,8 +59,8 @@ fn is_folded(mesh: &Mesh, x: CellId, y: CellId) -> bool {
     let (of_x, of_y) = (corners(x), corners(y));
     let mut across = of_x;
     across[i] = of_y[j];
-    let finite = of_x.iter().chain(&of_y).all(|p| is_finite(*p));
-    finite && sign(of_x) != 0 && sign(across) == sign(of_x) && sign(of_y) == sign(of_x)
+    let are_numbers = of_x.iter().chain(&of_y).all(|p| in_range(*p));
+    are_numbers && sign(of_x) != 0 && sign(across) == sign(of_x) && sign(of_y) == sign(of_x)
 }
 
 /// A quick look before the sorting: nearly all neighbours fail it.
