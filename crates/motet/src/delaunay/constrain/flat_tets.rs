@@ -4,7 +4,7 @@
 //! but for that; where all tets around one of them are made anew from a point inside, the room that the point has is that of their
 //! other sides.
 
-use super::keep::Keep;
+use super::keep::{Exchange, Keep};
 use super::recone::Side;
 use super::tets::Tets;
 use crate::base::{Point, TetId, VertexId, rising};
@@ -29,12 +29,23 @@ impl Keep<'_> {
             let mut has_changed = false;
             for (tet, v) in flat {
                 has_changed |= self.tets.vertices(tet) == v
-                    && EDGES.iter().any(|&[i, j]| self.remove_at([v[i], v[j]]).is_some());
+                    && (EDGES.iter().any(|&[i, j]| self.remove_at([v[i], v[j]]).is_some())
+                        || v.iter().any(|&v| self.replace(v).is_some()));
             }
             if !has_changed {
                 return;
             }
         }
+    }
+
+    /// Makes the tets of a vertex anew that nobody misses, if then none of them is flat.
+    fn replace(&mut self, vertex: VertexId) -> Option<()> {
+        if !self.sites.is_free(vertex) {
+            return None;
+        }
+        let star = self.star(vertex);
+        let side = Side::of_star(self.tets, vertex, &star);
+        self.commit(vec![side], self.sites.near(vertex), Exchange { old: &[], base: &[] }, false)
     }
 
     /// Makes the tets around an edge anew, if then none of them is flat.
@@ -58,14 +69,7 @@ impl Keep<'_> {
         })?;
         let [p, q] = [a, b].map(|v| self.sites.near(v));
         let middle = scale(add(p, q), 0.5);
-        let is_good = |side: &Side| {
-            self.bodies.of_slot[side.tets[0].index()] == 0
-                || side.place(self.sites, middle).is_some_and(|p| !side.is_flat_from(self.sites, p))
-        };
-        if !sides.iter().all(is_good) {
-            return None;
-        }
-        self.commit(sides, middle, &old, &base)
+        self.commit(sides, middle, Exchange { old: &old, base: &base }, false)
     }
 }
 

@@ -8,6 +8,7 @@
 //! belongs to it if it could have been in one plane with the corners of that triangle before all four were rounded. That decides only
 //! what is tried first: which tets are positive is always asked with exact signs.
 
+use super::levels::Levels;
 use super::plane::Plane;
 use super::sites::Sites;
 use super::unmade::Part;
@@ -15,15 +16,15 @@ use crate::base::{Csr, Point, Sets, VertexId, rising};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
-/// Which triangles are one flat facet.
+/// What a triangle may be joined with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Merge {
-    /// Each triangle is one of its own.
+    /// With none.
     None,
-    /// Those in one plane.
+    /// With those in its plane.
     Exact,
-    /// Those that were in one plane before coordinates were rounded, by so much at most along each axis.
-    Rounded(Point),
+    /// With those that were in one plane before coordinates were rounded.
+    Rounded,
 }
 
 /// The flat facets and the edges around them.
@@ -36,22 +37,40 @@ pub(super) struct Flats {
 }
 
 impl Flats {
+    /// Each triangle for itself.
+    pub(super) fn of_each(triangles: &[[VertexId; 3]]) -> Self {
+        let mut creases: Vec<_> = by_edge(triangles).into_iter().map(|(edge, _)| edge).collect();
+        creases.dedup();
+        let n = triangles.len();
+        Self { triangles: Csr::from_pairs(n, || (0..n).map(|i| (i, i as u32))), creases }
+    }
+
     /// Finds them.
-    pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], merge: Merge) -> Self {
-        let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
-        for (i, &[a, b, c]) in triangles.iter().enumerate() {
-            edges.extend([[a, b], [b, c], [c, a]].map(|e| (rising(e), i as u32)));
+    pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], levels: &Levels) -> Self {
+        let edges = by_edge(triangles);
+        let mut flats = Sets::new(triangles.len());
+        for (edge, [i, j]) in edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair) {
+            let is_one = match [i, j].map(|t| levels.of(t)) {
+                [Merge::Exact, Merge::Exact] => {
+                    is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]])
+                }
+                [Merge::Rounded, Merge::Rounded] => levels.grown.is_one(i, j),
+                _ => false,
+            };
+            if is_one {
+                flats.join(i, j);
+            }
         }
-        edges.sort_unstable();
-        let pair = |run: &[([VertexId; 2], u32)]| match *run {
-            [(edge, i), (_, j)] if merge != Merge::None => Some((edge, [i, j])),
-            _ => None,
-        };
-        let pairs: Vec<Pair> = edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect();
-        let (number, firsts) = match merge {
-            Merge::Rounded(rounding) => grown(sites, triangles, &pairs, rounding),
-            _ => joined(sites, triangles, &pairs),
-        };
+        let (mut of_root, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
+        let number = (0..triangles.len() as u32).map(|i| {
+            let of = &mut of_root[flats.root(i) as usize];
+            if *of == u32::MAX {
+                *of = firsts.len() as u32;
+                firsts.push(if levels.of(i) == Merge::Rounded { levels.grown.first(i) } else { i });
+            }
+            *of
+        });
+        let number: Vec<u32> = number.collect();
         let is_within =
             |run: &[_]| pair(run).is_some_and(|(_, [i, j])| number[i as usize] == number[j as usize]);
         let runs = edges.chunk_by(|a, b| a.0 == b.0).filter(|run| !is_within(run));
@@ -73,63 +92,76 @@ impl Flats {
 /// The edge at which two triangles meet and no other, and the two.
 type Pair = ([VertexId; 2], [u32; 2]);
 
-/// Triangles that meet and lie in one plane exactly: the number of the flat facet of each, and the first triangle of each facet.
-fn joined(sites: &Sites, triangles: &[[VertexId; 3]], pairs: &[Pair]) -> (Vec<u32>, Vec<u32>) {
-    let mut flats = Sets::new(triangles.len());
-    for &(edge, [i, j]) in pairs {
-        if is_flat(sites, edge, [triangles[i as usize], triangles[j as usize]]) {
-            flats.join(i, j);
-        }
+/// The edges of all triangles, rising, with the triangle of each; in order.
+fn by_edge(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 2], u32)> {
+    let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+    for (i, &[a, b, c]) in triangles.iter().enumerate() {
+        edges.extend([[a, b], [b, c], [c, a]].map(|e| (rising(e), i as u32)));
     }
-    let (mut of_root, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
-    let number = (0..triangles.len() as u32).map(|i| {
-        let of = &mut of_root[flats.root(i) as usize];
-        if *of == u32::MAX {
-            *of = firsts.len() as u32;
-            firsts.push(i);
-        }
-        *of
-    });
-    (number.collect(), firsts)
+    edges.sort_unstable();
+    edges
 }
 
-/// The flat facet of each triangle, and the first triangle of each facet, where triangles lie in one plane but for `rounding` along each axis: a facet grows from its
-/// largest triangle, whose plane its vertices keep to.
-fn grown(
-    sites: &Sites,
-    triangles: &[[VertexId; 3]],
-    pairs: &[Pair],
-    rounding: Point,
-) -> (Vec<u32>, Vec<u32>) {
-    let neighbors = Csr::from_pairs(triangles.len(), || {
-        pairs.iter().flat_map(|&(_, [i, j])| [(i as usize, j), (j as usize, i)])
-    });
-    let corners = |i: u32| triangles[i as usize].map(|v| sites.near(v));
-    let mut seeds: Vec<(f64, u32)> =
-        (0..triangles.len() as u32).map(|i| (norm(area_vector(corners(i))), i)).collect();
-    seeds.sort_unstable_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
-    let (mut number, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
-    for (_, seed) in seeds {
-        if number[seed as usize] != u32::MAX {
-            continue;
-        }
-        let flat = firsts.len() as u32;
-        firsts.push(seed);
-        number[seed as usize] = flat;
-        let plane = Plane::new(sites, triangles[seed as usize]);
-        let band = Band::new(corners(seed), rounding);
-        let mut todo = vec![(seed, triangles[seed as usize])];
-        while let Some((i, from)) = todo.pop() {
-            for &j in neighbors.list(i as usize) {
-                let to = turned_alike(from, triangles[j as usize]);
-                if number[j as usize] == u32::MAX && band.holds(corners(j)) && plane.turn(to) > 0 {
-                    number[j as usize] = flat;
-                    todo.push((j, to));
+/// The two triangles of an edge, where there are two.
+fn pair(run: &[([VertexId; 2], u32)]) -> Option<Pair> {
+    match *run {
+        [(edge, i), (_, j)] => Some((edge, [i, j])),
+        _ => None,
+    }
+}
+
+/// Facets of triangles in one plane but for rounding. A facet grows from its largest triangle, whose plane its vertices keep to.
+pub(super) struct Grown {
+    /// The facet of each triangle.
+    pub(super) number: Vec<u32>,
+    /// The triangle that each facet has grown from.
+    pub(super) firsts: Vec<u32>,
+}
+
+impl Grown {
+    /// Finds them, where coordinates may be off by `rounding` along each axis.
+    pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], rounding: Point) -> Self {
+        let edges = by_edge(triangles);
+        let pairs: Vec<Pair> = edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect();
+        let neighbors = Csr::from_pairs(triangles.len(), || {
+            pairs.iter().flat_map(|&(_, [i, j])| [(i as usize, j), (j as usize, i)])
+        });
+        let corners = |i: u32| triangles[i as usize].map(|v| sites.near(v));
+        let mut seeds: Vec<(f64, u32)> =
+            (0..triangles.len() as u32).map(|i| (norm(area_vector(corners(i))), i)).collect();
+        seeds.sort_unstable_by(|s, t| t.0.total_cmp(&s.0).then(s.1.cmp(&t.1)));
+        let (mut number, mut firsts) = (vec![u32::MAX; triangles.len()], Vec::new());
+        for (_, seed) in seeds {
+            if number[seed as usize] != u32::MAX {
+                continue;
+            }
+            let facet = firsts.len() as u32;
+            firsts.push(seed);
+            number[seed as usize] = facet;
+            let plane = Plane::new(sites, triangles[seed as usize]);
+            let band = Band::new(corners(seed), rounding);
+            let mut todo = vec![(seed, triangles[seed as usize])];
+            while let Some((i, from)) = todo.pop() {
+                for &j in neighbors.list(i as usize) {
+                    let to = turned_alike(from, triangles[j as usize]);
+                    if number[j as usize] == u32::MAX && band.holds(corners(j)) && plane.turn(to) > 0 {
+                        number[j as usize] = facet;
+                        todo.push((j, to));
+                    }
                 }
             }
         }
+        Self { number, firsts }
     }
-    (number, firsts)
+
+    fn is_one(&self, i: u32, j: u32) -> bool {
+        self.number[i as usize] == self.number[j as usize]
+    }
+
+    /// The triangle that the facet of another has grown from.
+    fn first(&self, i: u32) -> u32 {
+        self.firsts[self.number[i as usize] as usize]
+    }
 }
 
 /// A triangle, turned as its neighbour is.

@@ -8,13 +8,13 @@ use hashbrown::HashMap;
 
 use super::bodies::Bodies;
 use super::flats::Flats;
-use super::plane::{Net, Plane};
+use super::grow::PATIENCE;
+use super::plane::Plane;
 use super::recone::Side;
 use super::segments::Segments;
 use super::sites::{Place, SegmentId, Sites};
 use super::tets::Tets;
 use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, rising};
-use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
 /// Tets of this share are good enough for a point to go.
@@ -33,8 +33,18 @@ pub(super) struct Keep<'a> {
     pub(super) flats: &'a Flats,
     /// The flat facet of each facet of the surface, vertices rising.
     pub(super) walls: HashMap<[VertexId; 3], u32>,
+    /// How often a point may still be looked for in vain with more tets (`grow`).
+    pub(super) patience: usize,
     /// The tets of each vertex, with some that it has no more.
     incident: Vec<Vec<TetId>>,
+}
+
+/// Facets of the surface, and those that take their place, each with its flat facet and turned as the plane of that.
+#[derive(Clone, Copy)]
+pub(super) struct Exchange<'a> {
+    /// Vertices rising.
+    pub(super) old: &'a [[VertexId; 3]],
+    pub(super) base: &'a [(u32, [VertexId; 3])],
 }
 
 impl<'a> Keep<'a> {
@@ -50,11 +60,15 @@ impl<'a> Keep<'a> {
             list.iter().map(|&part| (rising(part), flat as u32)).collect::<Vec<_>>()
         };
         let walls = parts.iter().enumerate().flat_map(of_flat).collect();
-        Self { tets, sites, bodies, triangles, flats, walls, incident: Vec::new() }
+        Self { tets, sites, bodies, triangles, flats, walls, patience: PATIENCE, incident: Vec::new() }
     }
 
-    /// Puts all right that can be; answers the facets of each flat facet, and whether all of those have their triangles.
-    pub(super) fn run(mut self, segments: &Segments, watch: &Watch) -> Result<(Csr<[VertexId; 3]>, bool)> {
+    /// Puts all right that can be; answers the facets of each flat facet, and the flat facets that have other triangles than they came with.
+    pub(super) fn run(
+        mut self,
+        segments: &Segments,
+        watch: &Watch,
+    ) -> Result<(Csr<[VertexId; 3]>, Vec<u32>)> {
         self.shed();
         self.leave_out();
         let on_segments = segments.points(self.sites);
@@ -75,14 +89,16 @@ impl<'a> Keep<'a> {
             chains.retain(|(_, points)| !points.is_empty());
         }
         let mut lists = self.lists();
-        let mut is_whole = true;
+        let mut unrestored = Vec::new();
         for (flat, list) in lists.iter_mut().enumerate() {
-            is_whole &= self.flats.triangles.list(flat).len() == 1 || self.restore(flat, list).is_some();
+            if self.flats.triangles.list(flat).len() > 1 && self.restore(flat, list).is_none() {
+                unrestored.push(flat as u32);
+            }
         }
         self.remove_flat();
         let mut csr = Csr::default();
         lists.into_iter().for_each(|list| csr.push(list));
-        Ok((csr, is_whole))
+        Ok((csr, unrestored))
     }
 
     /// Removes the tets outside, where each triangle has a body at it: nobody asks for them any more. Notes the others by vertex, since those of one vertex need
@@ -167,7 +183,7 @@ impl<'a> Keep<'a> {
             return None;
         }
         let sides = self.sides(&star, &old, &base, is_around)?;
-        self.commit(sides, self.sites.near(vertex), &old, &base)
+        self.commit(sides, self.sites.near(vertex), Exchange { old: &old, base: &base }, true)
     }
 
     /// The facets of the surface at a vertex, each with its flat facet and turned as its plane; in order.
@@ -296,19 +312,21 @@ impl<'a> Keep<'a> {
         Some(sides)
     }
 
-    /// Makes all sides anew, if each has room for a point.
+    /// Makes all sides anew, if each has room for a point, or has it with more tets; without tets that have no volume where these `may_be_flat` not.
     pub(super) fn commit(
         &mut self,
-        sides: Vec<Side>,
+        mut sides: Vec<Side>,
         middle: Point,
-        old: &[[VertexId; 3]],
-        base: &[(u32, [VertexId; 3])],
+        Exchange { old, base }: Exchange,
+        may_be_flat: bool,
     ) -> Option<()> {
-        let body = |side: &Side| self.bodies.of_slot[side.tets[0].index()];
-        let place = |side: &Side| if body(side) == 0 { Some(middle) } else { side.place(self.sites, middle) };
-        let places: Option<Vec<Point>> = sides.iter().map(place).collect();
+        let mut places = Vec::with_capacity(sides.len());
+        for i in 0..sides.len() {
+            let is_outside = self.bodies.of_slot[sides[i].tets[0].index()] == 0;
+            places.push(if is_outside { middle } else { self.room(&mut sides, i, middle, may_be_flat)? });
+        }
         let (mut on_base, mut came) = (Vec::new(), Vec::new());
-        for (side, place) in sides.iter().zip(places?) {
+        for (side, place) in sides.iter().zip(places) {
             let is_inside = self.bodies.of_slot[side.tets[0].index()] != 0;
             let vertex = self.sites.add_point(place);
             let made = self.make(side, vertex);
@@ -353,70 +371,4 @@ impl<'a> Keep<'a> {
             self.sites.move_to(vertex, place);
         }
     }
-
-    /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained
-    /// Delaunay triangulations*).
-    fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) -> Option<()> {
-        let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
-        let wanted: Vec<_> = self
-            .flats
-            .triangles
-            .list(flat)
-            .iter()
-            .map(|&i| plane(self, self.triangles[i as usize]))
-            .collect();
-        if wanted.len() != list.len() {
-            return None;
-        }
-        let mut net = Net::new(list);
-        for edge in Net::new(&wanted).edges() {
-            let mut crossing: std::collections::VecDeque<_> = if net.has(edge) {
-                continue;
-            } else {
-                net.edges().into_iter().filter(|&e| self.plane(flat as u32).cross(edge, e)).collect()
-            };
-            let mut left = 4 * crossing.len() * crossing.len() + 16;
-            while let Some([a, b]) = crossing.pop_front() {
-                let Some([(s, p), (t, q)]) = net.sides([a, b]) else { continue };
-                left -= 1;
-                if left == 0 {
-                    return None;
-                }
-                if !self.plane(flat as u32).can_flip([a, b], [p, q]) {
-                    crossing.push_back([a, b]);
-                    continue;
-                }
-                self.flip(flat as u32, [a, b], [p, q])?;
-                net.flip(list, [a, b], [(s, p), (t, q)]);
-                if self.plane(flat as u32).cross(edge, [p, q]) {
-                    crossing.push_back([p, q]);
-                }
-            }
-        }
-        Some(())
-    }
-
-    /// Replaces the edge a b within a flat facet by p q.
-    fn flip(&mut self, flat: u32, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> Option<()> {
-        let mut star = self.star(a);
-        star.retain(|&tet| self.tets.vertices(tet).contains(&b));
-        let old = [rising([a, b, p]), rising([b, a, q])];
-        let base = [(flat, [p, a, q]), (flat, [q, b, p])];
-        let is_around = |tets: &Tets, half: HalfFacet| {
-            let apex = tets.vertices(half.tet())[half.facet()];
-            apex == a || apex == b
-        };
-        let sides = self.sides(&star, &old, &base, is_around)?;
-        let [from, to, p, q] = [a, b, p, q].map(|v| self.sites.near(v));
-        let middle = add(from, scale(sub(to, from), crossing_share([from, to], [p, q])));
-        self.commit(sides, middle, &old, &base)
-    }
-}
-
-/// Where on the way from `a` to `b` the line through p and q crosses, all in one plane.
-fn crossing_share([a, b]: [Point; 2], [p, q]: [Point; 2]) -> f64 {
-    let (along, across) = (sub(b, a), sub(q, p));
-    let normal = cross(along, across);
-    let share = dot(cross(sub(p, a), across), normal) / dot(normal, normal);
-    if share > 0.0 && share < 1.0 { share } else { 0.5 }
 }

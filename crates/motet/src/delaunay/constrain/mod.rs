@@ -6,11 +6,12 @@
 //! | edges | `edges`, `way`, `swap`, `split` | a missing edge of the surface is made by swaps of tets; where none helps, it gets a point |
 //! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is made by swaps; or the tets that it cuts go, and both hollows are filled again; or it gets points |
 //! | bodies | `bodies` | what the surfaces part |
-//! | surface | `keep`, `recone` | points on edges and in triangles move inside |
+//! | surface | `keep`, `restore`, `recone`, `grow` | points on edges and in triangles move inside |
 //!
 //! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, or with tets that have no volume in the
-//! digits of their coordinates, all begins anew, with triangles in one plane but for the rounding of their coordinates (`rounding`): flat tets there
-//! belong to the outside (`shed`). At last each triangle is for itself; the best counts. Flat tets inside are made anew (`flat_tets`).
+//! digits of their coordinates, all begins anew (`attempts`), there with triangles in one plane but for the rounding of their coordinates
+//! (`rounding`), of which flat tets belong to the outside (`shed`), and at last with each triangle for itself (`levels`); the best counts. Flat
+//! tets inside are made anew (`flat_tets`).
 //!
 //! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
 //! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
@@ -24,6 +25,7 @@
 //! *Ties* are broken as in the triangulation of the points, by infinitesimal lifts, and everywhere by the same: so the result depends on the
 //! input only, and what theory says of points in general position holds for grids.
 
+mod attempts;
 mod bodies;
 mod cut;
 mod edges;
@@ -31,12 +33,15 @@ mod facets;
 mod finish;
 mod flat_tets;
 mod flats;
+mod grow;
 mod hollow;
 mod insert;
 mod keep;
+mod levels;
 mod pierce;
 mod plane;
 mod recone;
+mod restore;
 mod rounding;
 mod segments;
 mod share;
@@ -50,15 +55,18 @@ mod unmade;
 mod way;
 mod wrap;
 
+use hashbrown::HashSet;
+
 use super::Triangulation;
 use super::input::{self, Scaled};
-use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId};
+use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, rising};
+use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
 use flat_tets::is_flat;
-use flats::{Flats, Merge};
+use flats::Flats;
 use keep::Keep;
 use segments::Segments;
 use sites::Sites;
@@ -145,28 +153,13 @@ pub fn constrain(
         let (tets, sites) = (Tets::new(&triangulation), Sites::new(given.clone(), &sorted));
         Filled::new(tets, sites, points.len(), triangles, flats.clone(), edge_points, order)
     };
-    let fill = |flats: &Flats| Order::retried(moves, threads.watch(), |order| fill(flats, order));
     let sites = Sites::new(given.clone(), &sorted);
-    let merges = [Merge::Exact, Merge::Rounded(back.rounding(rounding::of(points))), Merge::None];
-    let mut best: Option<Result<Filled>> = None;
-    let mut tried: Vec<Flats> = Vec::new();
-    for merge in merges.into_iter().filter(|merge| moves || *merge == Merge::None) {
-        let flats = Flats::find(&sites, triangles, merge);
-        if tried.iter().any(|tried| tried.triangles == flats.triangles) {
-            continue;
-        }
-        let filled = fill(&flats);
-        tried.push(flats);
-        let is_done =
-            filled.as_ref().is_ok_and(|filled| filled.is_kept() && (!moves || filled.n_flat() == 0));
-        if best.as_ref().is_none_or(|best| is_better(&filled, best)) {
-            best = Some(filled);
-        }
-        if is_done {
-            break;
-        }
-    }
-    let filled = best.unwrap_or_else(|| fill(&Flats::find(&sites, triangles, Merge::None)))?;
+    let filled = if moves {
+        attempts::best(&sites, triangles, back.rounding(rounding::of(points)), threads.watch(), fill)?
+    } else {
+        let flats = Flats::of_each(triangles);
+        Order::retried(0, threads.watch(), |order| fill(&flats, order)).map_err(|unmade| unmade.error)?
+    };
     Ok(filled.finish(points, triangles, back))
 }
 
@@ -192,16 +185,6 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
     Err(Error::input(format!("the points {a} and {b} coincide"))
         .at(format!("triangle {i}"))
         .remedy("merge points that coincide"))
-}
-
-/// Whether what was made is better than something else: whether more triangles are facets as they came, then whether fewer tets are flat. With each
-/// triangle for itself all its edges are there, if in pieces.
-fn is_better(filled: &Result<Filled>, than: &Result<Filled>) -> bool {
-    let faults = |filled: &Result<Filled>| {
-        let of = |filled: &Filled| (!filled.is_whole, filled.n_in_pieces(), filled.n_flat());
-        filled.as_ref().map_or((true, usize::MAX, usize::MAX), of)
-    };
-    faults(filled) < faults(than)
 }
 
 /// What gives points their own scale back.
@@ -266,8 +249,8 @@ struct Filled {
     flats: Flats,
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
-    /// Whether flat facets have the triangles that they came with, if in parts.
-    is_whole: bool,
+    /// Flat facets that have not got the triangles back that they came with.
+    unrestored: Vec<u32>,
 }
 
 impl Filled {
@@ -289,12 +272,12 @@ impl Filled {
         }
         let mut parts = facets::recover(&mut tets, &mut sites, &segments, triangles, &flats, is_kept, order)?;
         let mut bodies = Bodies::find(&mut tets, &flats, &parts, VertexId::new(n_points))?;
-        let mut is_whole = true;
+        let mut unrestored = Vec::new();
         if is_kept {
             let keep = Keep::new(&mut tets, &mut sites, &mut bodies, triangles, &flats, &parts);
-            (parts, is_whole) = keep.run(&segments, &order.watch)?;
+            (parts, unrestored) = keep.run(&segments, &order.watch)?;
         }
-        Ok(Self { tets, sites, segments, flats, bodies, parts, is_whole })
+        Ok(Self { tets, sites, segments, flats, bodies, parts, unrestored })
     }
 
     /// How many facets more there are than triangles.
@@ -303,16 +286,25 @@ impl Filled {
         self.parts.items().len().saturating_sub(n)
     }
 
-    /// How many tets inside have no volume in the digits of their coordinates.
-    fn n_flat(&self) -> usize {
+    /// Tets inside that have no volume in the digits of their coordinates.
+    fn flat_tets(&self) -> impl Iterator<Item = [VertexId; 4]> {
         let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
         let near = |v: [VertexId; 4]| v.map(|v| self.sites.near(v));
-        self.tets.iter().filter(|(tet, v)| is_inside(tet) && is_flat(near(*v))).count()
+        self.tets.iter().filter(move |(tet, v)| is_inside(tet) && is_flat(near(*v))).map(|(_, v)| v)
     }
 
-    /// Whether each triangle is a facet as it came.
-    fn is_kept(&self) -> bool {
-        let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
-        self.is_whole && self.parts.items().len() == n
+    /// The triangles that are in pieces, in flat facets with other triangles than were given, or at tets without volume.
+    fn failed(&self, triangles: &[[VertexId; 3]]) -> Vec<u32> {
+        let in_pieces = |flat: usize| self.parts.list(flat).len() != self.flats.triangles.list(flat).len();
+        let all = (0..self.flats.triangles.len()).filter(|&flat| in_pieces(flat));
+        let all = all.chain(self.unrestored.iter().map(|&flat| flat as usize));
+        let mut failed: Vec<u32> =
+            all.flat_map(|flat| self.flats.triangles.list(flat).iter().copied()).collect();
+        let edges: HashSet<[VertexId; 2]> =
+            self.flat_tets().flat_map(|v| EDGES.map(|[i, j]| rising([v[i], v[j]]))).collect();
+        let is_at_flat_tet =
+            |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]].iter().any(|e| edges.contains(&rising(*e)));
+        failed.extend((0..triangles.len() as u32).filter(|&i| is_at_flat_tet(triangles[i as usize])));
+        failed
     }
 }

@@ -16,7 +16,7 @@ use crate::kernel::HalfFacet;
 use pulp::Scalar;
 
 /// What is to be made anew on one side of the surface.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Side {
     pub(super) tets: Vec<TetId>,
     /// The facets around them but those on the surface, seen from inside, and what lies behind.
@@ -29,26 +29,16 @@ pub(super) struct Side {
 const WAYS: [f64; 12] = [0.6, 0.4, 0.25, 0.15, 0.08, 0.04, 0.02, 0.005, 1e-3, 1e-4, 1e-6, 1e-8];
 
 impl Side {
-    fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + Clone + '_ {
+    pub(super) fn faces(&self) -> impl Iterator<Item = [VertexId; 3]> + Clone + '_ {
         self.shell.iter().map(|&(_, face)| face).chain(self.base.iter().copied())
     }
 
     /// A point near `middle` that sees all facets around; of those tried the one with the best worst tet.
     pub(super) fn place(&self, sites: &Sites, middle: Point) -> Option<Point> {
-        let corners = || self.shell.iter().flat_map(|(_, face)| face).map(|&v| sites.near(v));
-        let n = 3.0 * self.shell.len() as f64;
-        let centre = scale(corners().fold([0.0; 3], add), 1.0 / n);
-        let reach = corners().map(|p| distance(p, middle)).sum::<f64>() / n;
-        let normals = self.base.iter().map(|face| {
-            let [a, b, c] = face.map(|v| sites.near(v));
-            let normal = cross(sub(b, a), sub(c, a));
-            scale(normal, 1.0 / norm(normal).max(f64::MIN_POSITIVE))
-        });
-        let inward = normals.fold([0.0; 3], add);
-        let inward = scale(inward, reach / norm(inward).max(f64::MIN_POSITIVE));
+        let (directions, reach) = self.directions(sites, middle);
         let mut best: Option<(f64, Point)> = None;
         for way in WAYS {
-            for direction in [sub(centre, middle), inward] {
+            for direction in directions {
                 let p = add(middle, scale(direction, way));
                 let worst = self.worst(sites, p);
                 if worst > best.map_or(0.0, |(worst, _)| worst) && self.sees(sites, p) {
@@ -60,6 +50,22 @@ impl Side {
             }
         }
         best.map(|(_, p)| p).or_else(|| self.deepest(sites, middle, reach))
+    }
+
+    /// From `middle` to the middle of the facets around, and away from the surface; and how far these are on average.
+    pub(super) fn directions(&self, sites: &Sites, middle: Point) -> ([Point; 2], f64) {
+        let corners = || self.shell.iter().flat_map(|(_, face)| face).map(|&v| sites.near(v));
+        let n = 3.0 * self.shell.len() as f64;
+        let centre = scale(corners().fold([0.0; 3], add), 1.0 / n);
+        let reach = corners().map(|p| distance(p, middle)).sum::<f64>() / n;
+        let normals = self.base.iter().map(|face| {
+            let [a, b, c] = face.map(|v| sites.near(v));
+            let normal = cross(sub(b, a), sub(c, a));
+            scale(normal, 1.0 / norm(normal).max(f64::MIN_POSITIVE))
+        });
+        let inward = normals.fold([0.0; 3], add);
+        let inward = scale(inward, reach / norm(inward).max(f64::MIN_POSITIVE));
+        ([sub(centre, middle), inward], reach)
     }
 
     /// The point that is farthest from the nearest plane of a facet around, if it sees all facets; not farther from `middle` than `reach`.
@@ -119,7 +125,7 @@ impl Side {
     /// A place for a vertex inside that makes its worst tet better.
     pub(super) fn better_place(&self, sites: &Sites, vertex: VertexId, worst: f64) -> Option<Point> {
         let place = self.place(sites, sites.near(vertex))?;
-        (self.worst(sites, place) > 1.01 * worst).then_some(place)
+        (self.worst(sites, place) > 1.01 * worst && !self.is_flat_from(sites, place)).then_some(place)
     }
 
     /// The worst share of the tets to a vertex.
@@ -129,10 +135,7 @@ impl Side {
 
     /// Whether all tets are positive.
     fn sees(&self, sites: &Sites, p: Point) -> bool {
-        let is_seen = |[a, b, c]: [VertexId; 3]| {
-            orient3d_of([sites.spot(a), sites.spot(b), sites.spot(c), Spot::Given(p)]) > 0
-        };
-        self.faces().all(is_seen)
+        self.faces().all(|face| is_seen(sites, face, p))
     }
 
     /// Whether one of the tets from a point may have no volume but for rounding; those aside that have none wherever the point is.
@@ -149,8 +152,13 @@ impl Side {
     }
 }
 
+/// Whether the tet of a face to a point is positive.
+pub(super) fn is_seen(sites: &Sites, [a, b, c]: [VertexId; 3], p: Point) -> bool {
+    orient3d_of([sites.spot(a), sites.spot(b), sites.spot(c), Spot::Given(p)]) > 0
+}
+
 /// Whether the tet of a face to a point may have no volume but for rounding, though the face has an area.
-fn makes_flat(sites: &Sites, face: [VertexId; 3], p: Point) -> bool {
+pub(super) fn makes_flat(sites: &Sites, face: [VertexId; 3], p: Point) -> bool {
     let [a, b, c] = face.map(|v| sites.near(v));
     is_flat([a, b, c, p]) && !is_needle([a, b, c])
 }

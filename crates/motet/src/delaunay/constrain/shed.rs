@@ -6,10 +6,11 @@
 
 use hashbrown::HashSet;
 
-use super::keep::Keep;
+use super::keep::{Exchange, Keep};
 use super::plane::Net;
 use super::tets::Tets;
 use crate::base::{TetId, VertexId, rising};
+use crate::kernel::HalfFacet;
 
 impl Keep<'_> {
     /// Gives the flat tets in flat facets to the outside, as far as that leaves facets that are as they should be.
@@ -77,6 +78,40 @@ impl Keep<'_> {
             }
         }
         Some((found, sheet))
+    }
+}
+
+impl Keep<'_> {
+    /// Gives the tet of four vertices of a flat facet to the other side, where it has two facets on it, `old`; then the facet has the two others, `base`.
+    pub(super) fn pass(
+        &mut self,
+        star: &[TetId],
+        corners: [VertexId; 4],
+        Exchange { old, base }: Exchange,
+    ) -> Option<()> {
+        let has_all = |keep: &Self, tet: TetId| corners.iter().all(|v| keep.tets.vertices(tet).contains(v));
+        let tet = star.iter().copied().find(|&tet| has_all(self, tet))?;
+        let halves = Tets::facets(tet);
+        let walls = halves.map(|half| (rising(self.tets.inward(half)), self.wall(half)));
+        let is_right = walls.iter().all(|(face, wall)| wall.is_some() == old.contains(face));
+        let body = self.bodies.of_slot[tet.index()];
+        let [front, behind] = self.bodies.sides[base[0].0 as usize];
+        if !is_right || front == behind {
+            return None;
+        }
+        let other = if front == body { behind } else { front };
+        let has_gone = halves.iter().any(|&half| self.tets.across(half).is_none());
+        if has_gone {
+            for half in halves.map(|half| self.tets.across(half)).into_iter().filter(|half| !half.is_none()) {
+                self.tets.join(HalfFacet::NONE, half);
+            }
+            self.tets.remove(tet);
+        } else {
+            self.bodies.of_slot[tet.index()] = other;
+        }
+        old.iter().for_each(|face| _ = self.walls.remove(face));
+        self.walls.extend(base.iter().map(|&(flat, face)| (rising(face), flat)));
+        Some(())
     }
 }
 

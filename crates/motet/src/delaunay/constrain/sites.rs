@@ -106,6 +106,11 @@ impl Sites {
         self.on(vertex).map(|on| on.1)
     }
 
+    /// Whether a vertex was added as it is, so that nobody misses it.
+    pub(super) fn is_free(&self, vertex: VertexId) -> bool {
+        vertex.index() >= self.n_given && self.place(vertex).is_none()
+    }
+
     /// Where a vertex lies, if it lies on a segment.
     pub(super) fn on_segment(&self, vertex: VertexId) -> Option<OnSegment> {
         match self.place(vertex)? {

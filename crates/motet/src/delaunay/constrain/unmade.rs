@@ -3,9 +3,6 @@
 
 use crate::base::{Error, VertexId, Watch};
 
-/// So often it is begun anew.
-const MOST: usize = 8;
-
 /// An edge or a triangle of the surface that could not be made, and why.
 #[derive(Debug)]
 pub(super) struct Unmade {
@@ -40,22 +37,21 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Works until nothing is left unmade; or until it has been begun too often, or what came first could be made neither then nor last. Once
-    /// only where the order does not matter.
+    /// Works until nothing is left unmade; or until it has been begun anew `most` times, or what came first could be made neither then nor last.
     pub(super) fn retried<T>(
-        matters: bool,
+        most: usize,
         watch: &Watch,
         mut work: impl FnMut(&Self) -> Result<T, Unmade>,
-    ) -> Result<T, Error> {
+    ) -> Result<T, Unmade> {
         let mut order = Self { watch: watch.clone(), ..Self::default() };
         let mut n_retries = 0;
         loop {
-            let Unmade { what, error } = match work(&order) {
+            let unmade = match work(&order) {
                 Ok(done) => return Ok(done),
                 Err(unmade) => unmade,
             };
-            let is_hopeless = |what: &Part| !matters || n_retries == MOST || order.last.contains(what);
-            let Some(what) = what.filter(|what| !is_hopeless(what)) else { return Err(error) };
+            let is_hopeless = |what: &Part| n_retries == most || order.last.contains(what);
+            let Some(what) = unmade.what.filter(|what| !is_hopeless(what)) else { return Err(unmade) };
             let was_first = order.first.first() == Some(&what);
             order.first.retain(|part| *part != what);
             if was_first {

@@ -1,0 +1,64 @@
+//! Which triangles may be one flat facet: where one way has failed, another is tried, there alone.
+
+use super::flats::{Grown, Merge};
+use super::unmade::Part;
+use crate::base::{Csr, VertexId};
+
+/// How triangles are joined. Those that are in one plane but for rounding go from one way to the next together.
+pub(super) struct Levels<'a> {
+    triangles: &'a [[VertexId; 3]],
+    pub(super) grown: &'a Grown,
+    /// The triangles of each facet of `grown`.
+    members: Csr<u32>,
+    of_facet: Vec<Merge>,
+}
+
+impl<'a> Levels<'a> {
+    pub(super) fn new(triangles: &'a [[VertexId; 3]], grown: &'a Grown) -> Self {
+        let n = grown.firsts.len();
+        let facets = || grown.number.iter().enumerate().map(|(i, &of)| (of as usize, i as u32));
+        Self { triangles, grown, members: Csr::from_pairs(n, facets), of_facet: vec![Merge::Exact; n] }
+    }
+
+    pub(super) fn of(&self, triangle: u32) -> Merge {
+        self.of_facet[self.grown.number[triangle as usize] as usize]
+    }
+
+    /// Whether triangles are joined that are in one plane but for rounding only.
+    pub(super) fn has_rounded(&self) -> bool {
+        self.of_facet.contains(&Merge::Rounded)
+    }
+
+    /// Takes the next way where triangles failed. Whether there is one.
+    pub(super) fn go_on(&mut self, failed: &[u32]) -> bool {
+        let mut facets: Vec<u32> = failed.iter().map(|&i| self.grown.number[i as usize]).collect();
+        facets.sort_unstable();
+        facets.dedup();
+        facets.retain(|&facet| self.of_facet[facet as usize] != Merge::None);
+        for &facet in &facets {
+            let is_one = self.members.list(facet as usize).len() == 1;
+            let of = &mut self.of_facet[facet as usize];
+            *of = if *of == Merge::Exact && !is_one { Merge::Rounded } else { Merge::None };
+        }
+        !facets.is_empty()
+    }
+
+    /// Each triangle for itself. Whether that is another way.
+    pub(super) fn part_all(&mut self) -> bool {
+        let is_new = self.of_facet.iter().any(|of| *of != Merge::None);
+        self.of_facet.fill(Merge::None);
+        is_new
+    }
+
+    /// The triangles that may be why a part of the surface could not be made: those joined at it; or near it; or any.
+    pub(super) fn at(&self, part: Part) -> Vec<u32> {
+        let ends = match part {
+            Part::Edge(ends) => ends.to_vec(),
+            Part::Triangle(i) => self.triangles[i as usize].to_vec(),
+        };
+        let joined = || (0..self.triangles.len() as u32).filter(|&i| self.of(i) != Merge::None);
+        let n_shared = |i: &u32| self.triangles[*i as usize].iter().filter(|v| ends.contains(v)).count();
+        let with = |least: usize| joined().filter(|i| n_shared(i) >= least).collect::<Vec<u32>>();
+        (0..=ends.len()).rev().map(with).find(|found| !found.is_empty()).unwrap_or_default()
+    }
+}
