@@ -9,16 +9,24 @@ impl Complex {
     /// Removes the tets of the first mesh that are folded over others and have no tet behind three of their facets, one after the other; returns how many.
     /// The facet behind which there is a tet bounds the mesh then.
     ///
-    /// A tet that a motion has inverted is none of these, nor is one with a labelled triangle at an outer facet or a fixed vertex of its own: such a tet is
-    /// part of a boundary that somebody knows.
+    /// A tet that a motion has inverted stays, and so does one with a labelled triangle at an outer facet or a fixed vertex of its own: the boundary there was
+    /// given.
     pub fn peel(&mut self) -> usize {
         let mut folded = std::mem::take(&mut self.folded);
-        let mut n_peeled = 0;
-        while let Some((i, behind)) = (0..folded.len()).find_map(|i| Some((i, self.peelable(folded[i])?))) {
-            self.peel_off(folded.remove(i), behind);
-            n_peeled += 1;
+        let n_folded = folded.len();
+        loop {
+            let before = folded.len();
+            folded.retain(|&tet| match self.peelable(tet) {
+                Some(behind) => {
+                    self.peel_off(tet, behind);
+                    false
+                }
+                None => true,
+            });
+            if folded.len() == before {
+                return n_folded - before;
+            }
         }
-        n_peeled
     }
 
     /// The one facet behind a tet that may be peeled.

@@ -1,4 +1,4 @@
-//! One way after another to join triangles to flat facets, until all triangles are kept and every tet has a volume.
+//! Ways to join triangles to flat facets are tried one after the other, until all triangles are kept and every tet has a volume.
 
 use super::Filled;
 use super::flats::{Flats, Grown};
@@ -7,19 +7,20 @@ use super::sites::Sites;
 use super::unmade::{Order, Unmade};
 use crate::base::{Point, Result, VertexId, Watch};
 
-/// So often at most.
+/// How many ways of joining triangles are tried at most.
 const ATTEMPTS: usize = 6;
 
-/// So often one attempt may begin anew in another order.
+/// How often an attempt is restarted in another order, where only triangles in exactly one plane are joined.
 const RETRIES: usize = 8;
 
-/// The same where facets are flat but for rounding: another way of joining is better than another order.
+/// How often an attempt is restarted in another order, where triangles are joined that are in one plane but for rounding. Joining others helps more often
+/// than another order does.
 const RETRIES_ROUNDED: usize = 2;
 
 /// The best of what `fill` makes of flat facets. Each attempt changes how triangles are joined where the one before has failed.
 ///
 /// # Errors
-/// The one of the first attempt, where none makes anything; and when the watch says stop.
+/// When no attempt fills the surfaces; the error is that of the first attempt. When `watch` stops the work.
 pub(super) fn best(
     sites: &Sites,
     triangles: &[[VertexId; 3]],
@@ -30,49 +31,45 @@ pub(super) fn best(
     let grown = Grown::find(sites, triangles, rounding);
     let mut levels = Levels::new(triangles, &grown);
     let mut flats = Flats::find(sites, triangles, &levels);
-    let mut best: Option<Result<Filled>> = None;
-    for n_left in (0..ATTEMPTS).rev() {
+    let attempt = |levels: &Levels, flats: &Flats| {
         let most = if levels.has_rounded() { RETRIES_ROUNDED } else { RETRIES };
-        let filled = Order::retried(most, watch, |order| fill(&flats, order));
-        let failed = match &filled {
-            Ok(filled) => filled.failed(triangles),
-            Err(Unmade { what, .. }) => what.map(|part| levels.at(part)).unwrap_or_default(),
-        };
-        let is_stopped = filled.as_ref().is_err_and(|unmade| unmade.what.is_none());
-        let filled = filled.map_err(|unmade| unmade.error);
-        if is_stopped {
-            return filled;
-        }
-        if best.as_ref().is_none_or(|best| faults(&filled) < faults(best)) {
-            best = Some(filled);
-        }
+        Order::retried(most, watch, |order| fill(flats, order))
+    };
+    let mut best = attempt(&levels, &flats);
+    let mut failed = failures(&best, &levels, triangles);
+    for n_left in (0..ATTEMPTS - 1).rev() {
+        let is_stopped = best.as_ref().is_err_and(|unmade| unmade.what.is_none());
         // With each triangle for itself all its edges are there, if in pieces.
-        let is_good = best.as_ref().is_some_and(|best| !faults(best).0);
-        let is_other = loop {
-            let has_changed = match n_left {
-                2.. => levels.go_on(&failed),
-                1 if !is_good => levels.part_all(),
-                _ => false,
-            };
-            if !has_changed {
-                break false;
-            }
-            let next = Flats::find(sites, triangles, &levels);
-            if next.creases != flats.creases {
-                flats = next;
-                break true;
-            }
-        };
-        if !is_other {
-            break;
+        let may_separate = faults(&best).0;
+        let next = std::iter::from_fn(|| {
+            let has_changed =
+                if n_left > 0 { levels.advance(&failed) } else { may_separate && levels.separate_all() };
+            has_changed.then(|| Flats::find(sites, triangles, &levels))
+        })
+        .find(|next| next.creases != flats.creases);
+        let Some(next) = next.filter(|_| !is_stopped) else { break };
+        flats = next;
+        let filled = attempt(&levels, &flats);
+        failed = failures(&filled, &levels, triangles);
+        let is_stopped = filled.as_ref().is_err_and(|unmade| unmade.what.is_none());
+        if is_stopped || faults(&filled) < faults(&best) {
+            best = filled;
         }
     }
-    best.unwrap_or_else(|| unreachable!("there is one attempt at least"))
+    best.map_err(|unmade| unmade.error)
+}
+
+/// The triangles that another way of joining may help.
+fn failures(filled: &Result<Filled, Unmade>, levels: &Levels, triangles: &[[VertexId; 3]]) -> Vec<u32> {
+    match filled {
+        Ok(filled) => filled.failed(triangles),
+        Err(unmade) => unmade.what.map(|part| levels.near(part)).unwrap_or_default(),
+    }
 }
 
 /// What an attempt falls short by: whether flat facets have other triangles than were given, or there is nothing at all; how many facets there are more than
 /// triangles; and how many tets have no volume.
-fn faults(filled: &Result<Filled>) -> (bool, usize, usize) {
+fn faults(filled: &Result<Filled, Unmade>) -> (bool, usize, usize) {
     let of =
         |filled: &Filled| (!filled.unrestored.is_empty(), filled.n_in_pieces(), filled.flat_tets().count());
     filled.as_ref().map_or((true, usize::MAX, usize::MAX), of)

@@ -38,9 +38,9 @@ impl Keep<'_> {
         }
     }
 
-    /// Makes the tets of a vertex anew that nobody misses, if then none of them is flat.
+    /// Replaces a Steiner point inside by another, if then no tet at that one is flat.
     fn replace(&mut self, vertex: VertexId) -> Option<()> {
-        if !self.sites.is_free(vertex) {
+        if !self.sites.is_steiner_inside(vertex) {
             return None;
         }
         let star = self.star(vertex);

@@ -37,7 +37,7 @@ pub(super) struct Flats {
 }
 
 impl Flats {
-    /// Each triangle for itself.
+    /// Flat facets of one triangle each.
     pub(super) fn of_each(triangles: &[[VertexId; 3]]) -> Self {
         let mut creases: Vec<_> = by_edge(triangles).into_iter().map(|(edge, _)| edge).collect();
         creases.dedup();
@@ -45,7 +45,7 @@ impl Flats {
         Self { triangles: Csr::from_pairs(n, || (0..n).map(|i| (i, i as u32))), creases }
     }
 
-    /// Finds them.
+    /// Joins triangles that share an edge with no third one, as `levels` allows.
     pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], levels: &Levels) -> Self {
         let edges = by_edge(triangles);
         let mut flats = Sets::new(triangles.len());
@@ -119,7 +119,7 @@ pub(super) struct Grown {
 }
 
 impl Grown {
-    /// Finds them, where coordinates may be off by `rounding` along each axis.
+    /// Grows the facets, where each coordinate may be off by `rounding` along its axis.
     pub(super) fn find(sites: &Sites, triangles: &[[VertexId; 3]], rounding: Point) -> Self {
         let edges = by_edge(triangles);
         let pairs: Vec<Pair> = edges.chunk_by(|a, b| a.0 == b.0).filter_map(pair).collect();
@@ -154,6 +154,7 @@ impl Grown {
         Self { number, firsts }
     }
 
+    /// Whether two triangles are of one facet.
     fn is_one(&self, i: u32, j: u32) -> bool {
         self.number[i as usize] == self.number[j as usize]
     }

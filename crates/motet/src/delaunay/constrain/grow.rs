@@ -1,10 +1,10 @@
-//! More tets are made anew, where those at the surface leave no room for a point.
+//! Cavities at the surface are enlarged where they have no room for a point.
 //!
-//! Vertices inside may lie as near to the surface as digits go; then no point on that side of them sees both the surface and the facets around.
-//! From a point farther away, each facet that it does not see is passed, and the tet behind it goes as well, until all facets around are
-//! seen. They bound a room that is a star about the point, so tets to them fill it (as in the cavities of Bowyer 1981 and Watson 1981).
+//! Vertices inside may lie as near to the surface as digits go; then no point on that side of them sees both the surface and the facets of the cavity.
+//! From a point farther away, the tet behind each facet that the point does not see is added, until the point sees all facets. The
+//! cavity is then star-shaped about the point, so that tets from it to the facets fill it (as do the cavities of Bowyer 1981 and Watson 1981).
 
-use hashbrown::HashMap;
+use hashbrown::{HashMap, HashSet};
 
 use super::keep::Keep;
 use super::recone::{Side, is_seen, makes_flat};
@@ -12,19 +12,19 @@ use super::tets::Tets;
 use crate::base::{Point, VertexId, rising};
 use crate::geometry::vector::{add, scale};
 
-/// So many tets may go on one side.
+/// The tets of one cavity at most.
 const MOST: usize = 1024;
 
-/// So often in vain, and once more for each time that it helped: where walls are as near to each other as digits go, nothing helps.
-pub(super) const PATIENCE: usize = 128;
+/// How many cavities may be enlarged in vain, each success allowing one more: where walls are as near to each other as digits go, nothing helps.
+pub(super) const MOST_IN_VAIN: usize = 128;
 
 /// How far from the surface the point may be, as a share of the way to the facets around.
 const WAYS: [f64; 8] = [0.3, 0.15, 0.6, 0.06, 0.02, 5e-3, 1e-3, 1e-4];
 
 impl Keep<'_> {
-    /// A point near `middle` that sees all facets around the side `i`, to which tets are added where it has no room otherwise. Tets from the point to the facets
-    /// have a volume where that can be, or else if they `may_be_flat` not.
-    pub(super) fn room(
+    /// A point near `middle` that sees all facets of the cavity `sides[i]`, which gets more tets where it has no such point. All tets from the point to the facets
+    /// have a volume in the digits of their coordinates; where that cannot be and they `may_be_flat`, they are positive.
+    pub(super) fn find_apex(
         &mut self,
         sides: &mut [Side],
         i: usize,
@@ -35,21 +35,22 @@ impl Keep<'_> {
         if let Some(p) = place.filter(|&p| !sides[i].is_flat_from(self.sites, p)) {
             return Some(p);
         }
-        if self.patience > 0 {
+        if self.n_in_vain_left > 0 {
             let (directions, _) = sides[i].directions(self.sites, middle);
             let points =
                 WAYS.iter().flat_map(|&way| directions.map(|direction| add(middle, scale(direction, way))));
-            if let Some((grown, p)) = points.filter_map(|p| Some((self.grown_to(sides, i, p)?, p))).next() {
-                self.patience += 1;
-                sides[i] = grown;
+            if let Some((side, p)) = points.filter_map(|p| Some((self.enlarged(sides, i, p)?, p))).next() {
+                self.n_in_vain_left += 1;
+                sides[i] = side;
                 return Some(p);
             }
-            self.patience -= 1;
+            self.n_in_vain_left -= 1;
         }
         place.filter(|_| may_be_flat)
     }
 
-    fn grown_to(&self, sides: &[Side], i: usize, p: Point) -> Option<Side> {
+    /// The cavity `sides[i]` with the tets added that make it star-shaped about `p`. `None` where it meets the surface first, or becomes too large.
+    fn enlarged(&self, sides: &[Side], i: usize, p: Point) -> Option<Side> {
         let is_good = |face| is_seen(self.sites, face, p) && !makes_flat(self.sites, face, p);
         let mut side = sides[i].clone();
         if !side.base.iter().all(|&face| is_good(face)) {
@@ -62,11 +63,11 @@ impl Keep<'_> {
                 n_good += 1;
                 continue;
             }
-            let is_free = !behind.is_none()
+            let may_be_added = !behind.is_none()
                 && self.bodies.of_slot[behind.tet().index()] == body
                 && self.wall(behind).is_none()
                 && !side.tets.contains(&behind.tet());
-            if !is_free || side.tets.len() == MOST {
+            if !may_be_added || side.tets.len() == MOST {
                 return None;
             }
             side.tets.push(behind.tet());
@@ -83,7 +84,7 @@ impl Keep<'_> {
         (self.is_closed(&side) && self.is_apart(&side, sides, i)).then_some(side)
     }
 
-    /// Whether the facets around, with the new ones of the surface, are one closed surface that all vertices are on but those that nobody misses.
+    /// Whether the facets of a cavity, with the new ones of the surface, meet in pairs at their edges, and have all its vertices but Steiner points inside.
     fn is_closed(&self, side: &Side) -> bool {
         let mut edges: HashMap<[VertexId; 2], u32> = HashMap::new();
         for [a, b, c] in side.faces() {
@@ -91,16 +92,13 @@ impl Keep<'_> {
                 *edges.entry(rising(edge)).or_default() += 1;
             }
         }
-        let is_around = |v: &VertexId| side.faces().any(|face| face.contains(v));
+        let around: HashSet<VertexId> = edges.keys().flatten().copied().collect();
+        let is_kept_or_spare = |v: VertexId| around.contains(&v) || self.sites.is_steiner_inside(v);
         edges.values().all(|&n| n == 2)
-            && side
-                .tets
-                .iter()
-                .flat_map(|&tet| self.tets.vertices(tet))
-                .all(|v| self.sites.is_free(v) || is_around(&v))
+            && side.tets.iter().flat_map(|&tet| self.tets.vertices(tet)).all(is_kept_or_spare)
     }
 
-    /// Whether no other side has a tet of this one, or behind it.
+    /// Whether no other cavity of `sides` has a tet of this one, or one behind its facets.
     fn is_apart(&self, side: &Side, sides: &[Side], i: usize) -> bool {
         let others = || sides.iter().enumerate().filter(|&(k, _)| k != i).flat_map(|(_, other)| &other.tets);
         let behind = |tet| side.shell.iter().any(|(half, _)| !half.is_none() && half.tet() == tet);

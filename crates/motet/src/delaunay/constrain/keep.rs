@@ -8,7 +8,7 @@ use hashbrown::HashMap;
 
 use super::bodies::Bodies;
 use super::flats::Flats;
-use super::grow::PATIENCE;
+use super::grow::MOST_IN_VAIN;
 use super::plane::Plane;
 use super::recone::Side;
 use super::segments::Segments;
@@ -33,13 +33,13 @@ pub(super) struct Keep<'a> {
     pub(super) flats: &'a Flats,
     /// The flat facet of each facet of the surface, vertices rising.
     pub(super) walls: HashMap<[VertexId; 3], u32>,
-    /// How often a point may still be looked for in vain with more tets (`grow`).
-    pub(super) patience: usize,
+    /// How many cavities may still be enlarged in vain (`grow`).
+    pub(super) n_in_vain_left: usize,
     /// The tets of each vertex, with some that it has no more.
     incident: Vec<Vec<TetId>>,
 }
 
-/// Facets of the surface, and those that take their place, each with its flat facet and turned as the plane of that.
+/// Facets of the surface, and those that replace them, each with its flat facet and turned as the plane of that.
 #[derive(Clone, Copy)]
 pub(super) struct Exchange<'a> {
     /// Vertices rising.
@@ -60,10 +60,19 @@ impl<'a> Keep<'a> {
             list.iter().map(|&part| (rising(part), flat as u32)).collect::<Vec<_>>()
         };
         let walls = parts.iter().enumerate().flat_map(of_flat).collect();
-        Self { tets, sites, bodies, triangles, flats, walls, patience: PATIENCE, incident: Vec::new() }
+        Self {
+            tets,
+            sites,
+            bodies,
+            triangles,
+            flats,
+            walls,
+            n_in_vain_left: MOST_IN_VAIN,
+            incident: Vec::new(),
+        }
     }
 
-    /// Puts all right that can be; answers the facets of each flat facet, and the flat facets that have other triangles than they came with.
+    /// Puts all right that can be; returns the facets of each flat facet, and the flat facets that have other triangles than were given.
     pub(super) fn run(
         mut self,
         segments: &Segments,
@@ -312,7 +321,8 @@ impl<'a> Keep<'a> {
         Some(sides)
     }
 
-    /// Makes all sides anew, if each has room for a point, or has it with more tets; without tets that have no volume where these `may_be_flat` not.
+    /// Fills the cavities `sides` with tets from one new point each, if each has such a point, enlarged if need be. Unless tets `may_be_flat`, all have a volume in
+    /// the digits of their coordinates.
     pub(super) fn commit(
         &mut self,
         mut sides: Vec<Side>,
@@ -323,7 +333,11 @@ impl<'a> Keep<'a> {
         let mut places = Vec::with_capacity(sides.len());
         for i in 0..sides.len() {
             let is_outside = self.bodies.of_slot[sides[i].tets[0].index()] == 0;
-            places.push(if is_outside { middle } else { self.room(&mut sides, i, middle, may_be_flat)? });
+            places.push(if is_outside {
+                middle
+            } else {
+                self.find_apex(&mut sides, i, middle, may_be_flat)?
+            });
         }
         let (mut on_base, mut came) = (Vec::new(), Vec::new());
         for (side, place) in sides.iter().zip(places) {

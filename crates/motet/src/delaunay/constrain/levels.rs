@@ -1,10 +1,10 @@
-//! Which triangles may be one flat facet: where one way has failed, another is tried, there alone.
+//! How triangles are joined to flat facets: where one way has failed, another is tried, there alone.
 
 use super::flats::{Grown, Merge};
 use super::unmade::Part;
 use crate::base::{Csr, VertexId};
 
-/// How triangles are joined. Those that are in one plane but for rounding go from one way to the next together.
+/// How each triangle may be joined with its neighbours. Triangles in one plane but for rounding change from one way to the next together.
 pub(super) struct Levels<'a> {
     triangles: &'a [[VertexId; 3]],
     pub(super) grown: &'a Grown,
@@ -14,12 +14,14 @@ pub(super) struct Levels<'a> {
 }
 
 impl<'a> Levels<'a> {
+    /// Joins triangles in exactly one plane.
     pub(super) fn new(triangles: &'a [[VertexId; 3]], grown: &'a Grown) -> Self {
         let n = grown.firsts.len();
         let facets = || grown.number.iter().enumerate().map(|(i, &of)| (of as usize, i as u32));
         Self { triangles, grown, members: Csr::from_pairs(n, facets), of_facet: vec![Merge::Exact; n] }
     }
 
+    /// How a triangle may be joined.
     pub(super) fn of(&self, triangle: u32) -> Merge {
         self.of_facet[self.grown.number[triangle as usize] as usize]
     }
@@ -29,8 +31,9 @@ impl<'a> Levels<'a> {
         self.of_facet.contains(&Merge::Rounded)
     }
 
-    /// Takes the next way where triangles failed. Whether there is one.
-    pub(super) fn go_on(&mut self, failed: &[u32]) -> bool {
+    /// Changes how the triangles `failed` and those in one plane with them are joined: first exactly, then but for rounding, then not at all. Whether there is a
+    /// way left for one of them.
+    pub(super) fn advance(&mut self, failed: &[u32]) -> bool {
         let mut facets: Vec<u32> = failed.iter().map(|&i| self.grown.number[i as usize]).collect();
         facets.sort_unstable();
         facets.dedup();
@@ -43,15 +46,15 @@ impl<'a> Levels<'a> {
         !facets.is_empty()
     }
 
-    /// Each triangle for itself. Whether that is another way.
-    pub(super) fn part_all(&mut self) -> bool {
-        let is_new = self.of_facet.iter().any(|of| *of != Merge::None);
+    /// Joins no triangles any more. Returns whether some were joined.
+    pub(super) fn separate_all(&mut self) -> bool {
+        let has_joined = self.of_facet.iter().any(|of| *of != Merge::None);
         self.of_facet.fill(Merge::None);
-        is_new
+        has_joined
     }
 
-    /// The triangles that may be why a part of the surface could not be made: those joined at it; or near it; or any.
-    pub(super) fn at(&self, part: Part) -> Vec<u32> {
+    /// The joined triangles that share the most vertices with a part of the surface; all that are joined, where none shares one.
+    pub(super) fn near(&self, part: Part) -> Vec<u32> {
         let ends = match part {
             Part::Edge(ends) => ends.to_vec(),
             Part::Triangle(i) => self.triangles[i as usize].to_vec(),

@@ -249,7 +249,7 @@ struct Filled {
     flats: Flats,
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
-    /// Flat facets that have not got the triangles back that they came with.
+    /// Flat facets that have other triangles than were given.
     unrestored: Vec<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Flat facets get the triangles back that they came with.
+//! Flat facets get back the triangles that were given.
 
 use std::collections::VecDeque;
 
@@ -10,7 +10,7 @@ use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
 impl Keep<'_> {
-    /// Gives a flat facet the triangles back that it came with, edge by edge (Sloan 1993, *A fast algorithm for generating constrained
+    /// Gives a flat facet back the triangles that were given, edge by edge; `None` where a flip has no room (Sloan 1993, *A fast algorithm for generating constrained
     /// Delaunay triangulations*).
     pub(super) fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) -> Option<()> {
         let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
@@ -68,7 +68,7 @@ impl Keep<'_> {
         let old = [rising([a, b, p]), rising([b, a, q])];
         let base = [(flat, [p, a, q]), (flat, [q, b, p])];
         let exchange = Exchange { old: &old, base: &base };
-        if self.pass(&star, [a, b, p, q], exchange).is_some() {
+        if self.hand_over(&star, [a, b, p, q], exchange).is_some() {
             return Some(());
         }
         let is_around = |tets: &Tets, half: HalfFacet| {

@@ -79,11 +79,10 @@ impl Keep<'_> {
         }
         Some((found, sheet))
     }
-}
 
-impl Keep<'_> {
-    /// Gives the tet of four vertices of a flat facet to the other side, where it has two facets on it, `old`; then the facet has the two others, `base`.
-    pub(super) fn pass(
+    /// Gives the flat tet of `corners` to the body on the other side of the facets `old` that it has in a flat facet, whose other two, `base`, replace them. `None`
+    /// where `star` has no such tet, or both sides are of one body.
+    pub(super) fn hand_over(
         &mut self,
         star: &[TetId],
         corners: [VertexId; 4],
@@ -100,8 +99,8 @@ impl Keep<'_> {
             return None;
         }
         let other = if front == body { behind } else { front };
-        let has_gone = halves.iter().any(|&half| self.tets.across(half).is_none());
-        if has_gone {
+        let is_removed = halves.iter().any(|&half| self.tets.across(half).is_none());
+        if is_removed {
             for half in halves.map(|half| self.tets.across(half)).into_iter().filter(|half| !half.is_none()) {
                 self.tets.join(HalfFacet::NONE, half);
             }

@@ -106,8 +106,8 @@ impl Sites {
         self.on(vertex).map(|on| on.1)
     }
 
-    /// Whether a vertex was added as it is, so that nobody misses it.
-    pub(super) fn is_free(&self, vertex: VertexId) -> bool {
+    /// Whether a vertex is a Steiner point off the surface, which may be removed.
+    pub(super) fn is_steiner_inside(&self, vertex: VertexId) -> bool {
         vertex.index() >= self.n_given && self.place(vertex).is_none()
     }
 

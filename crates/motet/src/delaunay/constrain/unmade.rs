@@ -37,7 +37,11 @@ pub(super) struct Order {
 }
 
 impl Order {
-    /// Works until nothing is left unmade; or until it has been begun anew `most` times, or what came first could be made neither then nor last.
+    /// Repeats `work`, each time with what could not be made in another place in line, until nothing is left unmade. Gives up after `most` repetitions, or where a
+    /// part could be made neither first nor last.
+    ///
+    /// # Errors
+    /// The last failure.
     pub(super) fn retried<T>(
         most: usize,
         watch: &Watch,
