@@ -1,6 +1,4 @@
-//! Fills `corpus/TARGET/` with small files of every format that can be written:
-//! `cargo run --release --example seeds`, then
-//! `cargo +nightly fuzz run vtu -- -max_total_time=600 -dict=dictionaries/xml.dict`.
+//! Fills `corpus/TARGET/` with small files of every format that can be written, and with bytes for the targets of algorithms; `fuzz/run` calls it.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,8 +35,31 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         fs::write(folder.join("two"), text)?;
         n_files.insert(target.into(), 1);
     }
+    for target in ["fill", "repair", "embed", "steps"] {
+        let folder = corpus.join(target);
+        fs::create_dir_all(&folder)?;
+        for k in 0..N_SCRIPTS {
+            fs::write(folder.join(format!("bytes_{k}")), bytes(k))?;
+        }
+        n_files.insert(target.into(), N_SCRIPTS as usize);
+    }
     n_files.iter().for_each(|(target, n)| println!("{target}: {n} files"));
     Ok(())
+}
+
+/// Files of bytes for each target of an algorithm.
+const N_SCRIPTS: u64 = 32;
+
+/// 256 bytes that look random, the same for each `k` (Marsaglia's xorshift).
+fn bytes(k: u64) -> Vec<u8> {
+    let mut state = 0x9e37_79b9_7f4a_7c15 ^ (k + 1);
+    let next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 32) as u8
+    };
+    std::iter::repeat_with(next).take(256).collect()
 }
 
 const PVD: &str = r#"<?xml version="1.0"?>

@@ -1,0 +1,158 @@
+//! What the targets of algorithms share: bodies from bytes, and what a mesh of tets must be by definition.
+#![allow(dead_code, reason = "each target uses its part")]
+
+use std::collections::HashMap;
+
+use motet::Mesh;
+use motet::base::{Point, VertexId};
+use motet::geometry::predicates::orient3d;
+use motet::geometry::tet::{FACETS, volume};
+use motet::geometry::triangle::area;
+use motet::mesh::shapes::box_grid;
+use motet::mesh::{CellKind, Cells, Field, Surface};
+
+/// Numbers from bytes, in their order; zeros where they end.
+pub struct Numbers<'a>(pub &'a [u8]);
+
+impl Numbers<'_> {
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn byte(&mut self) -> u8 {
+        let Some((&first, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        first
+    }
+
+    /// In 0..n, for n up to 256.
+    pub fn below(&mut self, n: usize) -> usize {
+        usize::from(self.byte()) % n
+    }
+
+    /// In [-1, 1], a multiple of 1/16: coordinates often coincide.
+    pub fn coarse(&mut self) -> f64 {
+        (f64::from(self.byte() % 33) - 16.0) / 16.0
+    }
+
+    /// A vector of [`Self::coarse`] numbers.
+    pub fn vector(&mut self) -> Point {
+        [self.coarse(), self.coarse(), self.coarse()]
+    }
+}
+
+/// Cubes of a lattice of 2 or 3 a side, each of 6 tets; corners moved by up to `most` of an edge. Cubes are in regions 1 to 3, all coordinates within [-1, 1].
+pub fn cubes(numbers: &mut Numbers, most: f64) -> Mesh {
+    let n = 2 + numbers.below(2);
+    let whole = box_grid([n; 3], [[-1.0; 3], [1.0; 3]]);
+    let regions: Vec<i32> = (0..n * n * n).map(|_| numbers.below(5) as i32 - 1).collect();
+    let edge = 2.0 / n as f64;
+    let cube = |tet: &[VertexId]| -> usize {
+        let lowest = |axis: usize| tet.iter().map(|v| whole.points[v.index()][axis]).fold(1.0, f64::min);
+        let at = |axis: usize| ((lowest(axis) + 1.0) / edge).round() as usize;
+        at(0) + n * (at(1) + n * at(2))
+    };
+    let (mut cells, mut labels) = (Cells::new(), Vec::new());
+    for (_, tet) in whole.cells.tets() {
+        let region = regions[cube(&tet)];
+        if region > 0 || cube(&tet) == 0 {
+            cells.push(CellKind::TETRA, tet);
+            labels.push(region.max(1));
+        }
+    }
+    let points = whole.points.iter().map(|p| {
+        let by = numbers.vector();
+        [0, 1, 2].map(|i| p[i] + most * edge * by[i])
+    });
+    let mut mesh = Mesh::new(points.collect(), cells);
+    mesh.set_cell_field(Field::scalars("region", labels));
+    placed(&mut mesh, numbers);
+    mesh
+}
+
+/// Leaves a mesh where it is, or turns, shifts or scales it, or rounds it to `f32`.
+fn placed(mesh: &mut Mesh, numbers: &mut Numbers) {
+    let how = numbers.below(8);
+    let turn = |p: Point| {
+        // A rotation with rational entries, which few floats are.
+        let rows = [[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [2.0, 1.0, -2.0]];
+        rows.map(|r: [f64; 3]| (r[0] * p[0] + r[1] * p[1] + r[2] * p[2]) / 3.0)
+    };
+    for p in &mut mesh.points {
+        *p = match how {
+            1 => turn(*p),
+            2 => p.map(|x| x + 1e3),
+            3 => p.map(|x| 1e-3 * x),
+            4 => p.map(|x| f64::from(x as f32)),
+            5 => turn(*p).map(|x| f64::from((x + 1e3) as f32)),
+            _ => *p,
+        };
+    }
+}
+
+/// The boundary of a mesh, as a mesh of triangles.
+pub fn skin(mesh: &Mesh) -> Mesh {
+    let surface = Surface::boundary_of(mesh);
+    let mut cells = Cells::new();
+    surface.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
+    Mesh::new(surface.points, cells)
+}
+
+pub fn tets(mesh: &Mesh) -> Vec<[Point; 4]> {
+    mesh.cells.tets().map(|(_, tet)| tet.map(|v| mesh.points[v.index()])).collect()
+}
+
+pub fn is_positive([a, b, c, d]: [Point; 4]) -> bool {
+    orient3d(a, b, c, d) > 0
+}
+
+pub fn n_not_positive(mesh: &Mesh) -> usize {
+    tets(mesh).into_iter().filter(|tet| !is_positive(*tet)).count()
+}
+
+/// The volume of the tets of each region; what rounding may make of it is part of `tolerance`.
+pub fn volumes(mesh: &Mesh) -> HashMap<i64, f64> {
+    let labels = mesh.cell_field("region").and_then(|f| f.values.to_f64());
+    let mut volumes = HashMap::new();
+    for (cell, tet) in mesh.cells.tets() {
+        let region = labels.as_ref().map_or(0, |l| l[cell.index()] as i64);
+        *volumes.entry(region).or_insert(0.0) += volume(tet.map(|v| mesh.points[v.index()]));
+    }
+    volumes
+}
+
+/// How far volumes may be off: the area of all facets times the rounding of coordinates.
+pub fn tolerance(mesh: &Mesh) -> f64 {
+    let largest = mesh.points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    let facets: f64 = tets(mesh).iter().flat_map(|t| FACETS.map(|f| area(f.map(|k| t[k])))).sum();
+    1e-12 * largest * facets
+}
+
+/// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets, and no facet of two from the same side.
+pub fn check(mesh: &Mesh) {
+    mesh.validate().expect("the mesh holds together");
+    let mut uses: HashMap<[VertexId; 3], Vec<bool>> = HashMap::new();
+    for (cell, tet) in mesh.cells.tets() {
+        let mut corners = tet;
+        corners.sort_unstable();
+        assert!(corners.windows(2).all(|w| w[0] != w[1]), "tet {cell} has a corner twice");
+        for facet in FACETS {
+            let facet = facet.map(|k| tet[k]);
+            uses.entry(rising(facet)).or_default().push(is_even(facet));
+        }
+    }
+    for (facet, sides) in uses {
+        let is_sound = sides.len() == 1 || sides.len() == 2 && sides[0] != sides[1];
+        assert!(is_sound, "facet {facet:?} of {} tets, seen from {sides:?}", sides.len());
+    }
+}
+
+fn rising(mut facet: [VertexId; 3]) -> [VertexId; 3] {
+    facet.sort_unstable();
+    facet
+}
+
+/// Whether an even number of exchanges puts the corners into rising order.
+fn is_even([a, b, c]: [VertexId; 3]) -> bool {
+    (usize::from(a > b) + usize::from(a > c) + usize::from(b > c)) % 2 == 0
+}
