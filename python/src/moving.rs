@@ -38,6 +38,7 @@ pub(crate) struct Asked {
     min_eas: f64,
     surface: String,
     distance: Option<f64>,
+    hold_names: Vec<String>,
     margin: f64,
     floor: f64,
     keep_tets: f64,
@@ -67,7 +68,8 @@ impl Asked {
             limits: Limits::default(),
         };
         let surface = SurfaceRule::of_name(&self.surface, self.distance).or_raise()?;
-        let repair = remesh::Options { min_eas: self.min_eas, surface, ..remesh::Options::default() };
+        let held = remesh::Held::of_names(mesh, &self.hold_names).or_raise()?;
+        let repair = remesh::Options { min_eas: self.min_eas, surface, held, ..remesh::Options::default() };
         let watch = (!self.watch.is_empty()).then(|| Watching {
             patches: self.watch.clone(),
             options: contact::Options { warn: self.warn, within: self.within, ..contact::Options::default() },

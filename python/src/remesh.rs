@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use motet::remesh::{Goal, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
+use motet::remesh::{Goal, Held, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -22,7 +22,7 @@ pub(crate) enum AskedSizes {
 
 /// The new mesh, its history, what was done, and whether nothing bad is left.
 #[pyfunction]
-#[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, sizes, rounds, carry, threads, progress))]
+#[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, hold, sizes, rounds, carry, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
 pub(crate) fn remesh<'py>(
     py: Python<'py>,
@@ -33,6 +33,7 @@ pub(crate) fn remesh<'py>(
     surface: &str,
     distance: Option<f64>,
     keep_layers: bool,
+    hold: Vec<String>,
     sizes: Option<AskedSizes>,
     rounds: usize,
     carry: BTreeMap<String, String>,
@@ -45,6 +46,7 @@ pub(crate) fn remesh<'py>(
         goal: one_of("goal", goal, &[("repair", Goal::Repair), ("best", Goal::Best)])?,
         surface: SurfaceRule::of_name(surface, distance).or_raise()?,
         keep_layers,
+        held: Held::of_names(&mesh.0, &hold).or_raise()?,
         sizes: sizes.map(|sizes| match sizes {
             AskedSizes::Uniform(h) => Sizes::Uniform(h),
             AskedSizes::Points(all) => Sizes::Vertices(all),

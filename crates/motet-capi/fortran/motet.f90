@@ -54,6 +54,8 @@ module motet
     real(c_double) :: edge_length = 0
     type(c_ptr) :: sizes = c_null_ptr
     integer(c_int64_t) :: n_sizes = 0
+    type(c_ptr) :: hold = c_null_ptr
+    integer(c_int64_t) :: n_hold = 0
   end type
 
   type, bind(c), public :: implant_options
@@ -92,6 +94,8 @@ module motet
     integer(c_int64_t) :: n_watch = 0
     real(c_double) :: warn = 0, within = 0, horizon = 0, hold = 0
     integer(c_int32_t) :: remembered = 64, threads = 0
+    type(c_ptr) :: hold_names = c_null_ptr
+    integer(c_int64_t) :: n_hold_names = 0
   end type
 
   ! What became of a step of a moving mesh.

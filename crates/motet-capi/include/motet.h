@@ -251,6 +251,8 @@ typedef struct motet_remesh_options {
     double edge_length;      /* edges are brought to this length; default 0: they are left */
     const double *sizes;     /* or to these, one for each point; default NULL */
     int64_t n_sizes;
+    const char *const *hold; /* names (or labels written out) of regions and patches that stay to the bit; default none */
+    int64_t n_hold;
 } motet_remesh_options;
 
 void motet_remesh_options_init(motet_remesh_options *options, size_t size);
@@ -390,6 +392,8 @@ typedef struct motet_moving_options {
     double hold;               /* walls stop at this distance, whatever they are told, each patch before those after it; default 0: they do not */
     int32_t remembered;        /* so many changes are remembered for motet_moving_since; default 64 */
     int32_t threads;           /* default 0 */
+    const char *const *hold_names; /* regions and patches that repair leaves as they are: as hold of motet_remesh_options; default none */
+    int64_t n_hold_names;
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

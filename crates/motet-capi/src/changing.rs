@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    count, expect, free, give, handle, place, room, sized, text, texts, threads, values, versioned,
+    count, expect, free, give, handle, owned, place, room, sized, text, texts, threads, values, versioned,
 };
 use crate::mesh::{MotetMesh, field, json, on_points};
 
@@ -129,6 +129,8 @@ versioned! {
         edge_length: f64 = 0.0,
         sizes: *const f64 = std::ptr::null(),
         n_sizes: i64 = 0,
+        hold: *const *const c_char = std::ptr::null(),
+        n_hold: i64 = 0,
     }
 }
 
@@ -149,13 +151,14 @@ pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
 }
 
 impl MotetRemeshOptions {
-    fn options(&self) -> Result<remesh::Options> {
+    fn options(&self, mesh: &Mesh) -> Result<remesh::Options> {
         Ok(remesh::Options {
             min_eas: self.min_eas,
             min_dihedral_deg: self.min_dihedral_deg,
             goal: if self.best != 0 { Goal::Best } else { Goal::Repair },
             surface: surface_rule(self.surface, self.distance)?,
             keep_layers: self.repair_layers == 0,
+            held: remesh::Held::of_names(mesh, &owned(self.hold, self.n_hold, "hold")?)?,
             sizes: match (self.sizes.is_null(), given(self.edge_length)) {
                 (true, length) => length.map(remesh::Sizes::Uniform),
                 (false, _) => {
@@ -180,7 +183,7 @@ pub(crate) unsafe extern "C" fn motet_remesh(
         let place = place(outcome, "outcome")?;
         let mesh = &handle(mesh, "mesh")?.0;
         let asked = sized(options)?;
-        let done = remesh_mesh(mesh, &asked.options()?, &Rules::default(), &threads(asked.threads)?)?;
+        let done = remesh_mesh(mesh, &asked.options(mesh)?, &Rules::default(), &threads(asked.threads)?)?;
         let MeshOutcome { mesh, history, report, .. } = done;
         give(place, MotetOutcome::new(mesh, Some(history), &report, report.is_complete())?);
         Ok(())

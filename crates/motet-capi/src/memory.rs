@@ -101,6 +101,11 @@ pub(crate) fn texts<'a>(start: *const *const c_char, n: i64, what: &str) -> Resu
     values(start, count(n, what)?, what)?.iter().map(|&one| text(one, what)).collect()
 }
 
+/// Several texts, copied.
+pub(crate) fn owned(start: *const *const c_char, n: i64, what: &str) -> Result<Vec<String>> {
+    Ok(texts(start, n, what)?.into_iter().map(str::to_owned).collect())
+}
+
 /// A handle that is read.
 pub(crate) fn handle<'a, T>(handle: *const T, what: &str) -> Result<&'a T> {
     // SAFETY: the header asks for a handle that was made by this library and has not been freed.

@@ -13,7 +13,7 @@ use serde_json::json;
 use crate::changing::{MotetOutcome, surface_rule};
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    count, expect, fill_rows, free, give, handle, handle_mut, place, put, rows, sized, text, texts, threads,
+    count, expect, fill_rows, free, give, handle, handle_mut, owned, place, put, rows, sized, text, threads,
     versioned,
 };
 use crate::mesh::{MotetMesh, field, on_points};
@@ -58,13 +58,16 @@ versioned! {
         hold: f64 = 0.0,
         remembered: i32 = 64,
         threads: i32 = 0,
+        hold_names: *const *const c_char = ptr::null(),
+        n_hold_names: i64 = 0,
     }
 }
 
 impl MotetMovingOptions {
     fn options(&self, mesh: &Mesh) -> Result<Options> {
         let surface = surface_rule(self.surface, self.distance)?;
-        let repair = remesh::Options { min_eas: self.min_eas, surface, ..remesh::Options::default() };
+        let held = remesh::Held::of_names(mesh, &owned(self.hold_names, self.n_hold_names, "hold_names")?)?;
+        let repair = remesh::Options { min_eas: self.min_eas, surface, held, ..remesh::Options::default() };
         Ok(Options {
             motion: self.motion(mesh)?,
             repair: (self.no_repair == 0).then_some(repair),
@@ -108,10 +111,6 @@ impl MotetMovingOptions {
             Watching { patches, options, horizon: above_zero(self.horizon), hold: above_zero(self.hold) };
         Ok((!watching.patches.is_empty()).then_some(watching))
     }
-}
-
-fn owned(names: *const *const c_char, n: i64, what: &str) -> Result<Vec<String>> {
-    Ok(texts(names, n, what)?.into_iter().map(str::to_owned).collect())
 }
 
 #[unsafe(no_mangle)]

@@ -431,3 +431,17 @@ fn sizes_that_are_none_are_refused() {
     }
     assert_eq!(folder.names(), ["box.vtu"]);
 }
+
+#[test]
+fn what_is_named_is_held() {
+    let folder = folder();
+    // All tets are of one region: where it is held, nothing can be done.
+    let words = ["remesh", "shaken.vtu", "-o", "held.vtu", "--hold", "box", "--surface", "adapt", "--json"];
+    let told = report(&folder.motet(words).assert().success());
+    assert!(told["held"].as_u64().unwrap() > 0 && told["after"]["bad"] == 0, "{told}");
+    let [before, after] = ["shaken.vtu", "held.vtu"].map(|name| read(folder.path(name)).unwrap());
+    assert!(before.points == after.points && before.cells == after.cells);
+    let call =
+        folder.motet(["remesh", "shaken.vtu", "-o", "never.vtu", "--hold", "nothing"]).assert().code(2);
+    assert!(stderr(&call).contains("its regions: box"), "{}", stderr(&call));
+}

@@ -103,6 +103,7 @@ def remesh(
     surface: Literal["keep", "adapt", "loose"] = "keep",
     distance: float | None = None,
     keep_layers: bool = True,
+    hold: Sequence[str | int] = (),
     sizes: float | str | ArrayLike | None = None,
     rounds: int = 20,
     carry: Mapping[str, Carry] | None = None,
@@ -126,6 +127,8 @@ def remesh(
         In units of the mesh; a thousandth of its largest extent if None.
     keep_layers : bool
         Whether thin tets of boundary layers stay as they are.
+    hold : sequence of names or labels of regions and patches
+        Tets of these regions and triangles of these patches stay to the bit, with their vertices.
     sizes : float, name of a point array, or array (n,)
         How long edges are to be.
     carry : mapping from array to {"mean", "inherit", "drop"}
@@ -147,7 +150,7 @@ def remesh(
         sizes = np.asarray(sizes, np.float64).ravel().tolist()
     native = _motet.remesh(
         given, min_eas=min_eas, min_dihedral_deg=min_dihedral_deg, goal=goal, surface=surface, distance=distance, keep_layers=keep_layers,
-        sizes=sizes, rounds=rounds, carry=dict(carry or {}), threads=threads, progress=progress,
+        hold=[str(name) for name in hold], sizes=sizes, rounds=rounds, carry=dict(carry or {}), threads=threads, progress=progress,
     )  # fmt: skip
     return _changed(native)
 

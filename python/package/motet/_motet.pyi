@@ -36,6 +36,7 @@ def remesh(
     surface: str,
     distance: float | None,
     keep_layers: bool,
+    hold: list[str],
     sizes: Any,
     rounds: int,
     carry: dict[str, Any],

@@ -34,6 +34,7 @@ class _Asked:
     min_eas: float = 0.2
     surface: str = "keep"
     distance: float | None = None
+    hold_names: Sequence[str | int] = ()
     margin: float = 0.05
     floor: float = 0.05
     keep_tets: float = 0.9
@@ -49,7 +50,7 @@ class _Asked:
     def __post_init__(self) -> None:
         if self.rigid_layer is not None and self.rigid_layer_cells is not None:
             raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
-        for patches in ("bodies", "inside", "slide", "rigid_layer_at", "watch"):
+        for patches in ("bodies", "inside", "slide", "rigid_layer_at", "watch", "hold_names"):
             setattr(self, patches, [str(patch) for patch in getattr(self, patches)])
         self.contents, self.carry = list(self.contents), dict(self.carry or {})
 
@@ -69,6 +70,8 @@ class MovingMesh:
     repair : bool
         Whether bad tets are repaired; if not, a step ends where a cell would turn over.
     min_eas, surface, distance : as of :func:`remesh`
+    hold_names : sequence of names or labels of regions and patches
+        What repair leaves as it is, as ``hold`` of :func:`remesh`. (``hold`` here is a distance between walls, see ``watch``.)
     margin, floor : float
         Repaired are tets to ``min_eas + margin``; no step takes one that can be repaired below ``floor``.
     keep_tets : float

@@ -78,7 +78,7 @@ pub fn implant(
     report.adapted = adapted.as_ref().map(|adapted| adapted.2);
     report.seconds.adapt = lap();
 
-    let part = TetPart::of(host_now)?;
+    let part = TetPart::of(host_now)?.with_lines_held();
     let (carved, gap) = room(&part, &joined, options, threads, &mut report, &mut lap)?;
     report.carved = carved.fates.iter().filter(|fate| **fate == Fate::Gone).count();
 

@@ -7,6 +7,7 @@ use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
 use crate::kernel::journal::Journal;
+use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
 use crate::kernel::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::TetMesh;
@@ -48,6 +49,7 @@ impl Complex {
         let mut fixed_edges = mesh.fixed_edges.clone();
         fixed_edges.iter_mut().for_each(|edge| edge.sort_unstable());
         fixed_edges.sort_unstable();
+        let (lines, loose) = Lines::of(mesh);
         let mut complex = Self {
             holds: vec![Hold::Free; points.len()],
             vertex_is_new: vec![false; points.len()],
@@ -68,6 +70,8 @@ impl Complex {
             free_walls: Vec::new(),
             is_locked: Vec::new(),
             fixed_edges,
+            lines,
+            is_fixed_wall: Vec::new(),
             spared: Vec::new(),
             folded,
             keeps_surface: true,
@@ -76,6 +80,7 @@ impl Complex {
             journal: Journal::default(),
         };
         complex.hold_walls(&mesh.fixed_vertices);
+        complex.hold_lines(&loose);
         Ok(complex)
     }
 

@@ -25,6 +25,15 @@ pub struct NewWall {
     pub triangle: u32,
 }
 
+/// An edge of the fill that is to be a line, where lines change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewLine {
+    /// Its vertices, in any order.
+    pub vertices: [VertexId; 2],
+    /// What it is: the source of the line that it inherits from.
+    pub source: u32,
+}
+
 /// What a change does to a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum VertexChange {
@@ -51,6 +60,8 @@ pub struct Change {
     /// Walls to come; those that go are the walls of the cavity which the fill has no facet for. Empty where the
     /// surface stays.
     pub walls: Vec<NewWall>,
+    /// Lines to come; those that go are the lines of the cavity whose edge the fill does not have.
+    pub lines: Vec<NewLine>,
 }
 
 impl Change {
@@ -59,6 +70,7 @@ impl Change {
         self.cavity.clear();
         self.fill.clear();
         self.walls.clear();
+        self.lines.clear();
         self.vertex = VertexChange::None;
     }
 

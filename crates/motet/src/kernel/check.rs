@@ -67,6 +67,8 @@ pub struct Checked<'a> {
     pub(super) change: &'a Change,
     pub(super) joints: Vec<Joint>,
     pub(super) lost_walls: Vec<WallId>,
+    /// Lower vertex first.
+    pub(super) lost_lines: Vec<[VertexId; 2]>,
 }
 
 /// How one facet of the fill is joined to what lies behind it.
@@ -145,11 +147,11 @@ impl Complex {
                 return Err(Reject::NotPositive(tet.vertices));
             }
         }
-        self.check_edges(change)?;
+        let lost_lines = self.check_edges(change)?;
         if self.is_tangled {
             self.check_news(change)?;
         }
-        self.join(change)
+        Ok(Checked { lost_lines, ..self.join(change)? })
     }
 
     /// The lowest quality of some tets.
@@ -184,21 +186,6 @@ impl Complex {
             let is_in_fill = change.fill.iter().any(|tet| tet.vertices.contains(&v));
             if is_in_fill == (gone == Some(v)) {
                 return Err(Reject::Vertex(v));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_edges(&self, change: &Change) -> Result<(), Reject> {
-        if self.fixed_edges.is_empty() {
-            return Ok(());
-        }
-        for tet in change.cavity.iter().map(|&t| self.vertices(t)) {
-            for [a, b] in EDGES.map(|edge| edge.map(|i| tet[i])) {
-                let has = |fill: &[VertexId; 4]| fill.contains(&a) && fill.contains(&b);
-                if self.is_fixed_edge(a, b) && !change.fill.iter().any(|tet| has(&tet.vertices)) {
-                    return Err(Reject::Edge([a, b]));
-                }
             }
         }
         Ok(())
@@ -254,7 +241,8 @@ impl Complex {
     fn join<'a>(&self, change: &'a Change) -> Result<Checked<'a>, Reject> {
         let mut uses = self.uses(change);
         uses.sort_unstable_by_key(|u| (u.key, u.role));
-        let mut checked = Checked { change, joints: Vec::with_capacity(uses.len()), lost_walls: Vec::new() };
+        let joints = Vec::with_capacity(uses.len());
+        let mut checked = Checked { change, joints, lost_walls: Vec::new(), lost_lines: Vec::new() };
         for same in uses.chunk_by(|x, y| x.key == y.key) {
             self.join_facet(same, &mut checked)?;
         }
@@ -311,6 +299,9 @@ impl Complex {
             _ if self.keeps_surface => return Err(self.refusal(uses)),
             [Use { role: AtWall(_, wall), .. }]
             | [Use { role: InnerWall(_, wall), .. }, Use { role: InnerWall(..), .. }] => {
+                if self.is_fixed_wall(*wall) {
+                    return Err(Reject::Wall(key));
+                }
                 checked.lost_walls.push(*wall);
                 return Ok(());
             }

@@ -3,16 +3,17 @@
 use std::cell::Cell;
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::change::{Fill, NewWall, VertexChange};
+use crate::kernel::change::{Fill, NewLine, NewWall, VertexChange};
 use crate::kernel::check::{Checked, FillFacet, Joint};
 use crate::kernel::complex::{Complex, FREE, Hold, NO_TET};
 use crate::kernel::journal::{Entry, TetRecord, VertexRecord};
+use crate::kernel::lines::{Line, rising};
 use crate::kernel::link::{HalfFacet, Link, NO_TRIANGLE, Wall, WallId};
 
 impl Complex {
     /// Makes a change. `came` gets the ids of the tets of the fill, in their order.
     pub fn commit(&mut self, checked: Checked, came: &mut Vec<TetId>) {
-        let Checked { change, joints, lost_walls } = checked;
+        let Checked { change, joints, lost_walls, lost_lines } = checked;
         self.commit_vertex(change.vertex);
         came.clear();
         for (i, fill) in change.fill.iter().enumerate() {
@@ -29,6 +30,8 @@ impl Complex {
         for wall in lost_walls {
             self.free_wall(wall);
         }
+        lost_lines.into_iter().for_each(|edge| self.remove_line(edge));
+        change.lines.iter().for_each(|new| self.add_line(new));
         for joint in joints {
             self.commit_joint(joint, came);
         }
@@ -176,6 +179,21 @@ impl Complex {
         }
         self.free_walls.push(id);
         self.note(|_| Entry::FreedWall);
+    }
+
+    fn remove_line(&mut self, edge: [VertexId; 2]) {
+        let was = self.lines.set(edge, None);
+        self.note(|_| Entry::Line(edge, was));
+        if let Some(line) = was.filter(|line| !line.is_new) {
+            self.lines.removed.push(line.source);
+            self.note(|_| Entry::RemovedLine);
+        }
+    }
+
+    fn add_line(&mut self, new: &NewLine) {
+        let edge = rising(new.vertices);
+        let was = self.lines.set(edge, Some(Line { source: new.source, is_new: true }));
+        self.note(|_| Entry::Line(edge, was));
     }
 
     #[inline]

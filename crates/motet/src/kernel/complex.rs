@@ -5,6 +5,7 @@ use std::cell::Cell;
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
 use crate::kernel::journal::Journal;
+use crate::kernel::lines::{Lines, rising};
 use crate::kernel::link::{Behind, HalfFacet, Link, Wall, WallId};
 
 /// What holds a vertex.
@@ -53,6 +54,10 @@ pub struct Complex {
     pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
+    /// Labelled edges.
+    pub(super) lines: Lines,
+    /// Walls that no change may remove; empty where there is none.
+    pub(super) is_fixed_wall: Vec<bool>,
     /// Qualities that count as good, in rising order; see [`Complex::spare`].
     pub(super) spared: Vec<f64>,
     /// Tets of the first mesh that are folded over others, in rising order.
@@ -285,7 +290,33 @@ impl Complex {
         self.is_locked.get(tet.index()).is_some_and(|&locked| locked)
     }
 
-    /// Lets changes change walls, and move and remove the vertices on them that are not fixed.
+    /// Lets no change remove a wall any more. What lies beside it may change, but its vertices stay where they are.
+    pub fn fix_wall(&mut self, wall: WallId) {
+        if self.is_fixed_wall.is_empty() {
+            self.is_fixed_wall = vec![false; self.walls.len()];
+        }
+        self.is_fixed_wall[wall.index()] = true;
+        for v in self.facet(self.walls[wall.index()].sides[0]) {
+            self.holds[v.index()] = Hold::Fixed;
+        }
+    }
+
+    /// Whether no change may remove a wall.
+    #[inline]
+    pub fn is_fixed_wall(&self, wall: WallId) -> bool {
+        self.is_fixed_wall.get(wall.index()).is_some_and(|&fixed| fixed)
+    }
+
+    /// Lets no change remove these edges any more; their vertices stay where they are.
+    pub fn fix_edges(&mut self, edges: impl IntoIterator<Item = [VertexId; 2]>) {
+        for edge in edges {
+            self.fixed_edges.push(rising(edge));
+            edge.iter().for_each(|v| self.holds[v.index()] = Hold::Fixed);
+        }
+        self.fixed_edges.sort_unstable();
+    }
+
+    /// Lets changes change walls and lines, and move and remove the vertices on them that are not fixed.
     pub fn adapt_surface(&mut self) {
         self.keeps_surface = false;
     }

@@ -22,6 +22,8 @@ pub struct Extract {
     pub vertex_to_old: Vec<u32>,
     /// For each triangle the one it was before, or a part of.
     pub triangle_to_old: Vec<u32>,
+    /// For each line the one it was before, or a part of.
+    pub line_to_old: Vec<u32>,
     /// The tets of the complex that came, in the order in which they stand at the end of the mesh.
     pub came: Vec<TetId>,
     /// Tets of the mesh before that are no more, in rising order.
@@ -75,6 +77,7 @@ impl Complex {
         }
         extract.gone_tets = (0..n_first).filter(|t| !is_kept(t)).map(TetId::new).collect();
         self.extract_triangles(first, new_id, &mut extract);
+        self.extract_lines(first, new_id, &mut extract);
         extract.mesh.fixed_vertices = first.fixed_vertices.iter().map(|&v| new_id(v)).collect();
         extract.mesh.fixed_edges = first.fixed_edges.iter().map(|edge| edge.map(new_id)).collect();
         extract
@@ -103,6 +106,26 @@ impl Complex {
         }
         extract.mesh.points = points;
         old_to_new
+    }
+
+    /// Lines that are as they were, in their order, then those that came.
+    fn extract_lines(&self, first: &TetMesh, new_id: impl Fn(VertexId) -> VertexId, extract: &mut Extract) {
+        let mut push = |vertices: [VertexId; 2], old: u32| {
+            extract.mesh.lines.push(vertices.map(&new_id));
+            extract.mesh.line_labels.push(first.line_labels[old as usize]);
+            extract.line_to_old.push(old);
+        };
+        let mut is_removed = vec![false; if self.lines.removed.is_empty() { 0 } else { first.lines.len() }];
+        let removed = self.lines.removed.iter().flat_map(|&source| &self.lines.sources[source as usize]);
+        removed.for_each(|&line| is_removed[line as usize] = true);
+        for (&vertices, old) in first.lines.iter().zip(0u32..) {
+            if !is_removed.get(old as usize).copied().unwrap_or(false) {
+                push(vertices, old);
+            }
+        }
+        for (edge, line) in self.lines().into_iter().filter(|(_, line)| line.is_new) {
+            self.lines_of_first(line).iter().for_each(|&old| push(edge, old));
+        }
     }
 
     /// Triangles whose walls are as they were, in their order, then those that came.

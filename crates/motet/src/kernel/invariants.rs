@@ -1,10 +1,11 @@
 //! Everything that must hold of a complex at any time, each by name: for tests.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::base::{TetId, VertexId};
-use crate::geometry::tet::FACETS;
+use crate::geometry::tet::{EDGES, FACETS};
 use crate::kernel::complex::{Complex, FREE, NO_TET};
+use crate::kernel::lines::rising;
 use crate::kernel::link::{Behind, HalfFacet};
 
 impl Complex {
@@ -16,6 +17,7 @@ impl Complex {
         self.verify_slots()?;
         self.verify_links()?;
         self.verify_facets()?;
+        self.verify_lines()?;
         self.verify_vertices()
     }
 
@@ -91,6 +93,17 @@ impl Complex {
         }
         match counts.iter().find(|(_, n)| **n > 2) {
             Some((facet, n)) => Err(format!("{n} tets share the facet {facet:?}")),
+            None => Ok(()),
+        }
+    }
+
+    /// Every line is an edge of a tet.
+    fn verify_lines(&self) -> Result<(), String> {
+        let lines = self.lines();
+        let edges = self.tets().flat_map(|t| EDGES.map(|edge| rising(edge.map(|i| self.vertices(t)[i]))));
+        let edges: HashSet<[VertexId; 2]> = if lines.is_empty() { HashSet::new() } else { edges.collect() };
+        match lines.iter().find(|(edge, _)| !edges.contains(edge)) {
+            Some((edge, _)) => Err(format!("the line {edge:?} is no edge of a tet")),
             None => Ok(()),
         }
     }

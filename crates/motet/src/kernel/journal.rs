@@ -2,6 +2,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::kernel::complex::{Complex, Hold};
+use crate::kernel::lines::Line;
 use crate::kernel::link::{Link, Wall, WallId};
 
 /// One thing that was there before.
@@ -22,6 +23,8 @@ pub(super) enum Entry {
     FreedVertex,
     FreedWall,
     GoneTriangle,
+    Line([VertexId; 2], Option<Line>),
+    RemovedLine,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -124,6 +127,8 @@ impl Complex {
             Entry::FreedVertex => drop(self.free_vertices.pop()),
             Entry::FreedWall => drop(self.free_walls.pop()),
             Entry::GoneTriangle => drop(self.gone_triangles.pop()),
+            Entry::Line(edge, line) => drop(self.lines.set(edge, line)),
+            Entry::RemovedLine => drop(self.lines.removed.pop()),
         }
     }
 }

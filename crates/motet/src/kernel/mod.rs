@@ -6,7 +6,7 @@
 //! [`Complex::commit`] takes nothing but a checked one. What a journal has written down, [`Complex::undo`] takes back, to the bit.
 //!
 //! What must never happen: a tet of the fill that is not positive; a facet of the cavity's boundary that the fill
-//! does not have, or the reverse; a wall (boundary, interface or labelled facet) that gets lost or appears; a tet that changes
+//! does not have, or the reverse; a wall (boundary, interface or labelled facet) or a line (labelled edge) that gets lost or appears; a tet that changes
 //! sides; a vertex that gets lost unsaid; a worst quality that does not rise.
 
 mod build;
@@ -17,15 +17,17 @@ mod complex;
 mod extract;
 mod invariants;
 mod journal;
+mod lines;
 mod link;
 mod orientation;
 mod peel;
 mod star;
 
-pub use change::{Change, Fill, NewWall, VertexChange};
+pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
 pub use check::{Checked, Reject};
 pub use complex::{Complex, Hold};
 pub use extract::{Extract, NEW};
 pub use journal::Mark;
+pub use lines::Line;
 pub use link::{Behind, HalfFacet, Wall, WallId};
 pub use star::{Shell, Star};

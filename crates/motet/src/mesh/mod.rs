@@ -14,6 +14,7 @@ mod field;
 pub mod history;
 mod labels;
 mod lone;
+pub mod marks;
 mod measure;
 pub mod shapes;
 mod summary;

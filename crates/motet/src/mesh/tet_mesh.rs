@@ -19,9 +19,13 @@ pub struct TetMesh {
     pub triangles: Vec<[VertexId; 3]>,
     /// The patch of each triangle.
     pub patches: Vec<i32>,
+    /// The vertices of each labelled edge. One that is an edge of a tet is divided and merged with it, any other stays.
+    pub lines: Vec<[VertexId; 2]>,
+    /// The label of each line; lines of different labels are never merged.
+    pub line_labels: Vec<i32>,
     /// Vertices that neither move nor go, such as those of cells of other kinds.
     pub fixed_vertices: Vec<VertexId>,
-    /// Edges that stay, such as those of line cells.
+    /// Edges that stay, such as those of hexahedra beside the tets.
     pub fixed_edges: Vec<[VertexId; 2]>,
 }
 
@@ -44,8 +48,13 @@ impl TetMesh {
             let (patches, triangles) = (self.patches.len(), self.triangles.len());
             return Err(Error::input(format!("{patches} patches for {triangles} triangles")));
         }
+        if self.line_labels.len() != self.lines.len() {
+            let (labels, lines) = (self.line_labels.len(), self.lines.len());
+            return Err(Error::input(format!("{labels} labels for {lines} lines")));
+        }
         self.check_ids("tet", &self.tets)?;
         self.check_ids("triangle", &self.triangles)?;
+        self.check_ids("line", &self.lines)?;
         self.check_ids("fixed edge", &self.fixed_edges)?;
         self.check_ids("fixed vertex", self.fixed_vertices.as_chunks::<1>().0)?;
         self.check_numbers()

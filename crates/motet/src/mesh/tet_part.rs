@@ -1,10 +1,13 @@
 //! The tets of a mesh that holds more: taken out to be worked on, and where each was.
 
+use std::collections::BTreeMap;
+
 use crate::base::{CellId, Error, Result, VertexId};
 use crate::geometry::tet::FACETS;
-use crate::mesh::{CellKind, Mesh, TetMesh};
+use crate::mesh::history::numbers_cells;
+use crate::mesh::{CellKind, Mesh, TetMesh, Values};
 
-/// The linear tets and triangles of a mesh, as plain arrays. Cells of other kinds stay behind, and hold their vertices and edges where they are.
+/// The linear tets, triangles and lines of a mesh, as plain arrays. Cells of other kinds stay behind, and hold their vertices and edges where they are.
 #[derive(Clone, Debug, Default)]
 pub struct TetPart {
     /// The tets with their regions, the triangles with their patches.
@@ -13,6 +16,8 @@ pub struct TetPart {
     pub tet_to_cell: Vec<CellId>,
     /// The cell that each triangle is.
     pub triangle_to_cell: Vec<CellId>,
+    /// The cell that each line is.
+    pub line_to_cell: Vec<CellId>,
 }
 
 impl TetPart {
@@ -39,15 +44,30 @@ impl TetPart {
                     part.mesh.patches.push(label(&patches, cell));
                     part.triangle_to_cell.push(cell);
                 }
+                (CellKind::LINE, &[a, b]) if a != b => {
+                    part.mesh.lines.push([a, b]);
+                    part.line_to_cell.push(cell);
+                }
                 _ => part.hold(vertices),
             }
         }
+        part.mesh.line_labels = line_labels(mesh, &part.line_to_cell);
         if part.mesh.tets.is_empty() {
             return Err(no_tets(mesh));
         }
         part.hold_polyhedra(mesh);
         part.hold_loose_triangles();
         Ok(part)
+    }
+
+    /// Holds its lines as cells of other kinds are held, for verbs that do not divide them.
+    #[must_use]
+    pub fn with_lines_held(mut self) -> Self {
+        let lines = std::mem::take(&mut self.mesh.lines);
+        lines.iter().for_each(|line| self.hold(line));
+        self.mesh.line_labels.clear();
+        self.line_to_cell.clear();
+        self
     }
 
     /// An error whose place is a tet or a triangle, with the cell that it is in its place.
@@ -57,6 +77,7 @@ impl TetPart {
             let to_cell = match what {
                 "tet" => &self.tet_to_cell,
                 "triangle" => &self.triangle_to_cell,
+                "line" => &self.line_to_cell,
                 _ => return None,
             };
             to_cell.get(id.parse::<usize>().ok()?)
@@ -114,6 +135,30 @@ impl TetPart {
             self.hold(&self.mesh.triangles[i].clone());
         }
     }
+}
+
+/// A number for each line that it shares with the lines that have the same whole numbers and texts in all cell arrays, but for those that number cells.
+fn line_labels(mesh: &Mesh, lines: &[CellId]) -> Vec<i32> {
+    let mut keys: Vec<Vec<String>> = vec![Vec::new(); lines.len()];
+    for field in mesh.cell_data.iter().filter(|field| !lines.is_empty() && !numbers_cells(&field.name)) {
+        let of_lines = field.pick(lines.iter().map(|cell| cell.index())).values;
+        let words: Vec<String> = match of_lines {
+            Values::Text(words) => words,
+            values if values.is_integer() => {
+                (values.to_i64().unwrap_or_default().iter()).map(i64::to_string).collect()
+            }
+            _ => continue,
+        };
+        let rows = words.chunks(field.components.max(1));
+        keys.iter_mut().zip(rows).for_each(|(key, row)| key.extend_from_slice(row));
+    }
+    let mut known: BTreeMap<Vec<String>, i32> = BTreeMap::new();
+    let mut labels = Vec::with_capacity(lines.len());
+    for key in keys {
+        let next = known.len() as i32;
+        labels.push(*known.entry(key).or_insert(next));
+    }
+    labels
 }
 
 fn no_tets(mesh: &Mesh) -> Error {

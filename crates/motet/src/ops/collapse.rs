@@ -1,7 +1,7 @@
 //! A vertex drawn along an edge into its other end.
 
 use crate::base::{TetId, VertexId};
-use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, NewWall, VertexChange};
+use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, NewLine, NewWall, VertexChange};
 
 /// Proposes to draw `gone` into `kept`. `star` are the tets of `gone`. `false` when a tet would not be better than `bar`.
 pub fn collapse(
@@ -16,6 +16,7 @@ pub fn collapse(
     change.vertex = VertexChange::Remove(gone);
     change.cavity.extend_from_slice(star);
     walls(complex, star, gone, kept, change);
+    lines(complex, star, gone, kept, change);
     for &tet in star {
         let mut vertices = complex.vertices(tet);
         if vertices.contains(&kept) {
@@ -44,5 +45,17 @@ fn walls(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, chan
         }
         vertices.iter_mut().filter(|v| **v == gone).for_each(|v| *v = kept);
         change.walls.push(NewWall { vertices, patch: wall.patch, triangle: wall.triangle });
+    }
+}
+
+/// The lines of `gone` that are not the edge itself end in `kept`.
+fn lines(complex: &Complex, star: &[TetId], gone: VertexId, kept: VertexId, change: &mut Change) {
+    if complex.hold(gone) == Hold::Free {
+        return;
+    }
+    for other in complex.line_neighbors(star, gone).into_iter().filter(|&v| v != kept) {
+        if let Some(line) = complex.line(gone, other) {
+            change.lines.push(NewLine { vertices: [kept, other], source: line.source });
+        }
     }
 }

@@ -33,7 +33,7 @@ impl EdgeRemoval {
         change: &mut Change,
     ) -> bool {
         self.shell.walk(complex, start, a, b);
-        if complex.is_fixed_edge(a, b) {
+        if complex.is_kept_edge(a, b) {
             return false;
         }
         change.clear();

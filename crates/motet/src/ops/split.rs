@@ -1,11 +1,11 @@
 //! Edges divided by a vertex: one edge, two crossed ones, or one at a vertex that is already there.
 
 use crate::base::{Point, TetId, VertexId};
-use crate::kernel::{Change, Complex, Hold, NewWall, Shell, VertexChange};
+use crate::kernel::{Change, Complex, Hold, NewLine, NewWall, Shell, VertexChange};
 use crate::ops::cone;
 use crate::ops::cone::cone_on_edge;
 
-/// Proposes a new vertex at `point` on the edge `ab` whose shell is given, held by `hold`; walls at the edge are split with it. `false` when a tet would
+/// Proposes a new vertex at `point` on the edge `ab` whose shell is given, held by `hold`; walls at the edge, and the line that it is, are split with it. `false` when a tet would
 /// not be better than `bar`.
 pub fn split_edge(
     complex: &Complex,
@@ -25,6 +25,9 @@ pub fn split_edge(
             let vertices = [end, middle, shell.ring[place]];
             change.walls.push(NewWall { vertices, patch: wall.patch, triangle: wall.triangle });
         }
+    }
+    if let Some(line) = complex.line(a, b) {
+        change.lines.extend([a, b].map(|end| NewLine { vertices: [end, middle], source: line.source }));
     }
     cone_on_edge(complex, middle, Some([a, b]), bar, change)
 }

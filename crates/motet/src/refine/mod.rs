@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | choose | `choose` | [`Criterion`]: by place, distance, size, estimate, words for arrays and regions; sizes from second derivatives; limits; what may be taken back |
 //! | divide and fit | `forest` | tets and their eight, edges, facets; cuts between divided and undivided tets; what keeps shapes |
-//! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are |
+//! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are; line cells are divided with their edges |
 //! | take back | `inverted` | no division is taken back whose whole would be inverted, where points moved |
 //! | the true surface | `true_surface` | new points of the boundary are put on it, as far as nothing inverts |
 //! | all of it | `handle` | [`Refinement`]: a mesh that is refined and coarsened again and again |
@@ -34,7 +34,7 @@ pub use choose::{
 };
 pub use handle::{Left, Options, Refinement, Rule, Summary};
 pub use memory::{Memory, UNKNOWN};
-pub use reach::{Reached, Step, Wanted};
+pub use reach::{Reached, Step, Stop, Wanted};
 pub use shapes::Shapes;
 pub use true_surface::OnSurface;
 pub use whole::MeshRefinement;

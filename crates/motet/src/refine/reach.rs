@@ -1,5 +1,6 @@
 //! Generation after generation, until a mesh is as wanted: what is wished, what is divided or taken back, what came of it.
 
+use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -39,6 +40,8 @@ pub struct Wanted {
 pub struct Reached {
     /// Whether all edges are as short as was wanted.
     pub is_reached: bool,
+    /// What ended the division before that; `None` where it was reached.
+    pub stopped_by: Option<Stop>,
     /// The mesh as it came, then after each generation.
     pub steps: Vec<Step>,
     /// From the mesh that came to the one that is, where that was asked for.
@@ -47,6 +50,30 @@ pub struct Reached {
     pub on_surface: Option<OnSurface>,
     /// By how much new tets took more or less than the volume of old ones, at most in a step, as a part of what changed.
     pub volume_deviation: f64,
+}
+
+/// What ends a division before all edges are as short as was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stop {
+    /// As many generations were made as were asked for.
+    Generations,
+    /// The limits allow no more: see [`Limits`].
+    Limits,
+    /// Cells of other kinds than tets, triangles and lines hold edges that would have to be split.
+    Held,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Generations => "the number of generations came first (--generations)",
+            Self::Limits => "a limit came first (--limit-...)",
+            Self::Held => {
+                "cells that are no tets, triangles or lines hold edges of tets, which cannot be split"
+            }
+        })
+    }
 }
 
 /// The mesh after a generation.
@@ -114,7 +141,8 @@ impl MeshRefinement {
         let reached = Reached { history, ..Reached::default() };
         let mut work = Work { refinement: self, wanted, rules, threads, told, reached };
         work.tell("came", Summary::default(), 0, Instant::now());
-        work.reached.is_reached = work.run()?;
+        work.reached.stopped_by = work.run()?;
+        work.reached.is_reached = work.reached.stopped_by.is_none();
         Ok(work.reached)
     }
 }
@@ -129,9 +157,10 @@ struct Work<'a, T> {
 }
 
 impl<T: FnMut(&Step)> Work<'_, T> {
-    /// Takes back, then divides; `false` where edges are still longer than was wanted.
-    fn run(&mut self) -> Result<bool> {
+    /// Takes back, then divides; what ended that before all was divided.
+    fn run(&mut self) -> Result<Option<Stop>> {
         let wanted = self.wanted;
+        let (mut stop, mut is_held) = (Stop::Generations, false);
         if wanted.goes_back() {
             self.take_back()?;
         }
@@ -145,12 +174,20 @@ impl<T: FnMut(&Step)> Work<'_, T> {
                 return Err(Error::input("no tet is marked: nothing of it is where, or as, the call says")
                     .remedy("`motet info` tells bounds and arrays; lengths are in the unit of the mesh"));
             }
-            if marks.is_empty() || self.divide(&marks, generation)? == marks.len() {
+            if marks.is_empty() {
+                stop = Stop::Limits;
+                break;
+            }
+            let n_held = self.divide(&marks, generation)?;
+            is_held |= n_held > 0;
+            if n_held == marks.len() {
                 break;
             }
         }
+        let stop = if is_held { Stop::Held } else { stop };
         let lasting: Vec<Criterion> = wanted.criteria.iter().filter(|c| c.lasts()).cloned().collect();
-        Ok(lasting.is_empty() || marked(&self.wishes(&lasting)?[0]).is_empty())
+        let is_reached = lasting.is_empty() || marked(&self.wishes(&lasting)?[0]).is_empty();
+        Ok((!is_reached).then_some(stop))
     }
 
     /// What is wished of each tet, and what of it the limits allow.

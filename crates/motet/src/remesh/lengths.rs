@@ -57,9 +57,16 @@ impl Lengths {
     }
 }
 
-/// Edges of tets that no change may touch, in rising order.
+/// Edges of tets that no change may touch and of walls that none may remove, in rising order.
 pub(super) fn locked_edges(complex: &Complex) -> Vec<[VertexId; 2]> {
-    edges_of(complex, complex.tets().filter(|&t| complex.is_locked(t)))
+    let mut edges = edges_of(complex, complex.tets().filter(|&t| complex.is_locked(t)));
+    for (_, wall) in complex.walls().filter(|(id, _)| complex.is_fixed_wall(*id)) {
+        let [a, b, c] = complex.facet(wall.sides[0]);
+        edges.extend([[a, b], [b, c], [a, c]].map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    edges
 }
 
 /// Every edge of some tets once, lower vertex first, in rising order.

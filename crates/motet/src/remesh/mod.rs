@@ -11,6 +11,8 @@
 //! | thin | `repair::thin` | vertices that came and lie close to others go again where they are not needed |
 //! | choose | `repair::candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
+//! | lines | `lines` | labelled edges divided and merged along themselves, within the same distance |
+//! | hold | `held` | named regions and patches, required entities and facets with a twin stay to the bit |
 //! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
 //! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
@@ -20,9 +22,11 @@
 //! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
 
 pub mod classify;
+mod held;
 mod layers;
 mod left;
 mod lengths;
+mod lines;
 mod options;
 mod repair;
 mod report;
@@ -31,6 +35,7 @@ mod sizes;
 mod surface;
 mod whole;
 
+pub use held::Held;
 pub use left::{Left, Reason};
 pub use lengths::Lengths;
 pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};

@@ -3,6 +3,7 @@
 use crate::base::{CellId, Error, Result};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::vector::LARGEST;
+use crate::remesh::held::Held;
 use crate::remesh::sizes::Sizes;
 
 /// What is to be repaired, and how.
@@ -22,6 +23,8 @@ pub struct Options {
     pub surface: SurfaceRule,
     /// Whether tets of boundary layers stay as they are: thin, but well shaped when stretched to the width of the wall's facets. Default: true.
     pub keep_layers: bool,
+    /// Regions and patches that stay to the bit, however bad their tets are. Default: none.
+    pub held: Held,
     /// How long edges are to be; `None`: as they are. Default: `None`.
     pub sizes: Option<Sizes>,
     /// At most so many rounds over the bad tets. Default: 20.
@@ -37,6 +40,7 @@ impl Default for Options {
             goal: Goal::Repair,
             surface: SurfaceRule::Keep,
             keep_layers: true,
+            held: Held::default(),
             sizes: None,
             rounds: 20,
         }

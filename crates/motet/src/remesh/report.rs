@@ -157,6 +157,8 @@ pub struct Report {
     pub left: Vec<Left>,
     /// Tets of boundary layers that would count as bad, and stay.
     pub layers: usize,
+    /// Tets that are held and would count as bad, and stay.
+    pub held: usize,
     /// Seconds by stage.
     pub seconds: Seconds,
 }

@@ -5,10 +5,11 @@ use std::time::Instant;
 use crate::base::{CellId, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{TetMesh, bounds, largest_extent};
+use crate::remesh::held::{Required, hold};
 use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
-use crate::remesh::options::{Goal, Options};
+use crate::remesh::options::{Goal, Options, SurfaceRule};
 use crate::remesh::repair::{Repair, Sizing, is_among, passes};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
 use crate::remesh::sizes::{LONG, SizeField};
@@ -29,17 +30,31 @@ pub struct Outcome {
 /// When the mesh is not one (see [`Complex::new`]), when a size is none, and when a mesh of the sizes would have far too many tets: more than ten million and
 /// more than 100 times as many as `mesh`, or more than 2^28.
 pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Outcome> {
+    remesh_but(mesh, &Required::default(), options, threads)
+}
+
+/// As [`remesh`] does, but what is required stays.
+pub(super) fn remesh_but(
+    mesh: &TetMesh,
+    required: &Required,
+    options: &Options,
+    threads: &Threads,
+) -> Result<Outcome> {
     options.check()?;
     let mut clock = Clock(Instant::now());
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
     let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
     let mut complex = Complex::new(mesh)?;
+    hold(&mut complex, mesh, &options.held, required, options.surface != SurfaceRule::Keep);
     report.seconds.join = clock.lap();
 
     let others = options.only.as_ref().map_or_else(Vec::new, |only| others(mesh.tets.len(), only));
     let mut bad = complex.below(min_eas);
     bad.retain(|&t| !is_among(&others, t));
+    let n_bad = bad.len();
+    bad.retain(|&t| !complex.is_locked(t));
+    report.held = n_bad - bad.len();
     report.layers = spare_layers(&mut complex, &mut bad, options);
     report.before = State::of(&complex, &bad, |t| t);
     let n_peeled = complex.peel();

@@ -12,6 +12,7 @@ use crate::geometry::triangle::{area_vector, closest};
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
 use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChange, Wall};
 use crate::ops::Track;
+use crate::remesh::lines::FirstLines;
 use crate::spatial::NearestTriangle;
 
 /// Walls that meet at a sharper angle make a feature: the cosine of the angle between their normals.
@@ -38,6 +39,7 @@ const FLATTEST: f64 = 1e-6;
 /// The walls of the first mesh, patch by patch.
 pub(super) struct Surface {
     patches: BTreeMap<i32, Patch>,
+    lines: FirstLines,
     distance: f64,
     crease: Crease,
     /// Vertices of the first mesh that were fixed before any feature was looked for.
@@ -64,16 +66,16 @@ impl Surface {
         };
         let is_fixed = (0..points.len()).map(|v| complex.hold(VertexId::new(v)) == Hold::Fixed).collect();
         let patches = triangles.into_iter().map(|(id, t)| (id, patch(t))).collect();
-        Self { patches, distance, crease: Crease::SHARP, is_fixed }
+        Self { patches, lines: FirstLines::of(complex), distance, crease: Crease::SHARP, is_fixed }
     }
 
-    /// Whether the walls that a change brings or moves stay near the surface.
+    /// Whether the walls and lines that a change brings or moves stay near the surface and the lines of the first mesh.
     pub(super) fn accepts(&self, complex: &Complex, change: &Change) -> bool {
         let moved = match change.vertex {
             VertexChange::Move(v, _) if complex.hold(v) != Hold::Free => Some(v),
             _ => None,
         };
-        if change.walls.is_empty() && moved.is_none() {
+        if change.walls.is_empty() && change.lines.is_empty() && moved.is_none() {
             return true;
         }
         if change.worst() < FLATTEST {
@@ -88,7 +90,8 @@ impl Surface {
             walls.extend(of_moved.map(|(patch, vertices)| (patch, change.corners(complex, vertices))));
         }
         walls.iter().all(|&(patch, triangle)| self.lies_on(patch, triangle))
-            && self.covers(complex, change, &walls)
+            && (walls.is_empty() || self.covers(complex, change, &walls))
+            && self.lines.accepts(complex, change, self.distance)
     }
 
     fn lies_on(&self, patch: i32, triangle: [Point; 3]) -> bool {
@@ -193,6 +196,10 @@ impl Surface {
         for (wall, vertices) in walls {
             others.extend(vertices.into_iter().filter(|&v| v != vertex).map(|v| (v, wall.sides[0].tet())));
         }
+        others.extend(complex.line_neighbors(star, vertex).into_iter().filter_map(|v| {
+            let tet = star.iter().find(|&&t| complex.vertices(t).contains(&v))?;
+            Some((v, *tet))
+        }));
         others.sort_unstable();
         others.dedup_by_key(|other| other.0);
         others.retain(|&(other, tet)| {
@@ -218,9 +225,12 @@ fn mean_normal(complex: &Complex, walls: &[(&Wall, [VertexId; 3])]) -> Point {
 }
 
 impl Surface {
-    /// Whether the walls at an edge are a smooth part of one patch.
+    /// Whether the walls at an edge are a smooth part of one patch, and it is no line.
     pub(super) fn is_smooth(&self, complex: &Complex, [a, b]: [VertexId; 2], shell: &Shell) -> bool {
         let [i, j] = shell.walls[..] else { return false };
+        if complex.line(a, b).is_some() {
+            return false;
+        }
         let [first, second] = [i, j].map(|place| complex.wall(shell.wall_at(complex, place)));
         let [p, q] = [i, j].map(|place| complex.point(shell.ring[place]));
         let [a, b] = [a, b].map(|v| complex.point(v));
@@ -229,7 +239,7 @@ impl Surface {
         first.patch == second.patch && dot(m, n) > self.crease.0 * norm(m) * norm(n)
     }
 
-    /// Finds features and corners, where walls meet at a sharper angle than `crease`, and holds the vertices on them.
+    /// Finds features and corners, where walls meet at a sharper angle than `crease` and where lines run, and holds the vertices on them.
     pub(super) fn hold_features(&mut self, complex: &mut Complex, crease: Crease) {
         self.crease = crease;
         for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
@@ -247,8 +257,7 @@ impl Surface {
             }
         }
         edges.sort_unstable_by_key(|edge| (edge.0, edge.3));
-        // The ways in which features leave each vertex.
-        let mut ways: Vec<(VertexId, Point)> = Vec::new();
+        let mut features: Vec<([VertexId; 2], Option<u32>)> = Vec::new();
         for walls in edges.chunk_by(|x, y| x.0 == y.0) {
             let [a, b] = walls[0].0;
             let is_smooth = match walls {
@@ -258,17 +267,24 @@ impl Surface {
                 }
                 _ => false,
             };
-            if !is_smooth {
-                let way = sub(complex.point(b), complex.point(a));
-                let way = scale(way, 1.0 / norm(way));
-                ways.push((a, way));
-                ways.push((b, scale(way, -1.0)));
+            if !is_smooth && complex.line(a, b).is_none() {
+                features.push(([a, b], None));
             }
+        }
+        let lines = complex.lines().into_iter();
+        features.extend(lines.map(|(edge, line)| (edge, Some(complex.line_label(line.source)))));
+        // The ways in which features leave each vertex.
+        let mut ways: Vec<(VertexId, Point, Option<u32>)> = Vec::new();
+        for ([a, b], label) in features {
+            let way = sub(complex.point(b), complex.point(a));
+            let way = scale(way, 1.0 / norm(way));
+            ways.push((a, way, label));
+            ways.push((b, scale(way, -1.0), label));
         }
         ways.sort_by_key(|way| way.0);
         for of_vertex in ways.chunk_by(|x, y| x.0 == y.0) {
             let hold = match of_vertex {
-                [(_, x), (_, y)] if -dot(*x, *y) > STRAIGHT => Hold::Edge,
+                [(_, x, of), (_, y, other)] if of == other && -dot(*x, *y) > STRAIGHT => Hold::Edge,
                 _ => Hold::Fixed,
             };
             let vertex = of_vertex[0].0;

@@ -2,19 +2,21 @@
 
 use std::time::Instant;
 
-use crate::base::{CellId, Csr, Id, Result, Threads, VertexId};
+use crate::base::{CellId, Csr, Id, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::dot;
+use crate::geometry::vector::{dot, sub};
 use crate::kernel::Extract;
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
-use crate::remesh::{Options, Report, remesh};
+use crate::remesh::held::Required;
+use crate::remesh::run::remesh_but;
+use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
 
 /// A whole mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
 pub struct MeshOutcome {
-    /// The mesh: cells that stayed in the order that they had, then triangles that came, then tets that came.
+    /// The mesh: cells that stayed in the order that they had, then triangles that came, then tets that came, then lines that came.
     pub mesh: Mesh,
     /// Where each vertex and cell came from; carries any array of the mesh before, of any time level.
     pub history: History,
@@ -25,7 +27,7 @@ pub struct MeshOutcome {
 }
 
 /// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. What stayed stays to the bit: points, cells, rows of arrays.
-/// Vertices of cells of other kinds neither move nor go. Where `GlobalNodeID` and `GlobalElementID` number points and tets, new ones get new numbers.
+/// Lines are divided and merged with their edges where the surface may change; vertices of cells of other kinds neither move nor go. What is marked as required (see [`marks`](crate::mesh::marks)) stays. Where `GlobalNodeID` and `GlobalElementID` number points and tets, new ones get new numbers.
 ///
 /// # Errors
 /// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when a rule fits no array.
@@ -53,7 +55,9 @@ pub fn remesh_part(
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
     let options = Options { only, ..options.clone() };
-    let outcome = remesh(&part.mesh, &options, threads).map_err(|error| part.at_cell(error))?;
+    let required = Required::of(mesh, part);
+    let outcome =
+        remesh_but(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;
     let mut report = outcome.report;
 
     let begin = Instant::now();
@@ -63,6 +67,7 @@ pub fn remesh_part(
     let mut new = Mesh::new(outcome.extract.mesh.points, joined.cells);
     history.transfer(mesh, &mut new, rules)?;
     number_anew(&mut new, &outcome.extract.vertex_to_old, &joined.cell_to_old);
+    new.unmark_new_points(&outcome.extract.vertex_to_old);
 
     report.seconds.extract += assembled;
     report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
@@ -80,6 +85,8 @@ struct Joined {
     tet_to_cell: Vec<CellId>,
     /// The new triangles that came: the cell that each is, its place among the triangles.
     came_triangles: Vec<(CellId, usize)>,
+    /// The new lines that came: the cell that each is, its place among the lines.
+    came_lines: Vec<(CellId, usize)>,
     /// Old triangles that are no more, by their place.
     gone_triangles: Vec<usize>,
 }
@@ -93,6 +100,7 @@ impl Joined {
             cell_to_old: Vec::with_capacity(n_cells),
             tet_to_cell: Vec::with_capacity(extract.mesh.tets.len()),
             came_triangles: Vec::new(),
+            came_lines: Vec::new(),
             gone_triangles: std::mem::take(&mut stay.gone_triangles),
         };
         let mut faces = old.cells.polyhedron_faces().iter();
@@ -118,6 +126,10 @@ impl Joined {
             joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             joined.push_new(CellKind::TETRA, tet);
         }
+        for &i in &stay.came_lines {
+            joined.came_lines.push((CellId::new(joined.cells.len()), i));
+            joined.push_new(CellKind::LINE, &line_as_before(i, part, extract));
+        }
         joined
     }
 
@@ -133,6 +145,7 @@ struct Stay {
     old_to_vertex: Vec<u32>,
     gone_triangles: Vec<usize>,
     came_triangles: Vec<usize>,
+    came_lines: Vec<usize>,
 }
 
 impl Stay {
@@ -144,9 +157,27 @@ impl Stay {
             old_to_vertex: extract.old_to_vertex(old.points.len()),
             gone_triangles: Vec::new(),
             came_triangles: Vec::new(),
+            came_lines: Vec::new(),
         };
         stay.find_triangles(part, extract);
+        stay.find_lines(part, extract);
         stay
+    }
+
+    /// Lines that stayed come first, in their order.
+    fn find_lines(&mut self, part: &TetPart, extract: &Extract) {
+        let (before, after) = (&part.mesh.lines, &extract.mesh.lines);
+        let mut stays = vec![false; before.len()];
+        for (i, &old) in extract.line_to_old.iter().enumerate() {
+            let is_same = |t: usize| before[t].map(|v| self.vertex(v)) == after[i];
+            match old as usize {
+                t if self.came_lines.is_empty() && is_same(t) => stays[t] = true,
+                _ => self.came_lines.push(i),
+            }
+        }
+        for line in (0..before.len()).filter(|&line| !stays[line]) {
+            self.is_gone[part.line_to_cell[line].index()] = true;
+        }
     }
 
     /// Triangles with the vertices that they had are those that stayed: they come first, in their order.
@@ -186,6 +217,15 @@ fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3
     if dot(is, was) < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
+/// The vertices of a line that came, so that it runs as the one does that it is a part of.
+fn line_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 2] {
+    let [a, b] = extract.mesh.lines[i];
+    let [was_a, was_b] = part.mesh.lines[extract.line_to_old[i] as usize];
+    let way = |points: &[Point], [a, b]: [VertexId; 2]| sub(points[b.index()], points[a.index()]);
+    let (is, was) = (way(&extract.mesh.points, [a, b]), way(&part.mesh.points, [was_a, was_b]));
+    if dot(is, was) < 0.0 { [b, a] } else { [a, b] }
+}
+
 /// Where everything came from.
 fn history(
     old: &Mesh,
@@ -218,9 +258,15 @@ fn history(
         },
         threads,
     )?;
+    // Lines are the last cells.
+    let mut cells = traced.cells;
+    for &(cell, i) in &joined.came_lines {
+        let before = part.line_to_cell[extract.line_to_old[i] as usize];
+        cells.push(cell, &[(before, 1.0)], before);
+    }
     Ok(History {
         vertices: Origins::new(old.points.len(), vertex_to_old, traced.vertices)?,
-        cells: Origins::new(old.cells.len(), joined.cell_to_old.clone(), traced.cells)?,
+        cells: Origins::new(old.cells.len(), joined.cell_to_old.clone(), cells)?,
         ledger: traced.ledger,
     })
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::Threads;
-use motet::refine::{MeshRefinement, Reached, Shapes, Step};
+use motet::refine::{MeshRefinement, Reached, Shapes, Step, Stop};
 use serde::Serialize;
 
 use super::args::RefineArgs;
@@ -22,6 +22,8 @@ pub(crate) struct Report {
     history: Option<PathBuf>,
     /// Whether all edges are as short as was asked for.
     complete: bool,
+    /// What ended the division before that.
+    stopped_by: Option<Stop>,
     /// The mesh as it came, then after each generation.
     steps: Vec<Step>,
     /// Tets of the first mesh.
@@ -81,6 +83,7 @@ impl Report {
             output: args.output.clone(),
             history: args.arrays.history.clone(),
             complete: done.is_reached,
+            stopped_by: done.stopped_by,
             steps: done.steps,
             first_tets: first.tets.len(),
             first_worst_eas: Shapes::of(&first, threads).worst_eas,
@@ -125,12 +128,15 @@ impl Report {
         let held = self.steps.iter().map(|step| step.held).max().unwrap_or(0);
         if held > 0 {
             console.say(format_args!(
-                "{} tets were left as they are, since cells of other kinds hold their edges, or one would be inverted",
+                "{} tets were left as they are, since cells of other kinds hold their edges (lines do not), or one would be inverted",
                 count(held)
             ));
         }
-        if !self.complete {
-            console.say("not all edges are as short as was asked for: a limit, or the number of generations, came first");
+        if let Some(stop) = self.stopped_by {
+            console.warn(format_args!(
+                "{}: not reached: {stop}; what was reached is written",
+                self.mesh.display()
+            ));
         }
         console.say(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {

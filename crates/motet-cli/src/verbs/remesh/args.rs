@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use motet::Error;
 use motet::Mesh;
-use motet::remesh::{self, Options, Sizes, SurfaceRule};
+use motet::remesh::{self, Held, Options, Sizes, SurfaceRule};
 
 use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
@@ -31,6 +31,10 @@ With --sizes edges longer than 1.5 times their size are split in their middles a
 than 0.5 times it are collapsed, as far as that makes no tet bad; the bad ones are repaired as ever.
 The size of an edge is the mean of those at its ends. On a surface that is kept edges stay as they are.
 
+Line cells are divided and merged with their edges where the surface may change, and keep their arrays.
+What a Medit file marks as required stays to the bit, as with --hold; so do both sides of a slit, or of
+an interface whose points are there twice.
+
 Examples:
   motet remesh moved.vtu -o repaired.vtu
   motet remesh moved.vtu -o repaired.vtu --surface adapt --distance 0.01
@@ -38,6 +42,7 @@ Examples:
   motet remesh scan.msh -o better.vtu --goal best        the worst tets as good as they get
   motet remesh coarse.vtu -o fine.vtu --sizes 0.3 --surface adapt      edges of about 0.3 everywhere
   motet remesh scan.vtu -o graded.vtu --sizes h --surface adapt        of about the point array h
+  motet remesh moved.vtu -o repaired.vtu --hold solid --hold inlet     the solid and the inlet stay
   motet remesh moved.vtu -o repaired.vtu --json | jq .left
   motet remesh moved.vtu -o repaired.vtu --carry flags=drop --history repaired.json
 
@@ -68,6 +73,10 @@ pub(crate) struct RemeshArgs {
     /// Bring edges to this length, or each to what a point array says there
     #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
     sizes: Option<Asked>,
+    /// Keep the tets of this region, or the triangles of this patch, and their vertices as they are, to
+    /// the bit; a name or a number, may be repeated
+    #[arg(long, value_name = "NAME", help_heading = "Repair")]
+    hold: Vec<String>,
     /// How far to go
     #[arg(long, value_name = "GOAL", default_value = "repair", help_heading = "Repair")]
     pub(crate) goal: Goal,
@@ -143,6 +152,11 @@ impl RemeshArgs {
             rounds: self.rounds as usize,
             ..Options::default()
         })
+    }
+
+    /// What the call holds, of the regions and patches of a mesh.
+    pub(crate) fn held(&self, mesh: &Mesh) -> motet::Result<Held> {
+        Held::of_names(mesh, &self.hold)
     }
 
     /// The sizes that the call asks for, of a mesh that may have an array of them.

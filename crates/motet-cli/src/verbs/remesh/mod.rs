@@ -29,6 +29,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let read = begin.elapsed().as_secs_f64();
     bar.inc(1);
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
+    options.held = args.held(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
     bar.inc(1);

@@ -41,6 +41,8 @@ pub(crate) struct Report {
     untouched: f64,
     /// Tets of boundary layers that would count as bad, and stayed.
     layers: usize,
+    /// Tets that are held and would count as bad, and stayed.
+    held: usize,
     /// Edges beside the sizes that were asked for; null where none were.
     sizes: Option<SizesReport>,
     left: Vec<Left>,
@@ -130,6 +132,7 @@ impl Report {
             kept: report.kept,
             untouched: report.kept_share,
             layers: report.layers,
+            held: report.held,
             sizes: report.sizes,
             left: report.left.iter().map(left).collect(),
             volumes: history.ledger.clone(),
@@ -181,6 +184,9 @@ impl Report {
                 "kept as boundary layers: {} thin tets, not counted as bad",
                 count(self.layers)
             ));
+        }
+        if self.held > 0 {
+            console.say(format_args!("held: {} bad tets, not counted as bad", count(self.held)));
         }
         if !self.fields.is_empty() {
             console.say(self.field_table());

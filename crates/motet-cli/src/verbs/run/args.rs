@@ -49,6 +49,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
   [repair]                        # off = true: nothing is repaired
   min_eas = 0.2
   surface = \"keep\"                # adapt or loose: it may stray by `distance`
+  hold = [\"solid\"]                # regions and patches that repairs leave as they are
   margin = 0.05                   # repaired to so much more
   floor = 0.05                    # no step goes below this before it is repaired
   keep_tets = 0.9                 # edges get their lengths back where there are fewer tets

@@ -9,7 +9,7 @@ use motet::mesh::history::Rules;
 use motet::motion::{Extent, Method, MethodWords};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
 use motet::refine::{Criterion, Limits, Size, Wanted};
-use motet::remesh::{self, SurfaceRule};
+use motet::remesh::{self, Held, SurfaceRule};
 use motet::{Error, Mesh, Result, io};
 
 use super::course;
@@ -83,6 +83,7 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
     let asked = remesh::Options {
         min_eas: repair.min_eas,
         surface: SurfaceRule::of_name(&repair.surface, repair.distance)?,
+        held: Held::of_names(mesh, &repair.hold)?,
         ..remesh::Options::default()
     };
     Ok(Options {

@@ -155,6 +155,8 @@ pub(super) struct Repair {
     pub(super) min_eas: f64,
     pub(super) surface: String,
     pub(super) distance: Option<f64>,
+    /// Names of regions and patches that stay as they are.
+    pub(super) hold: Vec<String>,
     pub(super) margin: f64,
     pub(super) floor: f64,
     pub(super) keep_tets: f64,
@@ -168,6 +170,7 @@ impl Default for Repair {
             min_eas: usual.limit(),
             surface: "keep".into(),
             distance: None,
+            hold: Vec::new(),
             margin: usual.margin,
             floor: usual.floor,
             keep_tets: usual.keep_tets,

@@ -41,6 +41,7 @@ mod write;
 
 use crate::io::Format;
 use crate::mesh::CellKind;
+use crate::mesh::marks::{CORNER, REQUIRED, RIDGE};
 
 pub(super) const MESH: Format = Format {
     name: "Medit",
@@ -93,9 +94,6 @@ struct Section {
     marks: &'static [(Keyword, &'static str)],
 }
 
-const CORNER: &str = "medit:corner";
-const RIDGE: &str = "medit:ridge";
-const REQUIRED: &str = "medit:required";
 const REF: &str = "medit:ref";
 const SOLUTION: &str = "medit:sol";
 

@@ -21,6 +21,7 @@ mod rule;
 
 pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
+pub(crate) use numbers::numbers_cells;
 pub use numbers::{REFINE_ROOT, number_anew};
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};

@@ -9,6 +9,11 @@ const ELEMENT_ID: &str = "GlobalElementID";
 /// Which tets came from one by refinement: -1 where that is not known.
 pub const REFINE_ROOT: &str = "refine_root";
 
+/// Whether a cell array gives every cell a number of its own.
+pub(crate) fn numbers_cells(array: &str) -> bool {
+    array == ELEMENT_ID
+}
+
 /// Gives new points and new tets numbers of their own, after the largest. `point_to_old` has [`u32::MAX`] for a new point.
 pub fn number_anew(mesh: &mut Mesh, point_to_old: &[u32], cell_to_old: &[CellId]) {
     let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;

@@ -1,4 +1,4 @@
-//! The mesh of a closed forest: tets, triangles, edges that stay, and vertices in an order that follows from what is divided alone.
+//! The mesh of a closed forest: tets, triangles, lines, edges that stay, and vertices in an order that follows from what is divided alone.
 
 use super::close::Cut;
 use super::patterns::{self, patterns};
@@ -17,6 +17,8 @@ pub(in crate::refine) struct Extracted {
     pub(in crate::refine) nodes: Vec<u32>,
     /// Of each triangle, the one of the first mesh that it is a part of.
     pub(in crate::refine) triangles: Vec<u32>,
+    /// Of each line, the one of the first mesh that it is a part of.
+    pub(in crate::refine) lines: Vec<u32>,
 }
 
 impl Extracted {
@@ -80,6 +82,11 @@ pub(in crate::refine) fn extract(
         numbers.triangle(triangle.map(|v| v.0), &mut out.mesh.triangles);
         out.mesh.patches.resize(out.mesh.triangles.len(), patch);
         out.triangles.resize(out.mesh.triangles.len(), i);
+    }
+    for ((line, &label), i) in first.lines.iter().zip(&first.line_labels).zip(0..) {
+        numbers.edge(line.map(|v| v.0), &mut out.mesh.lines);
+        out.mesh.line_labels.resize(out.mesh.lines.len(), label);
+        out.lines.resize(out.mesh.lines.len(), i);
     }
     for edge in &first.fixed_edges {
         numbers.edge(edge.map(|v| v.0), &mut out.mesh.fixed_edges);

@@ -5,13 +5,14 @@
 //! | tell | `tell` | of each tet where it lies in which tet of the first mesh, and which of its vertices is what there |
 //! | gather | `trees` | tets of one origin come together again, where all of them are still there |
 //! | dissolve | `dissolve` | what others have changed, and what cannot fit it any more, starts anew |
-//! | triangles | `triangles` | triangles of patches come together as the tets do |
+//! | triangles, lines | `triangles`, `lines` | triangles of patches and lines come together as the tets do |
 //! | recall | `recall` | the forest, built as it was |
 //!
 //! A tet that came from elsewhere, such as from remeshing, becomes a root. So do the tets beside it that were divided together with one that is gone. What
 //! these need of the others stays split: whatever is coarsened, the mesh fits.
 
 mod dissolve;
+mod lines;
 mod recall;
 mod tell;
 mod trees;

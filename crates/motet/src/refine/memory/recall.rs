@@ -6,7 +6,7 @@ use super::super::forest::{Need, close};
 use super::super::handle::{Options, Refinement, Summary, check_roots};
 use super::trees::Trees;
 use super::triangles::Gathered;
-use super::{Memory, dissolve, triangles, unfit};
+use super::{Memory, dissolve, lines, triangles, unfit};
 use crate::base::{Id, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
@@ -51,6 +51,8 @@ struct Roots {
     root_of: Vec<u32>,
     /// Of each triangle of the mesh, its first.
     triangle_of: Vec<u32>,
+    /// Of each line of the mesh, its first.
+    line_of: Vec<u32>,
     n_dissolved: usize,
 }
 
@@ -59,6 +61,8 @@ impl Roots {
         let mut first = TetMesh { points: Vec::new(), tets: Vec::new(), regions: Vec::new(), ..mesh.clone() };
         let Gathered { triangles, patches, part_of } = triangles::gather(mesh, memory, trees)?;
         (first.triangles, first.patches) = (triangles, patches);
+        let gathered = lines::gather(mesh, trees)?;
+        (first.lines, first.line_labels) = (gathered.lines, gathered.labels);
         let mut knots = Vec::new();
         let mut root_of = Vec::with_capacity(mesh.tets.len());
         let mut root_of_knot = vec![NONE; trees.knots.len()];
@@ -81,7 +85,7 @@ impl Roots {
             }));
         }
         let n_dissolved = trees.knots.iter().filter(|knot| !knot.is_whole).count();
-        Ok(Self { first, knots, root_of, triangle_of: part_of, n_dissolved })
+        Ok(Self { first, knots, root_of, triangle_of: part_of, line_of: gathered.part_of, n_dissolved })
     }
 
     /// Which vertices of the mesh are there only because something was divided.
@@ -91,7 +95,7 @@ impl Roots {
         let middles = whole.flat_map(|knot| &knot.vertices[4..]).filter(|v| **v != VertexId::NONE);
         middles.for_each(|v| is_middle[v.index()] = true);
         let stay = self.first.tets.iter().flatten().chain(&mesh.fixed_vertices);
-        let stay = stay.chain(mesh.fixed_edges.iter().flatten());
+        let stay = stay.chain(mesh.fixed_edges.iter().flatten()).chain(self.first.lines.iter().flatten());
         stay.for_each(|v| is_middle[v.index()] = false);
         is_middle
     }
@@ -136,7 +140,8 @@ impl Roots {
             *points.get_mut(known as usize).ok_or_else(|| unfit("a point is not accounted for"))? =
                 mesh.points[v];
         }
-        let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles: self.triangle_of };
+        let (triangles, lines) = (self.triangle_of, self.line_of);
+        let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles, lines };
         // Numbers of another mesh may ask for anything.
         let most_nodes = std::mem::replace(&mut forest.most_nodes, 100 * forest.nodes.len() + 100_000);
         let closed = close(&mut forest, need, threads).map_err(|_| unfit("what it divides has no end"))?;
@@ -155,6 +160,7 @@ impl Roots {
         let new = |v: &mut VertexId| *v = VertexId(to_forest[v.index()]);
         self.first.tets.iter_mut().flatten().for_each(new);
         self.first.triangles.iter_mut().flatten().for_each(new);
+        self.first.lines.iter_mut().flatten().for_each(new);
         self.first.fixed_vertices.iter_mut().for_each(new);
         self.first.fixed_edges.iter_mut().flatten().for_each(new);
     }
@@ -171,7 +177,21 @@ fn is_same(one: &Extracted, other: &Extracted) -> bool {
         let of = |out: &Extracted, v: VertexId| out.vertices[v.index()];
         x.iter().zip(y).all(|(&x, &y)| of(one, x) == of(other, y))
     };
+    // Writers may regroup lines.
+    let lines = |out: &Extracted| {
+        let of = |v: VertexId| out.vertices[v.index()];
+        let parts = out
+            .mesh
+            .lines
+            .iter()
+            .zip(&out.lines)
+            .map(|(&[a, b], &line)| (line, of(a).min(of(b)), of(a).max(of(b))));
+        let mut parts: Vec<_> = parts.collect();
+        parts.sort_unstable();
+        parts
+    };
     one.nodes == other.nodes
+        && lines(one) == lines(other)
         && one.triangles == other.triangles
         && one.mesh.tets.len() == other.mesh.tets.len()
         && same(one.mesh.tets.as_flattened(), other.mesh.tets.as_flattened())

@@ -16,8 +16,10 @@ pub(super) struct Joined {
     pub(super) vertex_to_old: Vec<u32>,
     pub(super) tet_to_cell: Vec<CellId>,
     pub(super) triangle_to_cell: Vec<CellId>,
+    pub(super) line_to_cell: Vec<CellId>,
     pub(super) tets: Matched,
     pub(super) triangles: Matched,
+    pub(super) lines: Matched,
 }
 
 /// Which parts of a mesh are those of another.
@@ -32,11 +34,11 @@ pub(super) struct Matched {
 }
 
 impl Joined {
-    /// `cells` are those that tets and triangles were in the old mesh; the refinements are that before and that after.
+    /// `cells` are those that tets, triangles and lines were in the old mesh; the refinements are that before and that after.
     pub(super) fn of(
         old: &Mesh,
         slots: &[Slot],
-        cells: [&[CellId]; 2],
+        cells: [&[CellId]; 3],
         [before, after]: [&Refinement; 2],
     ) -> Self {
         let (was, is) = (&before.now, &after.now);
@@ -45,6 +47,7 @@ impl Joined {
         let tets = matched([was, is].map(|out| names(out, &out.mesh.tets)), [&tet_roots[0], &tet_roots[1]]);
         let triangles =
             matched([was, is].map(|out| names(out, &out.mesh.triangles)), [&was.triangles, &is.triangles]);
+        let lines = matched([was, is].map(|out| names(out, &out.mesh.lines)), [&was.lines, &is.lines]);
         let vertices = Vertices::of(was, is, after.forest.reference.len());
         let joined = Self {
             cells: Cells::new(),
@@ -52,8 +55,10 @@ impl Joined {
             vertex_to_old: vertices.new_to_old,
             tet_to_cell: Vec::with_capacity(is.mesh.tets.len()),
             triangle_to_cell: Vec::with_capacity(is.mesh.triangles.len()),
+            line_to_cell: Vec::with_capacity(is.mesh.lines.len()),
             tets,
             triangles,
+            lines,
         };
         joined.fill(old, slots, cells, is, &tet_roots[1], &vertices.old_to_new)
     }
@@ -62,17 +67,18 @@ impl Joined {
         mut self,
         old: &Mesh,
         slots: &[Slot],
-        [old_tets, old_triangles]: [&[CellId]; 2],
+        [old_tets, old_triangles, old_lines]: [&[CellId]; 3],
         is: &Extracted,
         tet_roots: &[u32],
         old_to_new: &[u32],
     ) -> Self {
         let new = |v: VertexId| VertexId(old_to_new[v.index()]);
-        let is_other = |kind: CellKind| kind != CellKind::TETRA && kind != CellKind::TRIANGLE;
-        let mut others = old.cells.iter().filter(|(_, kind, _)| is_other(*kind));
+        let mut others =
+            old.cells.iter().filter(|(_, kind, vertices)| Slot::of(*kind, vertices) == Slot::Other);
         let mut faces = old.cells.polyhedron_faces().iter();
         let mut parts_of_tets = tet_roots.chunk_by(|x, y| x == y);
         let mut parts_of_triangles = is.triangles.chunk_by(|x, y| x == y);
+        let mut parts_of_lines = is.lines.chunk_by(|x, y| x == y);
         for slot in slots {
             match slot {
                 Slot::Tet => {
@@ -89,6 +95,14 @@ impl Joined {
                         let known = self.triangles.old(t, old_triangles);
                         let cell = self.push(CellKind::TRIANGLE, known, is.mesh.triangles[t]);
                         self.triangle_to_cell.push(cell);
+                    }
+                }
+                Slot::Line => {
+                    for _ in 0..parts_of_lines.next().map_or(0, <[u32]>::len) {
+                        let l = self.line_to_cell.len();
+                        let known = self.lines.old(l, old_lines);
+                        let cell = self.push(CellKind::LINE, known, is.mesh.lines[l]);
+                        self.line_to_cell.push(cell);
                     }
                 }
                 Slot::Other => {
@@ -143,7 +157,7 @@ impl Vertices {
     }
 }
 
-/// Tets or triangles by the ids of their vertices in the forest.
+/// Tets, triangles or lines by the ids of their vertices in the forest.
 fn names<const N: usize>(out: &Extracted, of: &[[VertexId; N]]) -> Vec<[u32; N]> {
     of.iter().map(|vertices| vertices.map(|v| out.vertices[v.index()])).collect()
 }

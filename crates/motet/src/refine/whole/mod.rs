@@ -23,6 +23,7 @@ pub struct MeshRefinement {
     slots: Vec<Slot>,
     tet_to_cell: Vec<CellId>,
     triangle_to_cell: Vec<CellId>,
+    line_to_cell: Vec<CellId>,
 }
 
 /// What one cell of the first mesh was.
@@ -30,7 +31,20 @@ pub struct MeshRefinement {
 pub(super) enum Slot {
     Tet,
     Triangle,
+    Line,
     Other,
+}
+
+impl Slot {
+    /// What [`TetPart`] takes a cell for.
+    fn of(kind: CellKind, vertices: &[VertexId]) -> Self {
+        match (kind, vertices) {
+            (CellKind::TETRA, _) => Self::Tet,
+            (CellKind::TRIANGLE, _) => Self::Triangle,
+            (CellKind::LINE, [a, b]) if a != b => Self::Line,
+            _ => Self::Other,
+        }
+    }
 }
 
 impl MeshRefinement {
@@ -47,8 +61,9 @@ impl MeshRefinement {
         };
         let refinement = refinement.map_err(|error| part.at_cell(error))?;
         let slots = slots(mesh, &refinement);
-        let TetPart { tet_to_cell, triangle_to_cell, .. } = part;
-        Ok(Self { mesh: kept::without(mesh), refinement, slots, tet_to_cell, triangle_to_cell })
+        let TetPart { tet_to_cell, triangle_to_cell, line_to_cell, .. } = part;
+        let mesh = kept::without(mesh);
+        Ok(Self { mesh, refinement, slots, tet_to_cell, triangle_to_cell, line_to_cell })
     }
 
     /// The mesh without what it remembers: as it is, it counts as the first.
@@ -73,10 +88,14 @@ impl MeshRefinement {
         &self.refinement
     }
 
-    /// The tets and triangles, and which cells these are.
+    /// The tets, triangles and lines, and which cells these are.
     pub fn part(&self) -> TetPart {
-        let (tet_to_cell, triangle_to_cell) = (self.tet_to_cell.clone(), self.triangle_to_cell.clone());
-        TetPart { mesh: self.refinement.mesh().clone(), tet_to_cell, triangle_to_cell }
+        TetPart {
+            mesh: self.refinement.mesh().clone(),
+            tet_to_cell: self.tet_to_cell.clone(),
+            triangle_to_cell: self.triangle_to_cell.clone(),
+            line_to_cell: self.line_to_cell.clone(),
+        }
     }
 
     /// The mesh with its memory as arrays, unless nothing is divided: `refine_root`, `refine_path`, `refine_piece` and `refine_asked` on cells and
@@ -124,7 +143,7 @@ impl MeshRefinement {
     ) -> Result<(Summary, History)> {
         let mut refinement = self.refinement.clone();
         let summary = change(&mut refinement)?;
-        let cells = [&self.tet_to_cell[..], &self.triangle_to_cell];
+        let cells = [&self.tet_to_cell[..], &self.triangle_to_cell, &self.line_to_cell];
         let joined = Joined::of(&self.mesh, &self.slots, cells, [&self.refinement, &refinement]);
         let found = origins([&self.refinement, &refinement], &joined, cells, threads)?;
         let vertex_to_old = joined.vertex_to_old.iter().map(|&v| VertexId(v)).collect();
@@ -136,8 +155,10 @@ impl MeshRefinement {
         let mut mesh = Mesh::new(refinement.mesh().points.clone(), joined.cells);
         history.transfer(&self.mesh, &mut mesh, rules)?;
         number_anew(&mut mesh, &joined.vertex_to_old, &joined.cell_to_old);
+        mesh.unmark_new_points(&joined.vertex_to_old);
         (self.mesh, self.refinement) = (mesh, refinement);
         (self.tet_to_cell, self.triangle_to_cell) = (joined.tet_to_cell, joined.triangle_to_cell);
+        self.line_to_cell = joined.line_to_cell;
         Ok((summary, history))
     }
 }
@@ -146,14 +167,17 @@ impl MeshRefinement {
 fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
     let mut roots = refinement.roots().map(|root| root.0);
     let mut triangles = refinement.now.triangles.iter();
-    let (mut next_root, mut next_triangle) = (0, 0);
+    let mut lines = refinement.now.lines.iter();
+    let (mut next_root, mut next_triangle, mut next_line) = (0, 0, 0);
     let mut slots = Vec::new();
-    for (_, kind, _) in mesh.cells.iter() {
-        // Roots and triangles are numbered as the mesh has them first.
-        let (slot, is_first) = match kind {
-            CellKind::TETRA => (Slot::Tet, is_next(roots.next(), &mut next_root)),
-            CellKind::TRIANGLE => (Slot::Triangle, is_next(triangles.next().copied(), &mut next_triangle)),
-            _ => (Slot::Other, true),
+    for (_, kind, vertices) in mesh.cells.iter() {
+        let slot = Slot::of(kind, vertices);
+        // Roots, triangles and lines are numbered as the mesh has them first.
+        let is_first = match slot {
+            Slot::Tet => is_next(roots.next(), &mut next_root),
+            Slot::Triangle => is_next(triangles.next().copied(), &mut next_triangle),
+            Slot::Line => is_next(lines.next().copied(), &mut next_line),
+            Slot::Other => true,
         };
         if is_first {
             slots.push(slot);

@@ -12,8 +12,9 @@ use super::super::handle::Refinement;
 use super::joined::Joined;
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::overlap::Solid;
+use crate::geometry::segment;
 use crate::geometry::tet::{self, centroid};
-use crate::geometry::vector::distance;
+use crate::geometry::vector::{add, distance, scale, sub};
 use crate::mesh::history::{Ledger, RegionLedger, Rows};
 use crate::spatial::trace::{Labelled, LocalChange, trace};
 
@@ -27,11 +28,11 @@ pub(super) struct Found {
     pub(super) ledger: Ledger,
 }
 
-/// The refinements are that before and that after; `cells` are those that tets and triangles were before.
+/// The refinements are that before and that after; `cells` are those that tets, triangles and lines were before.
 pub(super) fn origins(
     [before, after]: [&Refinement; 2],
     joined: &Joined,
-    cells: [&[CellId]; 2],
+    cells: [&[CellId]; 3],
     threads: &Threads,
 ) -> Result<Found> {
     let kin = Kin::new(&after.forest, &before.now, &after.now);
@@ -44,6 +45,7 @@ pub(super) fn origins(
         rows.push((joined.tet_to_cell[t as usize], of_old.collect(), cells[0][main as usize]));
     }
     triangles(before, after, joined, cells[1], threads, &mut rows)?;
+    lines(&before.now, &after.now, joined, cells[2], &mut rows);
     rows.sort_by_key(|row| row.0);
     let mut of_cells = Rows::new();
     rows.iter().for_each(|(cell, parts, main)| of_cells.push(*cell, parts, *main));
@@ -176,6 +178,25 @@ fn triangles(
     let inherited = traced.cells.ids().iter().zip(traced.cells.iter());
     rows.extend(inherited.map(|(&cell, row)| (cell, vec![(row.main, 1.0)], row.main)));
     Ok(())
+}
+
+/// Lines inherit from the nearest part of the same line of the first mesh.
+fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId], rows: &mut Vec<CellRow>) {
+    let mut gone: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    joined.lines.gone.iter().for_each(|&l| gone.entry(was.lines[l as usize]).or_default().push(l));
+    let ends = |out: &Extracted, l: u32| out.mesh.lines[l as usize].map(|v| out.mesh.points[v.index()]);
+    for &l in &joined.lines.came {
+        let [a, b] = ends(is, l);
+        let middle = scale(add(a, b), 0.5);
+        let far = |old: &u32| {
+            let [p, q] = ends(was, *old);
+            distance(add(p, scale(sub(q, p), segment::closest([p, q], middle))), middle)
+        };
+        let parts = gone.get(&is.lines[l as usize]).into_iter().flatten().copied();
+        let nearest = parts.min_by(|x, y| far(x).total_cmp(&far(y)));
+        let old = old_cells[nearest.unwrap_or(0) as usize];
+        rows.push((joined.line_to_cell[l as usize], vec![(old, 1.0)], old));
+    }
 }
 
 /// Means of vertices that were there.

@@ -57,7 +57,7 @@ impl Repair {
         let [a, b] = edge;
         self.shells[0].walk(&self.complex, tet, a, b);
         let shell = &self.shells[0];
-        if self.complex.is_fixed_edge(a, b) || !shell.is_free() {
+        if !self.complex.may_divide(a, b) || !shell.is_free() {
             return;
         }
         let bar = self.bar(tet);

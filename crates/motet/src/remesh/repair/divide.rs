@@ -77,7 +77,7 @@ impl Repair {
     fn split_unjudged(&mut self, edge: [VertexId; 2]) {
         let [a, b] = edge;
         let shell = &self.shells[0];
-        if self.complex.is_fixed_edge(a, b) {
+        if !self.complex.may_divide(a, b) {
             return;
         }
         let hold = self.hold_on(edge);

@@ -17,6 +17,11 @@ use crate::remesh::sizes::{LONG, SHORT, SizeField};
 /// Short edges are looked for once more when this part of them has been collapsed.
 const ENOUGH: f64 = 0.02;
 
+/// Edges whose lengths, as parts of their sizes, differ by no more than this factor count as equally long.
+const ALIKE: f64 = 1.0 + 1e-9;
+/// Tets of a lower quality are next to flat: a tenth of what is bad by default. Beside a longer edge that stays no split brings one, whatever was there.
+const FLATTEST: f64 = 0.02;
+
 /// What sizes are asked for, and how far that may go.
 pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
@@ -56,6 +61,10 @@ impl Repair {
     /// better.
     pub(in crate::remesh) fn bring_to_sizes(&mut self, sizing: Sizing, rounds: usize) -> Result<Vec<TetId>> {
         let splits = sizing.splits;
+        // Splits beside a flat tet bring more of them, and no size is reached where they are.
+        if splits && !self.complex.below(FLATTEST).is_empty() {
+            self.run(self.below(self.target), rounds)?;
+        }
         self.sizing = Some(sizing);
         if !splits {
             self.with_sizing(Self::collapse_short)?;
@@ -110,7 +119,9 @@ impl Repair {
             self.watch.go_on("splitting long edges", n_split, n_split + long.len())?;
             // Nothing but its own split takes an edge away.
             let Some(tet) = self.tet_at(edge) else { continue };
-            let Some(middle) = self.split(tet, edge.ends, &mut change, &mut came) else { continue };
+            let Some(middle) = self.split(tet, edge.ends, &mut sizing.field, &mut change, &mut came) else {
+                continue;
+            };
             n_split += 1;
             for &tet in &came {
                 for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
@@ -130,28 +141,44 @@ impl Repair {
         &mut self,
         tet: TetId,
         ends: [VertexId; 2],
+        field: &mut SizeField,
         change: &mut Change,
         came: &mut Vec<TetId>,
     ) -> Option<VertexId> {
         let [a, b] = ends;
         self.shells[0].walk(&self.complex, tet, a, b);
-        if self.complex.is_fixed_edge(a, b) || self.surface.is_none() && !self.shells[0].is_free() {
+        if !self.complex.may_divide(a, b) || self.surface.is_none() && !self.shells[0].is_free() {
             return None;
         }
         let hold: Hold = self.hold_on(ends);
         let point = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let middle = self.complex.next_vertex();
-        // The longest of all edges may always be split. Where longer ones stay, since they are on a surface that is kept, that would make flatter and flatter tets.
-        let bar = match self.surface {
-            Some(_) => 0.0,
-            None => self.complex.worst_of(&self.shells[0].tets).min(self.target).next_down().max(0.0),
-        };
+        let bar = self.bar_of_split(ends, field);
         let is_above = split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change);
         let is_near = self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, change));
         let checked = self.complex.check_against(change, bar).ok().filter(|_| is_above && is_near)?;
         self.complex.commit(checked, came);
         self.operations.add(Operation::SplitEdge);
         Some(middle)
+    }
+
+    /// What the tets have to beat that come of a split of the edge whose shell was walked last.
+    ///
+    /// The longest of all edges may always be split. Where a longer one stays, since it is held or nothing but flat tets would come of its halves, splits of the others would make flatter
+    /// and flatter tets: then no tet comes that is worse than the worst that was there, or bad, and none that is next to flat whatever was there.
+    fn bar_of_split(&self, ends: [VertexId; 2], field: &mut SizeField) -> f64 {
+        let tets = &self.shells[0].tets;
+        let ratio = field.of_edge(&self.complex, ends);
+        let mut edges = tets.iter().flat_map(|&t| {
+            let vertices = self.complex.vertices(t);
+            EDGES.map(|edge| edge.map(|i| vertices[i]))
+        });
+        if self.surface.is_some() && edges.all(|[a, b]| field.of_edge(&self.complex, [a, b]) <= ratio * ALIKE)
+        {
+            return 0.0;
+        }
+        let floor = if self.surface.is_some() { FLATTEST } else { 0.0 };
+        self.complex.worst_of(tets).min(self.target).next_down().max(floor)
     }
 
     /// Collapses edges that are too short, the shortest first, where that brings no edge that is too long and no tet that is bad and worse than

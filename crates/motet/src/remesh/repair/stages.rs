@@ -9,7 +9,7 @@ use crate::ops::{collapse, split_crossed, split_edge, split_onto};
 use crate::remesh::classify::{Defect, classify};
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
-use crate::remesh::surface::SurfaceTrack;
+use crate::remesh::surface::{Surface, SurfaceTrack};
 
 /// What is tried for a tet, one after the other until it is no longer bad.
 pub(super) const STAGES: [fn(&mut Repair, TetId); 6] = [
@@ -55,6 +55,7 @@ impl Repair {
     pub(super) fn hold_on(&self, edge: [VertexId; 2]) -> Hold {
         let shell = &self.shells[0];
         match &self.surface {
+            _ if self.complex.line(edge[0], edge[1]).is_some() => Hold::Edge,
             _ if shell.is_free() => Hold::Free,
             Some(surface) if surface.is_smooth(&self.complex, edge, shell) => Hold::Surface,
             _ => Hold::Edge,
@@ -135,8 +136,9 @@ impl Repair {
         };
         let shell = &mut self.shells[0];
         shell.walk(&self.complex, tet, gone, kept);
-        !shell.walls.is_empty()
-            && (hold == Hold::Surface || !surface.is_smooth(&self.complex, [gone, kept], shell))
+        let is_line = self.complex.line(gone, kept).is_some();
+        let is_feature = |surface: &Surface| !surface.is_smooth(&self.complex, [gone, kept], shell);
+        is_line || !shell.walls.is_empty() && (hold == Hold::Surface || is_feature(surface))
     }
 
     /// Its vertices moved: anywhere, or where the surface may change along the surface and along features.
@@ -162,7 +164,7 @@ impl Repair {
         }
     }
 
-    /// Its edges on the surface split.
+    /// Its edges on the surface and its lines split.
     fn split_surface(&mut self, tet: TetId) {
         if self.surface.is_none() {
             return;
@@ -173,7 +175,8 @@ impl Repair {
             let bar = self.bar(tet);
             let shell = &mut self.shells[0];
             shell.walk(&self.complex, tet, a, b);
-            if shell.walls.is_empty() || self.complex.is_fixed_edge(a, b) {
+            let is_inside = shell.walls.is_empty() && self.complex.line(a, b).is_none();
+            if is_inside || !self.complex.may_divide(a, b) {
                 continue;
             }
             let hold = self.hold_on(edge);

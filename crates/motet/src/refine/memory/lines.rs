@@ -1,0 +1,88 @@
+//! Brings the lines of a mesh together again, as the edges of its tets come together.
+
+use std::collections::BTreeMap;
+
+use hashbrown::HashMap;
+
+use super::trees::Trees;
+use super::unfit;
+use crate::base::{Id, Result, VertexId};
+use crate::geometry::tet::EDGES;
+use crate::mesh::TetMesh;
+
+/// Lines as they were.
+pub(super) struct Gathered {
+    pub(super) lines: Vec<[VertexId; 2]>,
+    pub(super) labels: Vec<i32>,
+    /// Of each line of the mesh, which of them it is a part of.
+    pub(super) part_of: Vec<u32>,
+}
+
+/// No edge is halved more often.
+const MOST_HALVINGS: usize = 32;
+
+/// The lines as they were, in the order of their first parts.
+///
+/// # Errors
+/// When of an edge that was divided not all parts are lines.
+pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
+    let mut gathered = Gathered { lines: Vec::new(), labels: Vec::new(), part_of: Vec::new() };
+    if mesh.lines.is_empty() {
+        return Ok(gathered);
+    }
+    let whole_of = whole_edges(trees);
+    // Lines that are there twice over stay apart: of two on one edge the second is a part of the second whole.
+    let mut n_seen: BTreeMap<([VertexId; 2], i32), u32> = BTreeMap::new();
+    let mut numbers: BTreeMap<([VertexId; 2], i32, u32), u32> = BTreeMap::new();
+    let mut shares: Vec<u64> = Vec::new();
+    for (line, (&part, &label)) in mesh.lines.iter().zip(&mesh.line_labels).enumerate() {
+        let seen = n_seen.entry((sorted(part), label)).or_default();
+        let copy = std::mem::replace(seen, *seen + 1);
+        let (whole, n_halvings) = climb(part, &whole_of)
+            .ok_or_else(|| unfit(&format!("line {line} lies in an edge that was divided too often")))?;
+        let next = gathered.lines.len() as u32;
+        let number = *numbers.entry((sorted(whole), label, copy)).or_insert(next);
+        if number == next {
+            gathered.lines.push(whole);
+            gathered.labels.push(label);
+            shares.push(0);
+        }
+        gathered.part_of.push(number);
+        shares[number as usize] += 1 << (MOST_HALVINGS - n_halvings);
+    }
+    match shares.iter().position(|&share| share != 1 << MOST_HALVINGS) {
+        None => Ok(gathered),
+        Some(_) => Err(unfit("of an edge that was divided some parts are lines and others are not")),
+    }
+}
+
+fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// For each half of an edge of a whole knot that edge; both with the lower vertex first.
+fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
+    let mut whole_of = HashMap::new();
+    for knot in trees.knots.iter().filter(|knot| knot.is_whole) {
+        for (e, [i, j]) in EDGES.into_iter().enumerate() {
+            let ([a, b], middle) = ([knot.vertices[i], knot.vertices[j]], knot.vertices[4 + e]);
+            if middle != VertexId::NONE {
+                whole_of.extend([a, b].map(|end| (sorted([end, middle]), sorted([a, b]))));
+            }
+        }
+    }
+    whole_of
+}
+
+/// The edge that a part lies in, running the same way, and how often it was halved to come to the part.
+fn climb(
+    mut part: [VertexId; 2],
+    whole_of: &HashMap<[VertexId; 2], [VertexId; 2]>,
+) -> Option<([VertexId; 2], usize)> {
+    for n in 0..=MOST_HALVINGS {
+        let Some(&[a, b]) = whole_of.get(&sorted(part)) else { return Some((part, n)) };
+        let runs_up = part[0] == a || part[1] == b;
+        part = if runs_up { [a, b] } else { [b, a] };
+    }
+    None
+}
