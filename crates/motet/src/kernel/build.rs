@@ -68,7 +68,7 @@ impl Complex {
             free_walls: Vec::new(),
             is_locked: Vec::new(),
             fixed_edges,
-            spared: Vec::new(),
+            spared_below: f64::NEG_INFINITY,
             folded,
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,

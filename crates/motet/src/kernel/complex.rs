@@ -53,8 +53,8 @@ pub struct Complex {
     pub(super) is_locked: Vec<bool>,
     /// Edges that stay although no wall holds them, lower vertex first, in rising order.
     pub(super) fixed_edges: Vec<[VertexId; 2]>,
-    /// Qualities that count as good, in rising order; see [`Complex::spare`].
-    pub(super) spared: Vec<f64>,
+    /// New tets that walls force count as good below this quality; see [`Complex::spare`].
+    pub(super) spared_below: f64,
     /// Tets of the first mesh that are folded over others, in rising order.
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
@@ -70,11 +70,6 @@ pub struct Complex {
 
 /// The quality of a tet of the first mesh that nobody has measured.
 pub(super) const UNMEASURED: f64 = f64::NAN;
-
-/// The quality of tets that are spared.
-const SPARED: f64 = 1.0;
-/// Qualities that differ by no more than this part count as the same.
-const SAME: f64 = 1e-9;
 
 /// No tet.
 pub(crate) const NO_TET: TetId = TetId(u32::MAX);
@@ -156,7 +151,7 @@ impl Complex {
         self.regions[tet.index()]
     }
 
-    /// The quality of a tet: see [`Self::measure`].
+    /// The quality of a tet: see [`Self::measure`], and [`Self::spare`] for those that count as good.
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];
@@ -188,29 +183,7 @@ impl Complex {
     /// The measure that everything here is judged by: EAS.
     #[inline]
     pub fn measure(&self, tet: [Point; 4]) -> f64 {
-        let quality = eas(tet);
-        if self.is_spared(quality) { SPARED } else { quality }
-    }
-
-    /// From now on tets count as good whose quality is one of these, in rising order, up to rounding. For those that walls force upon a tet between them:
-    /// nothing raises it, and as the worst of every cavity round it it would forbid whatever helps the others. None: no tet is spared any more.
-    ///
-    /// Cannot be taken back by [`Self::undo`].
-    pub fn spare(&mut self, qualities: Vec<f64>) {
-        self.spared = qualities;
-        debug_assert!(self.spared.is_sorted());
-        self.qualities.fill(Cell::new(UNMEASURED));
-        self.forget();
-    }
-
-    #[inline]
-    fn is_spared(&self, quality: f64) -> bool {
-        if self.spared.is_empty() {
-            return false;
-        }
-        // There may be ten thousands of them.
-        let from = self.spared.partition_point(|spared| *spared < quality - SAME * quality.abs());
-        self.spared.get(from).is_some_and(|spared| *spared <= quality + SAME * quality.abs())
+        eas(tet)
     }
 
     /// Whether a tet is one of the first mesh, with its vertices where they were.

@@ -20,6 +20,7 @@ mod journal;
 mod link;
 mod orientation;
 mod peel;
+mod spare;
 mod star;
 
 pub use change::{Change, Fill, NewWall, VertexChange};
@@ -28,4 +29,5 @@ pub use complex::{Complex, Hold};
 pub use extract::{Extract, NEW};
 pub use journal::Mark;
 pub use link::{Behind, HalfFacet, Wall, WallId};
+pub use spare::is_reached;
 pub use star::{Shell, Star};
