@@ -18,6 +18,7 @@ mod extract;
 mod invariants;
 mod journal;
 mod link;
+mod news;
 mod orientation;
 mod peel;
 mod spare;
