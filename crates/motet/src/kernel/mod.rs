@@ -19,7 +19,6 @@ mod invariants;
 mod journal;
 mod link;
 mod news;
-mod orientation;
 mod peel;
 mod spare;
 mod star;

@@ -49,6 +49,16 @@ pub struct Reached {
     pub volume_deviation: f64,
 }
 
+impl Reached {
+    /// Why edges are longer than was requested; `None` where they are not.
+    pub fn not_reached(&self) -> Option<String> {
+        (!self.is_reached).then(|| {
+            "not all edges are as short as requested: a limit, held edges, or the number of generations came first"
+                .to_owned()
+        })
+    }
+}
+
 /// The mesh after a generation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Step {

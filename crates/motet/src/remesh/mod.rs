@@ -12,7 +12,7 @@
 //! | choose | `repair::candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
 //! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
-//! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
+//! | layers | [`crate::mesh::OrientedTets`] | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
 //!
@@ -20,7 +20,6 @@
 //! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
 
 pub mod classify;
-mod layers;
 mod left;
 mod lengths;
 mod options;
