@@ -116,7 +116,7 @@ fn edges_get_short_at_a_device() {
     let words =
         ["refine", "lumen.vtu", "-o", "short.vtu", "--near-size", "coil.vtp=0.05", "--limit-generation", "1"];
     let call = folder.motet(words).assert().code(4);
-    assert!(stdout(&call).contains("not all edges are as short"), "{}", stdout(&call));
+    assert!(stderr(&call).contains("not all edges are as short"), "{}", stderr(&call));
     assert!(folder.path("short.vtu").exists());
 }
 

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::args::RefineArgs;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -98,8 +99,8 @@ impl Report {
         }
     }
 
-    pub(super) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         console.say(format_args!(
             "{}: {} tets at first, worst EAS {}",
             self.mesh.display(),
@@ -128,9 +129,6 @@ impl Report {
                 "{} tets were left as they are, since cells of other kinds hold their edges, or one would be inverted",
                 count(held)
             ));
-        }
-        if !self.complete {
-            console.say("not all edges are as short as was asked for: a limit, or the number of generations, came first");
         }
         console.say(format_args!("wrote {}", self.output.display()));
         if let Some(history) = &self.history {
