@@ -1,6 +1,6 @@
 //! Broken meshes, repaired: what came of each kind of damage, and how long the longest took.
 //!
-//! `wrecks [N] [FIRST]`: the wrecks FIRST to FIRST + N, given to the other verbs as well where `WRECKS_OTHERS` is set; exit status 1 where one ends neither valid nor told nor refused.
+//! `wrecks [N] [FIRST]`: the wrecks FIRST to FIRST + N; exit status 1 where one ends neither valid nor told nor refused.
 
 #[path = "../tests/common/mod.rs"]
 #[allow(unreachable_pub, unused_imports, reason = "tests share it, and use other parts of it")]
@@ -31,21 +31,6 @@ fn main() -> ExitCode {
         let seconds = start.elapsed().as_secs_f64();
         if seconds > longest.0 {
             longest = (seconds, seed);
-        }
-        if std::env::var_os("WRECKS_OTHERS").is_some() {
-            let others = catch_unwind(AssertUnwindSafe(|| wreck.try_others()));
-            match others {
-                Ok(took) => {
-                    for (verb, seconds) in took.into_iter().filter(|(_, seconds)| *seconds > 20.0) {
-                        println!("{seed}: {:?}: {verb} took {seconds:.1} s", wreck.damage);
-                        n_faults += 1;
-                    }
-                }
-                Err(_) => {
-                    println!("{seed}: {:?}: another verb panicked", wreck.damage);
-                    n_faults += 1;
-                }
-            }
         }
         if let Err(why) = &end {
             println!("{seed}: {:?}, {surface:?}: {why}", wreck.damage);

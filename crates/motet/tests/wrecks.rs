@@ -25,15 +25,6 @@ fn wrecks_end_valid_told_or_refused() {
 }
 
 #[test]
-fn every_verb_answers_or_refuses_what_is_broken() {
-    for seed in 1000..1030 {
-        for (verb, seconds) in Wreck::new(seed).try_others() {
-            assert!(seconds < 20.0, "wreck {seed}: {verb} took {seconds} s");
-        }
-    }
-}
-
-#[test]
 fn two_tets_on_one_side_of_a_facet_become_one() {
     let points = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.3, 0.2, 2.]];
     let tets = [[0, 1, 2, 3], [0, 1, 2, 4]].map(|tet| tet.map(VertexId)).to_vec();

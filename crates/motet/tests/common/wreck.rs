@@ -1,20 +1,13 @@
 //! Meshes that somebody has broken, and whether a mesh is one: by the definition, and by nothing that `motet` uses to keep it.
 
 use std::collections::{BTreeMap, HashMap};
-use std::time::Instant;
 
-use motet::Mesh;
-use motet::base::{Point, TetId, Threads, VertexId};
+use motet::base::{Point, Threads, VertexId};
 use motet::geometry::predicates::orient3d;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::distance;
-use motet::implant::{self, Device, implant};
-use motet::mesh::history::Rules;
-use motet::mesh::shapes::{ball, box_grid, sphere_in_box};
-use motet::mesh::{Boundary, CellKind, Cells, Field, Summary, TetMesh, TetPart};
-use motet::motion::{self, Mover};
-use motet::moving::{self, MovingMesh};
-use motet::refine::{self, MeshRefinement};
+use motet::mesh::shapes::{box_grid, sphere_in_box};
+use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::{Options, SurfaceRule, remesh};
 
 use super::{Numbers, random_mesh};
@@ -32,24 +25,10 @@ pub(crate) enum Damage {
     Misnamed,
     /// Vertices of the boundary moved through the mesh.
     Pushed,
-    /// Several tets folded over boundary facets, some of them over each other.
-    Heaped,
-    /// Inner vertices rounded to a coarse grid: flat tets, and vertices at one place.
-    Rounded,
-    /// Shaken, and each tet numbered one way or the other.
-    Renumbered,
 }
 
-pub(crate) const DAMAGES: [Damage; 8] = [
-    Damage::Shaken,
-    Damage::Folded,
-    Damage::Doubled,
-    Damage::Misnamed,
-    Damage::Pushed,
-    Damage::Heaped,
-    Damage::Rounded,
-    Damage::Renumbered,
-];
+pub(crate) const DAMAGES: [Damage; 5] =
+    [Damage::Shaken, Damage::Folded, Damage::Doubled, Damage::Misnamed, Damage::Pushed];
 
 /// A mesh and what was done to it.
 pub(crate) struct Wreck {
@@ -83,12 +62,6 @@ impl Wreck {
             Damage::Doubled => double(&mut mesh, &mut numbers),
             Damage::Misnamed => misname(&mut mesh, &mut numbers),
             Damage::Pushed => push(&mut mesh, &mut numbers),
-            Damage::Heaped => (0..2 + numbers.below(4)).for_each(|_| fold(&mut mesh, &mut numbers)),
-            Damage::Rounded => round(&mut mesh, &mut numbers),
-            Damage::Renumbered => {
-                shake(&mut mesh, &mut numbers);
-                renumber(&mut mesh, &mut numbers);
-            }
         }
         Self { damage, sound, mesh }
     }
@@ -118,75 +91,6 @@ impl Wreck {
             same_walls(&self.sound, new)?;
         }
         Ok(End::Valid)
-    }
-}
-
-impl Wreck {
-    /// The broken mesh as a file would hold it.
-    fn as_mesh(&self) -> Mesh {
-        let TetMesh { points, tets, regions, triangles, patches, .. } = &self.mesh;
-        let mut cells = Cells::new();
-        tets.iter().for_each(|tet| cells.push(CellKind::TETRA, *tet));
-        triangles.iter().for_each(|triangle| cells.push(CellKind::TRIANGLE, *triangle));
-        let zeros = |n: usize| std::iter::repeat_n(0, n);
-        let region: Vec<i32> = regions.iter().copied().chain(zeros(triangles.len())).collect();
-        let patch: Vec<i32> = zeros(tets.len()).chain(patches.iter().copied()).collect();
-        let cell_data = vec![Field::scalars("region", region), Field::scalars("patch", patch)];
-        Mesh { cell_data, ..Mesh::new(points.clone(), cells) }
-    }
-
-    /// Gives it to the other verbs: each answers or refuses; the seconds that each took.
-    pub(crate) fn try_others(&self) -> Vec<(&'static str, f64)> {
-        let (mesh, threads) = (self.as_mesh(), Threads::single());
-        let timed = |what: &'static str, run: &dyn Fn()| {
-            let begin = Instant::now();
-            run();
-            (what, begin.elapsed().as_secs_f64())
-        };
-        let bounds = mesh.bounds().unwrap_or([[0.0; 3], [1.0; 3]]);
-        let middle = [0, 1, 2].map(|k| 0.5 * (bounds[0][k] + bounds[1][k]));
-        let size = (0..3).map(|k| bounds[1][k] - bounds[0][k]).fold(0.0, f64::max);
-        vec![
-            timed("info", &|| drop(Summary::of(&mesh))),
-            timed("refine", &|| {
-                let made = MeshRefinement::new(&mesh, refine::Options::default(), &threads);
-                if let Ok(mut refinement) = made {
-                    let some: Vec<TetId> = (0..self.mesh.tets.len()).step_by(7).map(TetId::new).collect();
-                    let _ = refinement.refine(&some, &Rules::default(), &threads);
-                }
-            }),
-            timed("move", &|| {
-                if let Ok(mut mover) = Mover::new(&mesh, &motion::Options::default(), &threads) {
-                    let driven = mover.boundary().to_vec();
-                    let shift: Vec<Point> =
-                        driven.iter().map(|v| [0.05 * size * (v.index() as f64).sin(), 0.0, 0.0]).collect();
-                    let mut points = mesh.points.clone();
-                    let _ = mover.advance(&shift, &mut points, &threads);
-                }
-            }),
-            timed("run", &|| {
-                let made = MovingMesh::new(&mesh, moving::Options::default(), &threads);
-                if let Ok(mut moving) = made {
-                    let places = moving.driven_places().to_vec();
-                    let shift: Vec<Point> =
-                        places.iter().map(|p| [0.1 * (p[1] - middle[1]), 0.0, 0.0]).collect();
-                    let _ = moving.advance(1.0, &shift, &threads);
-                }
-            }),
-            timed("implant", &|| {
-                let mut device = ball(2, 1);
-                device.points.iter_mut().for_each(|p| {
-                    (0..3).for_each(|k| p[k] = middle[k] + 0.1 * size * p[k]);
-                });
-                let boundary = Boundary::of(&device.cells);
-                let mut surface = Cells::new();
-                boundary.facets.iter().for_each(|facet| {
-                    surface.push(CellKind::TRIANGLE, facet.iter().copied());
-                });
-                let device = Device::new(Mesh::new(device.points, surface), "ball".to_owned());
-                let _ = implant(&mesh, &[device], &implant::Options::default(), &Rules::default(), &threads);
-            }),
-        ]
     }
 }
 
@@ -311,23 +215,6 @@ fn push(mesh: &mut TetMesh, numbers: &mut Numbers) {
         let to = mesh.points[numbers.below(mesh.points.len())];
         let part = 2.0 * numbers.unit();
         (0..3).for_each(|i| mesh.points[v][i] += part * (to[i] - mesh.points[v][i]));
-    }
-}
-
-fn round(mesh: &mut TetMesh, numbers: &mut Numbers) {
-    let mut is_held = vec![false; mesh.points.len()];
-    walls(mesh).as_flattened().iter().for_each(|v| is_held[v.index()] = true);
-    let cells = [2.0, 4.0, 8.0][numbers.below(3)];
-    for (point, _) in mesh.points.iter_mut().zip(&is_held).filter(|(_, is_held)| !**is_held) {
-        point.iter_mut().for_each(|x| *x = (*x * cells).round() / cells);
-    }
-}
-
-fn renumber(mesh: &mut TetMesh, numbers: &mut Numbers) {
-    for tet in &mut mesh.tets {
-        if numbers.below(2) == 0 {
-            tet.swap(0, 1);
-        }
     }
 }
 
