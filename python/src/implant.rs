@@ -39,7 +39,7 @@ pub(crate) fn implant<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
     let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
     let inside = one_of("inside", inside, &insides)?;
     let device = |(mesh, name): (Given, String)| {
@@ -64,6 +64,6 @@ pub(crate) fn implant<'py>(
     let put = |threads: &Threads| motet::implant::implant(&host.0, &devices, &options, &rules, threads);
     let made = watched(py, threads, progress, put)?;
     let Implanted { mesh, history, report: told } = made;
-    let is_complete = told.is_complete();
-    Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))
+    let not_reached = told.not_reached();
+    Ok((parts(py, mesh)?, History(history), report(py, &told)?, not_reached))
 }

@@ -53,7 +53,7 @@ pub(crate) fn mesh<'py>(
     asked: Asked,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyAny>, bool)> {
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyAny>, Option<String>)> {
     let role = |is_membrane| if is_membrane { Role::Membrane } else { Role::Boundary };
     let meshes: Vec<(&Mesh, Role, &str)> = surfaces
         .iter()
@@ -78,9 +78,9 @@ pub(crate) fn mesh<'py>(
         Ok((repaired, options, filled))
     })?;
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
-    let is_complete = filled.is_complete(&options);
+    let not_reached = filled.not_reached(&options);
     let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
-    Ok((parts(py, filled.mesh)?, told, is_complete))
+    Ok((parts(py, filled.mesh)?, told, not_reached))
 }
 
 impl Asked {

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::arrays::{Ids, Vectors, ids, rows, vectors, vertices};
 use crate::border::Given;
 use crate::error::{OrRaise, input};
-use crate::report::report;
+use crate::report::{concluded, report};
 use crate::watch::{beside, watched};
 use crate::words::{Facets, all_facets, threads};
 
@@ -126,7 +126,8 @@ impl Mover {
         let advance = |threads: &Threads| self.mover.advance(displacement, out, threads);
         let (threads, certificate) = beside(py, &watch, threads, None, advance);
         self.threads = threads;
-        report(py, &certificate?)
+        let certificate = certificate?;
+        concluded(py, &certificate, certificate.not_reached())
     }
 }
 

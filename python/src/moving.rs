@@ -18,7 +18,7 @@ use crate::border::{Given, parts};
 use crate::error::OrRaise;
 use crate::history::History;
 use crate::refine::Criterion;
-use crate::report::report;
+use crate::report::{concluded, report};
 use crate::watch::{beside, watched};
 use crate::words::{one_of, rules, threads};
 
@@ -192,7 +192,7 @@ impl MovingMesh {
         let displacement = rows(&displacement, "displacement")?;
         let step =
             self.watched(py, progress, |moving, threads| moving.advance(time, displacement, threads))?;
-        report(py, &step)
+        concluded(py, &step, step.not_reached())
     }
 
     fn refine<'py>(

@@ -196,7 +196,7 @@ struct Told {
     steps: Vec<refine::Step>,
 }
 
-/// The new mesh with its memory, its history, what was done, and whether edges are as short as asked for.
+/// The new mesh with its memory, its history, what was done, and why edges are longer than requested.
 #[pyfunction]
 pub(crate) fn refined<'py>(
     py: Python<'py>,
@@ -204,7 +204,7 @@ pub(crate) fn refined<'py>(
     asked: Asked,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
     let mut mesh = if asked.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
     let rules = rules(&mesh, &asked.carry)?;
     let conditions =
@@ -230,9 +230,10 @@ pub(crate) fn refined<'py>(
         new.point_data.retain(|field| !sizes.contains(&field.name));
         Ok((new, done))
     })?;
+    let not_reached = done.not_reached();
     let told = report(py, &Told { complete: done.is_reached, steps: done.steps })?;
     let history = done.history.ok_or_else(|| input("no history was kept"))?;
-    Ok((parts(py, new)?, History(history), told, done.is_reached))
+    Ok((parts(py, new)?, History(history), told, not_reached))
 }
 
 /// A mesh whose tets are divided and taken back, step after step.

@@ -39,7 +39,7 @@ pub(crate) fn remesh<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, bool)> {
+) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
     let options = Options {
         min_eas,
         min_dihedral_deg,
@@ -57,6 +57,6 @@ pub(crate) fn remesh<'py>(
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
     let MeshOutcome { mesh, history, report: told, .. } = outcome;
-    let is_complete = told.is_complete();
-    Ok((parts(py, mesh)?, History(history), report(py, &told)?, is_complete))
+    let not_reached = told.not_reached();
+    Ok((parts(py, mesh)?, History(history), report(py, &told)?, not_reached))
 }

@@ -7,3 +7,14 @@ use serde::Serialize;
 pub(crate) fn report<'py>(py: Python<'py>, told: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     Ok(pythonize::pythonize(py, told)?)
 }
+
+/// A report with `not_reached`: why the requested result was not reached, None where it was.
+pub(crate) fn concluded<'py>(
+    py: Python<'py>,
+    told: &impl Serialize,
+    not_reached: Option<String>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let all = report(py, told)?;
+    all.set_item("not_reached", not_reached)?;
+    Ok(all)
+}

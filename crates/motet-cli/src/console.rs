@@ -13,6 +13,7 @@ use motet::base::printable;
 use serde::Serialize;
 
 use crate::args::Common;
+use crate::exit::Outcome;
 
 /// Where words go, and how many. A closed pipe is no failure: the words are dropped. Any other failure of standard output
 /// is kept until [`finish`](Console::finish) tells it.
@@ -21,6 +22,14 @@ pub(crate) struct Console {
     quiet: bool,
     verbose: bool,
     failed: Rc<RefCell<Option<io::Error>>>,
+}
+
+/// A report with the reason why the requested result was not reached.
+#[derive(Serialize)]
+struct Concluded<'a, R: Serialize> {
+    #[serde(flatten)]
+    report: &'a R,
+    not_reached: Option<&'a str>,
 }
 
 /// Lines as they are, all other control characters as escapes: names of files reach the terminal as names.
@@ -84,6 +93,16 @@ impl Console {
                 Err(e) => self.keep(e.into()),
             }
         }
+    }
+
+    /// The result of a verb that can reach less than was requested: one JSON object, with the reason as `not_reached`, `null` where all was reached.
+    pub(crate) fn conclude(&self, report: &impl Serialize, outcome: &Outcome) {
+        self.report(&Concluded { report, not_reached: outcome.not_reached() });
+    }
+
+    /// Why the requested result was not reached, on standard error, also where little is said: it explains the exit status.
+    pub(crate) fn not_reached(&self, why: &str) {
+        let _ = writeln!(io::stderr(), "not reached: {}; what was reached is written", lines(&why));
     }
 
     /// What the call's own description says, on standard output.

@@ -9,12 +9,27 @@ use crate::console::Console;
 use crate::words::shown;
 
 /// What a verb came to, where nothing failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// All that was asked.
+    /// All that was requested.
     Done,
-    /// Less than was asked; what was reached is written and reported.
-    NotReached,
+    /// Less than was requested, and why; what was reached is written and reported.
+    NotReached(String),
+}
+
+impl Outcome {
+    /// The outcome by the reason why the requested result was not reached: `None` where it was.
+    pub(crate) fn of(not_reached: Option<String>) -> Self {
+        not_reached.map_or(Self::Done, Self::NotReached)
+    }
+
+    /// Why the requested result was not reached.
+    pub(crate) fn not_reached(&self) -> Option<&str> {
+        match self {
+            Self::Done => None,
+            Self::NotReached(why) => Some(why),
+        }
+    }
 }
 
 const DONE: u8 = 0;
@@ -35,7 +50,10 @@ fn of_kind(kind: ErrorKind) -> u8 {
 pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> ExitCode {
     let code = match outcome {
         Ok(Outcome::Done) => DONE,
-        Ok(Outcome::NotReached) => NOT_REACHED,
+        Ok(Outcome::NotReached(why)) => {
+            console.not_reached(&why);
+            NOT_REACHED
+        }
         Err(error) => {
             let code = of_kind(error.kind());
             console.report(&json!({ "error": described(&error, code) }));

@@ -237,6 +237,12 @@ fn layers_grow_on_walls_and_are_told() {
     let prisms = read(folder.path("lumen.vtu")).unwrap();
     assert!(check(&prisms).is_empty());
     assert!(prisms.cells.counts().contains(&(CellKind::WEDGE, 4 * 2 * 24 * 24)));
+    let sum = |what: &str| -> u64 {
+        told["filled"]["bodies"].as_array().unwrap().iter().map(|body| body[what].as_u64().unwrap()).sum()
+    };
+    let n_tets = prisms.cells.tets().count() as u64;
+    let n_volume = prisms.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)).count() as u64;
+    assert_eq!((sum("tets"), sum("prisms")), (n_tets, n_volume - n_tets));
     let call = folder.motet(with(&["4,0.02,1.2"])).assert().success();
     assert!(stdout(&call).contains("as thick as asked at 600 of 600 vertices"), "{}", stdout(&call));
 }

@@ -116,7 +116,10 @@ fn edges_get_short_at_a_device() {
     let words =
         ["refine", "lumen.vtu", "-o", "short.vtu", "--near-size", "coil.vtp=0.05", "--limit-generation", "1"];
     let call = folder.motet(words).assert().code(4);
-    assert!(stdout(&call).contains("not all edges are as short"), "{}", stdout(&call));
+    assert!(stderr(&call).contains("not reached: not all edges are as short"), "{}", stderr(&call));
+    let call = folder.motet(words.iter().chain(&["--json"])).assert().code(4);
+    let told: Value = serde_json::from_str(&stdout(&call)).unwrap();
+    assert!(told["not_reached"].as_str().is_some_and(|why| why.starts_with("not all edges")), "{told}");
     assert!(folder.path("short.vtu").exists());
 }
 

@@ -154,7 +154,7 @@ fn what_cannot_be_repaired_is_told_with_place_and_reason() {
     let lines = |told: &str| told.lines().filter(|line| line.starts_with("  cell ")).count();
     assert_eq!(lines(&stdout(&call)), 10);
     assert!(stdout(&call).contains(&format!("and {} more", left.len() - 10)));
-    assert!(stderr(&call).contains("not reached"), "{}", stderr(&call));
+    assert!(stderr(&call).contains("not reached: "), "{}", stderr(&call));
     let call = folder.motet(words.into_iter().chain(["-v"])).assert().code(4);
     assert_eq!(lines(&stdout(&call)), left.len());
 }

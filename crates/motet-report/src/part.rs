@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use motet::Mesh;
-use motet::base::Point;
-use motet::mesh::BAD_EAS;
+use motet::base::{CellId, Point};
 use serde::Serialize;
 
 use crate::arrays::{self, Array};
@@ -97,7 +96,8 @@ pub(crate) struct Frame<'a> {
     pub(crate) layout: &'a Layout,
     /// Arrays with their places in the list of all.
     pub(crate) arrays: &'a [(usize, Array)],
-    pub(crate) eas: &'a [f32],
+    /// Bad tets, cells rising.
+    pub(crate) bad: &'a [CellId],
     /// The lowest corner of the box around the frame, and the step of coordinates.
     pub(crate) grid: (Point, Point),
 }
@@ -199,7 +199,7 @@ impl Frame<'_> {
     }
 
     fn is_bad(&self, solid: usize) -> bool {
-        f64::from(self.eas[self.layout.solid_cells[solid].index()]) < BAD_EAS
+        self.bad.binary_search(&self.layout.solid_cells[solid]).is_ok()
     }
 
     /// Whether a plane goes through a cell, or so near that rounded coordinates may say so.

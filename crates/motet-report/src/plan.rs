@@ -50,7 +50,7 @@ struct Reader {
     mesh: Mesh,
     layouts: Layouts,
     layout: Rc<Layout>,
-    eas: Vec<f32>,
+    by_cell: quality::ByCell,
     quality: Option<Quality>,
     notes: Vec<String>,
 }
@@ -62,17 +62,26 @@ impl Reader {
         }
         let (mesh, notes) = input.read(frame)?;
         self.layout = self.layouts.of(input, frame, &mesh)?;
-        (self.quality, self.eas) = quality::of(&mesh);
+        (self.quality, self.by_cell) = quality::of(&mesh);
         (self.mesh, self.notes, self.frame) = (mesh, notes, Some(frame));
         Ok(())
     }
 
     fn arrays(&self, shown: &mut Shown) -> Vec<(usize, Array)> {
-        arrays::of(&self.mesh, &self.eas).into_iter().map(|array| (shown.place_of(&array), array)).collect()
+        arrays::of(&self.mesh, &self.by_cell.eas)
+            .into_iter()
+            .map(|array| (shown.place_of(&array), array))
+            .collect()
     }
 
     fn frame<'a>(&'a self, arrays: &'a [(usize, Array)]) -> Frame<'a> {
-        Frame { mesh: &self.mesh, layout: &self.layout, arrays, eas: &self.eas, grid: grid(&self.mesh) }
+        Frame {
+            mesh: &self.mesh,
+            layout: &self.layout,
+            arrays,
+            bad: &self.by_cell.bad,
+            grid: grid(&self.mesh),
+        }
     }
 }
 

@@ -1,11 +1,11 @@
 //! How good the tets of one frame are, in numbers.
 
 use motet::Mesh;
-use motet::base::Point;
+use motet::base::{CellId, Point};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::tet::centroid;
 use motet::geometry::vector::is_finite;
-use motet::mesh::{BAD_EAS, CellKind};
+use motet::mesh::{BAD_EAS, OrientedTets};
 use serde::Serialize;
 
 /// Bars of EAS: one below 0, then twenty to 1.
@@ -19,7 +19,11 @@ pub(crate) struct Quality {
     pub(crate) tets: usize,
     pub(crate) eas_min: f64,
     pub(crate) eas_mean: f64,
+    /// Below [`BAD_EAS`], and not of a boundary layer.
     pub(crate) bad: usize,
+    /// Below [`BAD_EAS`], and of a boundary layer.
+    pub(crate) layers: usize,
+    /// Flat or inverted.
     pub(crate) inverted: usize,
     pub(crate) worst_cell: usize,
     pub(crate) worst_at: Point,
@@ -29,18 +33,35 @@ pub(crate) struct Quality {
     pub(crate) angle_bars: [usize; ANGLE_BARS],
 }
 
-/// The quality of the tets, of quadratic ones the corners; and EAS of each cell, NaN where it has none.
-pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, Vec<f32>) {
-    let mut by_cell = vec![f32::NAN; mesh.cells.len()];
-    let mut quality = Quality::empty();
-    let is_tet = |kind| matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA);
-    for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
-        let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
+/// The quality of the cells of a mesh.
+#[derive(Default)]
+pub(crate) struct ByCell {
+    /// EAS of each cell, NaN where it has none.
+    pub(crate) eas: Vec<f32>,
+    /// Bad tets, cells rising.
+    pub(crate) bad: Vec<CellId>,
+}
+
+/// The quality of the tets, of quadratic ones the corners: of all, and of each cell.
+pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
+    let mut eas = vec![f32::NAN; mesh.cells.len()];
+    let (mut quality, mut low) = (Quality::empty(), Vec::new());
+    let tets = OrientedTets::of(mesh);
+    for (i, cell) in tets.cells.iter().enumerate() {
+        let tet = tets.corners(i, &mesh.points);
         if tet.iter().all(|p| is_finite(*p)) {
-            by_cell[cell.index()] = quality.add(cell.index(), tet) as f32;
+            let value = quality.add(cell.index(), tet);
+            eas[cell.index()] = value as f32;
+            if value < BAD_EAS {
+                low.push(i);
+            }
         }
     }
-    ((quality.tets > 0).then(|| quality.finished()), by_cell)
+    quality.inverted = low.iter().filter(|&&i| tets.is_inverted(i, &mesh.points)).count();
+    let judged = tets.judge(&mesh.points, low, BAD_EAS);
+    (quality.bad, quality.layers) = (judged.bad.len(), judged.layers.len());
+    let bad = judged.bad.into_iter().map(|i| tets.cells[i]).collect();
+    ((quality.tets > 0).then(|| quality.finished()), ByCell { eas, bad })
 }
 
 impl Quality {
@@ -50,6 +71,7 @@ impl Quality {
             eas_min: f64::INFINITY,
             eas_mean: 0.0,
             bad: 0,
+            layers: 0,
             inverted: 0,
             worst_cell: 0,
             worst_at: [0.0; 3],
@@ -69,8 +91,6 @@ impl Quality {
         }
         self.tets += 1;
         self.eas_mean += eas;
-        self.bad += usize::from(eas < BAD_EAS);
-        self.inverted += usize::from(eas < 0.0);
         self.angle_min = self.angle_min.min(low);
         self.angle_max = self.angle_max.max(high);
         self.eas_bars[if eas < 0.0 { 0 } else { 1 + ((eas * 20.0) as usize).min(EAS_BARS - 2) }] += 1;
@@ -117,6 +137,6 @@ mod tests {
         let mut mesh = ball(2, 1);
         mesh.points.iter_mut().for_each(|p| p[0] = f64::NAN);
         let (quality, by_cell) = of(&mesh);
-        assert!(quality.is_none() && by_cell.iter().all(|q| q.is_nan()));
+        assert!(quality.is_none() && by_cell.eas.iter().all(|q| q.is_nan()));
     }
 }

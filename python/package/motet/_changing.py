@@ -85,13 +85,18 @@ class Changed:
     history: History | None
     """Where everything came from; None for a mesh that was made of surfaces."""
     report: Report
-    complete: bool
-    """Whether all that was asked is reached; what is left is told in the report."""
+    not_reached: str | None = None
+    """Why the requested result was not reached; None where it was. The report has the details."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether the requested result was reached."""
+        return self.not_reached is None
 
 
 def _changed(native: tuple) -> Changed:
-    parts, history, told, complete = native
-    return Changed(Mesh._of(parts), History(history), report(told), complete)
+    parts, history, told, not_reached = native
+    return Changed(Mesh._of(parts), History(history), report(told), not_reached)
 
 
 def remesh(
@@ -302,5 +307,5 @@ def mesh(
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
         keep_prisms=keep_prisms, repair=repair, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
-    parts, told, complete = _motet.mesh(given, asked, threads, progress)
-    return Changed(Mesh._of(parts), None, report(told), complete)
+    parts, told, not_reached = _motet.mesh(given, asked, threads, progress)
+    return Changed(Mesh._of(parts), None, report(told), not_reached)

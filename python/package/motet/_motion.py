@@ -250,6 +250,11 @@ class Moved:
         """Whether the mesh is where it was asked to be."""
         return self.certificate.complete
 
+    @property
+    def not_reached(self) -> str | None:
+        """Why the mesh is not where it was requested to be; None where it is."""
+        return self.certificate.not_reached
+
 
 Turn = Union[tuple[ArrayLike, float], tuple[ArrayLike, float, ArrayLike]]
 

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use motet::base::Point;
 use motet::geometry::quality::{dihedral, eas, edge_ratio, mean_ratio, volume};
 use motet::io::{self, WriteOptions};
-use motet::mesh::Summary;
+use motet::mesh::{OrientedTets, Summary};
 use motet::{Error, Mesh};
 use serde::Serialize;
 use serde_json::json;
@@ -23,7 +24,8 @@ use crate::words::{self, shown};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
-an inverted one, bad below 0.2. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
+an inverted one, bad below 0.2. Thin tets of boundary layers are not bad. Tets are oriented by their
+neighbours, whichever way the file numbers them. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
 Lengths are in units of the mesh, angles in degrees.
 
 Examples:
@@ -64,13 +66,15 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> 
 
 /// The mesh with an array for each measure.
 fn measured(mut mesh: Mesh) -> Mesh {
+    let tets = OrientedTets::of_linear(&mesh);
+    let field = |name: &str, measure: &dyn Fn([Point; 4]) -> f64| tets.field(&mesh, name, measure);
     let fields = [
-        mesh.tet_field("eas", eas),
-        mesh.tet_field("mean_ratio", mean_ratio),
-        mesh.tet_field("min_dihedral_deg", |tet| dihedral::min(tet).to_degrees()),
-        mesh.tet_field("max_dihedral_deg", |tet| dihedral::max(tet).to_degrees()),
-        mesh.tet_field("edge_ratio", edge_ratio),
-        mesh.tet_field("volume", volume),
+        field("eas", &eas),
+        field("mean_ratio", &mean_ratio),
+        field("min_dihedral_deg", &|tet| dihedral::min(tet).to_degrees()),
+        field("max_dihedral_deg", &|tet| dihedral::max(tet).to_degrees()),
+        field("edge_ratio", &edge_ratio),
+        field("volume", &volume),
     ];
     fields.into_iter().for_each(|field| mesh.set_cell_field(field));
     mesh
@@ -203,11 +207,24 @@ impl Report<'_> {
         ]);
         console.say(format_args!("\n{table}"));
         console.say(format_args!(
-            "  {} bad (EAS < 0.2), {} inverted; worst: cell {} at ({x}, {y}, {z})\n",
+            "  {} bad (EAS < 0.2), {} inverted or flat; worst: cell {} at ({x}, {y}, {z})",
             count(eas.bad),
             count(self.summary.inverted),
             eas.worst_cell
         ));
+        if eas.layers > 0 {
+            console.say(format_args!(
+                "  {} thin tets of boundary layers (EAS < 0.2), not counted as bad",
+                count(eas.layers)
+            ));
+        }
+        if self.summary.turned > 0 {
+            console.say(format_args!(
+                "  {} tets are numbered the other way round; each is judged as its neighbours orient it",
+                count(self.summary.turned)
+            ));
+        }
+        console.say("");
         console.say(histogram(&eas.histogram));
     }
 

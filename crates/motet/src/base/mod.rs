@@ -7,6 +7,7 @@ mod ids;
 
 mod lanewise;
 mod mixed;
+mod reasons;
 mod sets;
 mod threads;
 mod watch;
@@ -17,6 +18,7 @@ pub use ids::{CellId, Id, TetId, VertexId, rising_list};
 pub(crate) use ids::{rising, runs_alike};
 pub(crate) use lanewise::lanewise;
 pub(crate) use mixed::mixed;
+pub use reasons::reasons;
 pub(crate) use sets::Sets;
 pub use threads::Threads;
 pub use watch::{Progress, Watch};

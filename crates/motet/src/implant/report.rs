@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::base::reasons;
 use crate::mesh::check::Defect;
 use crate::meshing::Body;
 use crate::remesh::{self, Left};
@@ -129,11 +130,31 @@ impl Report {
 
     /// Whether it is valid, every triangle of the devices is a facet, new surfaces are near enough, and no bad tet is left but those of the host and those that walls force.
     pub fn is_complete(&self) -> bool {
-        let is_kept = |device: &DeviceReport| {
+        self.not_reached().is_none()
+    }
+
+    /// Why the requested result was not reached; `None` where it was.
+    pub fn not_reached(&self) -> Option<String> {
+        let is_divided = |device: &&DeviceReport| {
             let n_at = device.triangles_at_walls + device.triangles_outside;
-            device.triangles_kept + n_at == device.triangles && device.fit.is_none_or(|fit| fit.is_reached())
+            device.triangles_kept + n_at != device.triangles
         };
-        self.is_valid() && self.devices.iter().all(is_kept) && self.n_unforced() == 0
+        let is_far = |device: &&DeviceReport| device.fit.is_some_and(|fit| !fit.is_reached());
+        let of_devices = |what: &str, is_so: &dyn Fn(&&DeviceReport) -> bool| {
+            let names: Vec<&str> =
+                self.devices.iter().filter(is_so).map(|device| device.name.as_str()).collect();
+            (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
+        };
+        let n_inverted = self.improved.after.inverted;
+        let n_unforced = self.n_unforced();
+        reasons([
+            (!crate::mesh::check::is_conforming(&self.defects))
+                .then(|| "cells do not meet facet to facet: see the defects".to_owned()),
+            (n_inverted > 0).then(|| format!("{n_inverted} tets are inverted or flat")),
+            of_devices("triangles of devices are divided", &is_divided),
+            of_devices("surfaces are farther from their devices than the tolerance", &is_far),
+            (n_unforced > 0).then(|| format!("{n_unforced} bad tets are left that no wall forces")),
+        ])
     }
 
     /// Bad tets among those that came where no angle of a wall forces one.

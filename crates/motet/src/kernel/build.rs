@@ -9,12 +9,12 @@ use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
-use crate::kernel::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::TetMesh;
+use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 
 impl Complex {
-    /// The complex of a mesh. Tets are turned the way most are; see `orientation`.
+    /// The complex of a mesh. Tets are turned the way most are; see [`crate::mesh::OrientedTets`].
     ///
     /// # Errors
     /// When an array does not fit ([`TetMesh::validate`]), when more than two tets share a facet, a triangle is no facet of a
@@ -31,12 +31,15 @@ impl Complex {
         let mut rough = rough_eas(points, &tets);
         let (mut n_turned, mut folded) = (0, Vec::new());
         if joined.is_one_sided || rough.iter().any(|&q| q <= 0.0) {
-            let is_turned = orient(&mut tets, &joined.across(), points)?;
+            let across = joined.across();
+            let is_turned =
+                orient(&mut tets, behind(&across), points).map_err(|tet| one_sided(tet.index()))?;
             n_turned = is_turned.iter().filter(|turned| **turned).count();
             if n_turned > 0 {
                 joined = Joined::of(&tets, regions, triangles, patches)?;
                 rough = rough_eas(points, &tets);
-                folded = orientation::folded(&tets, points, &is_turned, &joined.across());
+                let across = joined.across();
+                folded = orientation::folded(&tets, points, &is_turned, behind(&across));
             }
         }
         let n_tets = tets.len();
@@ -72,7 +75,7 @@ impl Complex {
             fixed_edges,
             lines,
             is_fixed_wall: Vec::new(),
-            spared: Vec::new(),
+            spared_below: f64::NEG_INFINITY,
             folded,
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,
@@ -180,6 +183,19 @@ impl Joined {
         };
         (0..self.links.len()).map(|t| [0, 1, 2, 3].map(|i| across(t, i))).collect()
     }
+}
+
+/// What lies behind facets, as places.
+fn behind(across: &[[HalfFacet; 4]]) -> impl Fn(usize, usize) -> Option<(usize, usize)> {
+    move |t, i| {
+        Some(across[t][i]).filter(|half| !half.is_none()).map(|half| (half.tet().index(), half.facet()))
+    }
+}
+
+fn one_sided(tet: usize) -> Error {
+    Error::input("the tets around it cannot all be turned the same way")
+        .at(format!("tet {tet}"))
+        .remedy("the mesh is one-sided: mesh it again")
 }
 
 impl Complex {

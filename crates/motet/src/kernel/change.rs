@@ -1,7 +1,9 @@
 //! What an operation proposes: these tets go, those come, and one vertex comes, moves or goes.
 
 use crate::base::{Point, TetId, VertexId};
+use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold};
+use crate::kernel::spare::sorted;
 
 /// A tet to come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +12,7 @@ pub struct Fill {
     pub vertices: [VertexId; 4],
     /// Its region.
     pub region: i32,
-    /// Its quality, as [`Complex::measure`] gives it.
+    /// Its quality, as [`Change::judge`] gives it.
     pub quality: f64,
 }
 
@@ -81,8 +83,18 @@ impl Change {
 
     /// Adds a tet to the fill, measured at where its vertices are to be.
     pub fn push(&mut self, complex: &Complex, vertices: [VertexId; 4], region: i32) {
-        let quality = complex.measure(self.corners(complex, vertices));
+        let quality = self.judge(complex, vertices, self.corners(complex, vertices));
         self.fill.push(Fill { vertices, region, quality });
+    }
+
+    /// The quality of a tet with these vertices at these `corners` after the change, given the cavity and the new walls; see [`Complex::judge`].
+    #[inline]
+    pub fn judge(&self, complex: &Complex, vertices: [VertexId; 4], corners: [Point; 4]) -> f64 {
+        complex.judge(corners, |i| {
+            let facet = sorted(FACETS[i].map(|corner| vertices[corner]));
+            let is_new = self.walls.iter().any(|wall| sorted(wall.vertices) == facet);
+            is_new || complex.is_wall_of(&self.cavity, facet)
+        })
     }
 
     /// The same; whether the tet is better than `bar`.

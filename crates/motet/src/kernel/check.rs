@@ -191,50 +191,10 @@ impl Complex {
         Ok(())
     }
 
-    /// Edges and facets that come must not be there already. Where all tets are positive none can be: it would lie within the cavity, with other tets.
-    fn check_news(&self, change: &Change) -> Result<(), Reject> {
-        let is_in_cavity = |vertices: &[VertexId]| {
-            change.cavity.iter().any(|&t| vertices.iter().all(|v| self.vertices(t).contains(v)))
-        };
-        for tet in &change.fill {
-            let edges = EDGES.map(|edge| edge.map(|i| tet.vertices[i]));
-            for edge in edges.into_iter().filter(|edge| !is_in_cavity(edge)) {
-                if self.is_outside(&edge, change) {
-                    return Err(Reject::Exists(edge));
-                }
-            }
-            for facet in FACETS.map(|facet| facet.map(|i| tet.vertices[i])) {
-                if !is_in_cavity(&facet) && self.is_outside(&facet, change) {
-                    return Err(Reject::Exists([facet[0], facet[1]]));
                 }
             }
         }
         Ok(())
-    }
-
-    /// Whether a tet that is not in the cavity has all of some vertices, or may have: where the tets of the first do not all hang together by facets.
-    fn is_outside(&self, vertices: &[VertexId], change: &Change) -> bool {
-        // A vertex to come is not in the lists yet, or has no tet.
-        let is_there = |v: &VertexId| v.index() < self.points.len() && self.is_used(*v);
-        if !vertices.iter().all(is_there) {
-            return false;
-        }
-        let mut found = vec![self.tet_of(vertices[0])];
-        let mut i = 0;
-        while i < found.len() {
-            let tet = found[i];
-            i += 1;
-            if vertices.iter().all(|v| self.vertices(tet).contains(v)) && !change.cavity.contains(&tet) {
-                return true;
-            }
-            let place = self.place(tet, vertices[0]);
-            for next in (0..4).filter(|&facet| facet != place).map(|facet| self.across(tet, facet)) {
-                if !next.is_none() && !found.contains(&next.tet()) {
-                    found.push(next.tet());
-                }
-            }
-        }
-        found.len() != self.vertex_to_n_tets[vertices[0].index()] as usize
     }
 
     /// Joins every facet of the fill to what lies behind it.

@@ -58,8 +58,8 @@ pub struct Complex {
     pub(super) lines: Lines,
     /// Walls that no change may remove; empty where there is none.
     pub(super) is_fixed_wall: Vec<bool>,
-    /// Qualities that count as good, in rising order; see [`Complex::spare`].
-    pub(super) spared: Vec<f64>,
+    /// New tets that walls force count as good below this quality; see [`Complex::spare`].
+    pub(super) spared_below: f64,
     /// Tets of the first mesh that are folded over others, in rising order.
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
@@ -75,11 +75,6 @@ pub struct Complex {
 
 /// The quality of a tet of the first mesh that nobody has measured.
 pub(super) const UNMEASURED: f64 = f64::NAN;
-
-/// The quality of tets that are spared.
-const SPARED: f64 = 1.0;
-/// Qualities that differ by no more than this part count as the same.
-const SAME: f64 = 1e-9;
 
 /// No tet.
 pub(crate) const NO_TET: TetId = TetId(u32::MAX);
@@ -161,7 +156,7 @@ impl Complex {
         self.regions[tet.index()]
     }
 
-    /// The quality of a tet: see [`Self::measure`].
+    /// The quality of a tet: see [`Self::measure`], and [`Self::spare`] for those that count as good.
     #[inline]
     pub fn quality(&self, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];
@@ -193,29 +188,7 @@ impl Complex {
     /// The measure that everything here is judged by: EAS.
     #[inline]
     pub fn measure(&self, tet: [Point; 4]) -> f64 {
-        let quality = eas(tet);
-        if self.is_spared(quality) { SPARED } else { quality }
-    }
-
-    /// From now on tets count as good whose quality is one of these, in rising order, up to rounding. For those that walls force upon a tet between them:
-    /// nothing raises it, and as the worst of every cavity round it it would forbid whatever helps the others. None: no tet is spared any more.
-    ///
-    /// Cannot be taken back by [`Self::undo`].
-    pub fn spare(&mut self, qualities: Vec<f64>) {
-        self.spared = qualities;
-        debug_assert!(self.spared.is_sorted());
-        self.qualities.fill(Cell::new(UNMEASURED));
-        self.forget();
-    }
-
-    #[inline]
-    fn is_spared(&self, quality: f64) -> bool {
-        if self.spared.is_empty() {
-            return false;
-        }
-        // There may be ten thousands of them.
-        let from = self.spared.partition_point(|spared| *spared < quality - SAME * quality.abs());
-        self.spared.get(from).is_some_and(|spared| *spared <= quality + SAME * quality.abs())
+        eas(tet)
     }
 
     /// Whether a tet is one of the first mesh, with its vertices where they were.

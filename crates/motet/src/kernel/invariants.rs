@@ -36,7 +36,7 @@ impl Complex {
                 return Err(format!("tet {t} has the vertices {tet:?}"));
             }
             let measured = self.measure(self.corners(t));
-            if measured.to_bits() != self.quality(t).to_bits() {
+            if measured.to_bits() != self.quality(t).to_bits() && !self.is_spared(t) {
                 return Err(format!("tet {t} has the quality {measured}, not {}", self.quality(t)));
             }
         }

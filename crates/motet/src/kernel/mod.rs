@@ -19,8 +19,9 @@ mod invariants;
 mod journal;
 mod lines;
 mod link;
-mod orientation;
+mod news;
 mod peel;
+mod spare;
 mod star;
 
 pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
@@ -30,4 +31,5 @@ pub use extract::{Extract, NEW};
 pub use journal::Mark;
 pub use lines::Line;
 pub use link::{Behind, HalfFacet, Wall, WallId};
+pub use spare::is_reached;
 pub use star::{Shell, Star};

@@ -2,17 +2,13 @@
 
 use crate::base::Point;
 use crate::geometry::tet::volume;
-use crate::mesh::{Field, Mesh};
+use crate::mesh::{Field, Mesh, OrientedTets};
 
 impl Mesh {
-    /// The cell array `name` with `measure` of each tet, such as
+    /// The cell array `name` with `measure` of each linear tet as its neighbours orient it, such as
     /// [`eas`](fn@crate::geometry::quality::eas); cells of other kinds get no number (NaN).
     pub fn tet_field(&self, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
-        let mut values = vec![f64::NAN; self.cells.len()];
-        for (cell, tet) in self.cells.tets() {
-            values[cell.index()] = measure(tet.map(|v| self.points[v.index()]));
-        }
-        Field::scalars(name, values)
+        OrientedTets::of_linear(self).field(self, name, measure)
     }
 
     /// Whether most tets are numbered the other way round, so that their volumes are negative: some writers do so.

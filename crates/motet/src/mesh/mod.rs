@@ -13,9 +13,12 @@ pub mod facets;
 mod field;
 pub mod history;
 mod labels;
+mod layers;
 mod lone;
 pub mod marks;
 mod measure;
+pub(crate) mod orientation;
+mod oriented_tets;
 pub mod shapes;
 mod summary;
 mod surface;
@@ -34,6 +37,7 @@ pub use edge_lengths::mean_edge_lengths;
 pub use exchange::{Mesh, bounds, largest_extent};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels, unused_name};
+pub use oriented_tets::{Judged, OrientedTets, is_inverted};
 pub use summary::{
     BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
     Summary,

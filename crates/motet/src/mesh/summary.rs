@@ -9,7 +9,7 @@ use crate::geometry::vector::in_range;
 use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
-use crate::mesh::{Boundary, CellKind, Labels, Mesh, cell_volume, triangulate};
+use crate::mesh::{Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, triangulate};
 
 /// A tet below this EAS is bad.
 pub const BAD_EAS: f64 = 0.2;
@@ -23,7 +23,7 @@ pub struct Summary {
     pub cells: BTreeMap<String, usize>,
     /// Corners of the box around all finite points.
     pub bounds: Option<[Point; 2]>,
-    /// The sum of the signed volumes of all volume cells, their edges taken as straight.
+    /// The sum of the signed volumes of all volume cells, tets oriented by their neighbours, edges taken as straight.
     pub volume: f64,
     /// Volume cells by label; empty where the mesh has no labels for them.
     pub regions: BTreeMap<String, RegionSummary>,
@@ -35,8 +35,10 @@ pub struct Summary {
     pub boundary: Option<BoundarySummary>,
     /// Shape of the tets (of quadratic ones the corners); `None` where there is no tet.
     pub quality: Option<QualitySummary>,
-    /// How many volume cells have negative volume.
+    /// How many volume cells are inverted or flat: their volume, of tets as oriented by their neighbours, is not positive.
     pub inverted: usize,
+    /// How many tets the file numbers the other way round than their orientation; inverted or not, they are judged as oriented.
+    pub turned: usize,
     /// Whether cells meet facet to facet.
     pub conforming: bool,
     /// Every defect: see [`crate::mesh::check`].
@@ -94,8 +96,10 @@ pub struct EasSummary {
     pub min: f64,
     /// The mean.
     pub mean: f64,
-    /// How many are below [`BAD_EAS`].
+    /// How many are bad: below [`BAD_EAS`], and not of a boundary layer.
     pub bad: usize,
+    /// How many are below [`BAD_EAS`] and of a boundary layer: thin on purpose.
+    pub layers: usize,
     /// The cell that has the worst.
     pub worst_cell: CellId,
     /// The centre of that cell.
@@ -126,8 +130,9 @@ impl Summary {
     /// Looks at everything: about two seconds for a million tets.
     pub fn of(mesh: &Mesh) -> Self {
         let boundary = Boundary::of(&mesh.cells);
-        let defects = check_with(mesh, &boundary);
-        let volumes = finite_volumes(mesh);
+        let tets = OrientedTets::of(mesh);
+        let defects = check_with(mesh, &boundary, &tets);
+        let volumes = finite_volumes(mesh, &tets);
         let count = |kind| defects.iter().find(|d| d.kind == kind).map_or(0, |d| d.count);
         let surface_cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
         let has_volume = mesh.cells.dim() == Some(3);
@@ -142,18 +147,23 @@ impl Summary {
             surface: surface_cells().next().map(|_| patch(mesh, &surface_cells().collect::<Vec<_>>())),
             boundary: has_volume
                 .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
-            quality: tet_quality(mesh),
-            inverted: count(DefectKind::InvertedCell),
+            quality: tet_quality(mesh, &tets),
+            inverted: count(DefectKind::InvertedCell) + count(DefectKind::FlatCell),
+            turned: tets.turned.len(),
             conforming: is_conforming(&defects),
             defects,
         }
     }
 }
 
-/// The volume of each cell, 0 where a point is not finite.
-fn finite_volumes(mesh: &Mesh) -> Vec<f64> {
+/// The volume of each cell, of tets as oriented, 0 where a point is not finite.
+fn finite_volumes(mesh: &Mesh, tets: &OrientedTets) -> Vec<f64> {
     let facets = Facets::of(&mesh.cells);
-    let volume = |i| cell_volume(&facets, CellId::new(i), &mesh.points);
+    let are_turned = tets.are_turned(mesh.cells.len());
+    let volume = |i| {
+        let volume = cell_volume(&facets, CellId::new(i), &mesh.points);
+        if are_turned[i] { -volume } else { volume }
+    };
     (0..mesh.cells.len()).map(|i| Some(volume(i)).filter(|v| v.is_finite()).unwrap_or(0.0)).collect()
 }
 
@@ -206,18 +216,20 @@ fn patch(mesh: &Mesh, cells: &[SurfaceCell]) -> PatchSummary {
 }
 
 /// Shape of the tets whose points are finite.
-fn tet_quality(mesh: &Mesh) -> Option<QualitySummary> {
-    let is_tet = |kind| matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA);
+fn tet_quality(mesh: &Mesh, tets: &OrientedTets) -> Option<QualitySummary> {
     let mut total: Option<QualitySummary> = None;
-    let mut n = 0usize;
-    for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
-        let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
+    let (mut n, mut low) = (0usize, Vec::new());
+    for (i, &cell) in tets.cells.iter().enumerate() {
+        let tet = tets.corners(i, &mesh.points);
         if tet.into_iter().all(in_range) {
             n += 1;
-            total.get_or_insert_with(QualitySummary::empty).add(cell, tet);
+            if total.get_or_insert_with(QualitySummary::empty).add(cell, tet) < BAD_EAS {
+                low.push(i);
+            }
         }
     }
-    total.map(|quality| quality.finished(n))
+    let judged = tets.judge(&mesh.points, low, BAD_EAS);
+    total.map(|quality| quality.finished(n, &judged))
 }
 
 impl QualitySummary {
@@ -226,6 +238,7 @@ impl QualitySummary {
             min: f64::INFINITY,
             mean: 0.0,
             bad: 0,
+            layers: 0,
             worst_cell: CellId(0),
             worst_at: [0.0; 3],
             histogram: [0; 11],
@@ -234,8 +247,8 @@ impl QualitySummary {
         Self { eas, dihedral_deg, mean_ratio: MinMean { min: f64::INFINITY, mean: 0.0 } }
     }
 
-    /// Means are sums until [`Self::finished`], angles radians.
-    fn add(&mut self, cell: CellId, tet: [Point; 4]) {
+    /// Adds a tet, and answers its EAS. Means are sums until [`Self::finished`], angles radians.
+    fn add(&mut self, cell: CellId, tet: [Point; 4]) -> f64 {
         let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
         if eas < self.eas.min {
             self.eas.min = eas;
@@ -243,16 +256,17 @@ impl QualitySummary {
             self.eas.worst_at = crate::geometry::tet::centroid(tet);
         }
         self.eas.mean += eas;
-        self.eas.bad += usize::from(eas < BAD_EAS);
         self.eas.histogram[if eas < 0.0 { 0 } else { 1 + ((eas * 10.0) as usize).min(9) }] += 1;
         let [low, high] = quality::dihedral::min_max(tet);
         self.dihedral_deg.min = self.dihedral_deg.min.min(low);
         self.dihedral_deg.max = self.dihedral_deg.max.max(high);
         self.mean_ratio.min = self.mean_ratio.min.min(mean_ratio);
         self.mean_ratio.mean += mean_ratio;
+        eas
     }
 
-    fn finished(mut self, n: usize) -> Self {
+    fn finished(mut self, n: usize, judged: &Judged) -> Self {
+        (self.eas.bad, self.eas.layers) = (judged.bad.len(), judged.layers.len());
         self.eas.mean /= n as f64;
         self.mean_ratio.mean /= n as f64;
         self.dihedral_deg =

@@ -31,6 +31,8 @@ pub struct Body {
     pub name: Option<String>,
     /// How many tets it has.
     pub tets: usize,
+    /// How many prisms and pyramids of layers it has beside them, where these are not divided into tets.
+    pub prisms: usize,
     /// Its volume.
     pub volume: f64,
 }
@@ -43,12 +45,29 @@ pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
         let (CellKind::TETRA, &[a, b, c, d]) = (kind, vertices) else { continue };
         let region = regions.ids[cell.index()];
         let name = || regions.names.get(&region).cloned();
-        let body =
-            bodies.entry(region).or_insert_with(|| Body { region, name: name(), tets: 0, volume: 0.0 });
+        let body = bodies.entry(region).or_insert_with(|| Body {
+            region,
+            name: name(),
+            tets: 0,
+            prisms: 0,
+            volume: 0.0,
+        });
         body.tets += 1;
         body.volume += volume([a, b, c, d].map(|v| mesh.points[v.index()]));
     }
     bodies.into_values().collect()
+}
+
+/// Puts the tets and prisms that a mesh of these bodies has into their counts; bodies stand in the order of their regions.
+pub(super) fn count_cells(bodies: &mut [Body], mesh: &Mesh) {
+    let Some(regions) = mesh.regions() else { return };
+    bodies.iter_mut().for_each(|body| (body.tets, body.prisms) = (0, 0));
+    for (cell, kind, _) in mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
+        let region = regions.ids[cell.index()];
+        let Ok(place) = bodies.binary_search_by_key(&region, |body| body.region) else { continue };
+        let body = &mut bodies[place];
+        *(if kind == CellKind::TETRA { &mut body.tets } else { &mut body.prisms }) += 1;
+    }
 }
 
 /// The side of a triangle: a body, or `None` outside of all.

@@ -12,7 +12,7 @@ use super::layers::{self, Grown, Layers};
 use super::size_field::SizeField;
 use super::sizes::Sizes;
 use super::surfaces::Surfaces;
-use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Threads, VertexId, reasons};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
@@ -64,11 +64,29 @@ pub struct Filled {
 impl Filled {
     /// Whether all that `options` ask for is reached: triangles are whole, tets have a volume and none is left bad, layers found room.
     pub fn is_complete(&self, options: &Options) -> bool {
-        let are_whole = options.edge_points == EdgePoints::Stay || self.report.points_on_edges == 0;
-        are_whole
-            && self.report.not_positive == 0
-            && self.improved.as_ref().is_none_or(remesh::Report::is_complete)
-            && self.layers.as_ref().is_none_or(|layers| layers.prisms > 0)
+        self.not_reached(options).is_none()
+    }
+
+    /// Why not all that `options` ask for was reached; `None` where it was.
+    pub fn not_reached(&self, options: &Options) -> Option<String> {
+        let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
+            self.report;
+        let in_pieces = (options.edge_points != EdgePoints::Stay && points_on_edges > 0).then(|| {
+            format!(
+                "{} triangles of the surfaces are divided: {points_on_edges} points on them found no room inside",
+                triangles.saturating_sub(triangles_kept + triangles_outside)
+            )
+        });
+        let flat = (not_positive > 0).then(|| {
+            format!("{not_positive} tets have no positive volume in the digits of their coordinates")
+        });
+        let without_layers = self.layers.as_ref().is_some_and(|layers| layers.prisms == 0);
+        reasons([
+            in_pieces,
+            flat,
+            self.improved.as_ref().and_then(remesh::Report::not_reached),
+            without_layers.then(|| "no layer found room".to_owned()),
+        ])
     }
 }
 
@@ -162,8 +180,9 @@ fn fill_with_layers(
     let (mut mesh, improved) = improve(glued, options, threads)?;
     let split = layers::split(mesh.clone());
     (report.bodies, report.not_positive) = (bodies::told(&split), not_positive(&split));
-    if !layers.keep_prisms {
-        mesh = split;
+    match layers.keep_prisms {
+        true => bodies::count_cells(&mut report.bodies, &mesh),
+        false => mesh = split,
     }
     report.triangles = grown.n_triangles();
     [report.triangles_kept, report.triangles_outside] =

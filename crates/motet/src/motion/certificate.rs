@@ -45,8 +45,10 @@ pub struct Certificate {
 /// How good cells are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
-    /// Tets with an EAS below [`BAD_EAS`].
+    /// Tets that are bad: with an EAS below [`BAD_EAS`], and not of a boundary layer (see [`crate::mesh::OrientedTets`]).
     pub bad: usize,
+    /// Tets with an EAS below [`BAD_EAS`] that belong to a boundary layer.
+    pub layers: usize,
     /// The worst equi-angle quality of a tet.
     pub worst_eas: Option<Worst>,
     /// The worst mean ratio of a tet.
@@ -82,6 +84,21 @@ pub struct Seconds {
     pub total: f64,
 }
 
+impl Certificate {
+    /// Why the mesh is not where it was requested to be; `None` where it is.
+    pub fn not_reached(&self) -> Option<String> {
+        let cells: Vec<String> = self.blocked_by.iter().map(ToString::to_string).collect();
+        (!self.complete).then(|| {
+            format!(
+                "the motion stopped at {:.1} % of its way after {} sub-steps, where cells would turn over (the first: {})",
+                100.0 * self.fraction,
+                self.substeps,
+                cells.join(", ")
+            )
+        })
+    }
+}
+
 const CHUNK: usize = 1 << 13;
 
 /// Measures every cell of a mesh whose vertices are at `points`.
@@ -89,20 +106,28 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     let n = check.corners.len();
     let chunk = |start: usize| measure_some(check, points, start..(start + CHUNK).min(n));
     let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
-    let parts: Vec<Quality> = match threads.pool() {
+    let parts: Vec<(Quality, Vec<CellId>)> = match threads.pool() {
         None => starts.into_iter().map(chunk).collect(),
         Some(pool) => pool.install(|| starts.into_par_iter().map(chunk).collect()),
     };
-    parts.into_iter().fold(Quality::default(), |all, part| Quality {
-        bad: all.bad + part.bad,
-        worst_eas: worse(all.worst_eas, part.worst_eas),
-        worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
-        worst_scaled_jacobian: worse(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
-    })
+    let mut low = Vec::new();
+    let all = parts.into_iter().fold(Quality::default(), |all, (part, part_low)| {
+        low.extend(part_low);
+        Quality {
+            worst_eas: worse(all.worst_eas, part.worst_eas),
+            worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
+            worst_scaled_jacobian: worse(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
+            ..all
+        }
+    });
+    let place = |cell: &CellId| check.tets.cells.binary_search(cell).ok();
+    let judged = check.tets.judge(points, low.iter().filter_map(place).collect(), BAD_EAS);
+    Quality { bad: judged.bad.len(), layers: judged.layers.len(), ..all }
 }
 
-fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Quality {
-    let mut quality = Quality::default();
+/// The quality of some corners but for the counts, and the tets below [`BAD_EAS`] among them.
+fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> (Quality, Vec<CellId>) {
+    let (mut quality, mut low) = (Quality::default(), Vec::new());
     for i in corners {
         let tet: [VertexId; 4] = check.corners.tets[i];
         let cell = check.corners.cells[i];
@@ -111,7 +136,9 @@ fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>
             |value| Some(Worst { value, cell, place: scale(tet.into_iter().fold([0.0; 3], add), 0.25) });
         if check.corners.is_cell[i] {
             let value = eas(tet);
-            quality.bad += usize::from(value < BAD_EAS);
+            if value < BAD_EAS {
+                low.push(cell);
+            }
             quality.worst_eas = worse(quality.worst_eas, as_worst(value));
             quality.worst_mean_ratio = worse(quality.worst_mean_ratio, as_worst(mean_ratio(tet)));
         } else {
@@ -119,7 +146,7 @@ fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>
                 worse(quality.worst_scaled_jacobian, as_worst(scaled_jacobian(tet)));
         }
     }
-    quality
+    (quality, low)
 }
 
 /// The one with the smaller value; of equal ones the first.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::volume_6;
-use crate::mesh::Cells;
+use crate::mesh::{Mesh, OrientedTets};
 use crate::motion::corners::Corners;
 
 /// The corners of the cells, and those that were inverted or flat from the start.
@@ -15,6 +15,8 @@ use crate::motion::corners::Corners;
 #[derive(Debug, Default)]
 pub(crate) struct Check {
     pub(crate) corners: Corners,
+    /// The linear tets, which tell the layers among those of low quality.
+    pub(crate) tets: OrientedTets,
     /// Corners, in rising order, that were not upright in the reference.
     before: Vec<u32>,
 }
@@ -23,11 +25,13 @@ pub(crate) struct Check {
 const CHUNK: usize = 1 << 14;
 
 impl Check {
-    pub(crate) fn new(cells: &Cells, points: &[Point], threads: &Threads) -> Self {
-        let mut corners = Corners::of(cells);
+    pub(crate) fn new(mesh: &Mesh, threads: &Threads) -> Self {
+        let (cells, points) = (&mesh.cells, &mesh.points);
+        let tets = OrientedTets::of_linear(mesh);
+        let mut corners = Corners::of(cells, &tets);
         let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
         let before = corners.stand_up(cells, &signs);
-        Self { corners, before }
+        Self { corners, tets, before }
     }
 
     /// Corners, in rising order, that are inverted or flat.

@@ -8,7 +8,7 @@
 
 use crate::base::{CellId, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
-use crate::mesh::{CellKind, Cells};
+use crate::mesh::{CellKind, Cells, OrientedTets};
 
 /// The corner tets of all volume cells, in the order of the cells.
 #[derive(Clone, Debug, Default)]
@@ -22,13 +22,14 @@ pub(crate) struct Corners {
 }
 
 impl Corners {
-    /// The corners of the volume cells of `cells`, as they are numbered: [`Self::stand_up`] comes next.
-    pub(crate) fn of(cells: &Cells) -> Self {
+    /// The corners of the volume cells of `cells`: of linear `tets` as they are oriented, of others as they are numbered. [`Self::stand_up`] comes next.
+    pub(crate) fn of(cells: &Cells, tets: &OrientedTets) -> Self {
+        let mut oriented = tets.tets.iter();
         let mut corners = Self::with_capacity(cells.len());
         let facets = Facets::of(cells);
-        for (cell, kind, vertices) in cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
+        for (cell, kind, _) in cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3)) {
             if kind == CellKind::TETRA {
-                corners.tets.push([vertices[0], vertices[1], vertices[2], vertices[3]]);
+                corners.tets.extend(oriented.next());
             } else {
                 three_valent(&facets, cell, &mut corners.tets);
             }
@@ -41,8 +42,7 @@ impl Corners {
     /// Turns corners so that positive means upright, given the sign of the volume of each; answers those
     /// that are not upright, in rising order.
     ///
-    /// Files do not agree on how to number a wedge, and some number every tet the
-    /// other way round: whatever most cells of a kind do counts as upright. Faces of a
+    /// Tets are oriented. Files do not agree on how to number a wedge: whatever most cells of another kind do counts as upright. Faces of a
     /// polyhedron may run either way round: there each corner is for itself.
     pub(crate) fn stand_up(&mut self, cells: &Cells, signs: &[i8]) -> Vec<u32> {
         let mut n_upright = [0i64; 256];
@@ -52,8 +52,11 @@ impl Corners {
         let mut not_upright = Vec::new();
         for (i, (tet, (cell, &sign))) in (0..).zip(self.tets.iter_mut().zip(self.cells.iter().zip(signs))) {
             let kind = cells.kind(*cell);
-            let side =
-                if kind == CellKind::POLYHEDRON { i64::from(sign) } else { n_upright[kind.0 as usize] };
+            let side = match kind {
+                CellKind::TETRA => 1,
+                CellKind::POLYHEDRON => i64::from(sign),
+                _ => n_upright[kind.0 as usize],
+            };
             if side < 0 {
                 tet.swap(2, 3);
             }

@@ -128,7 +128,7 @@ impl Mover {
         let mut nodes = Nodes::new(mesh, &boundary, options, &is_used, threads)?;
         let walls = options.within_walls.then(|| Walls::new(mesh, &boundary, &mut nodes));
         setup.seconds.layer = lap(&mut clock);
-        let check = Check::new(&mesh.cells, &mesh.points, threads);
+        let check = Check::new(mesh, threads);
         setup.seconds.cells = lap(&mut clock);
         let mut is_node = vec![false; mesh.points.len()];
         nodes.vertices.iter().for_each(|v| is_node[v.index()] = true);

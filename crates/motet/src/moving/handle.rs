@@ -379,13 +379,14 @@ impl MovingMesh {
 
     fn certified(&self, shape: &Shape) -> Step {
         let Self { now, clock, .. } = self;
+        let shape = now.tets.without_layers(shape, &now.mesh.points, self.options.limit());
         Step {
             step: clock.step,
             time: clock.time,
             points: now.mesh.points.len(),
             tets: now.tets.len(),
             bad: shape.bad.len(),
-            forced: now.n_forced(shape),
+            forced: now.n_forced(&shape),
             inverted: shape.inverted,
             worst: shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place }),
             ..Step::default()

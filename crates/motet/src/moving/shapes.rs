@@ -1,16 +1,13 @@
 //! Which tets are bad, and how bad the worst is.
 
-use crate::base::{CellId, Point, Threads, VertexId};
+use crate::base::{CellId, Point, Threads};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::tet;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, OrientedTets, is_inverted};
 
-/// The tets of a mesh, turned so that most are positive, and which cells they are.
+/// The tets of a mesh, oriented.
 #[derive(Clone, Debug)]
-pub(super) struct Tets {
-    corners: Vec<[VertexId; 4]>,
-    cells: Vec<CellId>,
-}
+pub(super) struct Tets(OrientedTets);
 
 /// How the tets are at some places of the vertices.
 #[derive(Clone, Debug, Default)]
@@ -28,15 +25,19 @@ const CHUNK: usize = 1 << 13;
 
 impl Tets {
     pub(super) fn of(mesh: &Mesh) -> Self {
-        let (cells, mut corners): (Vec<_>, Vec<_>) = mesh.cells.tets().unzip();
-        if mesh.is_turned() {
-            corners.iter_mut().for_each(|tet: &mut [VertexId; 4]| tet.swap(0, 1));
-        }
-        Self { corners, cells }
+        Self(OrientedTets::of_linear(mesh))
     }
 
     pub(super) fn len(&self) -> usize {
-        self.corners.len()
+        self.0.tets.len()
+    }
+
+    /// A shape at some places of the vertices, the tets of boundary layers not counted among the bad.
+    pub(super) fn without_layers(&self, shape: &Shape, points: &[Point], limit: f64) -> Shape {
+        let place = |(cell, _): &(CellId, f64)| self.0.cells.binary_search(cell).ok();
+        let judged = self.0.judge(points, shape.bad.iter().filter_map(place).collect(), limit);
+        let is_bad = |bad: &(CellId, f64)| place(bad).is_some_and(|i| judged.bad.binary_search(&i).is_ok());
+        Shape { bad: shape.bad.iter().copied().filter(is_bad).collect(), ..*shape }
     }
 
     /// Looks closely only where a rough look leaves a doubt.
@@ -50,7 +51,7 @@ impl Tets {
     /// The EAS that some cells have at other places of the vertices.
     pub(super) fn eas_of(&self, some: &[(CellId, f64)], points: &[Point]) -> Vec<f64> {
         let of = |(cell, _): &(CellId, f64)| {
-            let tet = self.cells.binary_search(cell).ok().map(|i| self.corners[i]);
+            let tet = self.0.cells.binary_search(cell).ok().map(|i| self.0.tets[i]);
             tet.map_or(1.0, |tet| eas(tet.map(|v| points[v.index()])))
         };
         some.iter().map(of).collect()
@@ -59,19 +60,19 @@ impl Tets {
     /// Some cells, the tets that share a vertex with them, those that share one with these, and so on.
     pub(super) fn around(&self, some: &[(CellId, f64)], rings: usize, n_points: usize) -> Vec<CellId> {
         let mut tets: Vec<usize> =
-            some.iter().filter_map(|(cell, _)| self.cells.binary_search(cell).ok()).collect();
+            some.iter().filter_map(|(cell, _)| self.0.cells.binary_search(cell).ok()).collect();
         let mut is_near = vec![false; n_points];
         for _ in 0..rings {
-            tets.iter().flat_map(|&t| self.corners[t]).for_each(|v| is_near[v.index()] = true);
-            tets = (0..self.corners.len())
-                .filter(|&t| self.corners[t].iter().any(|v| is_near[v.index()]))
+            tets.iter().flat_map(|&t| self.0.tets[t]).for_each(|v| is_near[v.index()] = true);
+            tets = (0..self.0.tets.len())
+                .filter(|&t| self.0.tets[t].iter().any(|v| is_near[v.index()]))
                 .collect();
         }
-        tets.into_iter().map(|t| self.cells[t]).collect()
+        tets.into_iter().map(|t| self.0.cells[t]).collect()
     }
 
     fn look(&self, range: std::ops::Range<usize>, points: &[Point], limit: f64) -> Shape {
-        let corners = &self.corners[range.clone()];
+        let corners = &self.0.tets[range.clone()];
         let rough = rough_eas(points, corners);
         let lowest = rough.iter().copied().fold(f32::INFINITY, f32::min);
         let doubtful = (limit + ROUGH_EAS_ERROR).max(f64::from(lowest) + 2.0 * ROUGH_EAS_ERROR);
@@ -80,14 +81,11 @@ impl Tets {
             range.zip(corners).zip(&rough).filter(|(_, r)| f64::from(**r) <= doubtful).map(|(t, _)| t)
         {
             let place = tet.map(|v| points[v.index()]);
-            let (cell, quality) = (self.cells[i], eas(place));
+            let (cell, quality) = (self.0.cells[i], eas(place));
             if quality < limit {
                 shape.bad.push((cell, quality));
             }
-            // A tet without an angle counts as flat.
-            if quality <= 0.0 || quality.is_nan() {
-                shape.inverted += 1;
-            }
+            shape.inverted += usize::from(is_inverted(place));
             if shape.worst.is_none_or(|(_, worst, _)| quality < worst) {
                 shape.worst = Some((cell, quality, tet::centroid(place)));
             }

@@ -28,7 +28,7 @@ pub struct Step {
     pub points: usize,
     /// Its tets.
     pub tets: usize,
-    /// Tets whose EAS is below the limit.
+    /// Tets that are bad: below the limit of EAS, and not of a boundary layer.
     pub bad: usize,
     /// Of these, tets that walls force: too narrow an angle or gap for a good one.
     pub forced: usize,
@@ -40,6 +40,18 @@ pub struct Step {
     pub gaps: Option<Gaps>,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+impl Step {
+    /// Why the walls are not where they were requested to be; `None` where they are.
+    pub fn not_reached(&self) -> Option<String> {
+        (!self.complete).then(|| {
+            format!(
+                "the step stopped at {:.1} % of its way, where tets would turn over",
+                100.0 * self.fraction
+            )
+        })
+    }
 }
 
 /// The worst tet of a mesh.

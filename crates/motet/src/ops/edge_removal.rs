@@ -88,14 +88,21 @@ impl EdgeRemoval {
             return true;
         }
         let region = complex.region(self.shell.tets[start % self.shell.tets.len()]);
-        self.tabulate(complex, edge, &ring[..n], bar) && {
+        self.tabulate(complex, edge, &ring[..n], bar, change) && {
             self.build(complex, edge, &ring[..n], region, (0, n - 1), change);
             true
         }
     }
 
     /// Fills the table; whether the whole ring has a filling better than `bar`.
-    fn tabulate(&mut self, complex: &Complex, [a, b]: [VertexId; 2], ring: &[VertexId], bar: f64) -> bool {
+    fn tabulate(
+        &mut self,
+        complex: &Complex,
+        [a, b]: [VertexId; 2],
+        ring: &[VertexId],
+        bar: f64,
+        change: &Change,
+    ) -> bool {
         let best = &mut self.best;
         let m = ring.len();
         let [pa, pb] = [complex.point(a), complex.point(b)];
@@ -114,11 +121,12 @@ impl EdgeRemoval {
                     if sides <= found.0 {
                         continue;
                     }
-                    let above = complex.measure([points[i], points[k], points[j], pb]);
+                    let [p, q, r] = [ring[i], ring[k], ring[j]];
+                    let above = change.judge(complex, [p, q, r, b], [points[i], points[k], points[j], pb]);
                     if above <= found.0 {
                         continue;
                     }
-                    let below = complex.measure([points[i], points[j], points[k], pa]);
+                    let below = change.judge(complex, [p, r, q, a], [points[i], points[j], points[k], pa]);
                     let all = sides.min(above).min(below);
                     if all > found.0 {
                         found = (all, k as u8);

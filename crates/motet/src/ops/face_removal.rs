@@ -6,6 +6,7 @@
 //! meshes*). With one facet it is the flip 2-3.
 
 use crate::base::{TetId, VertexId};
+use crate::geometry::tet::FACETS;
 use crate::kernel::{Behind, Change, Complex};
 
 /// At most so many facets go at once.
@@ -70,7 +71,7 @@ impl FaceRemoval {
         bar: f64,
         depth: usize,
     ) -> f64 {
-        let stop = complex.measure([a, b, p, q].map(|v| complex.point(v)));
+        let stop = self.judge(complex, [a, b, p, q]);
         let (n_tets, n_edges) = (self.cavity.len(), self.rim.len());
         let may_go_on = n_tets / 2 < MOST_FACES && depth < MOST_DEPTH;
         let next = if may_go_on { Self::beside(complex, [a, b], face, [p, q]) } else { None };
@@ -90,6 +91,15 @@ impl FaceRemoval {
         }
         self.rim.push([p, q]);
         stop
+    }
+
+    /// The quality of a tet in place of the tets taken so far.
+    fn judge(&self, complex: &Complex, vertices: [VertexId; 4]) -> f64 {
+        complex.judge(vertices.map(|v| complex.point(v)), |i| {
+            let mut facet = FACETS[i].map(|corner| vertices[corner]);
+            facet.sort_unstable();
+            complex.is_wall_of(&self.cavity, facet)
+        })
     }
 
     /// The facet between `a` and `b` behind the edge `pq` of a facet, and its third vertex.

@@ -37,7 +37,7 @@ impl Insertion {
         self.find_cavity(complex, seed, point, low, change) && {
             let rim = self.rim.iter().map(|&(tet, facet, quality)| {
                 let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
-                Corner { points: [a, c, b, point], place: 3, quality }
+                Corner { points: [a, c, b, point], place: 3, quality, tet: None }
             });
             let point = self.smoothing.best_place(complex, rim, point, enough, &Anywhere);
             self.fill(complex, point, change);

@@ -59,6 +59,8 @@ pub(super) struct Corner {
     pub(super) points: [Point; 4],
     pub(super) place: usize,
     pub(super) quality: f64,
+    /// Which tet it is; `None` for one to come.
+    pub(super) tet: Option<TetId>,
 }
 
 impl Smoothing {
@@ -77,6 +79,7 @@ impl Smoothing {
             points: complex.corners(tet),
             place: complex.place(tet, vertex),
             quality: complex.quality(tet),
+            tet: Some(tet),
         };
         let point = self.best_place(complex, star.iter().map(corner), complex.point(vertex), enough, track);
         change.clear();
@@ -200,7 +203,7 @@ impl Corner {
     fn at(&self, complex: &Complex, place: Point) -> f64 {
         let mut points = self.points;
         points[self.place] = place;
-        complex.measure(points)
+        complex.judge(points, |i| self.tet.is_some_and(|tet| complex.is_wall(tet, i)))
     }
 }
 

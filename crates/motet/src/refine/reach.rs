@@ -52,6 +52,13 @@ pub struct Reached {
     pub volume_deviation: f64,
 }
 
+impl Reached {
+    /// Why edges are longer than was requested; `None` where they are not.
+    pub fn not_reached(&self) -> Option<String> {
+        self.stopped_by.map(|stop| format!("not all edges are as short as requested: {stop}"))
+    }
+}
+
 /// What ends a division before all edges are as short as was wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -9,7 +9,7 @@ use crate::geometry::quality::{dihedral, eas};
 use crate::geometry::tent::Tent;
 use crate::geometry::tet::{EDGES, FACETS, centroid};
 use crate::geometry::vector::{cross, dot, norm, sub};
-use crate::kernel::{Complex, Hold, Shell, Star};
+use crate::kernel::{Complex, Hold, Shell, Star, is_reached};
 use crate::remesh::classify::{DEFECT_NAMES, classify};
 use crate::remesh::surface::Surface;
 
@@ -133,25 +133,16 @@ fn reason(complex: &Complex, tet: TetId, min_eas: f64, shell: &mut Shell, star: 
     }
 }
 
-/// How near the quality of a tet has to be to what walls allow to be forced by them.
-const FORCED: f64 = 1e-6;
-
-/// The qualities of those of some tets that are as good as the walls at them allow, in rising order. Where the `surface` may change, the angle of a
-/// wall forces nothing but between two features.
-pub(super) fn forced(complex: &Complex, surface: Option<&Surface>, tets: &[TetId]) -> Vec<f64> {
+/// Those of some tets that are as good as the walls at them allow. Where the `surface` may change, the angle of a wall forces nothing but between two
+/// features.
+pub(super) fn forced(complex: &Complex, surface: Option<&Surface>, tets: &[TetId]) -> Vec<TetId> {
     let mut shell = Shell::default();
-    let mut is_forced = |tet: &&TetId| is_forced(complex, surface, **tet, &mut shell);
-    let mut forced: Vec<f64> =
-        tets.iter().filter(|tet| is_forced(tet)).map(|&tet| complex.quality(tet)).collect();
-    forced.sort_by(f64::total_cmp);
-    forced.dedup();
-    forced
+    tets.iter().copied().filter(|&tet| is_forced(complex, surface, tet, &mut shell)).collect()
 }
 
 /// Whether a tet is as good as the walls at it allow: see [`forced`].
 pub(super) fn is_forced(complex: &Complex, surface: Option<&Surface>, tet: TetId, shell: &mut Shell) -> bool {
     let quality = complex.quality(tet);
-    let is_reached = |best: f64| quality > 0.0 && best - quality < FORCED;
     let vertices = complex.vertices(tet);
     let mut is_firm = |[at, p, q]: [usize; 3]| {
         surface.is_none_or(|surface| {
@@ -162,8 +153,8 @@ pub(super) fn is_forced(complex: &Complex, surface: Option<&Surface>, tet: TetId
             })
         })
     };
-    wall_bounds(complex, tet).any(|wall| is_reached(wall.bound.1) && is_firm(wall.corner))
-        || edge_bounds(complex, tet, shell).into_iter().any(|bound| is_reached(bound.1))
+    wall_bounds(complex, tet).any(|wall| is_reached(quality, wall.bound.1) && is_firm(wall.corner))
+        || edge_bounds(complex, tet, shell).into_iter().any(|bound| is_reached(quality, bound.1))
 }
 
 /// What the angle of a wall leaves to a tet on it.

@@ -14,7 +14,7 @@
 //! | lines | `lines` | labelled edges divided and merged along themselves, within the same distance |
 //! | hold | `held` | named regions and patches, required entities and facets with a twin stay to the bit |
 //! | sizes | `sizes`, `repair::sizing` | where lengths are asked for: edges far longer split, far shorter collapsed |
-//! | layers | `layers` | tets of boundary layers are thin on purpose, and stay |
+//! | layers | [`crate::mesh::OrientedTets`] | tets of boundary layers are thin on purpose, and stay |
 //! | explain | `left` | which tet is left, where, why |
 //! | whole meshes | `whole` | cells of other kinds put back, arrays carried across |
 //!
@@ -23,7 +23,6 @@
 
 pub mod classify;
 mod held;
-mod layers;
 mod left;
 mod lengths;
 mod lines;

@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use crate::base::{Point, TetId};
+use crate::base::{Point, TetId, reasons};
 use crate::geometry::tet::centroid;
 use crate::kernel::Complex;
+use crate::mesh::is_inverted;
 use crate::remesh::classify::classify;
 use crate::remesh::left::Left;
 use crate::remesh::lengths::Lengths;
@@ -87,11 +88,13 @@ pub struct State {
     pub vertices: usize,
     /// How many tets there are.
     pub tets: usize,
-    /// How many are bad.
+    /// How many are bad: as [`crate::mesh::OrientedTets`] judges them, by the limit that was given.
     pub bad: usize,
+    /// How many are below the limit and belong to a boundary layer: these are not bad.
+    pub layers: usize,
     /// How many of the bad are of each type: I to IV, other.
     pub types: [usize; 5],
-    /// How many are flat or inverted.
+    /// How many are flat or inverted, by exact signs.
     pub inverted: usize,
     /// The worst tet; `None` where there is none.
     pub worst: Option<Worst>,
@@ -99,7 +102,7 @@ pub struct State {
 
 impl State {
     /// `bad` are all that are bad, flat and inverted ones among them; `id` tells which tet each is to the reader.
-    pub(super) fn of(complex: &Complex, bad: &[TetId], id: impl Fn(TetId) -> TetId) -> Self {
+    pub(super) fn of(complex: &Complex, bad: &[TetId], layers: usize, id: impl Fn(TetId) -> TetId) -> Self {
         let mut types = [0; 5];
         bad.iter().for_each(|&t| types[classify(complex.corners(t)).number()] += 1);
         let worst = complex.worst();
@@ -107,8 +110,9 @@ impl State {
             vertices: complex.n_used_vertices(),
             tets: complex.n_tets(),
             bad: bad.len(),
+            layers,
             types,
-            inverted: bad.iter().filter(|&&t| complex.quality(t) <= 0.0).count(),
+            inverted: bad.iter().filter(|&&t| is_inverted(complex.corners(t))).count(),
             worst: worst.map(|(t, eas)| Worst { tet: id(t).0, eas, place: centroid(complex.corners(t)) }),
         }
     }
@@ -155,7 +159,7 @@ pub struct Report {
     pub sizes: Option<SizesReport>,
     /// Bad tets that are left, worst first.
     pub left: Vec<Left>,
-    /// Tets of boundary layers that would count as bad, and stay.
+    /// Tets of boundary layers below the limit, in the mesh as it is: not bad, and as they came.
     pub layers: usize,
     /// Tets that are held and would count as bad, and stay.
     pub held: usize,
@@ -166,7 +170,23 @@ pub struct Report {
 impl Report {
     /// Whether nothing bad is left, and no edge that is too long and may be split.
     pub fn is_complete(&self) -> bool {
-        let is_long = |s: SizesReport| s.after.too_long > s.after.too_long_held;
-        self.after.bad == 0 && !self.sizes.is_some_and(is_long)
+        self.not_reached().is_none()
+    }
+
+    /// Why the requested result was not reached: bad tets are left, or edges that are too long and may be split. `None` where it was reached.
+    pub fn not_reached(&self) -> Option<String> {
+        let n_long = self.sizes.map_or(0, |s| s.after.too_long - s.after.too_long_held);
+        let State { bad, inverted, .. } = self.after;
+        let bad = (bad > 0).then(|| {
+            let n_forced = self.left.iter().filter(|left| left.reason.is_forced()).count();
+            format!(
+                "{bad} of {} bad tets (EAS below {}) are left: {inverted} inverted or flat, {n_forced} forced by walls",
+                self.before.bad.max(bad),
+                self.min_eas
+            )
+        });
+        let long =
+            (n_long > 0).then(|| format!("{n_long} edges that may be split are longer than requested"));
+        reasons([bad, long])
     }
 }

@@ -2,11 +2,10 @@
 
 use std::time::Instant;
 
-use crate::base::{CellId, Result, TetId, Threads};
+use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
-use crate::mesh::{TetMesh, bounds, largest_extent};
+use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
 use crate::remesh::held::{Required, hold};
-use crate::remesh::layers::Layers;
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Options, SurfaceRule};
@@ -55,8 +54,12 @@ pub(super) fn remesh_but(
     let n_bad = bad.len();
     bad.retain(|&t| !complex.is_locked(t));
     report.held = n_bad - bad.len();
-    report.layers = spare_layers(&mut complex, &mut bad, options);
-    report.before = State::of(&complex, &bad, |t| t);
+    let layers = match options.keep_layers {
+        true => take_out_layers(&oriented(&complex, mesh), &mesh.points, &mut bad, min_eas),
+        false => Vec::new(),
+    };
+    layers.iter().for_each(|&tet| complex.lock(tet));
+    report.before = State::of(&complex, &bad, layers.len(), |t| t);
     let n_peeled = complex.peel();
     bad.retain(|&t| complex.is_alive(t));
     let surface = adaptable(&mut complex, mesh, options);
@@ -93,7 +96,10 @@ pub(super) fn remesh_but(
     report.seconds.repair = clock.lap();
 
     let extract = complex.extract(mesh);
-    report.after = State::of(&complex, &left, |t| extract.tet(t));
+    if options.keep_layers {
+        report.layers = judge_anew(&complex, &extract, &mut left, &layers, min_eas);
+    }
+    report.after = State::of(&complex, &left, report.layers, |t| extract.tet(t));
     report.kept = mesh.tets.len() - extract.gone_tets.len();
     report.kept_share = report.kept as f64 / mesh.tets.len().max(1) as f64;
     report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
@@ -110,20 +116,40 @@ fn others(n_tets: usize, only: &[CellId]) -> Vec<bool> {
     others
 }
 
-/// Takes the tets of boundary layers out of the bad ones, and locks all that are thin; how many were taken out.
-fn spare_layers(complex: &mut Complex, bad: &mut Vec<TetId>, options: &Options) -> usize {
-    if !options.keep_layers || bad.is_empty() {
+/// The tets of a complex that nothing has changed yet, of `mesh`.
+fn oriented(complex: &Complex, mesh: &TetMesh) -> OrientedTets {
+    let tets = (0..mesh.tets.len()).map(|t| complex.vertices(TetId::new(t))).collect();
+    OrientedTets::given(tets, complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect())
+}
+
+/// Takes those that belong to boundary layers out of the tets below the limit; the others are the bad ones.
+fn take_out_layers(tets: &OrientedTets, points: &[Point], low: &mut Vec<TetId>, min_eas: f64) -> Vec<TetId> {
+    let judged = tets.judge(points, low.iter().map(|tet| tet.index()).collect(), min_eas);
+    let [bad, layers] = [judged.bad, judged.layers].map(|tets| tets.into_iter().map(TetId::new).collect());
+    *low = bad;
+    layers
+}
+
+/// Judges what is `left` and the tets of `layers` as those of a mesh that comes: puts the bad ones into `left`, worst first, and answers how many belong to
+/// layers. So whoever counts the bad tets of the mesh that was written finds as many.
+fn judge_anew(
+    complex: &Complex,
+    extract: &Extract,
+    left: &mut Vec<TetId>,
+    layers: &[TetId],
+    min_eas: f64,
+) -> usize {
+    left.extend_from_slice(layers);
+    if left.is_empty() {
         return 0;
     }
-    let Some(layers) = Layers::of(complex) else { return 0 };
-    let (thin, others): (Vec<_>, Vec<_>) =
-        bad.iter().partition(|&&t| layers.holds(complex, t, options.limit()));
-    if thin.len() < others.len() {
-        return 0;
-    }
-    thin.iter().for_each(|&tet| complex.lock(tet));
-    *bad = others;
-    thin.len()
+    let mut low: Vec<TetId> = left.iter().map(|&tet| extract.tet(tet)).collect();
+    low.sort_unstable();
+    let tets = OrientedTets::of_tets(&extract.mesh);
+    let layers = take_out_layers(&tets, &extract.mesh.points, &mut low, min_eas);
+    left.retain(|&tet| low.binary_search(&extract.tet(tet)).is_ok());
+    left.sort_unstable_by(|&a, &b| complex.quality(a).total_cmp(&complex.quality(b)).then(a.cmp(&b)));
+    layers.len()
 }
 
 /// The surface, where it may change.

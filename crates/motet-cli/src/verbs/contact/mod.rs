@@ -83,8 +83,10 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     }
     bar.finish_and_clear();
     report.seconds.total = begin.elapsed().as_secs_f64();
-    report.tell(console);
-    Ok(if args.fail_on_warning && report.is_warned() { Outcome::NotReached } else { Outcome::Done })
+    let fails = args.fail_on_warning && report.is_warned();
+    let outcome = Outcome::of(fails.then(|| "gaps are smaller than --warn allows".to_owned()));
+    report.tell(&outcome, console);
+    Ok(outcome)
 }
 
 /// The handle of the frame before, where only points moved; else a new one.

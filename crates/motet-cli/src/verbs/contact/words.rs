@@ -4,14 +4,15 @@ use super::delaunay::Beside;
 use super::histogram::Histogram;
 use super::report::{Pair, Report, Stages, Step};
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time as time_of};
 
 /// How many groups of warned vertices are told where nobody asks for all.
 const FIRST: usize = 10;
 
 impl Report {
-    pub(super) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         let mut bodies = Table::new(["surface", "vertices", "triangles", "closed"]);
         for body in &self.bodies {
             let closed = match (body.closed, body.room) {

@@ -69,17 +69,18 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
         std::fs::write(&file, text).map_err(|e| Error::io(&file, &e))?;
     }
     let (mut cycles, mut took) = (Vec::new(), Vec::new());
-    let mut outcome = Outcome::Done;
+    let mut not_reached = Vec::new();
     for (what, words) in CALLS {
         let call = call(&args.folder, words);
         console.say(format_args!("\n# {what}\n$ motet {}\n", as_typed(&call[1..])));
         let one = Instant::now();
-        if make(&call, common, console, &mut cycles)? == Outcome::NotReached {
-            outcome = Outcome::NotReached;
+        if let Outcome::NotReached(why) = make(&call, common, console, &mut cycles)? {
+            not_reached.push(format!("{what}: {why}"));
         }
         took.push((what, one.elapsed().as_secs_f64()));
     }
-    tell(args, &cycles, &took, begin.elapsed().as_secs_f64(), console);
+    let outcome = Outcome::of((!not_reached.is_empty()).then(|| not_reached.join("; ")));
+    tell(args, &cycles, &took, begin.elapsed().as_secs_f64(), &outcome, console);
     Ok(outcome)
 }
 
@@ -126,7 +127,14 @@ fn make(
 }
 
 /// A table of both cycles, and where to look.
-fn tell(args: &DemoArgs, cycles: &[run::Report], took: &[(&str, f64)], total: f64, console: &Console) {
+fn tell(
+    args: &DemoArgs,
+    cycles: &[run::Report],
+    took: &[(&str, f64)],
+    total: f64,
+    outcome: &Outcome,
+    console: &Console,
+) {
     let mut table = Table::new(["", "aneurysm", "dissection"]);
     let mut row = |what: &str, of: &dyn Fn(&run::Report) -> String| {
         table.row(std::iter::once(what.to_owned()).chain(cycles.iter().map(of)));
@@ -151,10 +159,11 @@ fn tell(args: &DemoArgs, cycles: &[run::Report], took: &[(&str, f64)], total: f6
          paraview {folder}/aneurysm.pvd       (Apply, colour by eas, slice, play)\n  \
          paraview {folder}/dissection.pvd\nLook closer:\n  motet info {folder}/treated.vtu\n  motet help run"
     ));
-    console.report(&json!({
+    let report = json!({
         "folder": shown(&args.folder),
         "cycles": cycles,
         "seconds": took.iter().map(|(what, s)| json!({ "what": what, "seconds": s })).collect::<Vec<_>>(),
         "seconds_total": total,
-    }));
+    });
+    console.conclude(&report, outcome);
 }

@@ -44,9 +44,9 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     bar.finish_and_clear();
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
-    let is_complete = report.is_complete();
-    Report::new(args, report, [read, write, begin.elapsed().as_secs_f64()]).tell(console);
-    Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
+    let outcome = Outcome::of(report.not_reached());
+    Report::new(args, report, [read, write, begin.elapsed().as_secs_f64()]).tell(&outcome, console);
+    Ok(outcome)
 }
 
 /// The devices of the call.

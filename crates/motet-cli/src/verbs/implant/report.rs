@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::args::ImplantArgs;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -62,8 +63,8 @@ impl Report {
         }
     }
 
-    pub(super) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         let report = &self.report;
         if let Some(adapted) = report.adapted {
             console.say(format_args!(

@@ -62,16 +62,16 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     bar.finish_and_clear();
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
-    let is_complete = filled.is_complete(&options);
+    let outcome = Outcome::of(filled.not_reached(&options));
     report.end(
         filled.report,
         filled.improved,
         filled.layers,
         [read, check, fill, write, begin.elapsed().as_secs_f64()],
-        is_complete,
+        outcome == Outcome::Done,
     );
-    report.tell(console);
-    Ok(if is_complete { Outcome::Done } else { Outcome::NotReached })
+    report.tell(&outcome, console);
+    Ok(outcome)
 }
 
 /// The surfaces, and the sizes at their points by the array that the call names.
@@ -102,7 +102,7 @@ fn refused(
     preflight: &Preflight,
     console: &Console,
 ) -> motet::Error {
-    report.tell(console);
+    report.tell(&Outcome::Done, console);
     let error = preflight.first_error().unwrap_or_else(|| motet::Error::input("the surfaces are not fit"));
     let fault = preflight.faults.iter().find(|fault| fault.is_fatal);
     let meshes = fault.and_then(|fault| surfaces.meshes.get(fault.surface as usize));

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::args::MeshArgs;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{count, seconds, short};
 use crate::words;
 
@@ -74,8 +75,8 @@ impl<'a> Report<'a> {
         self.seconds = Seconds { read, check, fill, write, total };
     }
 
-    pub(super) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         if !self.repairs.is_empty() {
             console.say(format_args!("{} repairs (--json lists them)", count(self.repairs.len())));
         }
@@ -135,9 +136,10 @@ impl<'a> Report<'a> {
         for body in filled.bodies.iter().take(TOLD) {
             let name = body.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
             console.say(format_args!(
-                "region {}{name}: {} tets, volume {}",
+                "region {}{name}: {} tets{}, volume {}",
                 body.region,
                 count(body.tets),
+                if body.prisms > 0 { format!(" and {} prisms", count(body.prisms)) } else { String::new() },
                 short(body.volume)
             ));
         }

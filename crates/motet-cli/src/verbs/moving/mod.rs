@@ -61,11 +61,12 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     report.warn(console);
 
     let mut sink = Sink::new(args, &mesh, &patches)?;
-    let all_done = frames(&mut plan, &mut mover, &mut sink, &mut report, &threads, console)?;
+    frames(&mut plan, &mut mover, &mut sink, &mut report, &threads, console)?;
     sink.end()?;
     report.end(sink.moved(), begin.elapsed().as_secs_f64());
-    report.tell(console);
-    Ok(if all_done { Outcome::Done } else { Outcome::NotReached })
+    let outcome = Outcome::of(report.not_reached());
+    report.tell(&outcome, console);
+    Ok(outcome)
 }
 
 fn options(
@@ -174,7 +175,7 @@ fn wall(
     Ok(FacetSet::joined(named).unwrap_or_default())
 }
 
-/// Goes through the frames; `false` where one was not reached, which is the last one then.
+/// Goes through the frames; one that is not reached is the last.
 fn frames(
     plan: &mut Plan<'_>,
     mover: &mut Mover,
@@ -182,7 +183,7 @@ fn frames(
     report: &mut Report,
     threads: &Threads,
     console: &Console,
-) -> motet::Result<bool> {
+) -> motet::Result<()> {
     let n = plan.times.len();
     let bar = console.bar((n - plan.first) as u64, "moving");
     let mut points = mover.reference().to_vec();
@@ -205,12 +206,12 @@ fn frames(
         bar.inc(1);
         if !certificate.complete {
             bar.finish_and_clear();
-            return Ok(false);
+            return Ok(());
         }
     }
     bar.finish_and_clear();
     sink.lost.iter().for_each(|what| console.warn(what));
-    Ok(true)
+    Ok(())
 }
 
 /// By backward difference; none in the first frame, where nothing is behind.

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::args::MoveArgs;
 use super::inverted;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
 
@@ -137,8 +138,8 @@ impl Report {
         self.seconds.total = total;
     }
 
-    pub(crate) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(crate) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         if let Some(choice) = &self.choice {
             choice.tell(console);
         }
@@ -184,18 +185,13 @@ impl Report {
         ));
     }
 
+    /// Why the motion did not go all its way.
+    pub(super) fn not_reached(&self) -> Option<String> {
+        let last = self.steps.last()?;
+        last.certificate.not_reached().map(|why| format!("step {}: {why}", last.step))
+    }
+
     fn tell_end(&self, console: &Console) {
-        if let Some(last) = self.steps.last().filter(|last| !last.certificate.complete) {
-            let cells: Vec<String> = last.certificate.blocked_by.iter().map(ToString::to_string).collect();
-            console.warn(format_args!(
-                "not reached: step {} got {:.1} % of its way in {} sub-steps, then cells would turn over (the first: {}); \
-                 what was reached is written",
-                last.step,
-                100.0 * last.certificate.fraction,
-                last.certificate.substeps,
-                cells.join(", ")
-            ));
-        }
         console.say(format_args!("wrote {}", self.output.display()));
     }
 }

@@ -48,10 +48,10 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
-    let is_reached = done.is_reached;
+    let outcome = Outcome::of(done.not_reached());
     Report::new(args, &refinement, done, [read, write, begin.elapsed().as_secs_f64()], &threads)
-        .tell(console);
-    Ok(if is_reached { Outcome::Done } else { Outcome::NotReached })
+        .tell(&outcome, console);
+    Ok(outcome)
 }
 
 /// The remedy in words of the command line.

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::args::RefineArgs;
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -101,8 +102,8 @@ impl Report {
         }
     }
 
-    pub(super) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(super) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         console.say(format_args!(
             "{}: {} tets at first, worst EAS {}",
             self.mesh.display(),
@@ -130,12 +131,6 @@ impl Report {
             console.say(format_args!(
                 "{} tets were left as they are, since cells of other kinds hold their edges (lines do not), or one would be inverted",
                 count(held)
-            ));
-        }
-        if let Some(stop) = self.stopped_by {
-            console.warn(format_args!(
-                "{}: not reached: {stop}; what was reached is written",
-                self.mesh.display()
             ));
         }
         console.say(format_args!("wrote {}", self.output.display()));

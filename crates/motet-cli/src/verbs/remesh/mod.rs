@@ -46,12 +46,13 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
     if is_turned {
         console.warn(format_args!(
-            "{}: most tets are numbered the other way round, and stay so; other programs, and `motet info`, may call them inverted",
+            "{}: most tets are numbered the other way round, and stay so; other programs may call them inverted",
             args.mesh.display()
         ));
     }
     let mut told = Report::new(args, [&old, &mesh], &report, &history, fields);
     told.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
-    told.tell(console);
-    Ok(if report.is_complete() { Outcome::Done } else { Outcome::NotReached })
+    let outcome = Outcome::of(told.not_reached(&report));
+    told.tell(&outcome, console);
+    Ok(outcome)
 }

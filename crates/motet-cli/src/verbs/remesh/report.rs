@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::args::{RemeshArgs, Surface};
 use crate::console::Console;
+use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -64,6 +65,8 @@ struct State {
     cells: usize,
     tets: usize,
     bad: usize,
+    /// Thin tets of boundary layers, which are not bad.
+    layers: usize,
     /// How many of the bad are of each type.
     types: Value,
     inverted: usize,
@@ -154,8 +157,8 @@ impl Report {
         (self.passed_over, self.lost) = (passed_over, lost);
     }
 
-    pub(crate) fn tell(&self, console: &Console) {
-        console.report(self);
+    pub(crate) fn tell(&self, outcome: &Outcome, console: &Console) {
+        console.conclude(self, outcome);
         console.say(format_args!(
             "{}: {} points, {} tets; bad are those below EAS {}",
             self.mesh.display(),
@@ -326,23 +329,17 @@ impl Report {
         if self.left.len() > n {
             console.say(format_args!("  and {} more: -v and --json tell all", count(self.left.len() - n)));
         }
+    }
+
+    /// Why the requested result was not reached, and what might help.
+    pub(super) fn not_reached(&self, report: &remesh::Report) -> Option<String> {
         let is_held = |left: &&Left| !matches!(left.reason, Reason::NothingHelps);
         let n_held = self.left.iter().filter(is_held).count();
         let advice = match self.surface_is_kept && n_held > 0 {
             true => format!("; the surface holds {}, --surface adapt lets it give way", count(n_held)),
             false => String::new(),
         };
-        let n_long = self.sizes.map_or(0, |s| s.after.too_long - s.after.too_long_held);
-        let long = match n_long {
-            0 => String::new(),
-            n => format!("; {} edges that are not held are too long", count(n)),
-        };
-        console.warn(format_args!(
-            "{}: not reached: {} bad tets are left, there were {}{long}{advice}; what was reached is written",
-            self.mesh.display(),
-            count(self.after.bad),
-            count(self.before.bad)
-        ));
+        report.not_reached().map(|why| why + &advice)
     }
 }
 
@@ -354,6 +351,7 @@ impl State {
             cells: mesh.cells.len(),
             tets: state.tets,
             bad: state.bad,
+            layers: state.layers,
             types: json!({ "I": i, "II": ii, "III": iii, "IV": iv, "other": other }),
             inverted: state.inverted,
             worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet, place: w.place }),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use motet::base::reasons;
 use motet::moving::{Seconds, Step, Why, WorstTet};
 use serde::Serialize;
 
@@ -130,12 +131,16 @@ impl Report {
 
     /// Whether all was gone, and no tet is bad but those that walls force.
     pub(crate) fn outcome(&self) -> Outcome {
-        let is_reached = self.complete && self.most_inverted == 0 && self.most_bad_not_forced == 0;
-        if is_reached { Outcome::Done } else { Outcome::NotReached }
+        let (inverted, bad) = (self.most_inverted, self.most_bad_not_forced);
+        Outcome::of(reasons([
+            (!self.complete).then(|| format!("step {} stopped before its end", self.steps)),
+            (inverted > 0).then(|| format!("up to {inverted} tets are inverted or flat in a step")),
+            (bad > 0).then(|| format!("up to {bad} bad tets are left in a step that no wall forces")),
+        ]))
     }
 
     pub(crate) fn tell(&self, console: &Console) {
-        console.report(self);
+        console.conclude(self, &self.outcome());
         let n = self.steps - self.resumed_after;
         console.say(format_args!(
             "\n{n} steps{}: {} changes in {} of them, {} tets at the end",

@@ -11,7 +11,8 @@ use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 
-pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Vec<Defect> {
+/// `are_turned` says for each cell whether its volume counts with the other sign: see [`OrientedTets`](crate::mesh::OrientedTets).
+pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> Vec<Defect> {
     let facets = Facets::of(&mesh.cells);
     let mut repeated = Defect::none(DefectKind::RepeatedVertex);
     let mut inverted = Defect::none(DefectKind::InvertedCell);
@@ -26,7 +27,9 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Vec<Defect> {
         if boundary.n_unknown > 0 && is_unknown(kind) {
             unknown.add(example);
         }
-        match measure(&facets, cell, kind, vertices, &mesh.points) {
+        let as_oriented = |sign: Ordering| if are_turned[cell.index()] { sign.reverse() } else { sign };
+        let measure = measure(&facets, cell, kind, vertices, &mesh.points);
+        match measure.map(|(dim, sign)| (dim, as_oriented(sign))) {
             Some((3, Ordering::Less)) => inverted.add(example),
             Some((3, Ordering::Equal)) => flat.add(example),
             Some((2, Ordering::Equal)) => zero_area.add(example),

@@ -22,7 +22,7 @@ mod points;
 
 use crate::base::{CellId, Csr, VertexId};
 use crate::mesh::boundary::corners;
-use crate::mesh::{Boundary, CellKind, Mesh};
+use crate::mesh::{Boundary, CellKind, Mesh, OrientedTets};
 
 pub use defect::{Defect, DefectKind, Example};
 pub use edges::is_closed;
@@ -31,14 +31,14 @@ pub use edges::is_closed;
 ///
 /// Ids have been checked by [`Mesh::validate`]. A million tets take about a second.
 pub fn check(mesh: &Mesh) -> Vec<Defect> {
-    check_with(mesh, &Boundary::of(&mesh.cells))
+    check_with(mesh, &Boundary::of(&mesh.cells), &OrientedTets::of(mesh))
 }
 
-/// The same, for a caller who has the boundary.
-pub fn check_with(mesh: &Mesh, boundary: &Boundary) -> Vec<Defect> {
+/// Every defect of a mesh as [`check`] finds them, for a caller who has the boundary and the tets.
+pub fn check_with(mesh: &Mesh, boundary: &Boundary, tets: &OrientedTets) -> Vec<Defect> {
     let canonical = points::Canonical::of(mesh);
     let mut defects = points::defects(mesh, &canonical);
-    defects.extend(cells::defects(mesh, boundary));
+    defects.extend(cells::defects(mesh, boundary, &tets.are_turned(mesh.cells.len())));
     defects.extend(conformity::defects(mesh, boundary, &canonical));
     defects.extend(edges::defects(mesh, &SurfaceFacets::of(mesh, boundary)));
     defects.extend(parts::defects(mesh));

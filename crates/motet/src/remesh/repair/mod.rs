@@ -161,9 +161,9 @@ impl Repair {
         if forced.is_empty() {
             return pass(self, left.to_vec());
         }
-        self.complex.spare(forced);
+        self.complex.spare(&forced, self.target);
         pass(self, left.to_vec())?;
-        self.complex.spare(Vec::new());
+        self.complex.spare_none();
         Ok(self.below(self.target))
     }
 

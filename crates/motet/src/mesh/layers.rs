@@ -11,11 +11,10 @@
 //! A sliver in a mesh without layers has no short edge, and a needle's short edge does not stand in columns side by side: neither is taken
 //! for a layer.
 
-use crate::base::{Csr, Point, TetId, VertexId};
+use crate::base::{Csr, Point, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
-use crate::kernel::{Complex, Star};
 
 /// A column's edges are shorter than this part of the wall's edges at its foot.
 const SHORT: f64 = 0.6;
@@ -30,8 +29,24 @@ const SAMPLE: usize = 256;
 /// No column is higher.
 const MOST_LEVELS: u32 = 64;
 
+/// Which of the tets `low`, by their places in `tets`, belong to layers: none where these are fewer than the others. `low` are below `min_eas`, tets are oriented,
+/// `walls` are the facets on the boundary, between regions, and with a triangle.
+pub(crate) fn are_layers(
+    points: &[Point],
+    tets: &[[VertexId; 4]],
+    walls: &[[VertexId; 3]],
+    low: &[usize],
+    min_eas: f64,
+) -> Vec<bool> {
+    let layers = if low.is_empty() { None } else { Layers::of(points, tets, walls) };
+    let is_thin = |&t: &usize| layers.as_ref().is_some_and(|layers| layers.holds(points, tets[t], min_eas));
+    let are_thin: Vec<bool> = low.iter().map(is_thin).collect();
+    let n_thin = are_thin.iter().filter(|is| **is).count();
+    if 2 * n_thin < low.len() { vec![false; low.len()] } else { are_thin }
+}
+
 /// Which vertex stands in which column.
-pub(super) struct Layers {
+struct Layers {
     /// For each vertex the wall vertex at the foot of its column, and how many edges it stands above; [`NO_COLUMN`].
     columns: Vec<(VertexId, u32)>,
     /// For each foot the way in which its column rises.
@@ -41,48 +56,47 @@ pub(super) struct Layers {
 const NO_COLUMN: (VertexId, u32) = (VertexId(u32::MAX), 0);
 
 impl Layers {
-    /// The layers of a mesh; `None` where it has none.
-    pub(super) fn of(complex: &Complex) -> Option<Self> {
-        let n = complex.n_vertex_slots();
-        let mut walls = vec![Foot::default(); n];
-        let mut normals = Vec::new();
-        for (_, wall) in complex.walls() {
-            let facet = complex.facet(wall.sides[0]);
-            let points = facet.map(|v| complex.point(v));
-            let normal = area_vector(points);
+    /// The layers of oriented `tets` whose boundary, interfaces and labelled facets are `walls`; `None` where there are none.
+    fn of(points: &[Point], tets: &[[VertexId; 4]], walls: &[[VertexId; 3]]) -> Option<Self> {
+        let n = points.len();
+        let mut at_walls = vec![Foot::default(); n];
+        let mut normals = Vec::with_capacity(walls.len());
+        for facet in walls {
+            let corners = facet.map(|v| points[v.index()]);
+            let normal = area_vector(corners);
             normals.push(scale(normal, 1.0 / norm(normal)));
             for i in 0..3 {
-                let foot = &mut walls[facet[i].index()];
+                let foot = &mut at_walls[facet[i].index()];
                 foot.width +=
-                    norm(sub(points[(i + 1) % 3], points[i])) + norm(sub(points[(i + 2) % 3], points[i]));
+                    norm(sub(corners[(i + 1) % 3], corners[i])) + norm(sub(corners[(i + 2) % 3], corners[i]));
                 foot.n_edges += 2;
             }
         }
-        let facets: Vec<_> = complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect();
         let vertex_to_walls = Csr::from_pairs(n, || {
-            (0..).zip(&facets).flat_map(|(wall, facet)| facet.map(|v| (v.index(), wall)))
+            (0..).zip(walls).flat_map(|(wall, facet)| facet.map(|v| (v.index(), wall)))
         });
         let feet: Vec<VertexId> =
-            (0..n).map(VertexId::new).filter(|v| walls[v.index()].n_edges > 0).collect();
-        let mut climber = Climber { complex, star: Star::default(), normals, vertex_to_walls };
-        let sample = feet.iter().step_by(feet.len() / SAMPLE + 1);
-        let n_sampled = sample.clone().count();
-        let n_columns = sample.filter(|v| climber.first(**v, &walls[v.index()]).is_some()).count();
-        if (n_columns as f64) < ENOUGH * n_sampled as f64 || feet.is_empty() {
+            (0..n).map(VertexId::new).filter(|v| at_walls[v.index()].n_edges > 0).collect();
+        let sample: Vec<VertexId> = feet.iter().copied().step_by(feet.len() / SAMPLE + 1).collect();
+        let vertex_to_tets = stars(n, tets, |v| sample.binary_search(&v).is_ok());
+        let climber = Climber { points, tets, vertex_to_tets, normals, vertex_to_walls };
+        let has_column = |v: &&VertexId| climber.first(**v, &at_walls[v.index()]).is_some();
+        let n_columns = sample.iter().filter(has_column).count();
+        if (n_columns as f64) < ENOUGH * sample.len() as f64 || feet.is_empty() {
             return None;
         }
+        let climber = Climber { vertex_to_tets: stars(n, tets, |_| true), ..climber };
         let mut columns = vec![NO_COLUMN; n];
         feet.iter().for_each(|&v| columns[v.index()] = (v, 0));
         let mut ways = vec![[0.0; 3]; n];
         for &foot in &feet {
-            ways[foot.index()] = climber.climb(foot, &walls[foot.index()], &mut columns);
+            ways[foot.index()] = climber.climb(foot, &at_walls[foot.index()], &mut columns);
         }
         Some(Self { columns, ways })
     }
 
-    /// Whether a tet of the first mesh belongs to a layer and is well shaped there: at least `min_eas` when it is as high as it is wide.
-    pub(super) fn holds(&self, complex: &Complex, tet: TetId, min_eas: f64) -> bool {
-        let vertices = complex.vertices(tet);
+    /// Whether a tet belongs to a layer and is well shaped there: at least `min_eas` when it is as high as it is wide.
+    fn holds(&self, points: &[Point], vertices: [VertexId; 4], min_eas: f64) -> bool {
         let columns = vertices.map(|v| self.columns.get(v.index()).copied().unwrap_or(NO_COLUMN));
         let levels = columns.map(|c| c.1);
         let mut feet: Vec<VertexId> = columns.iter().map(|c| c.0).collect();
@@ -92,10 +106,17 @@ impl Layers {
         if columns.contains(&NO_COLUMN) || feet.len() != 3 || step != 1 {
             return false;
         }
-        let corners = complex.corners(tet);
+        let corners = vertices.map(|v| points[v.index()]);
         let way = feet.iter().fold([0.0; 3], |sum, foot| add(sum, self.ways[foot.index()]));
         eas(corners) > 0.0 && stretched_eas(corners, scale(way, 1.0 / norm(way))) >= min_eas
     }
+}
+
+/// The tets of each of `n` vertices of which the tets are wanted.
+fn stars(n: usize, tets: &[[VertexId; 4]], is_wanted: impl Fn(VertexId) -> bool) -> Csr<u32> {
+    let is_wanted: Vec<bool> = (0..n).map(|v| is_wanted(VertexId::new(v))).collect();
+    let all = || (0..).zip(tets).flat_map(|(t, tet)| tet.map(|v| (v.index(), t)));
+    Csr::from_pairs(n, || all().filter(|(v, _)| is_wanted[*v]))
 }
 
 /// The EAS of a tet stretched along `normal` until it is as high as it is wide.
@@ -135,8 +156,9 @@ impl Foot {
 }
 
 struct Climber<'a> {
-    complex: &'a Complex,
-    star: Star,
+    points: &'a [Point],
+    tets: &'a [[VertexId; 4]],
+    vertex_to_tets: Csr<u32>,
     /// Of each wall.
     normals: Vec<Point>,
     vertex_to_walls: Csr<u32>,
@@ -145,38 +167,35 @@ struct Climber<'a> {
 impl Climber<'_> {
     /// The end of the shortest edge from a vertex that `is_upright` and shorter than `limit`, and the way there.
     fn above(
-        &mut self,
+        &self,
         from: VertexId,
         limit: f64,
-        is_upright: impl Fn(&Self, Point, f64) -> bool,
+        is_upright: impl Fn(Point, f64) -> bool,
     ) -> Option<(VertexId, Point)> {
-        let complex = self.complex;
-        let mut star = std::mem::take(&mut self.star);
-        star.gather(complex, from);
-        let start = complex.point(from);
+        let start = self.points[from.index()];
         let mut best: Option<(f64, VertexId, Point)> = None;
-        for v in star.tets.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != from) {
-            let way = sub(complex.point(v), start);
+        let star = self.vertex_to_tets.list(from.index());
+        for v in star.iter().flat_map(|&t| self.tets[t as usize]).filter(|&v| v != from) {
+            let way = sub(self.points[v.index()], start);
             let length = norm(way);
             let is_shorter = best.is_none_or(|b| (length, v) < (b.0, b.1));
-            if length < limit && is_shorter && is_upright(self, way, length) {
+            if length < limit && is_shorter && is_upright(way, length) {
                 best = Some((length, v, way));
             }
         }
-        self.star = star;
         best.map(|(_, v, way)| (v, way))
     }
 
     /// The first vertex of a column: upright on one of the walls at its foot. It may lie on another wall, that of an inlet say.
-    fn first(&mut self, foot: VertexId, wall: &Foot) -> Option<(VertexId, Point)> {
-        self.above(foot, wall.limit(), |climber, way, length| {
-            let walls = climber.vertex_to_walls.list(foot.index());
-            walls.iter().any(|&wall| dot(way, climber.normals[wall as usize]).abs() > UPRIGHT * length)
+    fn first(&self, foot: VertexId, wall: &Foot) -> Option<(VertexId, Point)> {
+        self.above(foot, wall.limit(), |way, length| {
+            let walls = self.vertex_to_walls.list(foot.index());
+            walls.iter().any(|&wall| dot(way, self.normals[wall as usize]).abs() > UPRIGHT * length)
         })
     }
 
     /// Follows the column of a wall vertex up, level by level, until no short edge leads on; the way in which it sets out.
-    fn climb(&mut self, foot: VertexId, wall: &Foot, columns: &mut [(VertexId, u32)]) -> Point {
+    fn climb(&self, foot: VertexId, wall: &Foot, columns: &mut [(VertexId, u32)]) -> Point {
         let mut next = self.first(foot, wall);
         let first = next.map_or([0.0; 3], |(_, way)| scale(way, 1.0 / norm(way)));
         for level in 1..MOST_LEVELS {
@@ -187,7 +206,7 @@ impl Climber<'_> {
             }
             *column = (foot, level);
             let step = norm(up);
-            next = self.above(vertex, (GROWTH * step).min(wall.limit()), |_, way, length| {
+            next = self.above(vertex, (GROWTH * step).min(wall.limit()), |way, length| {
                 dot(way, up) > UPRIGHT * length * step
             });
         }

@@ -4,21 +4,23 @@
 //! must see it from opposite sides: that tells one that is only *numbered* the other way from one that the motion has turned inside
 //! out, which keeps the orientation of its neighbours and has a negative volume.
 
-use crate::base::{Error, Point, Result, TetId, VertexId};
+use crate::base::{Point, TetId, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, volume_6};
-use crate::kernel::link::HalfFacet;
+
+/// Which facet of which tet lies behind a facet of a tet: both tets by their place; `None` on the boundary.
+pub(crate) trait Across: Fn(usize, usize) -> Option<(usize, usize)> {}
+impl<F: Fn(usize, usize) -> Option<(usize, usize)>> Across for F {}
 
 /// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns which it turned.
-/// `across` has the facet behind each facet.
 ///
 /// # Errors
-/// When the tets around one cannot all be turned the same way.
-pub(super) fn orient(
+/// A tet that cannot be turned the same way as all of its neighbours: the mesh is one-sided. Then no tet is turned.
+pub(crate) fn orient(
     tets: &mut [[VertexId; 4]],
-    across: &[[HalfFacet; 4]],
+    across: impl Across,
     points: &[Point],
-) -> Result<Vec<bool>> {
+) -> Result<Vec<bool>, TetId> {
     let mut is_turned = vec![false; tets.len()];
     let mut is_seen = vec![false; tets.len()];
     let mut part = Vec::new();
@@ -35,22 +37,18 @@ pub(super) fn orient(
             let t = part[i];
             i += 1;
             let signed = volume_6(tets[t].map(|v| points[v.index()]));
-            volume += if is_turned[t] { -signed } else { signed };
-            for (f, &other) in across[t].iter().enumerate() {
-                if other.is_none() {
-                    continue;
-                }
-                let o = other.tet().index();
-                let agree = see_from_opposite_sides(facet(&tets[t], f), facet(&tets[o], other.facet()));
+            if signed.is_finite() {
+                volume += if is_turned[t] { -signed } else { signed };
+            }
+            for (f, (o, of_other)) in (0..4).filter_map(|f| Some((f, across(t, f)?))) {
+                let agree = see_from_opposite_sides(facet(&tets[t], f), facet(&tets[o], of_other));
                 let turned = is_turned[t] == agree;
                 if !is_seen[o] {
                     is_seen[o] = true;
                     is_turned[o] = turned;
                     part.push(o);
                 } else if is_turned[o] != turned {
-                    return Err(Error::input("the tets around it cannot all be turned the same way")
-                        .at(format!("tet {o}"))
-                        .remedy("the mesh is one-sided: mesh it again"));
+                    return Err(TetId::new(o));
                 }
             }
         }
@@ -63,21 +61,20 @@ pub(super) fn orient(
 }
 
 /// The tets that are folded over others, in rising order: in the file they were positive like those that they share a facet with, and lay on the same
-/// side of it. `tets` are as [`orient`] has turned them, and `across` has the facet behind each facet.
+/// side of it. `tets` are as [`orient`] has turned them.
 ///
 /// Where the file numbers tets now one way, now the other, nothing tells such a tet from one that a motion has inverted: then there are none.
-pub(super) fn folded(
+pub(crate) fn folded(
     tets: &[[VertexId; 4]],
     points: &[Point],
     is_turned: &[bool],
-    across: &[[HalfFacet; 4]],
+    across: impl Across,
 ) -> Vec<TetId> {
     let is_positive = |t: usize| {
         let [a, b, c, d] = tets[t].map(|v| points[v.index()]);
         orient3d(a, b, c, d) > 0
     };
-    let neighbors =
-        |t: usize| across[t].iter().filter(|other| !other.is_none()).map(|other| other.tet().index());
+    let neighbors = |t: usize| [0, 1, 2, 3].map(|f| across(t, f)).into_iter().flatten().map(|(o, _)| o);
     let (mut is_folded, mut found) = (vec![false; tets.len()], Vec::new());
     for t in 0..tets.len() {
         for o in neighbors(t).filter(|&o| is_turned[o] != is_turned[t]) {
@@ -106,12 +103,12 @@ pub(super) fn folded(
     found.into_iter().map(TetId::new).collect()
 }
 
-pub(super) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
+pub(crate) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
     FACETS[i].map(|place| tet[place])
 }
 
 /// Whether one is an odd permutation of the other.
-pub(super) fn see_from_opposite_sides(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+pub(crate) fn see_from_opposite_sides(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let start = b.iter().position(|&v| v == a[0]).unwrap_or(0);
     b[(start + 1) % 3] == a[2]
 }

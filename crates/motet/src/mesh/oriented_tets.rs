@@ -1,0 +1,174 @@
+//! The one way to judge the tets of a mesh: which are inverted, which are bad, and which are thin on purpose. Every verb that reports such a count
+//! takes it from here.
+//!
+//! - *Oriented*: two tets that share a facet must see it from opposite sides, and the tets that hang together by facets have a positive volume in all. Whichever
+//!   way a file numbers its vertices, the tets that a motion has turned over are found, and no others.
+//! - *Inverted*: the volume of the oriented tet is not positive, by exact signs: flat tets count as well.
+//! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet: one of a boundary layer, thin on purpose (see [`layers`](super::layers)).
+
+use crate::base::{CellId, Point, VertexId};
+use crate::geometry::predicates::orient3d;
+use crate::geometry::tet::FACETS;
+use crate::geometry::vector::in_range;
+use crate::mesh::layers::are_layers;
+use crate::mesh::orientation::{facet, orient, see_from_opposite_sides};
+use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
+use crate::mesh::{CellKind, Field, Mesh, TetMesh};
+
+/// More tets and triangles have no facet numbers; they stay as the file numbers them.
+const MOST: usize = 1 << 29;
+
+/// The tets of a mesh, oriented by their neighbours, and the facets that bound them.
+#[derive(Clone, Debug, Default)]
+pub struct OrientedTets {
+    /// The vertices of each tet, of a quadratic one the corners.
+    pub tets: Vec<[VertexId; 4]>,
+    /// The cell that each tet is.
+    pub cells: Vec<CellId>,
+    /// Which tets the file numbers the other way round, in rising order of their places.
+    pub turned: Vec<usize>,
+    /// Facets on the boundary, between two regions, or with a triangle.
+    walls: Vec<[VertexId; 3]>,
+}
+
+/// The tets below a limit of EAS, by their places in [`OrientedTets::tets`], in rising order.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Judged {
+    /// The bad ones.
+    pub bad: Vec<usize>,
+    /// Those of boundary layers, which do not count as bad.
+    pub layers: Vec<usize>,
+}
+
+impl OrientedTets {
+    /// The linear and quadratic tets of a mesh.
+    pub fn of(mesh: &Mesh) -> Self {
+        Self::of_kinds(mesh, &[CellKind::TETRA, CellKind::QUADRATIC_TETRA])
+    }
+
+    /// The linear tets of a mesh.
+    pub fn of_linear(mesh: &Mesh) -> Self {
+        Self::of_kinds(mesh, &[CellKind::TETRA])
+    }
+
+    fn of_kinds(mesh: &Mesh, kinds: &[CellKind]) -> Self {
+        let labels = mesh.regions();
+        let region = |cell: CellId| labels.as_ref().map_or(0, |labels| labels.ids[cell.index()]);
+        let (mut oriented, mut regions, mut triangles) = (Self::default(), Vec::new(), Vec::new());
+        for (cell, kind, vertices) in mesh.cells.iter() {
+            match (kind, vertices) {
+                (_, &[a, b, c, d, ..]) if kinds.contains(&kind) => {
+                    oriented.tets.push([a, b, c, d]);
+                    oriented.cells.push(cell);
+                    regions.push(region(cell));
+                }
+                (CellKind::TRIANGLE | CellKind::QUADRATIC_TRIANGLE, &[a, b, c, ..]) => {
+                    triangles.push([a, b, c]);
+                }
+                _ => {}
+            }
+        }
+        oriented.orient(&mesh.points, &regions, &triangles);
+        oriented
+    }
+
+    /// The tets of plain arrays; each is the cell of its own place.
+    pub fn of_tets(mesh: &TetMesh) -> Self {
+        let cells = (0..mesh.tets.len()).map(CellId::new).collect();
+        let mut oriented = Self { tets: mesh.tets.clone(), cells, ..Self::default() };
+        oriented.orient(&mesh.points, &mesh.regions, &mesh.triangles);
+        oriented
+    }
+
+    /// Tets that are oriented already, each the cell of its own place, and their walls: see [`Sharing::is_wall`].
+    pub(crate) fn given(tets: Vec<[VertexId; 4]>, walls: Vec<[VertexId; 3]>) -> Self {
+        let cells = (0..tets.len()).map(CellId::new).collect();
+        Self { tets, cells, turned: Vec::new(), walls }
+    }
+
+    /// The points of a tet, with the vertices of the mesh at `points`.
+    #[inline]
+    pub fn corners(&self, tet: usize, points: &[Point]) -> [Point; 4] {
+        self.tets[tet].map(|v| points[v.index()])
+    }
+
+    /// Whether a tet is flat or inverted, by exact signs.
+    pub fn is_inverted(&self, tet: usize, points: &[Point]) -> bool {
+        is_inverted(self.corners(tet, points))
+    }
+
+    /// The cell array `name` of the mesh with `measure` of each tet; other cells get no number (NaN).
+    pub fn field(&self, mesh: &Mesh, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
+        let mut values = vec![f64::NAN; mesh.cells.len()];
+        for (i, cell) in self.cells.iter().enumerate() {
+            values[cell.index()] = measure(self.corners(i, &mesh.points));
+        }
+        Field::scalars(name, values)
+    }
+
+    /// For each of `n_cells` cells whether it is a tet that the file numbers the other way round.
+    pub(crate) fn are_turned(&self, n_cells: usize) -> Vec<bool> {
+        let mut are_turned = vec![false; n_cells];
+        self.turned.iter().for_each(|&tet| are_turned[self.cells[tet].index()] = true);
+        are_turned
+    }
+
+    /// Parts `low`, the tets whose EAS is below `min_eas`, into those that are bad and those of boundary layers.
+    pub fn judge(&self, points: &[Point], low: Vec<usize>, min_eas: f64) -> Judged {
+        let is_thin = are_layers(points, &self.tets, &self.walls, &low, min_eas);
+        let [bad, layers] = [false, true].map(|thin| {
+            low.iter().zip(&is_thin).filter(|(_, is)| **is == thin).map(|(&tet, _)| tet).collect()
+        });
+        Judged { bad, layers }
+    }
+
+    fn orient(&mut self, points: &[Point], regions: &[i32], triangles: &[[VertexId; 3]]) {
+        if self.tets.len() + triangles.len() >= MOST {
+            return;
+        }
+        let (tets, walls) = (&self.tets, &mut self.walls);
+        let mut is_one_sided = false;
+        for_each_tet_facet(tets, triangles, |sharing: Sharing| {
+            if let [(t, i), (u, j)] = *sharing.tets {
+                let [x, y] = [(t, i), (u, j)].map(|(t, i)| facet(&tets[t.index()], i));
+                is_one_sided |= !see_from_opposite_sides(x, y);
+            }
+            if sharing.is_wall(regions) {
+                let (t, i) = sharing.tets[0];
+                walls.push(FACETS[i].map(|corner| tets[t.index()][corner]));
+            }
+        });
+        let is_negative =
+            |t: usize| self.corners(t, points).into_iter().all(in_range) && self.is_inverted(t, points);
+        if is_one_sided || (0..self.tets.len()).any(is_negative) {
+            let across = across(&self.tets);
+            let behind = |t: usize, i: usize| {
+                let half = Some(across[t][i]).filter(|half| *half != NONE)?;
+                Some(((half >> 2) as usize, (half & 3) as usize))
+            };
+            // A one-sided mesh stays as the file numbers it.
+            let is_turned = orient(&mut self.tets, behind, points).unwrap_or_default();
+            self.turned = (0..is_turned.len()).filter(|&t| is_turned[t]).collect();
+        }
+    }
+}
+
+/// Whether an oriented tet is flat or inverted, by exact signs.
+pub fn is_inverted([a, b, c, d]: [Point; 4]) -> bool {
+    orient3d(a, b, c, d) <= 0
+}
+
+/// No facet.
+const NONE: u32 = u32::MAX;
+
+/// The facet behind each facet, as four times its tet and its place there; [`NONE`] on the boundary, and where more than two tets share it.
+fn across(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
+    let mut across = vec![[NONE; 4]; tets.len()];
+    for_each_tet_facet(tets, &[], |sharing| {
+        if let &[(t, i), (u, j)] = sharing.tets {
+            across[t.index()][i] = u.0 << 2 | j as u32;
+            across[u.index()][j] = t.0 << 2 | i as u32;
+        }
+    });
+    across
+}
