@@ -156,6 +156,7 @@ typedef struct motet_mover_options {
     int64_t n_wall;
     const int32_t *also_moved; /* vertices inside that are moved, too; default none */
     int64_t n_also_moved;
+    double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
 } motet_mover_options;
 
 /* Defaults; size is sizeof(motet_mover_options). */
@@ -390,6 +391,7 @@ typedef struct motet_moving_options {
     double hold;               /* walls stop at this distance, whatever they are told, each patch before those after it; default 0: they do not */
     int32_t remembered;        /* so many changes are remembered for motet_moving_since; default 64 */
     int32_t threads;           /* default 0 */
+    double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

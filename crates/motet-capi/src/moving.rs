@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
-use motet::motion::{Limits, MethodWords};
+use motet::motion::{Limits, MethodWords, SlideTolerance};
 use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
 use motet::refine::{self, Criterion, Size, Target, Wanted};
 use motet::{Error, Mesh, Result, contact, io, remesh};
@@ -58,6 +58,7 @@ versioned! {
         hold: f64 = 0.0,
         remembered: i32 = 64,
         threads: i32 = 0,
+        slide_tolerance: f64 = SlideTolerance::default().0,
     }
 }
 
@@ -91,6 +92,7 @@ impl MotetMovingOptions {
             smoothing: natural(self.smooth, "sweeps")?,
             inside: labels(self.inside, self.n_inside, "inside")?,
             sliding: labels(self.slide, self.n_slide, "slide")?,
+            slide_tolerance: SlideTolerance(self.slide_tolerance),
             rigid_layer: extent.map(|extent| (extent, wall)),
             limits: Limits::default(),
         })
