@@ -86,7 +86,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
         count(added),
         count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
     ));
-    for plane in &planes {
+    for plane in planes.iter().filter(|plane| args.flatten || plane.deviation > FLAT * plane.radius) {
         console.say(format_args!(
             "{}: its rim {} {} off its plane, {} of its radius of {}",
             plane.patch,
@@ -108,6 +108,9 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
+/// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
+const FLAT: f64 = 1e-6;
+
 /// A frame closed, and how flat its rims were.
 fn close(args: &CapArgs, caps: &Caps, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
     match args.flatten {
@@ -115,6 +118,7 @@ fn close(args: &CapArgs, caps: &Caps, frame: &Mesh) -> Result<(Mesh, Vec<RimPlan
             let (flat, planes) = caps.flatten(frame)?;
             Ok((caps.close(&flat)?, planes))
         }
+        // A rim without area has no plane, but a cap.
         false => Ok((caps.close(frame)?, caps.planes(frame).unwrap_or_default())),
     }
 }
