@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
+use motet::geometry::vector::distance;
 use motet::mesh::Boundary;
 use motet::mesh::check::{HangingVertex, hanging_vertices};
 use motet::motion::{Certificate, Interface, LeavesPlane, Mover, Setup, SlidingPlane, Tried};
@@ -18,6 +19,9 @@ use crate::words;
 
 /// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
 const FLAT: f64 = 1e-6;
+
+/// A mesh is closed where vertices are nearer to their facets than this part of its size.
+const ROUNDING: f64 = 1e-9;
 
 /// All that a motion came to.
 #[derive(Debug, Serialize)]
@@ -73,6 +77,9 @@ struct Hanging {
     /// The largest distance of one from the place on its facet where it was, and which.
     opening: f64,
     opens_at: VertexId,
+    /// An opening up to here is rounding.
+    #[serde(skip)]
+    rounding: f64,
 }
 
 /// How a method was chosen.
@@ -161,6 +168,7 @@ impl Report {
             place: mesh.points[hanging.vertex.index()],
             opening: 0.0,
             opens_at: hanging.vertex,
+            rounding: mesh.bounds().map_or(0.0, |[low, high]| ROUNDING * distance(low, high)),
         });
     }
 
@@ -302,7 +310,9 @@ impl Report {
                 step.step
             ));
         }
-        if let Some(Hanging { opening, opens_at, .. }) = self.hanging.as_ref().filter(|h| h.opening > 0.0) {
+        if let Some(Hanging { opening, opens_at, .. }) =
+            self.hanging.as_ref().filter(|h| h.opening > h.rounding)
+        {
             console.warn(format_args!(
                 "vertices that lie on facets of which they are no corner have left them, by up to {} (vertex {opens_at}): the mesh opens there",
                 short(*opening)
