@@ -45,7 +45,9 @@ mod _motet {
     #[pymodule_export]
     use crate::meshing::mesh;
     #[pymodule_export]
-    use crate::motion::{Mover, PointMover, choose, mesh_velocity, patch_vertices, prescribed};
+    use crate::motion::{
+        Mover, PointMover, choose, interface_vertices, mesh_velocity, patch_vertices, prescribed,
+    };
     #[pymodule_export]
     use crate::moving::MovingMesh;
     #[pymodule_export]

@@ -2,8 +2,10 @@
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
+use motet::mesh::Boundary;
 use motet::motion::{
-    self, BoundaryMotion, Extent, FacetSet, Limits, Method, MethodWords, Options, Prescribed, RigidLayer,
+    self, BoundaryMotion, Extent, FacetSet, Interface, Limits, Method, MethodWords, Options, Prescribed,
+    RigidLayer, SlideTolerance,
 };
 use numpy::{PyArray1, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -27,6 +29,7 @@ pub(crate) struct Asked<'py> {
     rigid_layer_cells: Option<usize>,
     rigid_layer_at: Vec<Facets<'py>>,
     slide: Vec<Facets<'py>>,
+    slide_tolerance: f64,
     residual: f64,
     factor_gib: f64,
     substeps: usize,
@@ -48,6 +51,7 @@ impl Asked<'_> {
             also_moved,
             rigid_layer,
             sliding: all_facets(mesh, &self.slide)?,
+            slide_tolerance: SlideTolerance(self.slide_tolerance),
             limits: Limits { substeps: self.substeps, ..Limits::default() },
         })
     }
@@ -196,7 +200,9 @@ pub(crate) fn prescribed<'py>(
     for (word, motions) in &motions {
         let set = crate::words::facets(&mesh, word)?;
         let all = motions.iter().map(|motion| of(motion, &mesh, &set.vertices)).collect();
-        asked.follow(&set.vertices, Prescribed::sequence(all)).or_raise()?;
+        let motion = Prescribed::sequence(all);
+        asked.check_alike(&mesh.points, &set.name, &set.vertices, &motion).or_raise()?;
+        asked.follow(&set.vertices, motion).or_raise()?;
     }
     fractions.iter().map(|&f| Ok(vectors(py, asked.displacements(&mesh.points, f))?.into_any())).collect()
 }
@@ -243,6 +249,21 @@ pub(crate) fn mesh_velocity<'py>(
     let velocity =
         motion::mesh_velocity(rows(&before, "points before")?, rows(&points, "points")?, dt).or_raise()?;
     Ok(vectors(py, velocity)?.into_any())
+}
+
+/// The vertices of the interfaces inside that a displacement of all points moves, rising.
+#[pyfunction]
+pub(crate) fn interface_vertices<'py>(
+    py: Python<'py>,
+    mesh: Given,
+    displacement: Vectors<'_>,
+) -> PyResult<Bound<'py, PyArray1<u32>>> {
+    let boundary = Boundary::of(&mesh.0.cells);
+    let moved = Interface::moved(&mesh.0, &boundary, rows(&displacement, "displacement")?).or_raise()?;
+    let mut vertices: Vec<VertexId> = moved.into_iter().flat_map(|interface| interface.vertices).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    Ok(ids(py, vertices))
 }
 
 /// The vertices of patches, rising.

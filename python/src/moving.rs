@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use motet::Mesh;
 use motet::base::{Threads, Watch};
 use motet::contact;
-use motet::motion::{Extent, Limits, Method, MethodWords};
+use motet::motion::{Extent, Limits, Method, MethodWords, SlideTolerance};
 use motet::moving::{self, Motion, Options, Watching};
 use motet::refine::Wanted;
 use motet::remesh::{self, SurfaceRule};
@@ -31,6 +31,7 @@ pub(crate) struct Asked {
     smooth: usize,
     inside: Vec<String>,
     slide: Vec<String>,
+    slide_tolerance: f64,
     rigid_layer: Option<f64>,
     rigid_layer_cells: Option<usize>,
     rigid_layer_at: Vec<String>,
@@ -64,6 +65,7 @@ impl Asked {
             smoothing: self.smooth,
             inside: labels(&self.inside)?,
             sliding: labels(&self.slide)?,
+            slide_tolerance: SlideTolerance(self.slide_tolerance),
             rigid_layer: extent.map(|extent| (extent, wall)),
             limits: Limits::default(),
         };

@@ -35,6 +35,7 @@ module motet
     integer(c_int64_t) :: n_wall = 0
     type(c_ptr) :: also_moved = c_null_ptr
     integer(c_int64_t) :: n_also_moved = 0
+    real(c_double) :: slide_tolerance = 0.05_c_double
   end type
 
   type, bind(c), public :: certificate
@@ -96,6 +97,7 @@ module motet
     integer(c_int32_t) :: remembered = 64, threads = 0
     type(c_ptr) :: hold_names = c_null_ptr
     integer(c_int64_t) :: n_hold_names = 0
+    real(c_double) :: slide_tolerance = 0.05_c_double
   end type
 
   ! What became of a step of a moving mesh.

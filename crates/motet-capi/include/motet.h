@@ -156,6 +156,7 @@ typedef struct motet_mover_options {
     int64_t n_wall;
     const int32_t *also_moved; /* vertices inside that are moved, too; default none */
     int64_t n_also_moved;
+    double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
 } motet_mover_options;
 
 /* Defaults; size is sizeof(motet_mover_options). */
@@ -394,6 +395,7 @@ typedef struct motet_moving_options {
     int32_t threads;           /* default 0 */
     const char *const *hold_names; /* regions and patches that repair leaves as they are: as hold of motet_remesh_options; default none */
     int64_t n_hold_names;
+    double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

@@ -6,6 +6,7 @@ use std::ptr;
 use motet::base::Threads;
 use motet::motion::{
     Certificate, Extent, FacetSet, Limits, Method, MethodWords, Mover, Options, PointMover, RigidLayer,
+    SlideTolerance,
 };
 use motet::{Error, Mesh, Result};
 
@@ -42,6 +43,7 @@ versioned! {
         n_wall: i64 = 0,
         also_moved: *const i32 = ptr::null(),
         n_also_moved: i64 = 0,
+        slide_tolerance: f64 = SlideTolerance::default().0,
     }
 }
 
@@ -66,6 +68,7 @@ impl MotetMoverOptions {
             also_moved: moved.collect::<Result<_>>()?,
             rigid_layer: extent.map(|extent| RigidLayer { extent, wall }),
             sliding: find(self.slide, self.n_slide, "slide")?,
+            slide_tolerance: SlideTolerance(self.slide_tolerance),
             limits: Limits { substeps: natural(self.substeps, "sub-steps")?, ..Limits::default() },
         })
     }

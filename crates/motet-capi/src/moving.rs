@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
-use motet::motion::{Limits, MethodWords};
+use motet::motion::{Limits, MethodWords, SlideTolerance};
 use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
 use motet::refine::{self, Criterion, Size, Target, Wanted};
 use motet::{Error, Mesh, Result, contact, io, remesh};
@@ -60,6 +60,7 @@ versioned! {
         threads: i32 = 0,
         hold_names: *const *const c_char = ptr::null(),
         n_hold_names: i64 = 0,
+        slide_tolerance: f64 = SlideTolerance::default().0,
     }
 }
 
@@ -94,6 +95,7 @@ impl MotetMovingOptions {
             smoothing: natural(self.smooth, "sweeps")?,
             inside: labels(self.inside, self.n_inside, "inside")?,
             sliding: labels(self.slide, self.n_slide, "slide")?,
+            slide_tolerance: SlideTolerance(self.slide_tolerance),
             rigid_layer: extent.map(|extent| (extent, wall)),
             limits: Limits::default(),
         })

@@ -18,6 +18,14 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// One number from 0 to below 1.
+pub(crate) fn part(text: &str) -> Result<f64, String> {
+    match number(text) {
+        Ok(x) if (0.0..1.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0 to below 1 is expected".into()),
+    }
+}
+
 /// One number from 0 on.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match number(text) {

@@ -30,6 +30,7 @@ class _Asked:
     rigid_layer_cells: int | None
     rigid_layer_at: list
     slide: list
+    slide_tolerance: float
     residual: float
     factor_gib: float
     substeps: int
@@ -46,6 +47,7 @@ def _asked(
     rigid_layer_cells: int | None = None,
     rigid_layer_at: Sequence[Patch] = (),
     slide: Sequence[Patch] = (),
+    slide_tolerance: float = 0.05,
     residual: float = 1e-6,
     factor_gib: float = 0.0,
     substeps: int = 50,
@@ -55,7 +57,7 @@ def _asked(
     moved = None if also_moved is None else ids(also_moved, "also_moved")
     return _Asked(
         method, _facets(bodies), within_walls, smooth, moved, rigid_layer, rigid_layer_cells, _facets(rigid_layer_at), _facets(slide),
-        residual, factor_gib, substeps,
+        slide_tolerance, residual, factor_gib, substeps,
     )  # fmt: skip
 
 
@@ -107,7 +109,9 @@ class Mover:
     rigid_layer_at : sequence of patches
         The wall of the rigid layer, and where ``laplace`` is stiff; all of the boundary that does not slide, if empty.
     slide : sequence of patches
-        Flat patches whose vertices slide in their plane.
+        Flat patches whose vertices slide in their plane, where two planes meet along their line.
+    slide_tolerance : float
+        How far vertices of such a patch may be off its plane, as a part of its radius; they stay as far off.
     residual : float
         When an iterated linear system (``elastic``, ``laplace``) is solved.
     factor_gib : float
@@ -278,9 +282,10 @@ def move(
     ----------
     mesh : mesh, path, meshio.Mesh or PyVista data set
     displacement : str or array
-        A point array of the mesh by its name, or an array (n, 3) of all points; values inside are not looked at. Boundary vertices of no displacement stay.
+        A point array of the mesh by its name, or an array (n, 3) of all points. Inside, values move the interfaces of
+        regions and of labelled facets on which they are not zero; others are not looked at. Boundary vertices of no displacement stay.
     translate : mapping from patch to vector
-        A patch may lie inside, such as the surface of a device.
+        A patch may lie inside, such as the surface of a device. Patches that share vertices must move them alike.
     rotate : mapping from patch to (axis, degrees) or (axis, degrees, centre)
         The centre is the middle of the patch where none is given. A patch that turns and shifts turns first.
     steps : int
@@ -304,6 +309,12 @@ def move(
     given = as_mesh(mesh)
     if steps < 1:
         raise OptionsError(f"{steps} steps, expected 1 or more")
+    if displacement is not None and not (translate or rotate):
+        displacement = _whole(given, displacement)
+        inside = _motet.interface_vertices(given, displacement)
+        if len(inside):
+            also = [] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")]
+            options["also_moved"] = np.unique(np.concatenate([inside, *also]))
     told = {**(translate or {}), **(rotate or {})}
     if told:
         also = [] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")]
@@ -333,16 +344,20 @@ def move(
     return Moved(moved, certificate, choice)
 
 
+def _whole(given: Mesh, displacement: str | ArrayLike) -> NDArray[np.float64]:
+    if isinstance(displacement, str):
+        if displacement not in given.point_data:
+            raise OptionsError(f"the mesh has no point array {displacement!r}; it has {', '.join(given.point_data) or 'none'}")
+        displacement = given.point_data[displacement]
+    return _vectors(displacement, given.n_points, "displacement")
+
+
 def _frames(given: Mesh, boundary, displacement, translate, rotate, steps) -> list:
     fractions = [k / steps for k in range(1, steps + 1)]
     if displacement is not None:
         if translate or rotate:
             raise OptionsError("displacement says where all goes: leave translate and rotate away")
-        if isinstance(displacement, str):
-            if displacement not in given.point_data:
-                raise OptionsError(f"the mesh has no point array {displacement!r}; it has {', '.join(given.point_data) or 'none'}")
-            displacement = given.point_data[displacement]
-        whole = _vectors(displacement, given.n_points, "displacement")[boundary]
+        whole = _whole(given, displacement)[boundary]
         return [fraction * whole for fraction in fractions]
     if not translate and not rotate:
         raise OptionsError("nothing moves: give displacement, translate or rotate")

@@ -27,6 +27,7 @@ class _Asked:
     smooth: int = 0
     inside: Sequence[str | int] = ()
     slide: Sequence[str | int] = ()
+    slide_tolerance: float = 0.05
     rigid_layer: float | None = None
     rigid_layer_cells: int | None = None
     rigid_layer_at: Sequence[str | int] = ()
@@ -64,7 +65,7 @@ class MovingMesh:
     Parameters
     ----------
     mesh : mesh, path, meshio.Mesh or PyVista data set
-    method, within_walls, smooth, rigid_layer, rigid_layer_cells : as of :class:`Mover`
+    method, within_walls, smooth, rigid_layer, rigid_layer_cells, slide_tolerance : as of :class:`Mover`
     bodies, inside, slide, rigid_layer_at : sequences of names or labels of patches
         ``inside``: patches inside the volume that are driven, such as a flap. The others as of :class:`Mover`.
     repair : bool

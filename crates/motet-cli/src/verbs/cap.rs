@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use motet::meshing::Caps;
+use motet::meshing::{Caps, RimPlane};
 use motet::{Error, Mesh, Result, io};
 use serde_json::json;
 
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::outputs;
-use crate::table::{count, counted};
+use crate::table::{count, counted, short};
 use crate::verbs::convert::WritingArgs;
 use crate::words::shown;
 
@@ -25,6 +25,7 @@ Examples:
   motet cap ventricle.vtk -o closed.vtp
   motet cap frame_*.vtk -o wall.pvd --period 0.8          frames of one cycle, evenly in time
   motet cap wall.pvd -o closed.pvd
+  motet cap lumen.stl -o closed.vtp --flatten             rims cut by hand, caps that can slide
   motet mesh closed_0000.vtu -o lumen.vtu --size 2        and then the inside
 
 Exit status 3: there is no open rim, rims touch, or frames have different numbers of points; nothing is written.")]
@@ -35,6 +36,10 @@ pub(crate) struct CapArgs {
     /// Where the result goes: a .pvd for frames, any mesh format for one surface
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    /// Move the vertices of each rim onto the rim's plane, so that caps are flat and can slide (`motet move --slide`);
+    /// else the surface stays to the bit, and a cap is as flat as its rim. The report says how far rims are off
+    #[arg(long)]
+    flatten: bool,
     /// How long the frames take together, where they are files: the first follows the last
     #[arg(long, value_name = "TIME", default_value_t = 1.0, value_parser = crate::words::positive)]
     period: f64,
@@ -54,7 +59,12 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     }
     let first = read(&frames[0].1, console)?;
     let caps = Caps::of(&first).map_err(|e| e.in_file(&frames[0].1))?;
-    let closed = |file: &Path| caps.close(&read(file, console)?).map_err(|e| e.in_file(file));
+    let mut planes = Vec::new();
+    let mut closed = |file: &Path| {
+        let (closed, found) = close(args, &caps, &read(file, console)?).map_err(|e| e.in_file(file))?;
+        keep_worst(&mut planes, found);
+        Ok(closed)
+    };
     let options = args.writing.options();
     let lost = match is_series {
         true => {
@@ -76,14 +86,54 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
         count(added),
         count(whole.cells.len() - motet::mesh::Surface::of(&first).triangles.len())
     ));
+    for plane in planes.iter().filter(|plane| args.flatten || plane.deviation > FLAT * plane.radius) {
+        console.say(format_args!(
+            "{}: its rim {} {} off its plane, {} of its radius of {}",
+            plane.patch,
+            if args.flatten { "is flat now, it was" } else { "is" },
+            short(plane.deviation),
+            short(plane.deviation / plane.radius),
+            short(plane.radius)
+        ));
+    }
     console.report(&json!({
         "output": shown(&args.output),
         "frames": frames.len(),
         "rims": caps.len(),
         "points": whole.points.len(),
         "triangles": whole.cells.len(),
+        "flattened": args.flatten,
+        "planes": planes,
     }));
     Ok(Outcome::Done)
+}
+
+/// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
+const FLAT: f64 = 1e-6;
+
+/// A frame closed, and how flat its rims were.
+fn close(args: &CapArgs, caps: &Caps, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
+    match args.flatten {
+        true => {
+            let (flat, planes) = caps.flatten(frame)?;
+            Ok((caps.close(&flat)?, planes))
+        }
+        // A rim without area has no plane, but a cap.
+        false => Ok((caps.close(frame)?, caps.planes(frame).unwrap_or_default())),
+    }
+}
+
+/// Of each rim the frame in which it is farthest off its plane.
+fn keep_worst(worst: &mut Vec<RimPlane>, found: Vec<RimPlane>) {
+    if worst.len() < found.len() {
+        *worst = found;
+        return;
+    }
+    for (worst, found) in worst.iter_mut().zip(found) {
+        if found.deviation * worst.radius > worst.deviation * found.radius {
+            *worst = found;
+        }
+    }
 }
 
 /// The frames and their times.

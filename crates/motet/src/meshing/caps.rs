@@ -1,11 +1,15 @@
 //! Open rims closed by caps of triangles, the same for every frame of a surface that moves.
 //!
 //! A cap is rings of vertices that shrink towards the middle of its rim, each a fixed mean of vertices of the rim: so caps follow a rim that moves or bends.
+//! A cap is as flat as its rim. Rims that were cut by hand are not flat; they can be moved onto their planes.
 
 use std::collections::BTreeMap;
 
+use serde::Serialize;
+
 use crate::base::{Error, Point, Result, VertexId};
-use crate::geometry::vector::distance;
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, distance, dot, scale, sub, unit};
 use crate::mesh::disc::{disc_of_rings, n_rings};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface, unused_name};
 use crate::preflight::open_rims;
@@ -19,6 +23,17 @@ pub struct Caps {
     patches: Vec<i32>,
     names: BTreeMap<i32, String>,
     rims: Vec<Rim>,
+}
+
+/// How flat a rim is, and with it its cap.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RimPlane {
+    /// The patch of the cap.
+    pub patch: String,
+    /// The largest distance of a vertex of the rim from its middle, in the unit of the points.
+    pub radius: f64,
+    /// The largest distance of a vertex of the rim from the rim's plane: the one through the middle, at right angles to the rim's area vector.
+    pub deviation: f64,
 }
 
 /// One rim and its cap.
@@ -70,19 +85,85 @@ impl Caps {
         self.rims.is_empty()
     }
 
+    /// How flat the rims of a frame are, in the order of the caps.
+    ///
+    /// # Errors
+    /// When the frame has another number of points, or a rim encloses no area.
+    pub fn planes(&self, frame: &Mesh) -> Result<Vec<RimPlane>> {
+        self.check(frame)?;
+        let plane = |rim: &Rim| Ok(self.plane_of(rim, &frame.points)?.0);
+        self.rims.iter().map(plane).collect()
+    }
+
+    /// A frame of the surface with the vertices of each rim moved onto the rim's plane, along its normal: what is closed then has flat caps. All else
+    /// stays to the bit. Also how far each rim was off.
+    ///
+    /// # Errors
+    /// As [`Self::planes`]; when a triangle at a rim would turn over or lose its area.
+    pub fn flatten(&self, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
+        self.check(frame)?;
+        let mut flat = frame.clone();
+        let mut planes = Vec::new();
+        for rim in &self.rims {
+            let (found, middle, normal) = self.plane_of(rim, &frame.points)?;
+            for v in &rim.vertices {
+                let p = frame.points[v.index()];
+                flat.points[v.index()] = sub(p, scale(normal, dot(normal, sub(p, middle))));
+            }
+            planes.push(found);
+        }
+        let area = |points: &[Point], t: &[VertexId; 3]| area_vector(t.map(|v| points[v.index()]));
+        let is_turned = |t: &&[VertexId; 3]| {
+            let [before, after] = [&frame.points, &flat.points].map(|points| area(points, t));
+            before != after && dot(before, after) <= 0.0
+        };
+        match self.triangles.iter().find(is_turned) {
+            None => Ok((flat, planes)),
+            Some(t) => Err(Error::input("a triangle at the rim would turn over where the rim is made flat")
+                .at(format!("point {} at {:?}", t[0], frame.points[t[0].index()]))
+                .remedy("cut the vessel across, so that its rim is nearer to a plane; or cap it as it is")),
+        }
+    }
+
+    fn check(&self, frame: &Mesh) -> Result<()> {
+        match frame.points.len() == self.n_points {
+            true => Ok(()),
+            false => Err(Error::input(format!(
+                "has {} points, the first frame {}",
+                frame.points.len(),
+                self.n_points
+            ))
+            .remedy("frames of one surface have the same points in the same order")),
+        }
+    }
+
+    /// The plane of a rim: how flat it is, its middle, and its unit normal.
+    fn plane_of(&self, rim: &Rim, points: &[Point]) -> Result<(RimPlane, Point, Point)> {
+        let patch = self.names.get(&rim.label).cloned().unwrap_or_default();
+        let corners: Vec<Point> = rim.vertices.iter().map(|v| points[v.index()]).collect();
+        let middle = scale(corners.iter().copied().fold([0.0; 3], add), 1.0 / corners.len() as f64);
+        let next = corners.iter().cycle().skip(1);
+        let area =
+            corners.iter().zip(next).fold([0.0; 3], |sum, (&p, &q)| add(sum, area_vector([middle, p, q])));
+        let Some(normal) = unit(area) else {
+            return Err(Error::input("the rim encloses no area, so it has no plane")
+                .at(format!("{patch}, point {}", rim.vertices[0])));
+        };
+        let off = |p: &Point| dot(normal, sub(*p, middle)).abs();
+        let plane = RimPlane {
+            patch,
+            radius: corners.iter().map(|&p| distance(p, middle)).fold(0.0, f64::max),
+            deviation: corners.iter().map(off).fold(0.0, f64::max),
+        };
+        Ok((plane, middle, normal))
+    }
+
     /// A frame of the surface, closed. Its points come first; the same number of points and triangles for every frame.
     ///
     /// # Errors
     /// When the frame has another number of points.
     pub fn close(&self, frame: &Mesh) -> Result<Mesh> {
-        if frame.points.len() != self.n_points {
-            return Err(Error::input(format!(
-                "has {} points, the first frame {}",
-                frame.points.len(),
-                self.n_points
-            ))
-            .remedy("frames of one surface have the same points in the same order"));
-        }
+        self.check(frame)?;
         let (mut points, mut triangles, mut patches) =
             (frame.points.clone(), self.triangles.clone(), self.patches.clone());
         for rim in &self.rims {
@@ -173,6 +254,53 @@ mod tests {
         }
         moved.points.pop();
         assert!(caps.close(&moved).is_err());
+    }
+
+    #[test]
+    fn rims_are_flattened_and_nothing_else_is_touched() {
+        let mut open = open();
+        let caps = Caps::of(&open).unwrap();
+        let before = open.clone();
+        let flat_rims: Vec<RimPlane> = caps.planes(&open).unwrap();
+        assert!(flat_rims.iter().all(|rim| rim.deviation < 1e-12 * rim.radius));
+        // Every other vertex of a rim is off by 0.02 of the radius along the normal of its plane, turn about.
+        for (rim, plane) in caps.rims.iter().zip(&flat_rims) {
+            let (_, _, normal) = caps.plane_of(rim, &before.points).unwrap();
+            for (i, v) in rim.vertices.iter().enumerate() {
+                let by = if i % 2 == 0 { 0.02 } else { -0.02 } * plane.radius;
+                open.points[v.index()] = add(open.points[v.index()], scale(normal, by));
+            }
+        }
+        let (flat, planes) = caps.flatten(&open).unwrap();
+        assert_eq!(planes, caps.planes(&open).unwrap());
+        let is_on_rim = |v: usize| caps.rims.iter().any(|rim| rim.vertices.contains(&VertexId::new(v)));
+        for (v, (p, q)) in open.points.iter().zip(&flat.points).enumerate() {
+            assert!(is_on_rim(v) || p == q);
+        }
+        for (plane, was) in caps.planes(&flat).unwrap().iter().zip(&planes) {
+            assert!(plane.deviation < 1e-14 * plane.radius, "{plane:?}");
+            assert!((was.deviation / was.radius - 0.02).abs() < 2e-3, "{was:?}");
+        }
+    }
+
+    #[test]
+    fn a_rim_that_cannot_be_flattened_is_refused_with_its_place() {
+        // A tent without its floor: two of its four corners are so high that the walls would turn over.
+        let points =
+            vec![[1.0, 0.0, 3.0], [0.0, 1.0, -3.0], [-1.0, 0.0, 3.0], [0.0, -1.0, -3.0], [0.0, 0.0, 1.0]];
+        let walls = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]].map(|t| t.map(VertexId));
+        let cells = |walls: &[[VertexId; 3]]| {
+            Cells::uniform(CellKind::TRIANGLE, walls.as_flattened().to_vec()).unwrap()
+        };
+        let tent = Mesh::new(points, cells(&walls));
+        let caps = Caps::of(&tent).unwrap();
+        assert!((caps.planes(&tent).unwrap()[0].deviation - 3.0).abs() < 1e-15);
+        assert!(caps.flatten(&tent).is_ok());
+        let mut folded = tent.clone();
+        folded.points[4] = [0.9, 0.0, 2.0];
+        folded.points[0] = [0.5, 0.0, 3.0];
+        let told = caps.flatten(&folded).unwrap_err().to_string();
+        assert!(told.contains("point") && told.contains("turn over"), "{told}");
     }
 
     #[test]

@@ -28,7 +28,7 @@ mod surfaces;
 
 pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
-pub use caps::Caps;
+pub use caps::{Caps, RimPlane};
 pub(crate) use compact::{compact, named};
 pub use fill::{Filled, Options, Report, fill};
 pub(crate) use graded::points_between;

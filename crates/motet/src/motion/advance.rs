@@ -78,6 +78,8 @@ impl Mover {
             }
             gone?;
         }
+        let driven = self.state.as_ref().map_or(displacement, |state| &state.driven);
+        certificate.leaves_plane = self.leaves_plane(driven);
         self.certify(out, &mut certificate, threads, &mut seconds);
         seconds.total = begin.elapsed().as_secs_f64();
         certificate.seconds = seconds;

@@ -1,7 +1,11 @@
 //! What every boundary vertex is told to do: stay, follow a motion, or go where a file says.
 
-use crate::base::{Point, Result, VertexId};
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{norm, sub};
 use crate::motion::Prescribed;
+
+/// Two displacements are one where they differ by less than this part of their size and that of the coordinates.
+const ROUNDING: f64 = 1e-12;
 
 /// The asked motion of the boundary of a mesh, at any fraction of it. Vertices
 /// inside that are moved, too, such as those of an interface, count as boundary.
@@ -47,6 +51,48 @@ impl BoundaryMotion {
         self.give(vertices.iter().map(|&v| (v, Order::Stay)))
     }
 
+    /// Refuses a motion of a patch some vertices of which obey an order given before, other than to stay, that takes them elsewhere.
+    /// `points` are those of the undeformed mesh.
+    ///
+    /// # Errors
+    /// With how many vertices that are, and where the first is.
+    pub fn check_alike(
+        &self,
+        points: &[Point],
+        patch: &str,
+        vertices: &[VertexId],
+        motion: &Prescribed,
+    ) -> Result<()> {
+        let contradicted = self.contradicted(points, vertices, motion);
+        let Some(&first) = contradicted.first() else { return Ok(()) };
+        let [x, y, z] = points[first.index()];
+        let n = contradicted.len();
+        Err(Error::options(format!(
+            "patch {patch} and a patch moved before it share {n} vertices, and move them to different places"
+        ))
+        .at(format!("vertex {first} at ({x:.6}, {y:.6}, {z:.6})"))
+        .remedy(
+            "let one patch follow the other (`--slide`) or stay where they meet (`--fixed`), move both alike, \
+             or give each vertex its own displacement (`--displacement ARRAY`)",
+        ))
+    }
+
+    /// Those of `vertices` that obey an order given before, other than to stay, which takes them elsewhere than `motion`
+    /// would, half of the way or all of it: by more than rounding.
+    fn contradicted(&self, points: &[Point], vertices: &[VertexId], motion: &Prescribed) -> Vec<VertexId> {
+        let differs = |i: usize, v: VertexId| {
+            let place = points[v.index()];
+            [0.5, 1.0].into_iter().any(|fraction| {
+                let [a, b] = [self.displacement(i, place, fraction), motion.displacement(place, fraction)];
+                norm(sub(a, b)) > ROUNDING * (norm(a) + norm(b) + norm(place))
+            })
+        };
+        let is_told = |i: usize| matches!(self.orders[i], Order::Go(_) | Order::Follow(_));
+        let contradicted =
+            |v: &VertexId| self.vertices.binary_search(v).is_ok_and(|i| is_told(i) && differs(i, *v));
+        vertices.iter().copied().filter(contradicted).collect()
+    }
+
     /// `vertices` follow `motion`.
     ///
     /// # Errors
@@ -85,12 +131,16 @@ impl BoundaryMotion {
     /// The displacement of each boundary vertex, in their order, at `fraction` of the motion;
     /// `points` are those of the undeformed mesh.
     pub fn displacements(&self, points: &[Point], fraction: f64) -> Vec<Point> {
-        let one = |(vertex, order): (&VertexId, &Order)| match order {
+        let one = |(i, vertex): (usize, &VertexId)| self.displacement(i, points[vertex.index()], fraction);
+        self.vertices.iter().enumerate().map(one).collect()
+    }
+
+    fn displacement(&self, i: usize, place: Point, fraction: f64) -> Point {
+        match &self.orders[i] {
             Order::None | Order::Stay => [0.0; 3],
             Order::Go(d) => d.map(|x| x * fraction),
-            Order::Follow(motion) => self.motions[*motion].displacement(points[vertex.index()], fraction),
-        };
-        self.vertices.iter().zip(&self.orders).map(one).collect()
+            Order::Follow(motion) => self.motions[*motion].displacement(place, fraction),
+        }
     }
 
     fn give(&mut self, orders: impl Iterator<Item = (VertexId, Order)>) -> Taken {
@@ -125,6 +175,14 @@ mod tests {
         let half = motion.displacements(&[[0.0; 3]; 8], 0.5);
         assert_eq!(half, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
         assert_eq!(motion.told(), [4, 7].map(VertexId));
+        let all = [1, 3, 4, 7].map(VertexId);
+        // Vertex 3 stays, which is no contradiction; 4 is shifted likewise.
+        let likewise = Prescribed::Shift([2.0, 1e-15, 0.0]);
+        assert_eq!(motion.contradicted(&[[0.0; 3]; 8], &all, &likewise), [VertexId(7)]);
+        assert_eq!(
+            motion.contradicted(&[[0.0; 3]; 8], &all, &Prescribed::Shift([0.0; 3])),
+            [4, 7].map(VertexId)
+        );
         motion.go(&[(VertexId(1), [0.0; 3])]);
         assert_eq!(motion.told(), [1, 4, 7].map(VertexId));
         assert_eq!(motion.moving(&[[0.0; 3]; 8]), [4, 7].map(VertexId));

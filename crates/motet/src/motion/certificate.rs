@@ -7,6 +7,7 @@ use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::motion::check::Check;
+use crate::motion::slide::LeavesPlane;
 
 /// A tet is bad below this EAS.
 pub const BAD_EAS: f64 = 0.2;
@@ -35,6 +36,9 @@ pub struct Certificate {
     /// Tets of the graph that hold vertices and have turned over. Flat ones do at once;
     /// it means nothing where no cell is inverted.
     pub graph_tets_inverted: usize,
+    /// Where the rim of a sliding patch is moved out of its plane the farthest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub leaves_plane: Option<LeavesPlane>,
     /// How good the cells are.
     #[serde(flatten)]
     pub quality: Quality,

@@ -19,7 +19,7 @@
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
-use crate::geometry::vector::{add, distance, scale, sub};
+use crate::geometry::vector::{add, distance, sub};
 use crate::mesh::Cells;
 use crate::motion::options::{Extent, FacetSet};
 use crate::motion::rotation::{Wall, change, mean};
@@ -153,12 +153,6 @@ pub(crate) struct Moved {
 impl Moved {
     pub(crate) fn total(self) -> Point {
         add(self.foot, self.turn)
-    }
-
-    /// Without the part of the turn that leads out of a plane with this unit normal.
-    pub(crate) fn in_plane(self, normal: Point) -> Point {
-        let out = crate::geometry::vector::dot(self.turn, normal);
-        sub(self.total(), scale(normal, out))
     }
 }
 

@@ -63,10 +63,12 @@
 //!
 //! * *driven* vertices are told by the caller where to go: those of the boundary
 //!   ([`Mover::boundary`]), and any others that [`Options::also_moved`] names, such as
-//!   those of an interface inside. They get there to the bit. Of two boundary vertices
+//!   those of an interface inside ([`Interface::moved`]). They get there to the bit. Of two boundary vertices
 //!   in one place (the two sides of a slit) each goes its own way; vertices nearby
 //!   follow the one that comes first.
-//! * *sliding* vertices ([`Options::sliding`]) lie on flat patches and follow their rim.
+//! * *sliding* vertices ([`Options::sliding`]) lie on flat patches and follow their rim: in
+//!   the plane, and where two planes meet along their line. Where three meet, and where a patch
+//!   that slides meets one that does not, vertices are driven.
 //! * the *rigid layer* ([`Options::rigid_layer`]) keeps its place relative to the wall.
 //! * all other vertices hang in the graph; those that lie outside of it and belong to
 //!   no volume cell stay where they are.
@@ -82,6 +84,7 @@ mod corners;
 mod distance;
 mod graph;
 mod guided;
+mod interface;
 mod layer;
 mod map;
 mod matching;
@@ -103,8 +106,12 @@ pub use boundary_motion::{BoundaryMotion, Taken};
 pub use carrier::SurfaceCarrier;
 pub use certificate::{BAD_EAS, Certificate, Quality, Seconds, Worst};
 pub use choose::{Choice, Tried, choose};
+pub use interface::Interface;
 pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};
 pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
-pub use options::{Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer};
+pub use options::{
+    Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer, SlideTolerance,
+};
 pub use point_mover::PointMover;
 pub use prescribed::Prescribed;
+pub use slide::{LeavesPlane, SlidingPlane};

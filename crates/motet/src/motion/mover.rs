@@ -15,6 +15,7 @@ use crate::motion::guided::{self, Guided, Helpers};
 use crate::motion::map::Map;
 use crate::motion::nodes::{Nodes, not_sliding};
 use crate::motion::options::{FacetSet, Limits, Method, Options};
+use crate::motion::slide::{LeavesPlane, SlidingPlane};
 use crate::motion::smooth::Smoother;
 use crate::motion::solve::Solve;
 use crate::motion::spread::Spread;
@@ -64,7 +65,7 @@ pub(crate) struct Work {
 pub struct Setup {
     /// Vertices that the caller moves: those of the boundary, and those asked for.
     pub driven: usize,
-    /// Of these, vertices that slide in the plane of their patch.
+    /// Of these, vertices that slide in the plane of their patch, or on the line in which two such planes meet.
     pub sliding: usize,
     /// Vertices of the rigid layer.
     pub layer: usize,
@@ -120,7 +121,7 @@ impl Mover {
         let begin = Instant::now();
         let mut setup = Setup::default();
         let boundary = Boundary::of(&mesh.cells);
-        options.method.check()?;
+        options.check()?;
         check_input(mesh, &boundary, options)?;
         let mut clock = Instant::now();
         setup.seconds.boundary = (clock - begin).as_secs_f64();
@@ -174,6 +175,17 @@ impl Mover {
     /// The points of the mesh in its first place.
     pub fn reference(&self) -> &[Point] {
         &self.reference
+    }
+
+    /// The planes of sliding patches: how flat they are, and how many vertices slide in each.
+    pub fn sliding(&self) -> &[SlidingPlane] {
+        &self.nodes.planes
+    }
+
+    /// Where a rim of a sliding patch leaves its plane the farthest, when the vertices of [`Self::boundary`] have these displacements; `None` where all
+    /// stay within their planes.
+    pub fn leaves_plane(&self, displacement: &[Point]) -> Option<LeavesPlane> {
+        self.nodes.leaving(&self.reference, displacement)
     }
 
     /// What setting up found, and how long it took.

@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use crate::base::{Point, Result, Threads, VertexId};
-use crate::geometry::vector::add;
+use crate::geometry::vector::{add, sub};
 use crate::mesh::{Boundary, Mesh};
 use crate::motion::layer::Layer;
 use crate::motion::options::{FacetSet, Options, RigidLayer};
-use crate::motion::slide::{Slide, free_vertices, key};
+use crate::motion::slide::{Freedom, LeavesPlane, Rim, Slide, SlidingPlane, key, leaving};
 use crate::motion::update::{Displacements, Padded};
 
 /// All nodes of a mesh, and what moves them.
@@ -21,9 +21,12 @@ pub(crate) struct Nodes {
     layer: Option<Layer>,
     /// For each member of the layer its node.
     member_nodes: Vec<u32>,
-    /// For members that slide, the patch.
+    /// For members that slide, the place in `slides`.
     member_slides: Vec<Option<u32>>,
     slides: Vec<Slide>,
+    /// What is reported of the planes of sliding patches.
+    pub(crate) planes: Vec<SlidingPlane>,
+    rims: Vec<Rim>,
 }
 
 /// Says that a vertex is no node.
@@ -49,11 +52,11 @@ impl Nodes {
         }
         let mut node_of = vec![NONE; mesh.points.len()];
         (0..).zip(&nodes.vertices).for_each(|(i, v)| node_of[v.index()] = i);
-        let free = free_vertices(&options.sliding, boundary, mesh.points.len());
-        let mut slide_of = vec![None; mesh.points.len()];
-        for (i, list) in (0..).zip(&free) {
-            list.iter().for_each(|v| slide_of[v.index()] = Some(i));
-        }
+        let mut driven = options.also_moved.clone();
+        driven.sort_unstable();
+        let freedom =
+            Freedom::new(&mesh.points, &options.sliding, boundary, &driven, options.slide_tolerance.0)?;
+        let slide_of = freedom.held_of(mesh.points.len());
         if let Some(rigid) = &options.rigid_layer {
             let all = rigid.wall.is_none().then(|| not_sliding(boundary, &options.sliding));
             let wall = rigid.wall.as_ref().or(all.as_ref()).expect("one of the two is there");
@@ -61,10 +64,13 @@ impl Nodes {
         }
         let mut in_layer = vec![false; mesh.points.len()];
         nodes.layer.iter().flat_map(|l| &l.members).for_each(|m| in_layer[m.vertex.index()] = true);
-        for (set, free) in options.sliding.iter().zip(free) {
-            let follow: Vec<VertexId> = free.into_iter().filter(|v| !in_layer[v.index()]).collect();
-            nodes.slides.push(Slide::new(&mesh.points, set, &follow, |v| node_of[v.index()], threads)?);
+        let follows = |v: VertexId| !in_layer[v.index()];
+        let node = |v: VertexId| node_of[v.index()];
+        for held in &freedom.held {
+            nodes.slides.push(Slide::new(&mesh.points, &freedom.flats, held, follows, node, threads)?);
         }
+        nodes.planes = freedom.planes();
+        nodes.rims = freedom.rims(&mesh.points, node);
         Ok(nodes)
     }
 
@@ -109,13 +115,18 @@ impl Nodes {
             let kinds = self.member_nodes.iter().zip(&self.member_slides);
             for (moved, (&node, slide)) in layer.displacements(driven, threads).into_iter().zip(kinds) {
                 all[node as usize] = Padded::new(match slide {
-                    Some(slide) => moved.in_plane(self.slides[*slide as usize].normal),
+                    Some(slide) => sub(moved.total(), self.slides[*slide as usize].outward(moved.turn)),
                     None => moved.total(),
                 });
             }
         }
         self.slides.iter().for_each(|slide| slide.apply(&mut all));
         Displacements::All(all)
+    }
+
+    /// Where a rim of a sliding patch leaves its plane farthest, when the driven nodes have these displacements.
+    pub(crate) fn leaving(&self, reference: &[Point], driven: &[Point]) -> Option<LeavesPlane> {
+        leaving(&self.rims, &self.vertices, reference, driven)
     }
 
     /// Nodes that slide after others, rising; those of the layer are not among them.

@@ -173,14 +173,16 @@ pub struct Options {
     /// Sweeps over the vertices of bad tets after each step, which move them to where their tets are better. Default: none.
     pub smoothing: usize,
     /// Vertices inside the volume that the caller moves, too, such as those of an
-    /// interface between fluid and wall. Default: none.
+    /// interface between fluid and wall. Those of them on the boundary slide in no patch. Default: none.
     pub also_moved: Vec<VertexId>,
     /// Vertices near a wall that keep their place relative to it. Default: none.
     pub rigid_layer: Option<RigidLayer>,
     /// Flat parts of the boundary whose vertices slide in their plane after the
-    /// vertices around them. What the caller gives for those vertices is not looked
-    /// at. Default: none.
+    /// vertices around them, where two planes meet along their line. What the caller gives
+    /// for those vertices is not looked at. Default: none.
     pub sliding: Vec<FacetSet>,
+    /// How far the vertices of such a part may be off its plane, as a part of its radius; they stay as far off.
+    pub slide_tolerance: SlideTolerance,
     /// Limits of [`Mover::advance`](crate::motion::Mover::advance).
     pub limits: Limits,
 }
@@ -192,6 +194,36 @@ pub struct RigidLayer {
     pub extent: Extent,
     /// The wall; `None`: all of the boundary that does not slide.
     pub wall: Option<FacetSet>,
+}
+
+/// How flat a patch that slides has to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlideTolerance(
+    /// The largest distance of a vertex from the plane of the patch, as a part of the radius of the patch. Default: 0.05. Inlets that programs
+    /// cut are off by 0.003, caps of rims that were cut by hand by 0.01 (both met); the wall of a vessel by 0.3 and more.
+    pub f64,
+);
+
+impl Default for SlideTolerance {
+    fn default() -> Self {
+        Self(0.05)
+    }
+}
+
+impl Options {
+    /// # Errors
+    /// When a number means nothing.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.method.check()?;
+        let SlideTolerance(tolerance) = self.slide_tolerance;
+        if !(0.0..1.0).contains(&tolerance) {
+            return Err(Error::options(format!(
+                "{tolerance} is no part of its radius that a sliding patch may be off its plane"
+            ))
+            .remedy("give a number from 0 to below 1, such as 0.05"));
+        }
+        Ok(())
+    }
 }
 
 /// How far a rigid layer reaches.

@@ -9,7 +9,7 @@ use crate::contact;
 use crate::geometry::vector::{in_range, sub};
 use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
-use crate::motion::{Mover, mesh_velocity};
+use crate::motion::{LeavesPlane, Mover, mesh_velocity};
 use crate::moving::contents::go_to;
 use crate::moving::hold::Hold;
 use crate::moving::legs::{Reached, Way};
@@ -110,6 +110,15 @@ impl MovingMesh {
     /// How many steps were made.
     pub fn step(&self) -> usize {
         self.clock.step
+    }
+
+    /// Where a rim of a sliding patch leaves its plane the farthest, if walls had these displacements now: counted from the planes of the last change.
+    ///
+    /// # Panics
+    /// When there are not as many displacements as [`Self::driven_places`].
+    pub fn leaves_plane(&self, displacement: &[Point]) -> Option<LeavesPlane> {
+        assert_eq!(displacement.len(), self.wall.places.len(), "a displacement for each driven vertex");
+        self.now.mover.leaves_plane(&self.now.target(displacement))
     }
 
     /// What it was told.

@@ -4,7 +4,7 @@ use crate::base::{Error, Result, VertexId};
 use crate::contact;
 use crate::mesh::history::Rules;
 use crate::mesh::{Boundary, Mesh, Surface, cone_volume};
-use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer};
+use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTolerance};
 use crate::remesh;
 
 /// How a mesh is kept good while its walls move.
@@ -86,8 +86,10 @@ pub struct Motion {
     pub smoothing: usize,
     /// Patches inside the volume whose vertices are driven, such as a flap.
     pub inside: Vec<i32>,
-    /// Flat patches whose vertices slide in their plane.
+    /// Flat patches whose vertices slide in their plane, but for those of patches inside.
     pub sliding: Vec<i32>,
+    /// As [`motion::Options::slide_tolerance`].
+    pub slide_tolerance: SlideTolerance,
     /// Vertices that keep their place relative to the wall, and the patches that are that wall; no patches: all that do not slide.
     pub rigid_layer: Option<(Extent, Vec<i32>)>,
     /// As [`motion::Options::limits`].
@@ -100,6 +102,7 @@ impl Motion {
         let mut driven = Boundary::of(&mesh.cells).vertices;
         driven.extend(self.driven_inside(mesh));
         driven.sort_unstable();
+        driven.dedup();
         driven
     }
 
@@ -123,19 +126,15 @@ impl Motion {
             also_moved: self.driven_inside(mesh),
             rigid_layer,
             sliding: sets(&self.sliding),
+            slide_tolerance: self.slide_tolerance,
             limits: self.limits,
         }
     }
 
-    /// The vertices of patches inside that are driven and not on the boundary, rising.
+    /// The vertices of patches inside, rising; some may lie on the boundary.
     fn driven_inside(&self, mesh: &Mesh) -> Vec<VertexId> {
-        if self.inside.is_empty() {
-            return Vec::new();
-        }
-        let boundary = Boundary::of(&mesh.cells).vertices;
         let all = self.inside.iter().map(|&label| FacetSet::of_patch(mesh, label).vertices);
-        let mut inside: Vec<VertexId> =
-            all.flatten().filter(|v| boundary.binary_search(v).is_err()).collect();
+        let mut inside: Vec<VertexId> = all.flatten().collect();
         inside.sort_unstable();
         inside.dedup();
         inside

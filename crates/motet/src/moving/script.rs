@@ -63,6 +63,12 @@ fn in_table(table: &[[f64; 2]], phase: f64) -> f64 {
     if width > 0.0 { a[1] + (b[1] - a[1]) * (phase - a[0]) / width } else { b[1] }
 }
 
+/// Parts of a script are compared at so many phases of a period.
+const PHASES: usize = 16;
+
+/// Two displacements are one where they differ by less than this part of their size and that of the coordinates.
+const ROUNDING: f64 = 1e-12;
+
 /// The displacement of each driven vertex at any time. A vertex obeys the first that is told about it; the others stay.
 #[derive(Clone, Debug)]
 pub struct Script {
@@ -72,6 +78,8 @@ pub struct Script {
     /// Which part each obeys, and its place in it.
     obeys: Vec<Option<(usize, usize)>>,
     parts: Vec<Part>,
+    /// The driven vertices that the last part is about, and the place of each in it.
+    last_rows: Vec<(usize, usize)>,
 }
 
 #[derive(Clone, Debug)]
@@ -93,6 +101,7 @@ impl Script {
             places: driven.iter().map(|v| points[v.index()]).collect(),
             obeys: vec![None; driven.len()],
             parts: Vec::new(),
+            last_rows: Vec::new(),
         }
     }
 
@@ -145,8 +154,10 @@ impl Script {
 
     fn give(&mut self, vertices: &[VertexId], part: Part) -> usize {
         let mut n = 0;
+        self.last_rows.clear();
         for (row, v) in vertices.iter().enumerate() {
             let Ok(i) = self.driven.binary_search(v) else { continue };
+            self.last_rows.push((i, row));
             if self.obeys[i].is_none() {
                 self.obeys[i] = Some((self.parts.len(), row));
                 n += 1;
@@ -154,6 +165,28 @@ impl Script {
         }
         self.parts.push(part);
         n
+    }
+
+    /// Vertices that the part told last is about, too, but that obey an earlier one which takes them elsewhere in a period: by more than rounding.
+    /// Those that stay are not among them.
+    pub fn contradicted(&self) -> Vec<VertexId> {
+        let Some((last, part)) = self.parts.len().checked_sub(1).map(|last| (last, &self.parts[last])) else {
+            return Vec::new();
+        };
+        let differs = |i: usize, row: usize, earlier: (usize, usize)| {
+            let place = self.places[i];
+            (1..=PHASES).map(|k| k as f64 / PHASES as f64).any(|phase| {
+                let a = self.parts[earlier.0].displacement(place, earlier.1, phase);
+                let b = part.displacement(place, row, phase);
+                norm(sub(a, b)) > ROUNDING * (norm(a) + norm(b) + norm(place))
+            })
+        };
+        let contradicted = |(&i, &row): (&usize, &usize)| match self.obeys[i] {
+            Some((earlier, _)) if earlier == last || matches!(self.parts[earlier], Part::Stay) => None,
+            Some(earlier) => differs(i, row, earlier).then_some(self.driven[i]),
+            None => None,
+        };
+        self.last_rows.iter().map(|(i, row)| (i, row)).filter_map(contradicted).collect()
     }
 
     /// The displacement of each driven vertex at a phase: time over period.
@@ -260,6 +293,11 @@ mod tests {
         }
         assert_eq!(script.at(0.5)[0], [0.0, 0.0, 1.0]);
         assert!((script.at(6.5 / 7.0)[1][0] - 0.3).abs() < 1e-15);
+        // Vertex 4 follows frames, 5 stays; 2 and 4 obey earlier parts that take them elsewhere than this one.
+        assert_eq!(script.follow(&driven, Prescribed::Shift([0.0, 0.0, 1.0]), InTime::Ramp).unwrap(), 0);
+        assert_eq!(script.contradicted(), [2, 4].map(VertexId));
+        assert_eq!(script.follow(&driven, Prescribed::Shift([0.0, 0.0, 2.0]), InTime::Ramp).unwrap(), 0);
+        assert_eq!(script.contradicted(), [VertexId(4)]);
         assert!(script.frames(&driven, frames, false).is_err());
         assert!(script.go(&driven, vec![[0.0; 3]; 2], InTime::Beat).is_err());
     }

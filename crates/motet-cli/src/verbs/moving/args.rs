@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args, ValueEnum};
-use motet::motion::Extent;
+use motet::motion::{Extent, SlideTolerance};
 
 use super::words::{self, PatchFile, Rotate, Translate};
 use crate::verbs::convert::WritingArgs;
@@ -47,7 +47,8 @@ pub(crate) struct MoveArgs {
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// A vector point array of MESH (its values inside are ignored), or a displaced surface, or a
+    /// A vector point array of MESH (its values on the boundary; those inside on interfaces of regions and on
+    /// patches inside, where it moves them), or a displaced surface, or a
     /// .pvd series of them (points matched by GlobalNodeID, else by position), or a .dat file of
     /// displacements over time, as svMultiPhysics has them (nodes by GlobalNodeID)
     #[arg(long, value_name = "ARRAY|FILE", help_heading = "Motion",
@@ -56,7 +57,7 @@ pub(crate) struct MoveArgs {
     /// How the points of displaced surfaces are found in MESH
     #[arg(long = "match", value_name = "HOW", default_value = "id", help_heading = "Motion")]
     pub(crate) matching: Match,
-    /// Shift a patch. Repeatable
+    /// Shift a patch. Patches that share vertices must move them alike. Repeatable
     #[arg(long, value_name = "PATCH=dx,dy,dz", value_parser = words::translate, help_heading = "Motion",
         conflicts_with = "affine")]
     pub(crate) translate: Vec<Translate>,
@@ -91,9 +92,14 @@ pub(crate) struct MoveArgs {
     /// Keep a patch in place, also where it meets one that moves. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) fixed: Vec<String>,
-    /// Let a flat patch slide in its plane, following its rim. Repeatable
+    /// Let a flat patch slide in its plane, following its rim; where two meet, vertices slide along their
+    /// line, where three meet, they stay. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) slide: Vec<String>,
+    /// How far vertices of such a patch may be off its plane, as a part of its radius; they stay as far off
+    #[arg(long, value_name = "PART", value_parser = crate::words::part, default_value_t = SlideTolerance::default().0,
+        help_heading = "Boundary")]
+    pub(crate) slide_tolerance: f64,
 
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]

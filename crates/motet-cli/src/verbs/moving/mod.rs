@@ -13,7 +13,9 @@ use std::time::Instant;
 use motet::base::{Point, Threads};
 use motet::io;
 use motet::mesh::Boundary;
-use motet::motion::{self, Certificate, FacetSet, MethodWords, Mover, Options, RigidLayer, mesh_velocity};
+use motet::motion::{
+    self, Certificate, FacetSet, MethodWords, Mover, Options, RigidLayer, SlideTolerance, mesh_velocity,
+};
 use motet::{Error, Mesh};
 
 pub(crate) use args::MoveArgs;
@@ -49,7 +51,8 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
             .remedy("give a mesh of tetrahedra or other volume cells"));
     }
     let patches = Patches::new(&mesh, &args.patch)?;
-    let mut plan = Plan::new(&mesh, &boundary.vertices, &patches, args, console)?;
+    let mut plan = Plan::new(&mesh, &boundary, &patches, args, console)?;
+    report.find_hanging(&mesh, &boundary);
     let mut options = options(args, &boundary, &patches, &plan)?;
     if args.method == Method::Auto {
         report.choice = Some(choose(args, (&mesh, &boundary, &patches), &mut options, &threads, console)?);
@@ -57,7 +60,7 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     let setup = Instant::now();
     let mut mover = Mover::new(&mesh, &options, &threads).map_err(|e| e.in_file(&args.mesh))?;
     report.seconds.setup = setup.elapsed().as_secs_f64();
-    report.begin(&mover, &threads);
+    report.begin(&mover, &plan, &threads);
     report.warn(console);
 
     let mut sink = Sink::new(args, &mesh, &patches)?;
@@ -76,7 +79,6 @@ fn options(
     plan: &Plan<'_>,
 ) -> motet::Result<Options> {
     let sliding = args.slide.iter().map(|word| patches.find(word)).collect::<motet::Result<Vec<_>>>()?;
-    let inside = plan.nodes.iter().filter(|v| boundary.vertices.binary_search(v).is_err());
     let rigid_layer = match args.rigid_layer {
         None => None,
         Some(extent) => {
@@ -90,9 +92,10 @@ fn options(
         method,
         smoothing,
         within_walls: args.within_walls,
-        also_moved: inside.copied().collect(),
+        also_moved: plan.driven.clone(),
         rigid_layer,
         sliding,
+        slide_tolerance: SlideTolerance(args.slide_tolerance),
         ..Options::default()
     })
 }
@@ -107,7 +110,7 @@ fn choose(
 ) -> motet::Result<Chosen> {
     let frames = || {
         // Frames come in order: each method gets a plan of its own.
-        let mut plan = Plan::new(mesh, &boundary.vertices, patches, args, console)?;
+        let mut plan = Plan::new(mesh, boundary, patches, args, console)?;
         Ok((plan.first..plan.times.len()).map(move |k| plan.displacements(k)))
     };
     let choice =
@@ -202,6 +205,7 @@ fn frames(
         }
         report.seconds.moving += certificate.seconds.total;
         report.step(Step { step: k, time, file, certificate: certificate.clone() });
+        report.measure_openings(&points);
         before = (time, points.clone());
         bar.inc(1);
         if !certificate.complete {

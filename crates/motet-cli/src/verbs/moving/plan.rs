@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use motet::base::{Point, VertexId};
 use motet::geometry::vector::{distance, norm};
 use motet::io::NodalSeries;
-use motet::motion::{BoundaryMotion, Matching, Prescribed, SurfaceMotion, match_ids};
+use motet::mesh::Boundary;
+use motet::motion::{BoundaryMotion, Interface, Matching, Prescribed, SurfaceMotion, match_ids};
 use motet::{Error, Mesh, io};
 
 use super::args::{Match, MoveArgs};
@@ -22,7 +23,13 @@ pub(crate) struct Plan<'a> {
     /// The vertices that displacements are given for, rising: the boundary, and
     /// vertices inside that the call names.
     pub(crate) nodes: Vec<VertexId>,
-    /// Those of them that move: where a rigid layer goes.
+    /// Those of them that slide in no patch: inside, kept in place, or of a patch that the call moves.
+    pub(crate) driven: Vec<VertexId>,
+    /// Interfaces inside that an array moves.
+    pub(crate) interfaces: Vec<Interface>,
+    /// Points inside to which an array gives a displacement that nothing uses.
+    pub(crate) unused: usize,
+    /// Those of the nodes that move: where a rigid layer goes.
     pub(crate) moving: Vec<VertexId>,
     /// When each frame is.
     pub(crate) times: Vec<f64>,
@@ -52,7 +59,7 @@ fn is_nodal(path: &Path) -> bool {
 impl<'a> Plan<'a> {
     pub(crate) fn new(
         mesh: &'a Mesh,
-        boundary: &'a [VertexId],
+        boundary: &'a Boundary,
         patches: &Patches<'_>,
         args: &MoveArgs,
         console: &Console,
@@ -103,7 +110,7 @@ impl<'a> Plan<'a> {
 /// What the call asks for, on its way to a plan.
 struct Asked<'a, 'c> {
     mesh: &'a Mesh,
-    boundary: &'a [VertexId],
+    boundary: &'a Boundary,
     fixed: Vec<VertexId>,
     args: &'c MoveArgs,
     console: &'c Console,
@@ -153,7 +160,10 @@ impl<'a> Asked<'a, '_> {
             self.console.warn(format_args!("{}: its times do not rise: no velocities", file.display()));
         }
         let (nodes, moving) = (motion.vertices().to_vec(), motion.told());
-        Plan { mesh: self.mesh, nodes, moving, times, first: 0, timed, fixed: self.fixed, source }
+        let driven = self.driven(&nodes, self.on_interfaces(&moving));
+        let (interfaces, unused) = (Vec::new(), 0);
+        let (mesh, fixed) = (self.mesh, self.fixed);
+        Plan { mesh, nodes, driven, interfaces, unused, moving, times, first: 0, timed, fixed, source }
     }
 
     /// `--displacement FILE`
@@ -161,7 +171,8 @@ impl<'a> Asked<'a, '_> {
         let moved = self.read_surface(file)?;
         let mut motion = self.still(moved.iter().map(|(v, _)| *v));
         motion.go(&moved);
-        Ok(self.parts(motion))
+        let on_interfaces = self.on_interfaces(&motion.told());
+        Ok(self.parts(motion, &on_interfaces))
     }
 
     fn read_surface(&self, file: &Path) -> motet::Result<Vec<(VertexId, Point)>> {
@@ -189,7 +200,7 @@ impl<'a> Asked<'a, '_> {
         }
     }
 
-    /// `--displacement ARRAY`: its values on the boundary.
+    /// `--displacement ARRAY`: its values on the boundary, and on interfaces inside that it moves.
     fn array(self, word: &str) -> motet::Result<Plan<'a>> {
         let Some(field) = self.mesh.point_field(word) else {
             let vectors = self.mesh.point_data.iter().filter(|f| f.components == 3);
@@ -200,24 +211,30 @@ impl<'a> Asked<'a, '_> {
                 .remedy(format!("vector point arrays of the mesh: {has}")));
         };
         let rows = field.to_vectors().map_err(|e| e.in_file(&self.args.mesh))?;
-        let bad = self.boundary.iter().find(|v| rows[v.index()].iter().any(|x| !x.is_finite()));
+        let bad = self.boundary.vertices.iter().find(|v| rows[v.index()].iter().any(|x| !x.is_finite()));
         if let Some(v) = bad {
             return Err(Error::input("a displacement that is no finite number")
                 .at(format!("array {word}, point {v}"))
                 .in_file(&self.args.mesh));
         }
-        let moved: Vec<_> = self.boundary.iter().map(|&v| (v, rows[v.index()])).collect();
-        let mut motion = self.still([]);
+        let interfaces = Interface::moved(self.mesh, self.boundary, &rows)
+            .map_err(|e| e.at(format!("array {word}")).in_file(&self.args.mesh))?;
+        let inside: Vec<VertexId> = interfaces.iter().flat_map(|i| i.vertices.iter().copied()).collect();
+        let mut motion = self.still(inside.iter().copied());
+        let moved: Vec<_> = motion.vertices().iter().map(|&v| (v, rows[v.index()])).collect();
         motion.go(&moved);
-        Ok(self.parts(motion))
+        let is_unused =
+            |v: VertexId| rows[v.index()] != [0.0; 3] && motion.vertices().binary_search(&v).is_err();
+        let unused = (0..rows.len()).map(VertexId::new).filter(|&v| is_unused(v)).count();
+        Ok(Plan { interfaces, unused, ..self.parts(motion, &inside) })
     }
 
     /// `--affine`, `--rotate` and `--translate`
     fn words(self, patches: &Patches<'_>) -> motet::Result<Plan<'a>> {
         if let Some(rows) = self.args.affine {
             let mut motion = self.still([]);
-            motion.follow(self.boundary, Prescribed::Affine(rows))?;
-            return Ok(self.parts(motion));
+            motion.follow(&self.boundary.vertices, Prescribed::Affine(rows))?;
+            return Ok(self.parts(motion, &[]));
         }
         let turned = self.args.rotate.iter().map(|turn| &turn.patch);
         let mut words: Vec<&str> = Vec::new();
@@ -230,12 +247,15 @@ impl<'a> Asked<'a, '_> {
         let all = all.collect::<motet::Result<Vec<_>>>()?;
         let mut motion = self.still(all.iter().flat_map(|(_, vertices)| vertices.iter().copied()));
         for (word, vertices) in &all {
-            let taken = motion.follow(vertices, self.motion_of(word, vertices))?;
+            let asked = self.motion_of(word, vertices);
+            motion.check_alike(&self.mesh.points, word, vertices, &asked)?;
+            let taken = motion.follow(vertices, asked)?;
             if taken.refused > 0 {
                 self.console.detail(format_args!("{word}: {} vertices obey another patch", taken.refused));
             }
         }
-        Ok(self.parts(motion))
+        let moved: Vec<VertexId> = all.into_iter().flat_map(|(_, vertices)| vertices).collect();
+        Ok(self.parts(motion, &moved))
     }
 
     /// What a patch does: its turns, then its shifts.
@@ -251,7 +271,7 @@ impl<'a> Asked<'a, '_> {
 
     /// Nothing moves yet, of the boundary and of the `named` vertices inside.
     fn still(&self, named: impl IntoIterator<Item = VertexId>) -> BoundaryMotion {
-        let mut nodes = self.boundary.to_vec();
+        let mut nodes = self.boundary.vertices.clone();
         nodes.extend(named);
         nodes.extend(&self.fixed);
         nodes.sort_unstable();
@@ -261,7 +281,30 @@ impl<'a> Asked<'a, '_> {
         motion
     }
 
-    fn parts(self, motion: BoundaryMotion) -> Plan<'a> {
+    /// The nodes that slide in no patch; `moved` are those that the call moves.
+    fn driven(&self, nodes: &[VertexId], moved: impl IntoIterator<Item = VertexId>) -> Vec<VertexId> {
+        let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();
+        let inside = nodes.iter().copied().filter(is_inside);
+        let mut driven: Vec<VertexId> = inside.chain(self.fixed.iter().copied()).chain(moved).collect();
+        driven.sort_unstable();
+        driven.dedup();
+        driven
+    }
+
+    /// Those of `told` that are on interfaces of which a vertex inside is told, too: they move with these, up to their rims on patches that slide.
+    fn on_interfaces(&self, told: &[VertexId]) -> Vec<VertexId> {
+        let is_told = |v: &VertexId| told.binary_search(v).is_ok();
+        let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();
+        if self.args.slide.is_empty() || !told.iter().any(is_inside) {
+            return Vec::new();
+        }
+        let all = Interface::all(self.mesh, self.boundary);
+        let moved = all.into_iter().filter(|i| i.vertices.iter().any(|v| is_inside(v) && is_told(v)));
+        moved.flat_map(|interface| interface.vertices).filter(is_told).collect()
+    }
+
+    /// `moved` slide in no patch.
+    fn parts(self, motion: BoundaryMotion, moved: &[VertexId]) -> Plan<'a> {
         let is_series = io::can_write_series(&self.args.output);
         let default = if is_series { SERIES_STEPS } else { 1 };
         let in_time = is_series || !self.args.nodal.is_empty();
@@ -270,6 +313,9 @@ impl<'a> Asked<'a, '_> {
         Plan {
             mesh: self.mesh,
             nodes: motion.vertices().to_vec(),
+            driven: self.driven(motion.vertices(), moved.iter().copied()),
+            interfaces: Vec::new(),
+            unused: 0,
             moving: motion.moving(&self.mesh.points),
             times: (0..=n).map(|k| f64::from(k) * dt).collect(),
             first: usize::from(!in_time),

@@ -3,16 +3,26 @@
 use std::path::PathBuf;
 
 use motet::Mesh;
-use motet::base::Threads;
-use motet::motion::{Certificate, Mover, Setup, Tried};
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::vector::distance;
+use motet::mesh::Boundary;
+use motet::mesh::check::{HangingVertex, hanging_vertices};
+use motet::motion::{Certificate, Interface, LeavesPlane, Mover, Setup, SlidingPlane, Tried};
 use serde::Serialize;
 
 use super::args::MoveArgs;
 use super::inverted;
+use super::plan::Plan;
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
+
+/// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
+const FLAT: f64 = 1e-6;
+
+/// A mesh is closed where vertices are nearer to their facets than this part of its size.
+const ROUNDING: f64 = 1e-9;
 
 /// All that a motion came to.
 #[derive(Debug, Serialize)]
@@ -31,12 +41,46 @@ pub(crate) struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) choice: Option<Chosen>,
     setup: Setup,
+    /// The planes that patches slide in.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sliding: Vec<SlidingPlane>,
+    /// Interfaces inside that an array moves, and how many vertices each has.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    interfaces: Vec<MovedInterface>,
+    /// Points inside to which an array gives a displacement that is not used.
+    unused_inside: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    hanging: Option<Hanging>,
+    #[serde(skip)]
+    hanging_vertices: Vec<HangingVertex>,
     /// The mesh as it came.
     before: Certificate,
     /// The last step.
     after: Certificate,
     steps: Vec<Step>,
     pub(crate) seconds: Stages,
+}
+
+/// An interface inside that an array moves.
+#[derive(Debug, Serialize)]
+struct MovedInterface {
+    name: String,
+    vertices: usize,
+}
+
+/// Vertices that lie on facets of which they are no corner: what is on both sides counts as boundary.
+#[derive(Debug, Serialize)]
+struct Hanging {
+    vertices: usize,
+    /// The first of them, and where it was.
+    first: VertexId,
+    place: Point,
+    /// The largest distance of one from the place on its facet where it was, and which.
+    opening: f64,
+    opens_at: VertexId,
+    /// An opening up to here is rounding.
+    #[serde(skip)]
+    rounding: f64,
 }
 
 /// How a method was chosen.
@@ -104,6 +148,11 @@ impl Report {
             untouched: 1.0,
             choice: None,
             setup: Setup::default(),
+            sliding: Vec::new(),
+            interfaces: Vec::new(),
+            unused_inside: 0,
+            hanging: None,
+            hanging_vertices: Vec::new(),
             before: Certificate::default(),
             after: Certificate::default(),
             steps: Vec::new(),
@@ -111,8 +160,36 @@ impl Report {
         }
     }
 
-    pub(crate) fn begin(&mut self, mover: &Mover, threads: &Threads) {
+    /// Looks for vertices that hang on facets.
+    pub(crate) fn find_hanging(&mut self, mesh: &Mesh, boundary: &Boundary) {
+        self.hanging_vertices = hanging_vertices(mesh, boundary);
+        self.hanging = self.hanging_vertices.first().map(|hanging| Hanging {
+            vertices: self.hanging_vertices.len(),
+            first: hanging.vertex,
+            place: mesh.points[hanging.vertex.index()],
+            opening: 0.0,
+            opens_at: hanging.vertex,
+            rounding: mesh.bounds().map_or(0.0, |[low, high]| ROUNDING * distance(low, high)),
+        });
+    }
+
+    /// How far vertices that hung on facets are from these.
+    pub(crate) fn measure_openings(&mut self, points: &[Point]) {
+        let Some(hanging) = &mut self.hanging else { return };
+        for vertex in &self.hanging_vertices {
+            let opening = vertex.opening(points);
+            if opening > hanging.opening {
+                (hanging.opening, hanging.opens_at) = (opening, vertex.vertex);
+            }
+        }
+    }
+
+    pub(crate) fn begin(&mut self, mover: &Mover, plan: &Plan<'_>, threads: &Threads) {
         self.setup = *mover.setup();
+        self.sliding = mover.sliding().to_vec();
+        self.unused_inside = plan.unused;
+        let counted = |i: &Interface| MovedInterface { name: i.name.clone(), vertices: i.vertices.len() };
+        self.interfaces = plan.interfaces.iter().map(counted).collect();
         self.before = mover.quality(mover.reference(), threads);
     }
 
@@ -123,6 +200,21 @@ impl Report {
                 "{}: {} cells are inverted or flat as it comes; they do not stop the motion, `motet info` tells where they are",
                 self.mesh.display(),
                 count(self.before.inverted)
+            ));
+        }
+        for plane in self.sliding.iter().filter(|plane| plane.sliding == 0) {
+            console.warn(format_args!(
+                "no vertex of the sliding patch {} slides: all are moved, kept in place, or on facets that do not slide",
+                plane.patch
+            ));
+        }
+        if let Some(Hanging { vertices, first, place: [x, y, z], .. }) = self.hanging {
+            console.warn(format_args!(
+                "{}: {} vertices lie on facets of which they are no corner (hanging_vertex; the first: {first} at ({x:.6}, {y:.6}, {z:.6})): \
+                 the facets on both sides count as boundary, which stays where nothing moves it; `motet info` lists them, \
+                 cells that meet in whole facets move as one",
+                self.mesh.display(),
+                count(vertices),
             ));
         }
     }
@@ -171,7 +263,13 @@ impl Report {
                 count(self.setup.sliding)
             ));
         }
+        self.say_planes(console);
+        for interface in &self.interfaces {
+            let n = count(interface.vertices);
+            console.say(format_args!("{n} vertices of the interface {} driven by the array", interface.name));
+        }
         console.say(step_table(&self.before, &self.steps));
+        self.warn_of_what_came(console);
         self.tell_end(console);
         console.say(format_args!(
             "read {}, set-up {}, {} step{} {}, writing {}, all {}",
@@ -189,6 +287,50 @@ impl Report {
     pub(super) fn not_reached(&self) -> Option<String> {
         let last = self.steps.last()?;
         last.certificate.not_reached().map(|why| format!("step {}: {why}", last.step))
+    }
+
+    /// Planes that are flat within the tolerance, but not flat.
+    fn say_planes(&self, console: &Console) {
+        for plane in self.sliding.iter().filter(|plane| plane.deviation > FLAT * plane.radius) {
+            console.say(format_args!(
+                "sliding patch {}: {} off its plane, {} of its radius of {}; its vertices stay as far off",
+                plane.patch,
+                short(plane.deviation),
+                short(plane.deviation / plane.radius),
+                short(plane.radius)
+            ));
+        }
+    }
+
+    /// What a caller may not have meant.
+    fn warn_of_what_came(&self, console: &Console) {
+        let leaving =
+            self.steps.iter().filter_map(|step| Some((step, step.certificate.leaves_plane.as_ref()?)));
+        let farthest = leaving.reduce(|a, b| if b.1.distance > a.1.distance { b } else { a });
+        if let Some((step, LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true })) =
+            farthest
+        {
+            console.warn(format_args!(
+                "the rim of the sliding patch {patch} leaves its plane, by {} at vertex {vertex}, at first at ({x:.6}, {y:.6}, {z:.6}), \
+                 in step {}: the patch follows its rim; move what it meets within the plane, or let the patch not slide",
+                short(*distance),
+                step.step
+            ));
+        }
+        if let Some(Hanging { opening, opens_at, .. }) =
+            self.hanging.as_ref().filter(|h| h.opening > h.rounding)
+        {
+            console.warn(format_args!(
+                "vertices that lie on facets of which they are no corner have left them, by up to {} (vertex {opens_at}): the mesh opens there",
+                short(*opening)
+            ));
+        }
+        if self.unused_inside > 0 && self.untouched == 1.0 {
+            console.warn(format_args!(
+                "nothing has moved: the array is zero on the boundary and on interfaces, and its {} other values inside are not used",
+                count(self.unused_inside)
+            ));
+        }
     }
 
     fn tell_end(&self, console: &Console) {

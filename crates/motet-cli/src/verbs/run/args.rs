@@ -32,7 +32,8 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
   rigid_layer = \"3layers\"         # or a distance
   within_walls = false
   fixed = [\"inlet\"]
-  slide = [\"outlet\"]
+  slide = [\"outlet\"]             # flat patches that follow their rims, and along lines where two of them meet
+  slide_tolerance = 0.05          # how far they may be off their planes, as a part of their radius
   inside = [\"flap\"]               # patches inside the volume that are driven
   surfaces = \"wall.pvd\"           # measured walls, over a period
   match = \"nearest\"               # id (default), position, or nearest: a mesh with triangles of its own

@@ -6,7 +6,7 @@ use motet::base::Threads;
 use motet::contact;
 use motet::implant::{self, implant};
 use motet::mesh::history::Rules;
-use motet::motion::{Extent, Method, MethodWords};
+use motet::motion::{Extent, Method, MethodWords, SlideTolerance};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
 use motet::refine::{Criterion, Limits, Size, Wanted};
 use motet::remesh::{self, Held, SurfaceRule};
@@ -33,7 +33,7 @@ impl Begin {
     pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
         let mesh = with_devices(job, threads, console)?;
         let options = options(job, &mesh).map_err(|e| job.told(e))?;
-        let script = course::script(job, &mesh, &options.motion, threads)?;
+        let script = course::script(job, &mesh, &options.motion, threads, console)?;
         let refining = job.refine.iter().map(|asked| wanted(job, asked, threads));
         let refining = refining.collect::<Result<_>>().map_err(|e| job.told(e))?;
         Ok(Self { mesh, script, options, refining })
@@ -121,6 +121,7 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
         smoothing: asked.smooth,
         inside: mesh.find_patches(&asked.inside)?,
         sliding: mesh.find_patches(&asked.slide)?,
+        slide_tolerance: asked.slide_tolerance.map_or_else(SlideTolerance::default, SlideTolerance),
         rigid_layer,
         ..Motion::default()
     })

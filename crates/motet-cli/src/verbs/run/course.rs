@@ -8,12 +8,19 @@ use motet::moving::{InTime, Motion, Script, normals};
 use motet::{Error, Mesh, Result, io};
 
 use super::job::{Course, Job, Match, Move};
+use crate::console::Console;
 
 /// The script of a job.
 ///
 /// # Errors
 /// When it names what is not there, surfaces do not fit, or a motion means nothing.
-pub(super) fn script(job: &Job, mesh: &Mesh, motion: &Motion, threads: &Threads) -> Result<Script> {
+pub(super) fn script(
+    job: &Job,
+    mesh: &Mesh,
+    motion: &Motion,
+    threads: &Threads,
+    console: &Console,
+) -> Result<Script> {
     let mut script = Script::still(&motion.driven(mesh), &mesh.points);
     script.hold(&vertices(mesh, &job.motion.fixed).map_err(|e| job.told(e))?);
     if let Some(series) = &job.motion.surfaces {
@@ -21,6 +28,7 @@ pub(super) fn script(job: &Job, mesh: &Mesh, motion: &Motion, threads: &Threads)
     }
     for asked in &job.motion.moves {
         obey(asked, mesh, &mut script).map_err(|e| job.told(e))?;
+        warn_of_contradiction(asked, mesh, &script, console);
     }
     if job.motion.surfaces.is_none() && job.motion.moves.is_empty() {
         return Err(job.told(Error::input("nothing moves").remedy("add [[motion.move]], or motion.surfaces")));
@@ -124,6 +132,19 @@ fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
                 "entries before it are about all of them, or the patch is inside: name it in motion.inside",
             )),
         _ => Ok(()),
+    }
+}
+
+/// Entries that share vertices and move them to different places: the earlier one is obeyed, and the edge between is bent.
+fn warn_of_contradiction(asked: &Move, mesh: &Mesh, script: &Script, console: &Console) {
+    let contradicted = script.contradicted();
+    if let Some(&first) = contradicted.first() {
+        let [x, y, z] = mesh.points[first.index()];
+        console.warn(format_args!(
+            "motion.move of patch {}: {} of its vertices obey an entry before it that moves them elsewhere; the first: {first} at ({x:.6}, {y:.6}, {z:.6})",
+            asked.patch,
+            contradicted.len()
+        ));
     }
 }
 

@@ -78,6 +78,7 @@ pub(super) struct Motion {
     pub(super) within_walls: bool,
     pub(super) fixed: Vec<String>,
     pub(super) slide: Vec<String>,
+    pub(super) slide_tolerance: Option<f64>,
     pub(super) inside: Vec<String>,
     pub(super) surfaces: Option<PathBuf>,
     #[serde(rename = "match")]

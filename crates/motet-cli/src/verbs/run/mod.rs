@@ -87,6 +87,7 @@ impl Run {
             return Ok(Self { moving, script, refining });
         }
         let moving = MovingMesh::new(&mesh, options, threads)?;
+        report.warn_of_rims(job, &moving, &script, console);
         let mut run = Self { moving, script, refining };
         let mut changes = run.refine(0, threads)?;
         changes.extend(run.moving.repair(threads)?);

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use motet::base::reasons;
-use motet::moving::{Seconds, Step, Why, WorstTet};
+use motet::motion::LeavesPlane;
+use motet::moving::{MovingMesh, Script, Seconds, Step, Why, WorstTet};
 use serde::Serialize;
 
 use super::job::Job;
@@ -52,6 +53,9 @@ pub(crate) struct Report {
     first_warned_at: Option<f64>,
     /// Steps in which something warned.
     pub(crate) warned_steps: usize,
+    /// Where walls take the rim of a sliding patch out of its plane the farthest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    leaves_plane: Option<LeavesPlane>,
     seconds: Seconds,
     pub(super) seconds_total: f64,
 }
@@ -127,6 +131,35 @@ impl Report {
             self.held_steps += usize::from(gaps.held > 0);
         }
         self.seconds += step.seconds;
+    }
+
+    /// Warns where walls take the rim of a sliding patch out of its plane in a period.
+    pub(super) fn warn_of_rims(
+        &mut self,
+        job: &Job,
+        moving: &MovingMesh,
+        script: &Script,
+        console: &Console,
+    ) {
+        if moving.options().motion.sliding.is_empty() {
+            return;
+        }
+        for k in 1..=job.steps_in_period() {
+            let found = moving.leaves_plane(&script.at(job.time(k) / job.time.period));
+            let farthest = self.leaves_plane.as_ref().map_or(0.0, |leaves| leaves.distance);
+            if let Some(leaves) = found.filter(|leaves| leaves.distance > farthest) {
+                self.leaves_plane = Some(leaves);
+            }
+        }
+        if let Some(LeavesPlane { patch, vertex, place: [x, y, z], distance, is_significant: true }) =
+            &self.leaves_plane
+        {
+            console.warn(format_args!(
+                "walls take the rim of the sliding patch {patch} out of its plane, by up to {} at vertex {vertex}, at first at ({x:.6}, {y:.6}, {z:.6}): \
+                 the patch follows its rim",
+                short(*distance)
+            ));
+        }
     }
 
     /// Whether all was gone, and no tet is bad but those that walls force.

@@ -20,36 +20,71 @@ const TOLERANCE: f64 = 1e-12;
 const BUDGET: usize = 20_000_000;
 const BUDGET_A_FACET: usize = 200;
 
+/// A boundary vertex that lies on a boundary facet of which it is no corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HangingVertex {
+    /// The vertex.
+    pub vertex: VertexId,
+    /// The place of the facet in the boundary.
+    pub facet: usize,
+    /// The triangle of the facet that it lies on.
+    pub triangle: [VertexId; 3],
+    /// The weights of that triangle's corners at the vertex.
+    pub weights: [f64; 3],
+}
+
+impl HangingVertex {
+    /// How far the vertex is from its place on the triangle, with vertices at `points`.
+    ///
+    /// # Panics
+    /// When there are fewer points than the mesh has.
+    pub fn opening(&self, points: &[Point]) -> f64 {
+        distance(
+            points[self.vertex.index()],
+            triangle::at(self.triangle.map(|v| points[v.index()]), self.weights),
+        )
+    }
+}
+
 pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
     let mut defect = Defect::none(DefectKind::HangingVertex);
-    let Some(grid) = Grid::of(&boundary.vertices, &mesh.points) else { return defect };
-    let mut found = Vec::new();
+    for HangingVertex { vertex, facet, .. } in hanging_vertices(mesh, boundary) {
+        defect.add(|| Example::new(&[boundary.cells[facet]], &[vertex], &mesh.points));
+    }
+    defect
+}
+
+/// The boundary vertices that hang on facets, each with one of these; rising.
+pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> {
+    let mut found: Vec<HangingVertex> = Vec::new();
+    let Some(grid) = Grid::of(&boundary.vertices, &mesh.points) else { return found };
     let mut budget = BUDGET + BUDGET_A_FACET * boundary.len();
     for (i, facet) in boundary.facets.iter().enumerate() {
         triangulate(boundary.kinds[i], facet, &mesh.points, &mut |corners| {
             let at = corners.map(|v| mesh.points[v.index()]);
             if at.iter().all(|p| in_range(*p)) && budget > 0 {
                 grid.for_each_near(at, &mut budget, |v| {
-                    if !facet.contains(&v) && lies_on(at, mesh.points[v.index()]) {
-                        found.push((v, i));
+                    if facet.contains(&v) {
+                        return;
+                    }
+                    if let Some(weights) = lies_on(at, mesh.points[v.index()]) {
+                        found.push(HangingVertex { vertex: v, facet: i, triangle: corners, weights });
                     }
                 });
             }
         });
     }
-    found.sort_unstable();
-    found.dedup_by_key(|(v, _)| *v);
-    for (v, facet) in found {
-        defect.add(|| Example::new(&[boundary.cells[facet]], &[v], &mesh.points));
-    }
-    defect
+    found.sort_by_key(|hanging| (hanging.vertex, hanging.facet));
+    found.dedup_by_key(|hanging| hanging.vertex);
+    found
 }
 
-/// On the triangle, but at none of its corners: two vertices at one place are another defect.
-fn lies_on(corners: [Point; 3], p: Point) -> bool {
+/// The weights of a place on the triangle, but at none of its corners: two vertices at one place are another defect.
+fn lies_on(corners: [Point; 3], p: Point) -> Option<[f64; 3]> {
     let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
     let near = |q: Point| distance(p, q) <= TOLERANCE * longest;
-    !corners.iter().any(|&corner| near(corner)) && near(triangle::at(corners, triangle::closest(corners, p)))
+    let weights = triangle::closest(corners, p);
+    (!corners.iter().any(|&corner| near(corner)) && near(triangle::at(corners, weights))).then_some(weights)
 }
 
 /// Vertices in the cells of a regular grid, about one to a cell.

@@ -26,6 +26,7 @@ use crate::mesh::{Boundary, CellKind, Mesh, OrientedTets};
 
 pub use defect::{Defect, DefectKind, Example};
 pub use edges::is_closed;
+pub use hanging::{HangingVertex, hanging_vertices};
 
 /// Every defect of a mesh, each kind once, with its count and a few examples.
 ///

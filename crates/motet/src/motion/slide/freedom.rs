@@ -1,0 +1,219 @@
+//! How each vertex of sliding patches may go: in one plane, along the line in which planes meet, or not at all.
+//!
+//! A vertex all of whose boundary facets slide is held by their planes. With one plane it has
+//! two degrees of freedom, where two planes meet one, where three meet none. Vertices on any
+//! other facet are driven, and so are those that the caller asks to drive.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{cross, dot, norm, scale};
+use crate::mesh::Boundary;
+use crate::motion::options::FacetSet;
+use crate::motion::slide::key;
+use crate::motion::slide::plane::Plane;
+
+/// Two planes are distinct where their angle is more than so many times what their normals may be off by. The two
+/// halves of a shallow dish, which are one patch, are apart by twice that.
+const DISTINCT: f64 = 4.0;
+
+/// Planes that are as far apart as this, 30 degrees, are distinct whatever they are off by: its sine.
+const APART: f64 = 0.5;
+
+/// Normals are off by no less than this: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A plane that one patch slides in, or several patches that lie side by side in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Flat {
+    /// All facets in the plane.
+    pub(crate) set: FacetSet,
+    pub(crate) plane: Plane,
+}
+
+/// The vertices that are held by the same planes.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    /// The planes, as places among all of them, rising.
+    pub(crate) planes: Vec<u32>,
+    /// The unit vector along the line in which the planes meet; `None` where there is one plane.
+    pub(crate) along: Option<Point>,
+    /// The vertices, rising.
+    pub(crate) free: Vec<VertexId>,
+    /// For a line: the other vertices that lie on all of its planes, rising.
+    pub(crate) anchors: Vec<VertexId>,
+}
+
+/// All planes, and the vertices that slide in them. Lines come first, those of more planes before others, then planes:
+/// what each follows is known when its turn comes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Freedom {
+    pub(crate) flats: Vec<Flat>,
+    pub(crate) held: Vec<Held>,
+}
+
+/// The sets whose facets a vertex is on, and whether it is driven, too.
+struct Member {
+    vertex: VertexId,
+    sets: Vec<u32>,
+    is_driven: bool,
+}
+
+impl Freedom {
+    /// `driven`, rising, are vertices that do not slide wherever they lie; `tolerance` is how far a patch may be off its plane, as a part of its radius.
+    ///
+    /// # Errors
+    /// When a set is not flat.
+    pub(crate) fn new(
+        points: &[Point],
+        sets: &[FacetSet],
+        boundary: &Boundary,
+        driven: &[VertexId],
+        tolerance: f64,
+    ) -> Result<Self> {
+        let plane = |set: &FacetSet| {
+            Plane::new(points, set, tolerance).map_err(|e: Error| e.at(format!("sliding patch {}", set.name)))
+        };
+        let planes = sets.iter().map(plane).collect::<Result<Vec<_>>>()?;
+        let members = members(sets, boundary, driven);
+        let sliding = members.iter().filter(|m| !m.is_driven);
+        let (flats, flat_of) = joined(points, sets, &planes, sliding, tolerance);
+        let mut held: BTreeMap<Vec<u32>, Vec<VertexId>> = BTreeMap::new();
+        let mut others: Vec<(Vec<u32>, VertexId)> = Vec::new();
+        let mut lines: HashMap<Vec<u32>, Option<Point>> = HashMap::new();
+        for member in &members {
+            let mut on: Vec<u32> = member.sets.iter().map(|&s| flat_of[s as usize]).collect();
+            on.sort_unstable();
+            on.dedup();
+            let along = lines.entry(on.clone()).or_insert_with(|| line(&flats, &on));
+            match member.is_driven || (on.len() > 1 && along.is_none()) {
+                true => others.push((on, member.vertex)),
+                false => held.entry(on).or_default().push(member.vertex),
+            }
+        }
+        let anchors = |planes: &[u32]| -> Vec<VertexId> {
+            let has_all = |on: &[u32]| on != planes && planes.iter().all(|p| on.binary_search(p).is_ok());
+            let of_lines = held.iter().filter(|(on, _)| has_all(on)).flat_map(|(_, v)| v.iter().copied());
+            let is_here = |on: &[u32]| on == planes || has_all(on);
+            let mut all: Vec<VertexId> =
+                others.iter().filter(|(on, _)| is_here(on)).map(|(_, v)| *v).chain(of_lines).collect();
+            all.sort_unstable();
+            all
+        };
+        let mut sorted: Vec<Held> = held
+            .iter()
+            .map(|(planes, free)| Held {
+                along: lines[planes],
+                anchors: if planes.len() > 1 { anchors(planes) } else { Vec::new() },
+                planes: planes.clone(),
+                free: free.clone(),
+            })
+            // Nothing leads the vertices of a line that has no anchor.
+            .filter(|held| held.along.is_none() || !held.anchors.is_empty())
+            .collect();
+        sorted.sort_by_key(|held| std::cmp::Reverse(held.planes.len()));
+        Ok(Self { flats, held: sorted })
+    }
+
+    /// The line or the plane that holds each vertex, as a place in [`Self::held`].
+    pub(crate) fn held_of(&self, n_points: usize) -> Vec<Option<u32>> {
+        let mut of = vec![None; n_points];
+        for (i, held) in (0..).zip(&self.held) {
+            held.free.iter().for_each(|v| of[v.index()] = Some(i));
+        }
+        of
+    }
+}
+
+/// The vertices of the boundary on facets of sets, rising.
+fn members(sets: &[FacetSet], boundary: &Boundary, driven: &[VertexId]) -> Vec<Member> {
+    const OTHER: u32 = u32::MAX;
+    let mut set_of = HashMap::new();
+    for (i, set) in (0u32..).zip(sets) {
+        set.rings.iter().for_each(|ring| {
+            set_of.entry(key(ring)).or_insert(i);
+        });
+    }
+    let mut pairs: Vec<(VertexId, u32)> = Vec::new();
+    let rings = FacetSet::of_boundary(boundary, "", |_| true).rings;
+    for (corners, vertices) in rings.iter().zip(boundary.facets.iter()) {
+        let set = set_of.get(&key(corners)).copied().unwrap_or(OTHER);
+        pairs.extend(vertices.iter().map(|&v| (v, set)));
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let of_vertex = |pairs: &[(VertexId, u32)]| {
+        let vertex = pairs[0].0;
+        let sets: Vec<u32> = pairs.iter().map(|(_, set)| *set).filter(|set| *set != OTHER).collect();
+        let is_driven = sets.len() < pairs.len() || driven.binary_search(&vertex).is_ok();
+        Member { vertex, sets, is_driven }
+    };
+    let members = pairs.chunk_by(|a, b| a.0 == b.0).map(of_vertex);
+    members.filter(|member| !member.sets.is_empty()).collect()
+}
+
+/// The distinct planes, and the one of each set: sets that meet without an angle lie in one.
+fn joined<'a>(
+    points: &[Point],
+    sets: &[FacetSet],
+    planes: &[Plane],
+    sliding: impl Iterator<Item = &'a Member>,
+    tolerance: f64,
+) -> (Vec<Flat>, Vec<u32>) {
+    let mut meet: Vec<[u32; 2]> = Vec::new();
+    for member in sliding {
+        let with = |(i, &a): (usize, &u32)| member.sets[i + 1..].iter().map(move |&b| [a, b]);
+        meet.extend(member.sets.iter().enumerate().flat_map(with));
+    }
+    meet.sort_unstable();
+    meet.dedup();
+    let mut flats: Vec<Flat> =
+        sets.iter().zip(planes).map(|(set, plane)| Flat { set: set.clone(), plane: plane.clone() }).collect();
+    let mut flat_of: Vec<u32> = (0..sets.len() as u32).collect();
+    for [a, b] in meet {
+        let [i, j] = [a, b].map(|set| flat_of[set as usize]);
+        if i == j || are_distinct(&planes[a as usize], &planes[b as usize]) {
+            continue;
+        }
+        let both = [i, j].map(|flat| flats[flat as usize].set.clone());
+        let Some(set) = FacetSet::joined(both) else { continue };
+        if let Ok(plane) = Plane::new(points, &set, tolerance) {
+            flats[i.min(j) as usize] = Flat { set, plane };
+            flat_of.iter_mut().filter(|flat| **flat == i.max(j)).for_each(|flat| *flat = i.min(j));
+        }
+    }
+    // The planes that are left are numbered anew.
+    let mut used = flat_of.clone();
+    used.sort_unstable();
+    used.dedup();
+    flat_of.iter_mut().for_each(|flat| *flat = used.partition_point(|u| u < flat) as u32);
+    (used.iter().map(|&u| flats[u as usize].clone()).collect(), flat_of)
+}
+
+fn are_distinct(a: &Plane, b: &Plane) -> bool {
+    norm(cross(a.normal, b.normal)) > doubt([a, b])
+}
+
+/// The sine of an angle that these planes may have to each other by what they are off.
+fn doubt<'a>(planes: impl IntoIterator<Item = &'a Plane>) -> f64 {
+    APART.min(DISTINCT * planes.into_iter().map(|plane| plane.tilt() + ROUNDING).sum::<f64>())
+}
+
+/// The direction of the line in which planes meet; `None` where there is one plane, where they meet in a point, or their angle is in doubt.
+fn line(flats: &[Flat], on: &[u32]) -> Option<Point> {
+    let planes: Vec<&Plane> = on.iter().map(|&flat| &flats[flat as usize].plane).collect();
+    let mut best = [0.0; 3];
+    for (i, a) in planes.iter().enumerate() {
+        for b in &planes[i + 1..] {
+            let along = cross(a.normal, b.normal);
+            if norm(along) > norm(best) && are_distinct(a, b) {
+                best = along;
+            }
+        }
+    }
+    // The direction is the less sure the flatter the angle: by one over its sine.
+    let doubt = doubt(planes.iter().copied());
+    let lies_in = |plane: &&Plane| dot(plane.normal, best).abs() <= doubt;
+    let sine = norm(best);
+    (sine > 0.0 && planes.iter().all(lies_in)).then(|| scale(best, 1.0 / sine))
+}

@@ -1,0 +1,164 @@
+//! Flat parts of the boundary whose vertices slide: in a plane, or along the line in which two planes meet.
+//!
+//! An inlet is cut across a vessel; when the wall moves, its rim goes along and the
+//! vertices between must follow. They hang in the Delaunay triangulation of the
+//! vertices around them in the plane, just as inner vertices hang in the one in space.
+//! In fact it is the same code: with one more node above the plane, the tets over the
+//! plane stand on the triangles of the plane's own Delaunay triangulation (the sphere
+//! through a triangle and that node cuts the plane in the triangle's circle).
+//!
+//! On the line of two planes the same holds with one dimension less: a vertex follows the
+//! two anchors between which it lies. So an affine motion of what is driven is an affine
+//! motion of what slides. Displacements are followed as a whole: what a vertex is off its
+//! plane it stays, and where all of a rim leaves the plane, the patch goes along.
+
+mod freedom;
+mod plane;
+mod report;
+
+use crate::base::{Error, Point, Result, Threads, VertexId, rising_list};
+use crate::geometry::vector::{add, dot, scale, sub};
+use crate::motion::graph::{hang, triangulate};
+use crate::motion::slide::freedom::{Flat, Held};
+use crate::motion::update::Padded;
+
+pub(crate) use freedom::Freedom;
+pub use report::{LeavesPlane, SlidingPlane};
+pub(crate) use report::{Rim, leaving};
+
+/// Vertices of one plane or line that slide.
+#[derive(Debug)]
+pub(crate) struct Slide {
+    way: Way,
+    /// Nodes of the sliding vertices.
+    pub(crate) sliding: Vec<u32>,
+    /// For each the nodes that it follows, and their weights.
+    follows: Vec<([u32; 4], [f64; 4])>,
+}
+
+/// Where vertices that slide can go.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// At right angles to this unit vector.
+    Plane(Point),
+    /// Along this unit vector.
+    Line(Point),
+}
+
+/// A facet by its corners, in whatever order.
+type Key = Vec<VertexId>;
+
+pub(crate) fn key(ring: &[VertexId]) -> Key {
+    rising_list(ring)
+}
+
+impl Slide {
+    /// The free vertices for which `is_sliding` holds follow the others of their planes; `node` gives the node of a vertex.
+    ///
+    /// # Errors
+    /// When vertices of a plane have fewer than three to follow, or all of these lie in a line.
+    pub(crate) fn new(
+        points: &[Point],
+        flats: &[Flat],
+        held: &Held,
+        is_sliding: impl Fn(VertexId) -> bool,
+        node: impl Fn(VertexId) -> u32,
+        threads: &Threads,
+    ) -> Result<Self> {
+        let (sliding, fixed): (Vec<VertexId>, Vec<VertexId>) =
+            held.free.iter().copied().partition(|&v| is_sliding(v));
+        let flat = &flats[held.planes[0] as usize];
+        let (way, follows) = match held.along {
+            Some(along) => {
+                let sources: Vec<VertexId> = held.anchors.iter().chain(&fixed).copied().collect();
+                (Way::Line(along), on_line(points, along, &sources, &sliding))
+            }
+            None => (Way::Plane(flat.plane.normal), in_plane(points, flat, &sliding, threads)?),
+        };
+        let nodes = |(of, weights): ([VertexId; 4], [f64; 4])| (of.map(&node), weights);
+        Ok(Self {
+            way,
+            sliding: sliding.iter().map(|&v| node(v)).collect(),
+            follows: follows.into_iter().map(nodes).collect(),
+        })
+    }
+
+    pub(crate) fn n_sliding(&self) -> usize {
+        self.sliding.len()
+    }
+
+    /// The part of a displacement that leads out of the plane, or off the line.
+    pub(crate) fn outward(&self, d: Point) -> Point {
+        match self.way {
+            Way::Plane(normal) => scale(normal, dot(d, normal)),
+            Way::Line(along) => sub(d, scale(along, dot(d, along))),
+        }
+    }
+
+    /// Gives the sliding nodes their displacement.
+    pub(crate) fn apply(&self, displacement: &mut [Padded]) {
+        for (&sliding, (nodes, weights)) in self.sliding.iter().zip(&self.follows) {
+            let sum = nodes.iter().zip(weights).fold([0.0; 3], |sum, (&node, &weight)| {
+                add(sum, scale(displacement[node as usize].point(), weight))
+            });
+            displacement[sliding as usize] = Padded::new(sum);
+        }
+    }
+}
+
+/// What each of `sliding` follows: a triangle of the Delaunay triangulation of the other vertices in the plane.
+fn in_plane(
+    points: &[Point],
+    Flat { set, plane }: &Flat,
+    sliding: &[VertexId],
+    threads: &Threads,
+) -> Result<Vec<([VertexId; 4], [f64; 4])>> {
+    let place = |v: &VertexId| points[v.index()];
+    let sources: Vec<VertexId> =
+        set.vertices.iter().copied().filter(|v| sliding.binary_search(v).is_err()).collect();
+    let mut nodes: Vec<Point> = sources.iter().map(|v| plane.flatten(place(v))).collect();
+    nodes.push([0.0, 0.0, plane.radius]);
+    let flat: Vec<Point> = sliding.iter().map(|v| plane.flatten(place(v))).collect();
+    let graph = triangulate(&nodes, threads).map_err(|_| {
+        Error::input(format!(
+            "{} vertices on its rim, not all in a line, are needed for others to follow; it has {}",
+            3,
+            sources.len()
+        ))
+        .at(format!("sliding patch {}", set.name))
+    })?;
+    let hanging = hang(&graph, &flat, threads);
+    // The node above the plane has no weight for a point in it; any node does in its place.
+    let vertex = |i: u32| sources.get(i as usize).copied().unwrap_or(sources[0]);
+    let above = sources.len() as u32;
+    let follows = hanging.tet.iter().zip(&hanging.weights).map(|(&tet, weights)| {
+        let tet = hanging.tets[tet as usize];
+        let mut weights = *weights;
+        (0..4).filter(|&i| tet[i] == above).for_each(|i| weights[i] = 0.0);
+        (tet.map(vertex), weights)
+    });
+    Ok(follows.collect())
+}
+
+/// What each of `sliding` follows: the nearest source on either side along the line, or the last where there is none beyond.
+fn on_line(
+    points: &[Point],
+    along: Point,
+    sources: &[VertexId],
+    sliding: &[VertexId],
+) -> Vec<([VertexId; 4], [f64; 4])> {
+    // From a place on the line, so that no digits are lost far from the origin.
+    let origin = points[sources[0].index()];
+    let at = |v: VertexId| dot(sub(points[v.index()], origin), along);
+    let mut sorted: Vec<(f64, VertexId)> = sources.iter().map(|&v| (at(v), v)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let follow = |&v: &VertexId| {
+        let x = at(v);
+        let next = sorted.partition_point(|(source, _)| *source <= x);
+        let (low, a) = sorted[next.saturating_sub(1)];
+        let (high, b) = sorted[next.min(sorted.len() - 1)];
+        let part = if high > low { ((x - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
+        ([a, b, a, a], [1.0 - part, part, 0.0, 0.0])
+    };
+    sliding.iter().map(follow).collect()
+}

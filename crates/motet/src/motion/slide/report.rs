@@ -1,0 +1,110 @@
+//! What is reported of sliding patches: how flat they are, and where their rims leave the plane.
+
+use serde::Serialize;
+
+use crate::base::{Point, VertexId};
+use crate::geometry::vector::dot;
+use crate::motion::slide::freedom::Freedom;
+
+/// A plane that one patch slides in, or several patches that lie side by side in it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SlidingPlane {
+    /// The names of the patches.
+    pub patch: String,
+    /// The largest distance of a vertex from the middle, in the unit of the mesh.
+    pub radius: f64,
+    /// The largest distance of a vertex from the plane, in the unit of the mesh.
+    pub deviation: f64,
+    /// How many vertices slide in the plane, those on its edges included.
+    pub sliding: usize,
+}
+
+/// Where the rim of a sliding patch leaves its plane: the patch goes along with it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeavesPlane {
+    /// The names of the patches in the plane.
+    pub patch: String,
+    /// The vertex of the rim that goes farthest.
+    pub vertex: VertexId,
+    /// Where that vertex is in the reference.
+    pub place: Point,
+    /// How far it is moved at right angles to the plane, in the unit of the mesh.
+    pub distance: f64,
+    /// Whether that is more than rounding of coordinates in single precision can make.
+    pub is_significant: bool,
+}
+
+/// The driven vertices of a plane in which others slide.
+#[derive(Debug)]
+pub(crate) struct Rim {
+    patch: String,
+    normal: Point,
+    /// What coordinates of single precision are off by.
+    rounding: f64,
+    nodes: Vec<u32>,
+}
+
+impl Freedom {
+    /// What is reported of each plane.
+    pub(crate) fn planes(&self) -> Vec<SlidingPlane> {
+        let mut planes: Vec<SlidingPlane> = (self.flats.iter())
+            .map(|flat| SlidingPlane {
+                patch: flat.set.name.clone(),
+                radius: flat.plane.radius,
+                deviation: flat.plane.deviation,
+                sliding: 0,
+            })
+            .collect();
+        for held in &self.held {
+            held.planes.iter().for_each(|&plane| planes[plane as usize].sliding += held.free.len());
+        }
+        planes
+    }
+
+    /// The rim of each plane; `node` gives the node of a vertex.
+    pub(crate) fn rims(&self, points: &[Point], node: impl Fn(VertexId) -> u32) -> Vec<Rim> {
+        let held = self.held_of(points.len());
+        let is_driven = |v: &VertexId| held[v.index()].is_none();
+        let rim = |flat: &super::freedom::Flat| {
+            let largest = (flat.set.vertices.iter())
+                .flat_map(|v| points[v.index()])
+                .fold(0.0, |a: f64, x| a.max(x.abs()));
+            Rim {
+                patch: flat.set.name.clone(),
+                normal: flat.plane.normal,
+                rounding: f64::from(f32::EPSILON) * (largest + flat.plane.radius),
+                nodes: flat.set.vertices.iter().copied().filter(is_driven).map(&node).collect(),
+            }
+        };
+        self.flats.iter().map(rim).collect()
+    }
+}
+
+/// The vertex of all rims that leaves its plane farthest; `None` where all stay. `vertices` are those of the nodes, `driven` the
+/// displacements of the driven ones, which come first.
+pub(crate) fn leaving(
+    rims: &[Rim],
+    vertices: &[VertexId],
+    reference: &[Point],
+    driven: &[Point],
+) -> Option<LeavesPlane> {
+    let mut worst: Option<(f64, &Rim, u32)> = None;
+    for rim in rims {
+        for &node in &rim.nodes {
+            let distance = driven.get(node as usize).map_or(0.0, |&d| dot(d, rim.normal).abs());
+            if distance > worst.map_or(0.0, |(worst, ..)| worst) {
+                worst = Some((distance, rim, node));
+            }
+        }
+    }
+    worst.map(|(distance, rim, node)| {
+        let vertex = vertices[node as usize];
+        LeavesPlane {
+            patch: rim.patch.clone(),
+            vertex,
+            place: reference[vertex.index()],
+            distance,
+            is_significant: distance > rim.rounding,
+        }
+    })
+}
