@@ -1,10 +1,11 @@
 //! How good the tets of one frame are, in numbers.
 
 use motet::Mesh;
-use motet::base::Point;
+use motet::base::{CellId, Point};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::tet::centroid;
 use motet::geometry::vector::is_finite;
+use motet::mesh::curved::CurvedCells;
 use motet::mesh::{BAD_EAS, CellKind};
 use serde::Serialize;
 
@@ -29,18 +30,30 @@ pub(crate) struct Quality {
     pub(crate) angle_bars: [usize; ANGLE_BARS],
 }
 
-/// The quality of the tets, of quadratic ones the corners; and EAS of each cell, NaN where it has none.
+/// The quality of the tets, and EAS of each cell, NaN where it has none. Of quadratic tets that is of the corners; inverted are those that are so anywhere inside.
 pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, Vec<f32>) {
     let mut by_cell = vec![f32::NAN; mesh.cells.len()];
     let mut quality = Quality::empty();
     let is_tet = |kind| matches!(kind, CellKind::TETRA | CellKind::QUADRATIC_TETRA);
-    for (cell, _, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
+    let not_upright = not_upright(mesh);
+    for (cell, kind, v) in mesh.cells.iter().filter(|(_, kind, _)| is_tet(*kind)) {
         let tet = [v[0], v[1], v[2], v[3]].map(|v| mesh.points[v.index()]);
         if tet.iter().all(|p| is_finite(*p)) {
-            by_cell[cell.index()] = quality.add(cell.index(), tet) as f32;
+            let eas = quality.add(cell.index(), tet);
+            by_cell[cell.index()] = eas as f32;
+            let is_inverted =
+                if kind == CellKind::TETRA { eas < 0.0 } else { not_upright.binary_search(&cell).is_ok() };
+            quality.inverted += usize::from(is_inverted);
         }
     }
     ((quality.tets > 0).then(|| quality.finished()), by_cell)
+}
+
+/// Quadratic cells, in rising order, the determinant of whose Jacobian is not positive everywhere.
+fn not_upright(mesh: &Mesh) -> Vec<CellId> {
+    let curved = CurvedCells::of(&mesh.cells, &mesh.points);
+    let fallen = (0..curved.len()).filter(|&i| !curved.is_upright(i, &mesh.points));
+    fallen.map(|i| curved.cells[i]).collect()
 }
 
 impl Quality {
@@ -70,7 +83,6 @@ impl Quality {
         self.tets += 1;
         self.eas_mean += eas;
         self.bad += usize::from(eas < BAD_EAS);
-        self.inverted += usize::from(eas < 0.0);
         self.angle_min = self.angle_min.min(low);
         self.angle_max = self.angle_max.max(high);
         self.eas_bars[if eas < 0.0 { 0 } else { 1 + ((eas * 20.0) as usize).min(EAS_BARS - 2) }] += 1;

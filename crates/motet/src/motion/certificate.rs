@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::mesh::curved::LeastJacobian;
 use crate::motion::check::Check;
 
 /// A tet is bad below this EAS.
@@ -26,7 +27,7 @@ pub struct Certificate {
     pub iterations: usize,
     /// Vertices of bad tets that smoothing has moved.
     pub smoothed: usize,
-    /// Volume cells that are inverted or flat.
+    /// Volume cells that are inverted or flat: quadratic ones where the determinant of their Jacobian is not positive everywhere.
     pub inverted: usize,
     /// Of the reference: volume cells that were inverted or flat before anything moved.
     pub inverted_before: usize,
@@ -54,6 +55,10 @@ pub struct Quality {
     /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
     /// its three edges span over the product of their lengths (Knupp 2000).
     pub worst_scaled_jacobian: Option<Worst>,
+    /// For quadratic cells: the least scaled Jacobian anywhere within, and where;
+    /// see [`LeastJacobian::scaled`](crate::mesh::curved::LeastJacobian::scaled). 0 or less where a cell is folded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst_curved_jacobian: Option<Worst>,
 }
 
 /// The worst cell by some measure.
@@ -63,7 +68,7 @@ pub struct Worst {
     pub value: f64,
     /// The cell.
     pub cell: CellId,
-    /// The mean of the corners that were measured.
+    /// The mean of the corners that were measured; for the Jacobian of a quadratic cell where it is that.
     pub place: Point,
 }
 
@@ -89,16 +94,28 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     let n = check.corners.len();
     let chunk = |start: usize| measure_some(check, points, start..(start + CHUNK).min(n));
     let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
-    let parts: Vec<Quality> = match threads.pool() {
+    let mut parts: Vec<Quality> = match threads.pool() {
         None => starts.into_iter().map(chunk).collect(),
         Some(pool) => pool.install(|| starts.into_par_iter().map(chunk).collect()),
     };
+    parts.push(Quality { worst_curved_jacobian: worst_curved(check, points, threads), ..Quality::default() });
     parts.into_iter().fold(Quality::default(), |all, part| Quality {
         bad: all.bad + part.bad,
         worst_eas: worse(all.worst_eas, part.worst_eas),
         worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
         worst_scaled_jacobian: worse(all.worst_scaled_jacobian, part.worst_scaled_jacobian),
+        worst_curved_jacobian: worse(all.worst_curved_jacobian, part.worst_curved_jacobian),
     })
+}
+
+/// The worst quadratic cell. Chunks are the same for any number of threads, and so is what each passes over.
+fn worst_curved(check: &Check, points: &[Point], threads: &Threads) -> Option<Worst> {
+    let n = check.curved.len();
+    let runs: Vec<_> = (0..n).step_by(CHUNK).map(|start| start..(start + CHUNK).min(n)).collect();
+    let worst = threads.each(runs, |run| check.curved.worst(run, points));
+    let as_worst =
+        |(cell, least): (CellId, LeastJacobian)| Worst { value: least.scaled, cell, place: least.place };
+    worst.into_iter().map(|worst| worst.map(as_worst)).fold(None, worse)
 }
 
 fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Quality {
