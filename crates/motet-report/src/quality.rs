@@ -5,7 +5,8 @@ use motet::base::{CellId, Point};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::tet::centroid;
 use motet::geometry::vector::is_finite;
-use motet::mesh::{BAD_EAS, OrientedTets};
+use motet::mesh::curved::CurvedCells;
+use motet::mesh::{BAD_EAS, CellKind, OrientedTets};
 use serde::Serialize;
 
 /// Bars of EAS: one below 0, then twenty to 1.
@@ -42,7 +43,7 @@ pub(crate) struct ByCell {
     pub(crate) bad: Vec<CellId>,
 }
 
-/// The quality of the tets, of quadratic ones the corners: of all, and of each cell.
+/// The quality of the tets, of quadratic ones the corners: of all, and of each cell. Of quadratic tets those are inverted that are so anywhere inside.
 pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let mut eas = vec![f32::NAN; mesh.cells.len()];
     let (mut quality, mut low) = (Quality::empty(), Vec::new());
@@ -57,11 +58,21 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
             }
         }
     }
-    quality.inverted = low.iter().filter(|&&i| tets.is_inverted(i, &mesh.points)).count();
+    let is_linear = |i: usize| mesh.cells.kind(tets.cells[i]) == CellKind::TETRA;
+    quality.inverted = low.iter().filter(|&&i| is_linear(i) && tets.is_inverted(i, &mesh.points)).count();
+    let is_quadratic_tet = |cell: &&CellId| mesh.cells.kind(**cell) == CellKind::QUADRATIC_TETRA;
+    quality.inverted += not_upright(mesh).iter().filter(is_quadratic_tet).count();
     let judged = tets.judge(&mesh.points, low, BAD_EAS);
     (quality.bad, quality.layers) = (judged.bad.len(), judged.layers.len());
     let bad = judged.bad.into_iter().map(|i| tets.cells[i]).collect();
     ((quality.tets > 0).then(|| quality.finished()), ByCell { eas, bad })
+}
+
+/// Quadratic cells, in rising order, the determinant of whose Jacobian is not positive everywhere.
+fn not_upright(mesh: &Mesh) -> Vec<CellId> {
+    let curved = CurvedCells::of(&mesh.cells, &mesh.points);
+    let fallen = (0..curved.len()).filter(|&i| !curved.is_upright(i, &mesh.points));
+    fallen.map(|i| curved.cells[i]).collect()
 }
 
 impl Quality {

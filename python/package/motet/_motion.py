@@ -184,7 +184,8 @@ class Mover:
         -------
         points : array (n, 3)
         certificate : Report
-            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``.
+            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``; with quadratic cells
+            ``worst_curved_jacobian``, the least scaled Jacobian with cell and place.
         """
         out = _checked_out(out, self._reference.shape)
         certificate = self._mover.advance(self._displacement(displacement), out)

@@ -26,6 +26,9 @@ use crate::words::{self, shown};
 Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
 an inverted one, bad below 0.2. Thin tets of boundary layers are not bad. Tets are oriented by their
 neighbours, whichever way the file numbers them. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
+Quadratic cells are inverted where the determinant of their Jacobian is not positive everywhere inside. Their
+scaled Jacobian is that determinant over what it is at the centre of the cell with straight edges: 1 for a
+straight tet, 0 or less where the cell is folded. EAS, volume and boundary take their edges as straight.
 Lengths are in units of the mesh, angles in degrees.
 
 Examples:
@@ -120,6 +123,7 @@ impl Report<'_> {
         self.tell_arrays(console);
         self.tell_labels(console);
         self.tell_quality(console);
+        self.tell_curved(console);
         self.tell_defects(console);
     }
 
@@ -226,6 +230,17 @@ impl Report<'_> {
         }
         console.say("");
         console.say(histogram(&eas.histogram));
+    }
+
+    fn tell_curved(&self, console: &Console) {
+        let Some(curved) = &self.summary.curved else { return };
+        let [x, y, z] = curved.worst_at.map(short);
+        console.say(format_args!(
+            "\n  {} quadratic cells; least scaled Jacobian {}, in cell {} at ({x}, {y}, {z})",
+            count(curved.cells),
+            short(curved.min_scaled_jacobian),
+            curved.worst_cell
+        ));
     }
 
     fn tell_defects(&self, console: &Console) {

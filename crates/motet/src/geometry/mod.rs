@@ -1,5 +1,6 @@
 //! Floor 1: pure functions on points; nothing here knows a mesh.
 
+pub mod bernstein;
 pub(crate) mod deepest;
 pub mod distance;
 pub(crate) mod fused;

@@ -6,6 +6,7 @@ mod cell_kind;
 mod cells;
 pub mod check;
 mod coincident;
+pub mod curved;
 pub(crate) mod disc;
 mod edge_lengths;
 mod exchange;

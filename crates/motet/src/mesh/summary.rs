@@ -9,6 +9,7 @@ use crate::geometry::vector::in_range;
 use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
+use crate::mesh::curved::CurvedSummary;
 use crate::mesh::{Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, triangulate};
 
 /// A tet below this EAS is bad.
@@ -35,7 +36,10 @@ pub struct Summary {
     pub boundary: Option<BoundarySummary>,
     /// Shape of the tets (of quadratic ones the corners); `None` where there is no tet.
     pub quality: Option<QualitySummary>,
-    /// How many volume cells are inverted or flat: their volume, of tets as oriented by their neighbours, is not positive.
+    /// Quadratic volume cells by their Jacobian; `None` where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curved: Option<CurvedSummary>,
+    /// How many volume cells are inverted or flat: their volume, of tets as oriented by their neighbours, is not positive, or they are quadratic and folded inside.
     pub inverted: usize,
     /// How many tets the file numbers the other way round than their orientation; inverted or not, they are judged as oriented.
     pub turned: usize,
@@ -148,7 +152,8 @@ impl Summary {
             boundary: has_volume
                 .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
             quality: tet_quality(mesh, &tets),
-            inverted: count(DefectKind::InvertedCell) + count(DefectKind::FlatCell),
+            curved: CurvedSummary::of(mesh),
+            inverted: count(DefectKind::InvertedCell) + count(DefectKind::FlatCell) + count(DefectKind::FoldedCell),
             turned: tets.turned.len(),
             conforming: is_conforming(&defects),
             defects,

@@ -69,7 +69,7 @@ impl Mover {
         if turned.is_empty() {
             self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec(), map: None });
         } else {
-            certificate.blocked_by = self.check.cells_of(&turned);
+            certificate.blocked_by = turned;
             certificate.blocked_by.truncate(10);
             let before = self.state.as_ref().map(State::without_map);
             let gone = self.go_as_far_as_can_be(displacement, out, threads, &mut certificate, &mut seconds);
@@ -246,7 +246,7 @@ impl Leg<'_> {
             self.iterations += map.apply(&self.state.points, &change, out, threads)?;
         }
         nodes.place(&self.mover.reference, &to, out);
-        Ok(self.mover.smooth(out, threads))
+        Ok(self.mover.finish(out, threads))
     }
 
     /// The largest part of the way on which every cell stays upright; all of it where

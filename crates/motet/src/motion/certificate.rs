@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::mesh::curved::LeastJacobian;
 use crate::motion::check::Check;
 use crate::motion::slide::LeavesPlane;
 
@@ -27,7 +28,7 @@ pub struct Certificate {
     pub iterations: usize,
     /// Vertices of bad tets that smoothing has moved.
     pub smoothed: usize,
-    /// Volume cells that are inverted or flat.
+    /// Volume cells that are inverted or flat: quadratic ones where the determinant of their Jacobian is not positive everywhere.
     pub inverted: usize,
     /// Of the reference: volume cells that were inverted or flat before anything moved.
     pub inverted_before: usize,
@@ -60,6 +61,10 @@ pub struct Quality {
     /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
     /// its three edges span over the product of their lengths (Knupp 2000).
     pub worst_scaled_jacobian: Option<Worst>,
+    /// For quadratic cells: the least scaled Jacobian anywhere within, and where;
+    /// see [`LeastJacobian::scaled`](crate::mesh::curved::LeastJacobian::scaled). 0 or less where a cell is folded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub worst_curved_jacobian: Option<Worst>,
 }
 
 /// The worst cell by some measure.
@@ -69,7 +74,7 @@ pub struct Worst {
     pub value: f64,
     /// The cell.
     pub cell: CellId,
-    /// The mean of the corners that were measured.
+    /// The mean of the corners that were measured; for the Jacobian of a quadratic cell where it is that.
     pub place: Point,
 }
 
@@ -126,7 +131,18 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     });
     let place = |cell: &CellId| check.tets.cells.binary_search(cell).ok();
     let judged = check.tets.judge(points, low.iter().filter_map(place).collect(), BAD_EAS);
-    Quality { bad: judged.bad.len(), layers: judged.layers.len(), ..all }
+    let worst_curved_jacobian = worst_curved(check, points, threads);
+    Quality { bad: judged.bad.len(), layers: judged.layers.len(), worst_curved_jacobian, ..all }
+}
+
+/// The worst quadratic cell. Chunks are the same for any number of threads, and so is what each passes over.
+fn worst_curved(check: &Check, points: &[Point], threads: &Threads) -> Option<Worst> {
+    let n = check.curved.len();
+    let runs: Vec<_> = (0..n).step_by(CHUNK).map(|start| start..(start + CHUNK).min(n)).collect();
+    let worst = threads.each(runs, |run| check.curved.worst(run, points));
+    let as_worst =
+        |(cell, least): (CellId, LeastJacobian)| Worst { value: least.scaled, cell, place: least.place };
+    worst.into_iter().map(|worst| worst.map(as_worst)).fold(None, worse)
 }
 
 /// The quality of some corners but for the counts, and the tets below [`BAD_EAS`] among them.

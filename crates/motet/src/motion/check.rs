@@ -1,14 +1,16 @@
-//! Which cells a motion has turned over: by exact signs, and against how the mesh began.
+//! Which cells a motion has turned over, against how the mesh began: linear ones by exact signs at their corners, quadratic
+//! ones by bounds of the determinant of their Jacobian.
 
 use rayon::prelude::*;
 
 use crate::base::{CellId, Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::volume_6;
+use crate::mesh::curved::CurvedCells;
 use crate::mesh::{Mesh, OrientedTets};
 use crate::motion::corners::Corners;
 
-/// The corners of the cells, and those that were inverted or flat from the start.
+/// The corners of the cells, the quadratic cells, and what of both was inverted or flat from the start.
 ///
 /// A mesh may come with inverted cells. They are counted and told, but do not stop a
 /// motion: what it has to keep upright is what was upright.
@@ -17,8 +19,18 @@ pub(crate) struct Check {
     pub(crate) corners: Corners,
     /// The linear tets, which tell the layers among those of low quality.
     pub(crate) tets: OrientedTets,
-    /// Corners, in rising order, that were not upright in the reference.
-    before: Vec<u32>,
+    pub(crate) curved: CurvedCells,
+    /// What was not upright in the reference.
+    before: Fallen,
+}
+
+/// What is not upright, in rising order.
+#[derive(Debug, Default)]
+struct Fallen {
+    /// Corners of linear cells.
+    corners: Vec<u32>,
+    /// Quadratic cells, by their places in the list of those.
+    curved: Vec<u32>,
 }
 
 /// Corners that one thread looks at in one go.
@@ -30,44 +42,80 @@ impl Check {
         let tets = OrientedTets::of_linear(mesh);
         let mut corners = Corners::of(cells, &tets);
         let signs = threads.map(corners.len(), |i| orientation(corners.tets[i], points));
-        let before = corners.stand_up(cells, &signs);
-        Self { corners, tets, before }
+        let mut before = corners.stand_up(cells, &signs);
+        before.retain(|&i| !corners.is_curved[i as usize]);
+        let curved = CurvedCells::of(cells, points);
+        let mut check = Self { corners, tets, curved, before: Fallen::default() };
+        check.before = Fallen { corners: before, curved: check.curved_not_upright(points, threads) };
+        check
     }
 
-    /// Corners, in rising order, that are inverted or flat.
-    fn not_upright(&self, points: &[Point], threads: &Threads) -> Vec<u32> {
-        self.collect(threads, |_, tet| !is_upright(tet, points))
+    /// What is inverted or flat.
+    fn not_upright(&self, points: &[Point], threads: &Threads) -> Fallen {
+        let is_curved = &self.corners.is_curved;
+        Fallen {
+            corners: self.collect(threads, |i, tet| !is_curved[i as usize] && !is_upright(tet, points)),
+            curved: self.curved_not_upright(points, threads),
+        }
     }
 
-    /// Corners, in rising order, that are inverted or flat and were not in the reference.
-    pub(crate) fn turned_over(&self, points: &[Point], threads: &Threads) -> Vec<u32> {
+    fn curved_not_upright(&self, points: &[Point], threads: &Threads) -> Vec<u32> {
+        let is_upright = threads.map(self.curved.len(), |i| self.curved.is_upright(i, points));
+        (0..).zip(is_upright).filter(|(_, is_upright)| !is_upright).map(|(i, _)| i).collect()
+    }
+
+    /// Cells, in rising order, that are inverted or flat and of which that part was not so in the reference.
+    pub(crate) fn turned_over(&self, points: &[Point], threads: &Threads) -> Vec<CellId> {
         let mut turned = self.not_upright(points, threads);
-        turned.retain(|i| self.before.binary_search(i).is_err());
-        turned
+        turned.corners.retain(|i| self.before.corners.binary_search(i).is_err());
+        turned.curved.retain(|i| self.before.curved.binary_search(i).is_err());
+        self.cells_of(&turned)
     }
 
-    /// Whether every corner that was upright in the reference still is, and has kept
-    /// `share` of its volume in `start` if it was upright there.
+    /// Whether all that was upright in the reference still is, and has kept `share` of its volume in `start` if it was upright there; of a quadratic cell: of the
+    /// least determinant of its Jacobian.
     pub(crate) fn holds(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
-        let lost = self.any(threads, |i, tet| {
+        let has_lost = |i: u32, tet: [VertexId; 4]| {
+            if self.corners.is_curved[i as usize] {
+                return false;
+            }
             if !is_upright(tet, points) {
-                return self.before.binary_search(&i).is_err();
+                return self.before.corners.binary_search(&i).is_err();
             }
             let volume = |points: &[Point]| volume_6(tet.map(|v| points[v.index()]));
             share > 0.0 && volume(points) < share * volume(start)
-        });
-        !lost
+        };
+        !self.any(threads, has_lost) && self.curved_holds(points, start, share, threads)
     }
 
-    /// Cells of which a corner is not upright: all of them, and those that were from the start.
+    fn curved_holds(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
+        let least = |i: usize, points: &[Point]| {
+            self.curved.least(i, points, f64::INFINITY).map_or(0.0, |least| least.determinant)
+        };
+        let holds = |i: usize| {
+            if !self.curved.is_upright(i, points) {
+                return self.before.curved.binary_search(&(i as u32)).is_ok();
+            }
+            share == 0.0 || least(i, points) >= share * least(i, start)
+        };
+        match threads.pool() {
+            None => (0..self.curved.len()).all(holds),
+            Some(pool) => pool.install(|| (0..self.curved.len()).into_par_iter().all(holds)),
+        }
+    }
+
+    /// Cells of which something is not upright: all of them, and those that were from the start.
     pub(crate) fn count(&self, points: &[Point], threads: &Threads) -> [usize; 2] {
         let now = self.not_upright(points, threads);
         [self.cells_of(&now).len(), self.cells_of(&self.before).len()]
     }
 
-    /// The cells of some corners, each once.
-    pub(crate) fn cells_of(&self, corners: &[u32]) -> Vec<CellId> {
-        let mut cells: Vec<CellId> = corners.iter().map(|&i| self.corners.cells[i as usize]).collect();
+    /// The cells of what is not upright, each once, in rising order.
+    fn cells_of(&self, fallen: &Fallen) -> Vec<CellId> {
+        let of_corners = fallen.corners.iter().map(|&i| self.corners.cells[i as usize]);
+        let curved = fallen.curved.iter().map(|&i| self.curved.cells[i as usize]);
+        let mut cells: Vec<CellId> = of_corners.chain(curved).collect();
+        cells.sort_unstable();
         cells.dedup();
         cells
     }

@@ -139,8 +139,6 @@ impl Tried {
 fn worst(certificate: &Certificate) -> Option<f64> {
     let value = |worst: Option<Worst>| worst.map(|worst| worst.value);
     let quality = &certificate.quality;
-    match (value(quality.worst_eas), value(quality.worst_scaled_jacobian)) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (a, b) => a.or(b),
-    }
+    let all = [quality.worst_eas, quality.worst_scaled_jacobian, quality.worst_curved_jacobian];
+    all.into_iter().filter_map(value).reduce(f64::min)
 }

@@ -2,12 +2,13 @@
 //!
 //! A tet is its own corner. In a cell of another kind each corner at which three
 //! facets meet spans a tet with its three neighbours, and the sign of its volume is
-//! that of the cell's Jacobian there (for a quadratic cell: of the linear cell
-//! between its corners). Corners where more facets meet, such as a pyramid's tip,
-//! have no such tet; they are left to the corners around them.
+//! that of the cell's Jacobian there. Corners where more facets meet, such as a pyramid's tip,
+//! have no such tet; they are left to the corners around them. Corners of a quadratic cell are those of the linear cell between
+//! them: they say nothing of how it stands, which [`mesh::curved`](crate::mesh::curved) does.
 
 use crate::base::{CellId, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
+use crate::mesh::curved::is_curved_kind;
 use crate::mesh::{CellKind, Cells, OrientedTets};
 
 /// The corner tets of all volume cells, in the order of the cells.
@@ -19,6 +20,8 @@ pub(crate) struct Corners {
     pub(crate) cells: Vec<CellId>,
     /// Whether the cell itself is that tet.
     pub(crate) is_cell: Vec<bool>,
+    /// Whether the cell is quadratic.
+    pub(crate) is_curved: Vec<bool>,
 }
 
 impl Corners {
@@ -35,6 +38,7 @@ impl Corners {
             }
             corners.cells.resize(corners.tets.len(), cell);
             corners.is_cell.resize(corners.tets.len(), kind == CellKind::TETRA);
+            corners.is_curved.resize(corners.tets.len(), is_curved_kind(kind));
         }
         corners
     }
@@ -70,7 +74,7 @@ impl Corners {
 
     fn with_capacity(n: usize) -> Self {
         let (tets, cells) = (Vec::with_capacity(n), Vec::with_capacity(n));
-        Self { tets, cells, is_cell: Vec::with_capacity(n) }
+        Self { tets, cells, is_cell: Vec::with_capacity(n), is_curved: Vec::with_capacity(n) }
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -52,12 +52,14 @@
 //! # What the checks mean
 //!
 //! [`Mover::step`] checks nothing. [`Mover::advance`] looks at the mesh's own cells, by
-//! exact signs: a tet is upright when its volume is positive, a cell of another kind
-//! when the tets at its corners are (those corners where three facets meet). It goes
+//! exact signs: a tet is upright when its volume is positive, a linear cell of another kind
+//! when the tets at its corners are (those corners where three facets meet); a quadratic cell when the
+//! determinant of its Jacobian is positive everywhere, by [bounds](crate::mesh::curved) of it. It goes
 //! only where no cell turns over that was upright at first. Tets of the graph do turn
 //! over, flat ones at once, and it means nothing; the [`Certificate`] counts those that
 //! hold vertices. It tells the worst EAS and the worst mean ratio of the tets and the
 //! worst scaled Jacobian of other cells, with places.
+//! Of quadratic cells these are of their corners; what is between them has a number of its own ([`Quality::worst_curved_jacobian`]).
 //!
 //! # Who is who
 //!
@@ -70,6 +72,8 @@
 //!   the plane, and where two planes meet along their line. Where three meet, and where a patch
 //!   that slides meets one that does not, vertices are driven.
 //! * the *rigid layer* ([`Options::rigid_layer`]) keeps its place relative to the wall.
+//! * *middle* nodes of quadratic cells that lie in the middle of their corners at first, and that the caller does not move, stay
+//!   there: edges that are straight stay straight. Those of curved edges follow as any other vertex.
 //! * all other vertices hang in the graph; those that lie outside of it and belong to
 //!   no volume cell stay where they are.
 
@@ -88,6 +92,7 @@ mod interface;
 mod layer;
 mod map;
 mod matching;
+mod middles;
 mod mover;
 mod nodes;
 mod options;

@@ -136,6 +136,17 @@ impl Nodes {
         sliding
     }
 
+    /// Whether each of the vertices of a mesh has its place from the caller: driven, and sliding in no plane.
+    pub(crate) fn prescribed(&self, n_points: usize) -> Vec<bool> {
+        let mut is_prescribed = vec![false; n_points];
+        self.vertices[..self.n_driven].iter().for_each(|v| is_prescribed[v.index()] = true);
+        let members = self.member_nodes.iter().zip(&self.member_slides).filter(|(_, slide)| slide.is_some());
+        let sliding =
+            self.slides.iter().flat_map(|slide| &slide.sliding).chain(members.map(|(node, _)| node));
+        sliding.for_each(|&node| is_prescribed[self.vertices[node as usize].index()] = false);
+        is_prescribed
+    }
+
     /// Numbers of all nodes from those of the driven ones: nodes of the layer have those of their feet.
     pub(crate) fn at_feet(&self, driven: &[Point]) -> Vec<Point> {
         let mut all = driven.to_vec();

@@ -99,6 +99,11 @@ impl Method {
         ]
     }
 
+    /// Whether it places corners of cells only, since it rests on the tets at them.
+    pub(crate) fn knows_corners_alone(&self) -> bool {
+        matches!(self, Self::Bodies(_) | Self::Elastic(_) | Self::Laplace(_))
+    }
+
     /// The method of a [name](Self::name).
     ///
     /// # Errors

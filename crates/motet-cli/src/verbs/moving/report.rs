@@ -355,7 +355,8 @@ fn step_table(before: &Certificate, steps: &[Step]) -> Table {
     ]);
     let mut row = |step: &str, time: &str, certificate: &Certificate, took: &str| {
         let quality = &certificate.quality;
-        let worst = if other { quality.worst_scaled_jacobian } else { quality.worst_eas };
+        let of_others = quality.worst_curved_jacobian.or(quality.worst_scaled_jacobian);
+        let worst = if other { of_others } else { quality.worst_eas };
         let ratio = quality.worst_mean_ratio.map(|w| short(w.value));
         table.row([
             step.to_string(),

@@ -1,4 +1,4 @@
-//! Cells that are inverted, flat, or name a vertex twice.
+//! Cells that are inverted, flat, folded inside, or name a vertex twice.
 
 use std::cmp::Ordering;
 
@@ -8,6 +8,7 @@ use crate::geometry::vector::in_range;
 use crate::mesh::adjacency::Facets;
 use crate::mesh::boundary::corners;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
+use crate::mesh::curved::{Jacobian, is_curved_kind, is_upright};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 
@@ -17,6 +18,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> 
     let mut repeated = Defect::none(DefectKind::RepeatedVertex);
     let mut inverted = Defect::none(DefectKind::InvertedCell);
     let mut flat = Defect::none(DefectKind::FlatCell);
+    let mut folded = Defect::none(DefectKind::FoldedCell);
     let mut zero_area = Defect::none(DefectKind::ZeroAreaCell);
     let mut unknown = Defect::none(DefectKind::UnknownKind);
     for (cell, kind, vertices) in mesh.cells.iter() {
@@ -27,6 +29,15 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> 
         if boundary.n_unknown > 0 && is_unknown(kind) {
             unknown.add(example);
         }
+        if is_curved_kind(kind) {
+            match curved(kind, vertices, &mesh.points, are_turned[cell.index()]) {
+                Curved::Sound => {}
+                Curved::Inverted => inverted.add(example),
+                Curved::Flat => flat.add(example),
+                Curved::Folded(at) => folded.add(|| Example { at: Some(at), ..example() }),
+            }
+            continue;
+        }
         let as_oriented = |sign: Ordering| if are_turned[cell.index()] { sign.reverse() } else { sign };
         let measure = measure(&facets, cell, kind, vertices, &mesh.points);
         match measure.map(|(dim, sign)| (dim, as_oriented(sign))) {
@@ -36,7 +47,35 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> 
             _ => {}
         }
     }
-    vec![unknown, repeated, inverted, flat, zero_area]
+    vec![unknown, repeated, inverted, flat, folded, zero_area]
+}
+
+/// How the determinant of the Jacobian of a quadratic cell is.
+enum Curved {
+    /// Positive everywhere, or not to be told: a point is not finite.
+    Sound,
+    /// Negative everywhere.
+    Inverted,
+    /// Zero everywhere.
+    Flat,
+    /// Not of one sign; where it is least.
+    Folded(Point),
+}
+
+/// `is_turned`: the determinant counts with the other sign.
+fn curved(kind: CellKind, vertices: &[VertexId], points: &[Point], is_turned: bool) -> Curved {
+    let nodes: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
+    if !nodes.iter().all(|&p| in_range(p)) || is_upright(kind, &nodes, is_turned) {
+        return Curved::Sound;
+    }
+    if is_upright(kind, &nodes, !is_turned) {
+        return Curved::Inverted;
+    }
+    match Jacobian::of(kind, &nodes) {
+        None => Curved::Sound,
+        Some(jacobian) if jacobian.is_zero() => Curved::Flat,
+        Some(jacobian) => Curved::Folded(jacobian.least().place),
+    }
 }
 
 fn names_one_twice(vertices: &[VertexId]) -> bool {

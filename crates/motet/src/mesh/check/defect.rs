@@ -37,6 +37,7 @@ defect_kinds! {
     RepeatedVertex = "repeated_vertex", "the cell names a vertex twice";
     InvertedCell = "inverted_cell", "the volume is negative";
     FlatCell = "flat_cell", "the volume is exactly zero";
+    FoldedCell = "folded_cell", "the Jacobian determinant of the quadratic cell is zero or negative somewhere in it, positive elsewhere";
     ZeroAreaCell = "zero_area_cell", "the surface cell has no area";
     DuplicateCell = "duplicate_cell", "cells of the same vertices";
     OversharedFacet = "overshared_facet", "more than two volume cells use the facet";

@@ -3,7 +3,7 @@
 //! | looked at | defects |
 //! |---|---|
 //! | points | not finite, used by no cell, two at one place |
-//! | cells | of unknown kind, a vertex named twice, inverted, flat, without area, twice there |
+//! | cells | of unknown kind, a vertex named twice, inverted, flat, quadratic and folded inside, without area, twice there |
 //! | facets | more than two cells, two tets on one side, unmerged, with hanging vertices |
 //! | surface | open, misoriented and non-manifold edges, pinched vertices |
 //! | the whole | separate parts |

@@ -1,0 +1,84 @@
+//! Middle nodes of quadratic cells that stay in the middle of their corners, so that straight edges stay straight.
+//!
+//! A method moves each vertex for itself. The middle node of a straight edge would leave the edge wherever displacements are not linear along it, and a cell whose
+//! corners move well would be folded between them.
+
+use crate::base::{Csr, Point, Threads, VertexId};
+use crate::geometry::vector::{add, norm, scale, sub};
+use crate::mesh::curved::middles;
+use crate::mesh::{CellKind, Mesh};
+
+/// Middle nodes, and the corners that each stays between.
+#[derive(Debug, Default)]
+pub(crate) struct Middles {
+    /// Rising.
+    vertices: Vec<VertexId>,
+    corners: Csr<VertexId>,
+}
+
+/// A node is in the middle when it is no farther off than this part of the longest way between its corners: an arc that bends by less than a
+/// thousandth of a radian, and coordinates of some digits.
+const STRAIGHT: f64 = 1e-4;
+/// Or than so many roundings of the largest coordinate, in the precision that the coordinates are in.
+const ROUNDINGS: f64 = 4.0;
+
+impl Middles {
+    /// Those of a mesh in its first place that nobody `is_prescribed` to; `any`: also the nodes of edges that are not straight, for methods that know corners alone.
+    ///
+    /// What is a corner of another volume cell follows as corners do. Of several cells that see a node between different corners the first counts.
+    pub(crate) fn of(mesh: &Mesh, is_prescribed: &[bool], any: bool) -> Self {
+        let volumes = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
+        let of_kind: Vec<_> = (0..=u8::MAX).map(|k| middles(CellKind(k))).collect();
+        let mut is_taken = is_prescribed.to_vec();
+        for (_, kind, nodes) in volumes() {
+            let n_corners = nodes.len() - of_kind[kind.0 as usize].len();
+            nodes[..n_corners].iter().for_each(|v| is_taken[v.index()] = true);
+        }
+        let mut found: Vec<(VertexId, Vec<VertexId>)> = Vec::new();
+        for (_, kind, nodes) in volumes() {
+            for middle in &of_kind[kind.0 as usize] {
+                let v = nodes[middle.node];
+                let corners = middle.corners.iter().map(|&c| nodes[c]);
+                let places: Vec<Point> = corners.clone().map(|v| mesh.points[v.index()]).collect();
+                if !is_taken[v.index()] && (any || is_between(mesh.points[v.index()], &places)) {
+                    is_taken[v.index()] = true;
+                    found.push((v, corners.collect()));
+                }
+            }
+        }
+        found.sort_unstable_by_key(|(v, _)| *v);
+        let mut all = Self::default();
+        for (v, corners) in found {
+            all.vertices.push(v);
+            all.corners.push(corners);
+        }
+        all
+    }
+
+    pub(crate) fn vertices(&self) -> &[VertexId] {
+        &self.vertices
+    }
+
+    /// Puts every node where its corners in `out` take it: as far from `reference` as they are in the mean. What it was off the middle at first it stays, and a mesh that
+    /// does not move keeps its bits.
+    pub(crate) fn place(&self, reference: &[Point], out: &mut [Point], threads: &Threads) {
+        let moved = |v: &VertexId| sub(out[v.index()], reference[v.index()]);
+        let places = threads.map(self.vertices.len(), |i| {
+            let corners = self.corners.list(i);
+            let sum = corners.iter().map(moved).fold([0.0; 3], add);
+            add(reference[self.vertices[i].index()], scale(sum, 1.0 / corners.len() as f64))
+        });
+        self.vertices.iter().zip(places).for_each(|(v, place)| out[v.index()] = place);
+    }
+}
+
+/// Whether a node lies in the middle of its corners, but for rounding.
+fn is_between(p: Point, corners: &[Point]) -> bool {
+    let middle = scale(corners.iter().copied().fold([0.0; 3], add), 1.0 / corners.len() as f64);
+    let longest = corners.iter().map(|&c| norm(sub(c, corners[0]))).fold(0.0, f64::max);
+    let coordinates = || corners.iter().chain([&p]).flatten();
+    let is_single = coordinates().all(|&x| f64::from(x as f32) == x);
+    let epsilon = if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let largest = coordinates().fold(0.0, |most: f64, x| most.max(x.abs()));
+    norm(sub(p, middle)) <= (STRAIGHT * longest).max(ROUNDINGS * epsilon * largest)
+}
