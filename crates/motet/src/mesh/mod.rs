@@ -15,6 +15,7 @@ pub mod history;
 mod labels;
 mod lone;
 mod measure;
+mod seams;
 pub mod shapes;
 mod summary;
 mod surface;
@@ -33,6 +34,7 @@ pub use edge_lengths::mean_edge_lengths;
 pub use exchange::{Mesh, bounds, largest_extent};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels, unused_name};
+pub use seams::{open_edges, seamless, seams};
 pub use summary::{
     BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,
     Summary,
