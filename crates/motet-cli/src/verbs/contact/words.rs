@@ -61,6 +61,12 @@ impl Report {
 
     /// Says what was taken for a room, and why.
     fn tell_rooms(&self, console: &Console) {
+        for body in self.bodies.iter().filter(|body| body.room && !body.closed) {
+            console.warn(format_args!(
+                "{} is open, so nothing tells which side of it is inside: --room {} has no effect; `motet cap` closes rims",
+                body.name, body.name
+            ));
+        }
         for InRoom { room, surface, share } in &self.rooms {
             if let Some(share) = share {
                 console.say(format_args!(
