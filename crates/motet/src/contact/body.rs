@@ -59,7 +59,7 @@ impl Body {
 
 /// A body with all that does not change when points move, and its tree.
 ///
-/// What hangs together is told by `joined`, where vertices that [seams](crate::mesh::seams) repeat are one: so answers do not depend on how a file numbers a surface. Places and
+/// What hangs together is told by `joined`, where vertices that [seams](fn@crate::mesh::seams) repeat are one: so answers do not depend on how a file numbers a surface. Places and
 /// answers are those of the vertices as they were given.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {

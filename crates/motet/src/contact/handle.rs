@@ -104,7 +104,7 @@ impl Contact {
         &self.bodies[body as usize].triangles
     }
 
-    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other, where vertices that [seams](crate::mesh::seams) repeat are one.
+    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other, where vertices that [seams](fn@crate::mesh::seams) repeat are one.
     pub fn is_closed(&self, body: u32) -> bool {
         self.bodies[body as usize].is_closed
     }

@@ -16,7 +16,7 @@ use crate::spatial::runs::{around, corners, in_runs};
 use crate::spatial::{Bounds, BoxTree};
 
 /// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
-/// times. By ids: for a surface whose vertices are there more than once, [`seams`](crate::mesh::seams) says which are one.
+/// times. By ids: for a surface whose vertices are there more than once, [`seams`](fn@crate::mesh::seams) says which are one.
 pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
     open_edges(triangles).is_empty()
 }
