@@ -1,7 +1,7 @@
 //! How far apart surfaces are, where, and when they will touch.
 
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{self, Body, Gaps, NONE, Options};
+use motet::contact::{self, Body, Gaps, NONE, Options, Room};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -35,16 +35,24 @@ struct Pair<'a> {
     warned: [usize; 2],
 }
 
+/// A surface in a room, as reports have it.
+#[derive(Serialize)]
+struct Within<'a> {
+    room: &'a str,
+    surface: &'a str,
+    share: Option<f64>,
+}
+
 #[pymethods]
 impl Contact {
-    /// `bodies`: each with its name, its triangles and whether it is the wall of a room.
+    /// `bodies`: each with its name, its triangles and whether it is the wall of a room; `None`: that is found.
     #[new]
     #[pyo3(signature = (points, bodies, *, warn, own, within, facing, fold, threads))]
     #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
     fn new(
         py: Python<'_>,
         points: Vectors<'_>,
-        bodies: Vec<(String, numpy::PyReadonlyArray2<'_, u32>, bool)>,
+        bodies: Vec<(String, numpy::PyReadonlyArray2<'_, u32>, Option<bool>)>,
         warn: Option<f64>,
         own: bool,
         within: f64,
@@ -54,7 +62,7 @@ impl Contact {
     ) -> PyResult<Self> {
         let points = rows(&points, "points")?.to_vec();
         let threads = self::threads(threads)?;
-        let body = |(name, triangles, is_room): (String, numpy::PyReadonlyArray2<'_, u32>, bool)| {
+        let body = |(name, triangles, is_room): (String, numpy::PyReadonlyArray2<'_, u32>, Option<bool>)| {
             let triangles = triangles.as_array();
             if triangles.ncols() != 3 {
                 return Err(input(format!("{name}: triangles of {} columns, expected 3", triangles.ncols())));
@@ -64,13 +72,26 @@ impl Contact {
                 return Err(input(format!("{name}: vertex {v} is named, but there are {n} points")));
             }
             let triangles = triangles.rows().into_iter().map(|t| [t[0], t[1], t[2]].map(VertexId)).collect();
-            Ok(Body { name, triangles, is_room })
+            let room = match is_room {
+                None => Room::Found,
+                Some(true) => Room::Yes,
+                Some(false) => Room::No,
+            };
+            Ok(Body { name, triangles, room })
         };
         let bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
         let names = bodies.iter().map(|body| body.name.clone()).collect();
         let options = Options { warn, own, within, facing, fold };
         let contact = py.detach(|| contact::Contact::new(points, bodies, options, &threads)).or_raise()?;
         Ok(Self { contact, names, threads })
+    }
+
+    /// Which surfaces lie in which rooms, and the part of their area inside where that was found.
+    fn rooms(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let name = |body: u32| self.names[body as usize].as_str();
+        let within =
+            |w: &contact::Within| Within { room: name(w.room), surface: name(w.body), share: w.share };
+        Ok(report(py, &self.contact.rooms().iter().map(within).collect::<Vec<_>>())?.into())
     }
 
     fn refit(&mut self, py: Python<'_>, points: Vectors<'_>) -> PyResult<()> {

@@ -44,6 +44,29 @@ def test_patches_and_rooms():
     assert gaps.least == pytest.approx(4.0) and (gaps.bodies["sphere"].gap > 0).all()
 
 
+def test_rooms_are_found_and_can_be_told():
+    inner, outer = shapes.ball(), shapes.ball()
+    outer.points = 3 * outer.points
+    both = {"inner": inner, "outer": outer}
+    contact = motet.Contact(both, warn=0.5)
+    within = contact.rooms[0]
+    assert (within.room, within.surface, within.share, len(contact.rooms)) == ("outer", "inner", 1.0, 1)
+    assert (contact.measure().bodies["inner"].gap > 0).all() and not contact.measure().warnings
+    assert motet.Contact(both, room=["outer"]).rooms[0].share is None
+    solid = motet.Contact(both, room=(), warn=0.5)
+    assert solid.rooms == [] and (solid.measure().bodies["inner"].gap < 0).all()
+
+
+def test_a_soup_is_as_closed_as_its_surface():
+    ball = shapes.ball()
+    facets = np.concatenate([ball.tets[:, f] for f in ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])])
+    _, first, count = np.unique(np.sort(facets, 1), axis=0, return_index=True, return_counts=True)
+    facets = facets[first[count == 1]].astype(int)
+    soup = motet.Mesh(3 * ball.points[facets].reshape(-1, 3), np.arange(facets.size).reshape(-1, 3))
+    contact = motet.Contact({"inner": shapes.ball(), "outer": soup})
+    assert contact.rooms[0].room == "outer" and (contact.measure().bodies["inner"].gap > 0).all()
+
+
 def test_a_surface_against_itself():
     gaps = motet.Contact(shapes.coil(pitch=0.3, wire_radius=0.08), own=True, within=0.5).measure()
     assert 0.1 < gaps.least < 0.16

@@ -338,7 +338,8 @@ typedef struct motet_contact_options {
 } motet_contact_options;
 
 void motet_contact_options_init(motet_contact_options *options, size_t size);
-/* Triangles of all bodies, one body after the other; counts has the number of each; is_room is 1 for walls of rooms that others are within, NULL: none. */
+/* Triangles of all bodies, one body after the other; counts has the number of each; is_room is 1 for walls of rooms that others are within, 0 for
+ * bodies that are none, -1 where that is to be found: a closed surface that encloses most of another one's area is its room. NULL: -1 for all. */
 motet_status motet_contact_new(
     const double *points, int64_t n_points, int64_t stride, const int32_t *triangles, const int64_t *counts, const int32_t *is_room, int64_t n_bodies,
     const motet_contact_options *options, motet_contact **contact, motet_error **error);

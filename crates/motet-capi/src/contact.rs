@@ -1,7 +1,7 @@
 //! How far apart surfaces are, and when they will touch.
 
 use motet::base::{Threads, VertexId};
-use motet::contact::{Body, Contact, Options};
+use motet::contact::{Body, Contact, Options, Room};
 use motet::{Error, Result};
 
 use crate::guard::{MotetError, guarded};
@@ -70,7 +70,7 @@ fn bodies(
     let n = count(n_bodies, "bodies")?;
     let counts = values(counts, n, "counts")?.iter().map(|&k| count(k, "triangles"));
     let counts: Vec<usize> = counts.collect::<Result<_>>()?;
-    let rooms = if is_room.is_null() { vec![0; n] } else { values(is_room, n, "is_room")?.to_vec() };
+    let rooms = if is_room.is_null() { vec![-1; n] } else { values(is_room, n, "is_room")?.to_vec() };
     let all = counts.iter().try_fold(0usize, |sum, &k| sum.checked_add(k)).and_then(|k| k.checked_mul(3));
     let all = values(triangles, all.ok_or_else(|| Error::options("more triangles than ids"))?, "triangles")?;
     let mut rest = all.as_chunks::<3>().0.iter().enumerate();
@@ -80,7 +80,12 @@ fn bodies(
             Ok([a?, b?, c?])
         };
         let triangles: Vec<[VertexId; 3]> = rest.by_ref().take(k).map(triangle).collect::<Result<_>>()?;
-        Ok(Body { name: format!("body {i}"), triangles, is_room: is_room != 0 })
+        let room = match is_room {
+            0 => Room::No,
+            1.. => Room::Yes,
+            _ => Room::Found,
+        };
+        Ok(Body { name: format!("body {i}"), triangles, room })
     };
     counts.iter().zip(&rooms).enumerate().map(body).collect()
 }

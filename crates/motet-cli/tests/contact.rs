@@ -154,15 +154,63 @@ fn patches_of_a_mesh_are_bodies() {
 }
 
 #[test]
-fn a_room_turns_the_sign_and_is_hinted_at() {
+fn a_room_is_found_and_reported_and_can_be_told() {
     let folder = Folder::new();
     folder.mesh("room.vtp", &block([0.0; 3], [4.0; 3]));
     folder.mesh("thing.vtp", &block([1.0; 3], [2.0; 3]));
     let call = folder.motet("contact thing.vtp room.vtp -o gaps.vtp".split(' ')).assert().success();
-    assert!(stderr(&call).contains("--room room"), "{}", stderr(&call));
-    let told = report(&folder, "contact thing.vtp room.vtp -o gaps.vtp --room room");
-    assert_eq!(told["steps"][0]["pairs"][0]["wrong"], serde_json::json!([0, 0]));
-    assert_eq!(told["steps"][0]["gaps"][0]["min"], 1.0);
+    let found = "room is taken for the room of thing, 100 % of whose area lies inside";
+    assert!(stdout(&call).contains(found), "{}", stdout(&call));
+    for words in ["", " --room room", " --method delaunay"] {
+        let told = report(&folder, &format!("contact thing.vtp room.vtp -o gaps.vtp --warn 0.5{words}"));
+        assert_eq!(told["steps"][0]["pairs"][0]["wrong"], serde_json::json!([0, 0]));
+        assert_eq!(told["steps"][0]["gaps"][0]["min"], 1.0);
+        assert_eq!((&told["warning"], &told["bodies"][1]["room"]), (&Value::Bool(false), &Value::Bool(true)));
+        let share = if words.contains("--room") { Value::Null } else { 1.0.into() };
+        assert_eq!(
+            told["rooms"],
+            serde_json::json!([{ "room": "room", "surface": "thing", "share": share }])
+        );
+    }
+    let solid = report(&folder, "contact thing.vtp room.vtp -o gaps.vtp --warn 0.5 --no-room");
+    assert_eq!((&solid["rooms"], &solid["warning"]), (&serde_json::json!([]), &Value::Bool(true)));
+    assert_eq!(solid["steps"][0]["gaps"][0]["max"], -1.0);
+    folder.motet("contact thing.vtp room.vtp -o gaps.vtp --no-room --room room".split(' ')).assert().code(2);
+}
+
+#[test]
+fn vertices_that_delaunay_tets_do_not_measure_have_finite_depths() {
+    let folder = Folder::new();
+    folder.mesh("solid.vtp", &block([0.0; 3], [4.0; 3]));
+    folder.mesh("thing.vtp", &block([1.0; 3], [2.0; 3]));
+    let words = "contact thing.vtp solid.vtp -o gaps.vtp --warn 0.5 --method delaunay --no-room";
+    let call = folder.motet(words.split(' ')).assert().success();
+    let text = stdout(&call) + &stderr(&call);
+    assert!(!text.contains("inf") && !text.contains("NaN"), "{text}");
+    let told = report(&folder, words);
+    assert_eq!(told["steps"][0]["gaps"][0]["max"], -1.0, "as deep as it is");
+    assert!(told["steps"][0]["warned"].as_array().expect("groups").iter().all(|group| group["gap"].is_f64()));
+    let mesh = read(folder.path("gaps.vtp")).expect("it is written");
+    assert!(values(&mesh, "gap")[..26].iter().all(|gap| gap.is_finite() && *gap < 0.0));
+}
+
+#[test]
+fn rooms_of_a_series_are_those_of_its_first_frame() {
+    let folder = Folder::new();
+    folder.mesh("room.vtp", &block([0.0; 3], [4.0; 3]));
+    let mut series = SeriesWriter::new(folder.path("thing.pvd"), WriteOptions::default());
+    // The last frame has other triangles and lies outside.
+    let last = Surface::boundary_of(&box_grid([1; 3], [[5.0; 3], [6.0; 3]]));
+    let cells = last.triangles.as_flattened().to_vec();
+    let last = Mesh::new(last.points, Cells::uniform(CellKind::TRIANGLE, cells).expect("by threes"));
+    let frames = [block([1.0; 3], [2.0; 3]), block([3.0; 3], [4.5; 3]), last];
+    for (k, mesh) in (0u8..).zip(&frames) {
+        series.add(f64::from(k), mesh).expect("a frame is written");
+    }
+    let told = report(&folder, "contact thing.pvd room.vtp -o out/gaps.pvd --warn 0.5");
+    assert_eq!(told["rooms"].as_array().map(Vec::len), Some(1));
+    let wrong: Vec<_> = (0..3).map(|k| told["steps"][k]["pairs"][0]["wrong"][0].as_u64()).collect();
+    assert_eq!(wrong, [Some(0), Some(19), Some(8)]);
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! ```
 
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{self, Body, Contact};
+use motet::contact::{self, Body, Contact, Room};
 use motet::geometry::quality::eas;
 use motet::implant::{self, Device};
 use motet::mesh::history::Rules;
@@ -91,7 +91,7 @@ fn measure(first: &str, second: &str) -> Result<()> {
         let cells = mesh.cells.iter().filter(|(_, kind, _)| *kind == CellKind::TRIANGLE);
         let shifted = |v: VertexId| VertexId::new(points.len() + v.index());
         let triangles = cells.map(|(_, _, t)| [t[0], t[1], t[2]].map(shifted)).collect();
-        bodies.push(Body { name: file.to_owned(), triangles, is_room: false });
+        bodies.push(Body { name: file.to_owned(), triangles, room: Room::No });
         points.extend(mesh.points);
     }
     let threads = Threads::single();

@@ -16,7 +16,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{Body, Contact, Options};
+use motet::contact::{Body, Contact, Options, Room};
 use motet::geometry::triangle;
 use motet::geometry::vector::{dot, sub};
 use motet::spatial::{Closest, NearestTriangle};
@@ -129,7 +129,7 @@ fn contact([tube, lattice]: [&Shape; 2], threads: &Threads) -> motet::base::Resu
     let points = [&tube.0[..], &lattice.0].concat();
     let body = |name: &str, triangles: &[[VertexId; 3]], first: usize| {
         let triangles = triangles.iter().map(|t| t.map(|v| VertexId::new(first + v.index()))).collect();
-        Body { name: name.into(), triangles, is_room: false }
+        Body { name: name.into(), triangles, room: Room::No }
     };
     let bodies = vec![body("tube", &tube.1, 0), body("lattice", &lattice.1, n)];
     Contact::new(points, bodies, Options { warn: Some(WARN), ..Options::default() }, threads)

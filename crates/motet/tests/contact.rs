@@ -5,7 +5,7 @@ mod surfaces;
 
 use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
-use motet::contact::{Body, Contact, NONE, Options};
+use motet::contact::{Body, Contact, NONE, Options, Room};
 use motet::geometry::distance::triangle_triangle;
 use motet::geometry::vector::{add, distance, norm, scale, sub};
 use surfaces::{Shape, bodies, coil, cube, oracle, sheet, soup, torus};
@@ -196,6 +196,7 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
     for turned in [false, true] {
         let outer = if turned { cube().turned_inside_out() } else { cube() };
         let (points, mut two) = bodies(&[inner.clone(), outer]);
+        two[1].room = Room::No;
         let gaps = Contact::new(points.clone(), two.clone(), Options::default(), &Threads::single())
             .unwrap()
             .measure(&Threads::single());
@@ -203,7 +204,7 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
         assert!(gaps.bodies[1].gap.iter().all(|&gap| gap > 0.0));
         assert_eq!((gaps.pairs[0].n_wrong, gaps.pairs[0].depth), ([8, 0], 0.25));
         assert!(gaps.pairs[0].crossings.is_empty() && gaps.pairs[0].is_penetrated());
-        two[1].is_room = true;
+        two[1].room = Room::Yes;
         let mut room = Contact::new(points, two, Options::default(), &Threads::single()).unwrap();
         let gaps = room.measure(&Threads::single());
         assert!(gaps.bodies[0].gap.iter().all(|&gap| gap == 0.25));
@@ -289,7 +290,7 @@ fn leaflets_that_share_an_edge_are_measured_away_from_it() {
     let body = |second: bool| Body {
         name: format!("leaflet {second}"),
         triangles: lower.triangles.iter().map(|t| t.map(|v| id(v, second))).collect(),
-        is_room: false,
+        room: Room::Found,
     };
     let mut wedge =
         Contact::new(points.clone(), vec![body(false), body(true)], Options::default(), &Threads::single())
@@ -363,7 +364,8 @@ fn what_is_remembered_of_far_parts_never_hides_a_near_one() {
 
 #[test]
 fn a_vertex_deep_inside_is_told_however_short_the_reach() {
-    let (points, two) = bodies(&[cube().scaled(0.1).shifted([0.45; 3]), cube()]);
+    let (points, mut two) = bodies(&[cube().scaled(0.1).shifted([0.45; 3]), cube()]);
+    two[1].room = Room::No;
     let options = Options { within: 0.01, ..Options::default() };
     let gaps = Contact::new(points, two, options, &Threads::single()).unwrap().measure(&Threads::single());
     assert_eq!((gaps.pairs[0].n_wrong, gaps.pairs[0].nearest), ([8, 0], None));

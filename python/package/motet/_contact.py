@@ -63,8 +63,9 @@ class Contact:
         Surfaces, or the boundaries of volume meshes.
     patches : sequence of names or labels
         Of one mesh: these are the surfaces.
-    room : sequence of names
-        Surfaces that are walls of rooms, such as vessels, and others are within.
+    room : sequence of names, optional
+        Surfaces that are walls of rooms, such as vessels, and others are within; ``()``: none is. Default: a closed surface that encloses most of
+        another one's area at first is its room; ``rooms`` tells.
     warn : float
         Warn of gaps below this.
     own : bool
@@ -84,7 +85,7 @@ class Contact:
         surfaces: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
         *,
         patches: Sequence[str | int] = (),
-        room: Sequence[str] = (),
+        room: Sequence[str] | None = None,
         warn: float | None = None,
         own: bool = False,
         within: float = float("inf"),
@@ -99,14 +100,19 @@ class Contact:
             bodies += _motet.bodies(mesh, name, [str(patch) for patch in patches], shift)
             points.append(mesh.points)
             shift += mesh.n_points
-        strange = set(room) - {name for name, _ in bodies}
+        strange = set(room or ()) - {name for name, _ in bodies}
         if strange:
             raise OptionsError(f"room: no surface {', '.join(sorted(strange))}; there are {', '.join(name for name, _ in bodies)}")
         self.points = np.concatenate(points)
         self._native = _motet.Contact(
-            self.points, [(name, triangles, name in room) for name, triangles in bodies], warn=warn, own=own, within=within, facing=facing,
+            self.points, [(name, triangles, None if room is None else name in room) for name, triangles in bodies], warn=warn, own=own, within=within, facing=facing,
             fold=fold, threads=threads,
         )  # fmt: skip
+
+    @property
+    def rooms(self) -> list[Report]:
+        """Which surfaces lie in which rooms: ``room``, ``surface``, and ``share``, the part of its area that was inside at first; None where ``room`` told it."""
+        return report(self._native.rooms())
 
     def refit(self, points: ArrayLike) -> None:
         """New places for all points, (n, 3), in the order of the surfaces."""

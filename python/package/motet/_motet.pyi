@@ -103,7 +103,7 @@ class Contact:
     def __new__(
         cls,
         points: _Vectors,
-        bodies: list[tuple[str, _Ids, bool]],
+        bodies: list[tuple[str, _Ids, bool | None]],
         *,
         warn: float | None,
         own: bool,
@@ -112,6 +112,7 @@ class Contact:
         fold: float,
         threads: int,
     ) -> Contact: ...
+    def rooms(self) -> list[dict[str, Any]]: ...
     def refit(self, points: _Vectors) -> None: ...
     def measure(self) -> dict[str, Any]: ...
     def look_ahead(self, velocity: _Vectors, horizon: float) -> dict[str, Any]: ...

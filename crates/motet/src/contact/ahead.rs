@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use serde::Serialize;
 
 use super::along::Ways;
-use super::body::Prepared;
+use super::body::{Prepared, Seen};
 use super::handle::Contact;
 use super::rule::Rule;
 use super::sweep::{Sweep, sweep, sweep_own};
@@ -50,7 +50,7 @@ impl Contact {
         let vertices = |body: &Prepared| vec![f64::INFINITY; body.vertices.len()];
         let mut ahead = Ahead { first: None, times: self.bodies.iter().map(vertices).collect() };
         for (ids, along, options) in self.asked() {
-            let bodies = ids.map(|id| &self.bodies[id as usize]);
+            let bodies = self.seen(ids);
             let rule = Rule::new(&self.points, bodies, along, &options);
             let kept = Mutex::new(Vec::<Ways>::new());
             let take = || kept.lock().ok().and_then(|mut kept| kept.pop()).unwrap_or_default();
@@ -112,7 +112,7 @@ impl Contact {
 }
 
 impl Ahead {
-    fn take(&mut self, ids: [u32; 2], bodies: [&Prepared; 2], found: Sweep) {
+    fn take(&mut self, ids: [u32; 2], bodies: [Seen<'_>; 2], found: Sweep) {
         let first = found.first.map(|f| FirstContact {
             time: f.time,
             bodies: ids,
@@ -124,8 +124,8 @@ impl Ahead {
             self.first = Some(first);
         }
         for ((id, body), of_triangles) in ids.into_iter().zip(bodies).zip(found.times) {
-            for (time, star) in self.times[id as usize].iter_mut().zip(body.stars.iter()) {
-                *time = star.iter().map(|&t| of_triangles[t as usize]).fold(*time, f64::min);
+            for (place, time) in self.times[id as usize].iter_mut().enumerate() {
+                *time = body.star(place).iter().map(|&t| of_triangles[t as usize]).fold(*time, f64::min);
             }
         }
     }

@@ -1,6 +1,9 @@
 //! A surface that may touch others: triangles, and on which side of them there is room.
 
-use super::input::{check_finite, vertices_of};
+use std::ops::Deref;
+
+use super::input::check_finite;
+use super::room::Room;
 use super::side::Side;
 use crate::base::{CellId, Csr, Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle;
@@ -15,8 +18,8 @@ pub struct Body {
     pub name: String,
     /// Its triangles; a closed surface has them counter-clockwise seen from outside, or all of them clockwise.
     pub triangles: Vec<[VertexId; 3]>,
-    /// The body is the wall of a room, such as a vessel, and others are within: the sign of its distances is turned.
-    pub is_room: bool,
+    /// Whether it is the wall of a room, such as a vessel, that others are within. Default: found by itself.
+    pub room: Room,
 }
 
 impl Body {
@@ -44,7 +47,7 @@ impl Body {
                 (0..surface.triangles.len()).filter(|&t| patch.is_none_or(|id| surface.patches[t] == id));
             let triangles =
                 of.clone().map(|t| surface.triangles[t].map(|v| VertexId::new(first + v.index())));
-            let body = Self { name: name.to_owned(), triangles: triangles.collect(), is_room: false };
+            let body = Self { name: name.to_owned(), triangles: triangles.collect(), room: Room::default() };
             (body, of.map(|t| surface.triangle_to_cell[t]).collect())
         };
         if patches.is_empty() {
@@ -55,53 +58,131 @@ impl Body {
 }
 
 /// A body with all that does not change when points move, and its tree.
+///
+/// What hangs together is told by `joined`, where vertices that [seams](fn@crate::mesh::seams) repeat are one: so answers do not depend on how a file numbers a surface. Places and
+/// answers are those of the vertices as they were given.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
     pub(super) name: String,
     pub(super) triangles: Vec<[VertexId; 3]>,
+    /// The same, each vertex under the id that it shares with those at its seam.
+    pub(super) joined: Vec<[VertexId; 3]>,
     pub(super) is_closed: bool,
-    pub(super) is_room: bool,
     /// Its vertices, rising.
     pub(super) vertices: Vec<VertexId>,
-    /// The vertices of each triangle, by their places in that list.
+    /// The joined id of each.
+    pub(super) ids: Vec<VertexId>,
+    /// The same with its place in the list of vertices; rising.
+    by_id: Vec<(VertexId, u32)>,
+    /// The vertices of each triangle, by their places in the list of vertices.
     pub(super) places: Vec<[u32; 3]>,
-    /// The triangles of each of its vertices, by their places in the lists.
-    pub(super) stars: Csr<u32>,
+    /// The triangles at each of its vertices, by the place of the first with the same joined id.
+    stars: Csr<u32>,
+    /// That place, for each vertex.
+    first_places: Vec<u32>,
     /// Whether each of its vertices is on an edge that one triangle alone uses, where [`get_ready_to_face`](Self::get_ready_to_face) was called.
     pub(super) is_rim: Vec<bool>,
-    pub(super) free: Side,
+    /// Where the outside of a closed body is, by its triangles.
+    outside: Side,
     /// Unit normals of the triangles, where that was called.
     normals: Vec<Point>,
     pub(super) tree: NearestTriangle,
 }
 
+/// A body as another one meets it.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub(super) body: &'a Prepared,
+    /// Where the other one may be: outside a closed body, inside a room; on both sides of an open one.
+    pub(super) free: Side,
+    /// The body is the room of the other one.
+    pub(super) is_room: bool,
+}
+
+impl Deref for Seen<'_> {
+    type Target = Prepared;
+
+    fn deref(&self) -> &Prepared {
+        self.body
+    }
+}
+
 impl Prepared {
-    pub(super) fn new(body: Body, points: &[Point], threads: &Threads) -> Result<Self> {
-        let Body { name, triangles, is_room } = body;
-        let vertices = vertices_of(&format!("surface {name}"), &triangles, points)?;
+    /// `vertices` are those of the body, rising; `joined` has for every point the one that it is one with.
+    pub(super) fn new(
+        body: Body,
+        vertices: Vec<VertexId>,
+        points: &[Point],
+        joined: &[VertexId],
+        threads: &Threads,
+    ) -> Self {
+        let Body { name, triangles, .. } = body;
         let mut place = vec![0; points.len()];
         vertices.iter().zip(0..).for_each(|(v, k)| place[v.index()] = k);
         let places: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(|v| place[v.index()])).collect();
+        let ids: Vec<VertexId> = vertices.iter().map(|v| joined[v.index()]).collect();
+        let mut by_id: Vec<(VertexId, u32)> = ids.iter().copied().zip(0..).collect();
+        by_id.sort_unstable();
+        let mut first_places = vec![0; vertices.len()];
+        for same in by_id.chunk_by(|x, y| x.0 == y.0) {
+            same.iter().for_each(|(_, k)| first_places[*k as usize] = same[0].1);
+        }
         let stars = Csr::from_pairs(vertices.len(), || {
-            (0..).zip(&places).flat_map(|(i, t): (u32, _)| t.iter().map(move |&v| (v as usize, i)))
+            (0..).zip(&places).flat_map(|(i, t): (u32, _)| {
+                t.iter().map(|&k| first_places[k as usize] as usize).map(move |k| (k, i))
+            })
         });
-        let is_closed = super::inside::is_closed(&triangles);
+        let joined: Vec<[VertexId; 3]> = triangles.iter().map(|t| t.map(|v| joined[v.index()])).collect();
+        let is_closed = super::inside::is_closed(&joined);
         let tree = NearestTriangle::new(points, &triangles, threads);
         let mut body = Self {
             name,
             triangles,
+            joined,
             is_closed,
-            is_room,
             vertices,
+            ids,
+            by_id,
             places,
             stars,
+            first_places,
             is_rim: Vec::new(),
-            free: Side::Both,
+            outside: Side::Both,
             normals: Vec::new(),
             tree,
         };
-        body.free = body.free_side(points);
-        Ok(body)
+        body.outside = body.outside(points);
+        body
+    }
+
+    /// The body as another one meets it, or as it meets itself; `is_room`: it is the room of that.
+    pub(super) fn seen(&self, is_room: bool) -> Seen<'_> {
+        let free = if is_room { self.outside.turned() } else { self.outside };
+        Seen { body: self, free, is_room }
+    }
+
+    /// The triangles at a vertex, by its place in the list of vertices; rising.
+    pub(super) fn star(&self, place: usize) -> &[u32] {
+        self.stars.list(self.first_places[place] as usize)
+    }
+
+    /// For each vertex what stands for it where only its place matters: the joined one as long as both are at one place.
+    pub(super) fn asked(&self, points: &[Point]) -> Vec<VertexId> {
+        let pairs = self.vertices.iter().zip(&self.ids);
+        pairs.map(|(&v, &id)| if points[v.index()] == points[id.index()] { id } else { v }).collect()
+    }
+
+    /// The places of the vertices with a joined id.
+    pub(super) fn places_of(&self, joined: VertexId) -> impl Iterator<Item = usize> + '_ {
+        let from = self.by_id.partition_point(|(v, _)| *v < joined);
+        self.by_id[from..].iter().take_while(move |(v, _)| *v == joined).map(|(_, k)| *k as usize)
+    }
+
+    /// The joined ids of its vertices, each once, rising.
+    pub(super) fn joined_vertices(&self) -> Vec<VertexId> {
+        let mut all: Vec<VertexId> = self.by_id.iter().map(|(v, _)| *v).collect();
+        all.dedup();
+        all
     }
 
     /// # Errors
@@ -113,7 +194,7 @@ impl Prepared {
     /// Takes over points that moved.
     pub(super) fn refit(&mut self, points: &[Point], threads: &Threads) {
         self.tree.refit(points, threads);
-        self.free = self.free_side(points);
+        self.outside = self.outside(points);
         if !self.normals.is_empty() {
             self.keep_normals(points);
         }
@@ -121,7 +202,9 @@ impl Prepared {
 
     /// Works out what tells which ways lead into free space: the rim, and all normals, now and whenever points move.
     pub(super) fn get_ready_to_face(&mut self, points: &[Point]) {
-        self.is_rim = rim(&self.places, self.vertices.len());
+        let firsts = |t: &[u32; 3]| t.map(|k| self.first_places[k as usize]);
+        let is_rim = rim(&self.places.iter().map(firsts).collect::<Vec<_>>(), self.vertices.len());
+        self.is_rim = self.first_places.iter().map(|&k| is_rim[k as usize]).collect();
         self.keep_normals(points);
     }
 
@@ -135,24 +218,18 @@ impl Prepared {
 
     /// Whether the bodies have a vertex in common.
     pub(super) fn is_joined(&self, other: &Self) -> bool {
-        let (few, many) = match self.vertices.len() <= other.vertices.len() {
-            true => (&self.vertices, &other.vertices),
-            false => (&other.vertices, &self.vertices),
-        };
-        few.iter().any(|v| many.binary_search(v).is_ok())
+        let [few, many] = if self.ids.len() <= other.ids.len() { [self, other] } else { [other, self] };
+        few.ids.iter().any(|v| many.places_of(*v).next().is_some())
     }
 
-    /// Outside a closed body, inside a room; on both sides of an open one.
-    fn free_side(&self, points: &[Point]) -> Side {
+    /// Of a closed body, by the sign of its volume; both sides of an open one.
+    fn outside(&self, points: &[Point]) -> Side {
         if !self.is_closed {
             return Side::Both;
         }
         let origin = points[self.vertices[0].index()];
         let volume: f64 = self.triangles.iter().map(|t| cone_volume(t.iter().copied(), points, origin)).sum();
-        match (volume >= 0.0) != self.is_room {
-            true => Side::Outside,
-            false => Side::Inside,
-        }
+        if volume >= 0.0 { Side::Outside } else { Side::Inside }
     }
 
     /// The unit normal of a triangle; zero where it has no area.

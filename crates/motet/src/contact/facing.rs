@@ -1,6 +1,6 @@
 //! Whether two places of surfaces see each other through free space.
 
-use super::body::Prepared;
+use super::body::{Prepared, Seen};
 use super::side::Side;
 use crate::base::Point;
 use crate::geometry::distance::triangle_triangle;
@@ -23,11 +23,11 @@ const ROUNDING: f64 = 1e-15;
 const LEAST_TURN: f64 = 1.0 - 2.0 * LEAST_COSINE * LEAST_COSINE;
 
 /// A place of a body: a point within a triangle by the weights of its vertices.
-pub(super) type Place<'a> = (&'a Prepared, u32, [f64; 3]);
+pub(super) type Place<'a> = (Seen<'a>, u32, [f64; 3]);
 
 /// Whether two triangles may face each other anywhere. It is a quick look that spares most neighbours the measuring: their normals
 /// are too much alike, or one lies behind the other; unless they meet.
-pub(super) fn may_face(points: &[Point], [a, b]: [&Prepared; 2], [i, j]: [u32; 2]) -> bool {
+pub(super) fn may_face(points: &[Point], [a, b]: [Seen<'_>; 2], [i, j]: [u32; 2]) -> bool {
     let (normal_a, normal_b) = (a.normal(points, i), b.normal(points, j));
     let turn = dot(normal_a, normal_b);
     let is_alike = match (a.free, b.free) {
@@ -66,12 +66,12 @@ pub(super) struct Sight {
 
 impl Sight {
     /// Of a vertex by its place in the body's list.
-    pub(super) fn new(points: &[Point], body: &Prepared, vertex: usize) -> Self {
-        let star = body.stars.list(vertex);
+    pub(super) fn new(points: &[Point], body: Seen<'_>, vertex: usize) -> Self {
+        let star = body.star(vertex);
         Self {
             free: body.free,
             normals: star.iter().map(|&t| body.normal(points, t)).collect(),
-            sum: sum_of_normals(points, body, star.iter().copied()),
+            sum: sum_of_normals(points, &body, star.iter().copied()),
             is_rim: body.is_rim[vertex],
         }
     }
@@ -99,7 +99,7 @@ fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> 
     if is_free(body.free, body.normal(points, triangle), out, LEAST_COSINE) {
         return true;
     }
-    let (vertices, places) = (body.triangles[triangle as usize], body.places[triangle as usize]);
+    let (vertices, places) = (body.joined[triangle as usize], body.places[triangle as usize]);
     let held = || (0..3).filter(|&k| weights[k] != 0.0);
     let Some(first) = held().next() else { return false };
     if held().count() == 3 {
@@ -108,10 +108,10 @@ fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> 
     if body.free == Side::Both && held().all(|k| body.is_rim[places[k] as usize]) {
         return true;
     }
-    let star = body.stars.list(places[first] as usize).iter().copied();
-    let around = star.filter(|&t| held().all(|k| body.triangles[t as usize].contains(&vertices[k])));
+    let star = body.star(places[first] as usize).iter().copied();
+    let around = star.filter(|&t| held().all(|k| body.joined[t as usize].contains(&vertices[k])));
     around.clone().any(|t| is_free(body.free, body.normal(points, t), out, GRAZING))
-        || is_free(body.free, sum_of_normals(points, body, around), out, LEAST_COSINE)
+        || is_free(body.free, sum_of_normals(points, &body, around), out, LEAST_COSINE)
 }
 
 /// Whether a way goes to the free side of a surface with this normal, with more than this cosine.

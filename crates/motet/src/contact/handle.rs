@@ -4,11 +4,13 @@ use std::sync::OnceLock;
 
 use super::along::Along;
 use super::answer::{BodyGaps, Gaps, Nearest, Warned};
-use super::body::{Body, Prepared};
+use super::body::{Body, Prepared, Seen};
+use super::input::vertices_of;
 use super::options::Options;
 use super::pair::{self, Guesses};
+use super::room::{self, Room, Within};
 use super::side::Side;
-use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
 
@@ -23,6 +25,10 @@ const OWN_WARNINGS: f64 = 4.0;
 pub struct Contact {
     pub(super) points: Vec<Point>,
     pub(super) bodies: Vec<Prepared>,
+    /// What was told of rooms, for each body.
+    told: Vec<Room>,
+    /// Which bodies lie in which rooms.
+    rooms: Vec<Within>,
     /// Made when it is asked for first.
     along: OnceLock<Along>,
     options: Options,
@@ -34,15 +40,22 @@ pub struct Contact {
 
 impl Contact {
     /// Prepares `bodies` over `points`: all pairs of bodies will be measured, and each with itself where
-    /// [`Options::own`] says so.
+    /// [`Options::own`] says so. What hangs together, what is closed and what is a room is decided here, and stays so when points move.
     ///
     /// # Errors
     /// When there is nothing to measure, a body has no triangles, a triangle names a point beyond `points`, one of their points is
-    /// not finite, or a length of the options is not positive.
+    /// not finite, a length of the options is not positive, or a room is told to be that of a body that is not there.
     pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options, threads: &Threads) -> Result<Self> {
         check(&bodies, &options)?;
-        let bodies = threads.each(bodies, |body| Prepared::new(body, &points, threads));
-        let mut bodies = bodies.into_iter().collect::<Result<Vec<_>>>()?;
+        let told: Vec<Room> = bodies.iter().map(|body| body.room.clone()).collect();
+        room::check(&told)?;
+        let vertices = |body: &Body| vertices_of(&format!("surface {}", body.name), &body.triangles, &points);
+        let vertices = bodies.iter().map(vertices).collect::<Result<Vec<_>>>()?;
+        let joined = joined(&points, &bodies, threads);
+        let mut bodies = threads.each(bodies.into_iter().zip(vertices).collect(), |(body, vertices)| {
+            Prepared::new(body, vertices, &points, &joined, threads)
+        });
+        let rooms = room::within(&points, &bodies, &told, threads);
         let n = bodies.len() as u32;
         let all = (0..n).flat_map(|a| (a..n).map(move |b| [a, b])).filter(|[a, b]| a != b || options.own);
         let is_joined = |[a, b]: [u32; 2]| a == b || bodies[a as usize].is_joined(&bodies[b as usize]);
@@ -53,7 +66,7 @@ impl Contact {
             }
         }
         let guesses = vec![Guesses::default(); pairs.len()];
-        Ok(Self { points, bodies, along: OnceLock::new(), options, pairs, guesses })
+        Ok(Self { points, bodies, told, rooms, along: OnceLock::new(), options, pairs, guesses })
     }
 
     /// Takes over points that moved; the triangles stay.
@@ -91,14 +104,46 @@ impl Contact {
         &self.bodies[body as usize].triangles
     }
 
-    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other.
+    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other, where vertices that [seams](fn@crate::mesh::seams) repeat are one.
     pub fn is_closed(&self, body: u32) -> bool {
         self.bodies[body as usize].is_closed
     }
 
-    /// On which side of a body its gaps are: on both where it is open; outside a closed one, inside a room.
+    /// On which side of a body its gaps are: on both where it is open, or a room within another; outside a closed one, inside a room.
     pub fn side(&self, body: u32) -> Side {
-        self.bodies[body as usize].free
+        self.seen_alone(body).free
+    }
+
+    /// Which bodies lie in which rooms, by room, then by body: as it was told, or found by [`Contact::new`].
+    pub fn rooms(&self) -> &[Within] {
+        &self.rooms
+    }
+
+    /// What a body is the room of here: for a handle of the same bodies with other triangles, so that they stay rooms of the same.
+    pub fn room(&self, body: u32) -> Room {
+        match &self.told[body as usize] {
+            Room::Found => Room::Of(self.rooms.iter().filter(|w| w.room == body).map(|w| w.body).collect()),
+            told => told.clone(),
+        }
+    }
+
+    /// Two bodies as they meet each other.
+    pub(super) fn seen(&self, [a, b]: [u32; 2]) -> [Seen<'_>; 2] {
+        let is_room = |room: u32, body: u32| self.rooms.iter().any(|w| w.room == room && w.body == body);
+        match a == b {
+            true => [self.seen_alone(a); 2],
+            false => {
+                [self.bodies[a as usize].seen(is_room(a, b)), self.bodies[b as usize].seen(is_room(b, a))]
+            }
+        }
+    }
+
+    /// A body as it meets itself.
+    fn seen_alone(&self, body: u32) -> Seen<'_> {
+        let is_room = self.told[body as usize] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
+        let is_within = self.rooms.iter().any(|w| w.body == body);
+        let seen = self.bodies[body as usize].seen(is_room);
+        if is_room && is_within { Seen { free: Side::Both, ..seen } } else { seen }
     }
 
     /// The gap at every vertex, and the nearest places of every pair.
@@ -124,7 +169,7 @@ impl Contact {
     fn for_each_pair<T>(&mut self, mut of: impl FnMut(&pair::Scene<'_>, &mut Guesses) -> T) -> Vec<T> {
         let mut guesses = std::mem::take(&mut self.guesses);
         let scenes = self.asked().zip(&mut guesses).map(|((ids, along, options), guesses)| {
-            let bodies = ids.map(|id| &self.bodies[id as usize]);
+            let bodies = self.seen(ids);
             of(&pair::Scene { points: &self.points, bodies, ids, along, options }, guesses)
         });
         let answers = scenes.collect();
@@ -144,10 +189,11 @@ impl Contact {
                 let (mut group, mut next) = (vec![seed], 0);
                 while let Some(&place) = group.get(next) {
                     next += 1;
-                    for neighbor in self.along().neighbors(body.vertices[place]) {
-                        let Ok(other) = body.vertices.binary_search(&VertexId(*neighbor)) else { continue };
-                        if std::mem::take(&mut is_open[other]) {
-                            group.push(other);
+                    let own = self.bodies[id as usize].ids[place];
+                    let around = self.along().neighbors(own).iter().map(|v| VertexId(*v));
+                    for near in around.chain([own]).flat_map(|v| self.bodies[id as usize].places_of(v)) {
+                        if std::mem::take(&mut is_open[near]) {
+                            group.push(near);
                         }
                     }
                 }
@@ -169,7 +215,7 @@ impl Contact {
 
     /// The edges of all bodies: only warnings and surfaces with something in common need them.
     fn along(&self) -> &Along {
-        let triangles = self.bodies.iter().flat_map(|body| &body.triangles);
+        let triangles = self.bodies.iter().flat_map(|body| &body.joined);
         self.along.get_or_init(|| Along::new(self.points.len(), triangles))
     }
 
@@ -195,6 +241,14 @@ impl Contact {
             None => OWN_REACH * size(),
         }
     }
+}
+
+/// For every point the one that it is one with: vertices that seams of a body repeat.
+fn joined(points: &[Point], bodies: &[Body], threads: &Threads) -> Vec<VertexId> {
+    let all = threads.each(bodies.iter().collect(), |body| mesh::seams(points, &body.triangles));
+    let mut sets = Sets::new(points.len());
+    all.iter().flatten().for_each(|[v, first]| sets.join(v.0, first.0));
+    (0..points.len() as u32).map(|v| VertexId(sets.root(v))).collect()
 }
 
 fn check(bodies: &[Body], options: &Options) -> Result<()> {

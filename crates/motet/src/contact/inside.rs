@@ -7,28 +7,18 @@
 //!
 //! Not every vertex needs a ray: where a triangle does not meet the surface, all its corners are on the same side.
 
-use crate::base::{Csr, Point, Threads, VertexId};
+use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::segment_triangle;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::is_finite;
+use crate::mesh::open_edges;
 use crate::spatial::runs::{around, corners, in_runs};
 use crate::spatial::{Bounds, BoxTree};
 
 /// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
-/// times.
+/// times. By ids: for a surface whose vertices are there more than once, [`seams`](fn@crate::mesh::seams) says which are one.
 pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
-    let n_points = triangles.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
-    let ways = |&[a, b, c]: &[VertexId; 3]| [[a, b], [b, c], [c, a]].into_iter().filter(|[u, v]| u != v);
-    let edges = Csr::from_pairs(n_points, || {
-        triangles.iter().flat_map(ways).map(|[u, v]| (u.min(v).index(), (u.max(v), u < v)))
-    });
-    let mut sorted = Vec::new();
-    edges.iter().all(|from_one| {
-        sorted.clear();
-        sorted.extend_from_slice(from_one);
-        sorted.sort_unstable();
-        sorted.chunk_by(|x, y| x.0 == y.0).all(|uses| 2 * uses.iter().filter(|x| x.1).count() == uses.len())
-    })
+    open_edges(triangles).is_empty()
 }
 
 /// Which of `vertices` lie inside the closed surface `b`. Vertices on it do not.
@@ -48,6 +38,27 @@ pub fn inside(
     crossings: &[[u32; 2]],
     threads: &Threads,
 ) -> Vec<bool> {
+    let places = places(points, vertices, a, b, crossings, threads);
+    places.into_iter().map(|place| place == Place::Inside).collect()
+}
+
+/// Where a vertex is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Inside,
+    On,
+    Outside,
+}
+
+/// Where each of `vertices` is to the surface `b`, as for [`inside`].
+pub(super) fn places(
+    points: &[Point],
+    vertices: &[VertexId],
+    a: &[[VertexId; 3]],
+    b: &[[VertexId; 3]],
+    crossings: &[[u32; 2]],
+    threads: &Threads,
+) -> Vec<Place> {
     let mut is_on = vec![false; points.len()];
     b.as_flattened().iter().for_each(|v| is_on[v.index()] = true);
     let part = parts(points.len(), a, crossings, &is_on);
@@ -57,10 +68,15 @@ pub fn inside(
     asked.dedup();
     let rays = Rays::new(points, b, asked.len());
     let answers = in_runs(asked.len(), threads, |near, run| {
-        run.map(|i| rays.winding(points[asked[i] as usize], near).is_some_and(|n| n != 0)).collect()
+        run.map(|i| match rays.winding(points[asked[i] as usize], near) {
+            None => Place::On,
+            Some(0) => Place::Outside,
+            Some(_) => Place::Inside,
+        })
+        .collect()
     });
-    let of_part = |part| asked.binary_search(&part).is_ok_and(|i| answers[i]);
-    vertices.iter().map(|v| !is_on[v.index()] && of_part(part[v.index()])).collect()
+    let of_part = |part| asked.binary_search(&part).map_or(Place::Outside, |i| answers[i]);
+    vertices.iter().map(|v| if is_on[v.index()] { Place::On } else { of_part(part[v.index()]) }).collect()
 }
 
 /// The smallest vertex of each one's part: corners of triangles that cross nothing, those on `b` apart, belong together.

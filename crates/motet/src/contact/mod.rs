@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use motet::base::{Threads, VertexId};
-//! use motet::contact::{Body, Contact, Options};
+//! use motet::contact::{Body, Contact, Options, Room};
 //!
 //! // Two triangles, 0.1 apart.
 //! let points = vec![
@@ -20,7 +20,7 @@
 //! let body = |name: &str, first: u32| Body {
 //!     name: name.into(),
 //!     triangles: vec![[first, first + 1, first + 2].map(VertexId)],
-//!     is_room: false,
+//!     room: Room::Found,
 //! };
 //! let options = Options { warn: Some(0.2), ..Options::default() };
 //! let mut contact = Contact::new(points, vec![body("lower", 0), body("upper", 3)], options, &Threads::single())?;
@@ -42,6 +42,7 @@ mod inside;
 mod nearest;
 mod options;
 mod pair;
+mod room;
 mod rule;
 mod side;
 mod sweep;
@@ -53,5 +54,6 @@ pub use body::Body;
 pub use handle::Contact;
 pub use inside::{inside, is_closed};
 pub use options::Options;
+pub use room::{Room, Within};
 pub use side::Side;
 pub use sweep::{Sweep, Touch, sweep, sweep_own};

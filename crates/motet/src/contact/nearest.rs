@@ -17,7 +17,7 @@ const SLACK: f64 = 1e-9;
 
 /// The nearest pair of triangles within the root of `start`, which may be the squared distance of a known pair.
 pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<Nearest> {
-    let is_own = std::ptr::eq(rule.a, rule.b);
+    let is_own = std::ptr::eq(rule.a.body, rule.b.body);
     let corners = |[i, j]: [u32; 2]| (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
     let bound = start * (1.0 + SLACK) + f64::MIN_POSITIVE;
     let measured = |ways: &mut Ways, i: u32, j: u32, bound: f64| {
@@ -53,7 +53,7 @@ pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64>
 
 /// Marks the triangles of both surfaces that are nearer to the other than `warn`; those that are marked already cost no look.
 pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, near: [&[AtomicBool]; 2], threads: &Threads) {
-    let is_own = std::ptr::eq(rule.a, rule.b);
+    let is_own = std::ptr::eq(rule.a.body, rule.b.body);
     rule.a.tree.closest_pair(&rule.b.tree, warn * warn, threads, |ways: &mut Ways, i, j, bound| {
         let flags = [&near[0][i as usize], &near[1][j as usize]];
         if is_own && i >= j || flags.iter().all(|flag| flag.load(Relaxed)) || !rule.may_admit([i, j]) {

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::along::{Along, Ways};
 use super::answer::{BodyGaps, Nearest, PairGap};
-use super::body::Prepared;
+use super::body::Seen;
 use super::inside::inside;
 use super::nearest::{distance_squared, mark_nearer, nearest};
 use super::options::Options;
@@ -36,7 +36,7 @@ fn triangles(found: &[Option<Closest>]) -> Vec<u32> {
 /// Two bodies at one time.
 pub(super) struct Scene<'a> {
     pub(super) points: &'a [Point],
-    pub(super) bodies: [&'a Prepared; 2],
+    pub(super) bodies: [Seen<'a>; 2],
     pub(super) ids: [u32; 2],
     pub(super) along: Option<&'a Along>,
     pub(super) options: Options,
@@ -157,7 +157,7 @@ impl Scene<'_> {
 
     /// Nothing crosses where the nearest places are apart, but for triangles that share a vertex, which have no distance.
     fn crossings(&self, nearest: Option<&Nearest>, threads: &Threads) -> Vec<[u32; 2]> {
-        let [a, b] = self.bodies.map(|body| &body.triangles);
+        let [a, b] = [0, 1].map(|k| &self.bodies[k].joined);
         let is_apart = nearest.is_none_or(|nearest| nearest.distance > 0.0);
         match (self.is_own(), self.along.is_some()) {
             (true, _) => own_crossings(self.points, a, threads),
@@ -171,8 +171,8 @@ impl Scene<'_> {
         let mut side = Half { own, found: Vec::new(), is_wrong: Vec::new(), is_near: Vec::new() };
         if rule.b.is_closed && !self.is_own() && self.along.is_none() {
             let crossings: Vec<_> = crossings.iter().map(|pair| [pair[own], pair[1 - own]]).collect();
-            let (own, other) = (&rule.a.triangles, &rule.b.triangles);
-            let is_inside = inside(self.points, &rule.a.vertices, own, other, &crossings, threads);
+            let (own, other) = (&rule.a.joined, &rule.b.joined);
+            let is_inside = inside(self.points, &rule.a.asked(self.points), own, other, &crossings, threads);
             side.is_wrong = is_inside.into_iter().map(|inside| inside != rule.b.is_room).collect();
         }
         side
@@ -206,10 +206,10 @@ impl Scene<'_> {
 
     /// Marks the triangles around vertices that are near, and those that are nearest to these: most of all that are near.
     fn mark_around(&self, side: &Half, warn: f64, near: [&[AtomicBool]; 2]) {
-        let stars = self.bodies[side.own].stars.iter();
-        for (found, star) in side.found.iter().zip(stars) {
+        let own = self.bodies[side.own];
+        for (i, found) in side.found.iter().enumerate() {
             if let Some(found) = found.filter(|found| found.distance_squared < warn * warn) {
-                star.iter().for_each(|&t| near[side.own][t as usize].store(true, Relaxed));
+                own.star(i).iter().for_each(|&t| near[side.own][t as usize].store(true, Relaxed));
                 near[1 - side.own][found.triangle].store(true, Relaxed);
             }
         }
@@ -248,8 +248,8 @@ impl Half {
             gaps.closest_triangle[i] = triangle;
             gaps.closest_point[i] = found.point;
         }
-        for (i, star) in own.stars.iter().enumerate() {
-            gaps.warning[i] |= star.iter().any(|&t| self.is_near.get(t as usize) == Some(&true));
+        for i in 0..own.vertices.len() {
+            gaps.warning[i] |= own.star(i).iter().any(|&t| self.is_near.get(t as usize) == Some(&true));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Which places count as a gap, and which are only neighbours or lie behind a wall.
 
 use super::along::{Along, Ways};
-use super::body::Prepared;
+use super::body::{Prepared, Seen};
 use super::facing::{Sight, may_face, see_each_other};
 use super::options::Options;
 use crate::base::{Point, VertexId};
@@ -14,8 +14,8 @@ use crate::spatial;
 #[derive(Clone, Copy)]
 pub(super) struct Rule<'a> {
     pub(super) points: &'a [Point],
-    pub(super) a: &'a Prepared,
-    pub(super) b: &'a Prepared,
+    pub(super) a: Seen<'a>,
+    pub(super) b: Seen<'a>,
     /// Ways along the surface, where the bodies have some in common.
     along: Option<&'a Along>,
     facing: bool,
@@ -25,7 +25,7 @@ pub(super) struct Rule<'a> {
 impl<'a> Rule<'a> {
     pub(super) fn new(
         points: &'a [Point],
-        [a, b]: [&'a Prepared; 2],
+        [a, b]: [Seen<'a>; 2],
         along: Option<&'a Along>,
         options: &Options,
     ) -> Self {
@@ -43,11 +43,11 @@ impl<'a> Rule<'a> {
         place: usize,
         ways: &mut Ways,
     ) -> impl FnMut(u32, &spatial::Closest) -> bool {
-        let vertex = self.a.vertices[place];
-        let start = self.points[vertex.index()];
+        let vertex = self.a.ids[place];
+        let start = self.points[self.a.vertices[place].index()];
         let sight = Sight::new(self.points, self.a, place);
         move |j, found| {
-            let corners = self.b.triangles[j as usize];
+            let corners = self.b.joined[j as usize];
             if self.along.is_some() && corners.contains(&vertex) {
                 return false;
             }
@@ -66,11 +66,11 @@ impl<'a> Rule<'a> {
     /// Whether some triangle has all these vertices: places on them are neighbours, however long the way along its edges.
     fn is_in_one_triangle(&self, own: &[VertexId], other: &[VertexId]) -> bool {
         let is_all_of =
-            |body: &Prepared, t: u32| own.iter().chain(other).all(|v| body.triangles[t as usize].contains(v));
+            |body: &Prepared, t: u32| own.iter().chain(other).all(|v| body.joined[t as usize].contains(v));
         self.along.is_some()
             && [self.a, self.b].into_iter().any(|body| {
-                let star = own.first().and_then(|v| body.vertices.binary_search(v).ok());
-                star.is_some_and(|place| body.stars.list(place).iter().any(|&t| is_all_of(body, t)))
+                let place = own.first().and_then(|v| body.places_of(*v).next());
+                place.is_some_and(|place| body.star(place).iter().any(|&t| is_all_of(&body, t)))
             })
     }
 
@@ -96,7 +96,7 @@ impl<'a> Rule<'a> {
         if self.admits_all() {
             return true;
         }
-        let (own, other) = (self.a.triangles[i as usize], self.b.triangles[j as usize]);
+        let (own, other) = (self.a.joined[i as usize], self.b.joined[j as usize]);
         let from = triangle::at(self.a.corners(self.points, i), found.on_a);
         let to = triangle::at(self.b.corners(self.points, j), found.on_b);
         if !see_each_other(self.points, (self.a, i, found.on_a), (self.b, j, found.on_b), sub(to, from)) {
@@ -112,7 +112,7 @@ impl<'a> Rule<'a> {
 
     /// Whether two triangles are worth measuring: not the same, nor neighbours that share a vertex, nor turned away from each other.
     pub(super) fn may_admit(&self, [i, j]: [u32; 2]) -> bool {
-        let (own, other) = (self.a.triangles[i as usize], self.b.triangles[j as usize]);
+        let (own, other) = (self.a.joined[i as usize], self.b.joined[j as usize]);
         let is_joined = self.along.is_some() && own.iter().any(|v| other.contains(v));
         !is_joined && (!self.facing || may_face(self.points, [self.a, self.b], [i, j]))
     }

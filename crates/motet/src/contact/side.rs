@@ -12,3 +12,14 @@ pub enum Side {
     /// Behind its triangles: the lumen, for a vessel whose triangles are turned outward.
     Inside,
 }
+
+impl Side {
+    /// The other side.
+    pub(super) fn turned(self) -> Self {
+        match self {
+            Self::Both => Self::Both,
+            Self::Outside => Self::Inside,
+            Self::Inside => Self::Outside,
+        }
+    }
+}

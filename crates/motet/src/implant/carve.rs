@@ -1,8 +1,10 @@
 //! Which tets of the host go, and what bounds the room that they leave.
 
+use std::collections::HashSet;
+
 use super::devices::Devices;
 use super::options::Options;
-use crate::base::{Threads, VertexId};
+use crate::base::{Threads, VertexId, rising};
 use crate::contact::inside;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
@@ -38,28 +40,44 @@ pub(super) struct Carved {
     pub(super) fates: Vec<Fate>,
     /// Facets between tets that go and others; and those between two that go, where regions meet or a triangle lies.
     pub(super) faces: Vec<Face>,
+    /// Whether each tet is within [`Options::reach`], so that it may go.
+    is_in_reach: Vec<bool>,
 }
 
 /// A tet with so many neighbours that go is no more than a tooth.
 const TOOTH: usize = 3;
 
 impl Carved {
-    /// `carve` is [`Options::carve`], or more.
     pub(super) fn new(
         host: &TetMesh,
         devices: &Devices,
         nearest: &NearestTriangle,
-        carve: f64,
         options: &Options,
         threads: &Threads,
     ) -> Self {
         let mut fates =
-            threads.map(host.tets.len(), |t| near(host, t, nearest, carve, options.reach.max(carve)));
+            threads.map(host.tets.len(), |t| near(host, t, nearest, options.carve, options.reach));
+        let is_in_reach = fates.iter().map(|fate| *fate != Fate::Kept).collect();
         take_inner(host, devices, &mut fates, threads);
         take_teeth(&tet_neighbors(&host.tets), &mut fates);
         leave_bad(host, options.improve.limit(), &mut fates);
         let faces = faces(host, &fates);
-        Self { fates, faces }
+        Self { fates, faces, is_in_reach }
+    }
+
+    /// Takes what stays within reach at the edges of these faces as well. Whether there was anything.
+    pub(super) fn take_around(&mut self, host: &TetMesh, faces: &[[VertexId; 3]]) -> bool {
+        let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(rising);
+        let edges: HashSet<[VertexId; 2]> = faces.iter().flat_map(sides).collect();
+        let is_at =
+            |tet: &[VertexId; 4]| EDGES.iter().any(|&[i, j]| edges.contains(&rising([tet[i], tet[j]])));
+        let is_taken =
+            |t: &usize| self.fates[*t] != Fate::Gone && self.is_in_reach[*t] && is_at(&host.tets[*t]);
+        let taken: Vec<usize> = (0..host.tets.len()).filter(is_taken).collect();
+        taken.iter().for_each(|&t| self.fates[t] = Fate::Gone);
+        take_teeth(&tet_neighbors(&host.tets), &mut self.fates);
+        self.faces = self::faces(host, &self.fates);
+        !taken.is_empty()
     }
 
     pub(super) fn gone(&self) -> impl Iterator<Item = usize> + '_ {

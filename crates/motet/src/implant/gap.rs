@@ -59,8 +59,15 @@ pub(super) struct Gap {
     pub(super) names: Vec<VertexId>,
 }
 
+/// What came of filling the room.
+pub(super) enum Filled {
+    Done(Box<Gap>),
+    /// These faces would have to be divided.
+    Divided(Vec<[VertexId; 3]>),
+}
+
 impl Gap {
-    /// `None` where a facet of a tet that stays would have to be divided.
+    /// Fills the room, or says which of its faces would have to be divided, though tets beside them stay.
     ///
     /// # Errors
     /// When there would be too many points, or triangles come too close to each other for the digits of their coordinates; when devices lie outside.
@@ -70,13 +77,15 @@ impl Gap {
         carved: &Carved,
         options: &Options,
         threads: &Threads,
-    ) -> Result<Option<Self>> {
+    ) -> Result<Filled> {
         let frame = Frame::new(host, devices, carved, options.outside, threads)?;
         let lattice = lattice(host, devices, carved, options, threads)?;
         let all: Vec<Point> = frame.points.iter().chain(&lattice).copied().collect();
         let filled = constrain(&all, &frame.triangles, EdgePoints::MoveInside, threads)?;
-        if (0..frame.walls.len()).any(|t| is_divided(&frame, &filled, t)) {
-            return Ok(None);
+        let divided = (0..frame.walls.len()).filter(|&t| is_divided(&frame, &filled, t));
+        let divided: Vec<_> = divided.filter_map(|t| frame.walls[t].face).collect();
+        if !divided.is_empty() {
+            return Ok(Filled::Divided(divided.iter().map(|&f| carved.faces[f as usize].vertices).collect()));
         }
         let within = within(devices, &frame, &filled);
         check_rooms(devices, &frame.sites, &within)?;
@@ -90,7 +99,7 @@ impl Gap {
         gap.take(&owners, host, devices, carved, &frame, &filled);
         (gap.dropped, gap.sites, gap.loose) = (frame.dropped, frame.sites, frame.loose);
         gap.names = frame.names;
-        Ok(Some(gap))
+        Ok(Filled::Done(Box::new(gap)))
     }
 
     fn take(

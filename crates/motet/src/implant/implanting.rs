@@ -7,15 +7,17 @@ use super::adapt::adapt;
 use super::carve::{Carved, Fate};
 use super::devices::{Devices, surface};
 use super::frame::Lies;
-use super::gap::Gap;
+use super::gap::{Filled, Gap};
 use super::join::{Joined, Pieces, join, volume_of};
 use super::names::Names;
 use super::options::{Device, Inside, Interface, Options, Outside};
+use super::place::told;
 use super::report::{DeviceReport, Fit, Report};
 use super::resurface::resurface;
 use super::starts;
 use super::zone::Draft;
 use crate::base::{CellId, Error, Result, Threads, VertexId, rising};
+use crate::geometry::triangle::centroid;
 use crate::mesh::check::{Defect, check};
 use crate::mesh::history::{History, Rules};
 use crate::mesh::{Mesh, TetPart};
@@ -33,11 +35,8 @@ pub struct Implanted {
     pub report: Report,
 }
 
-/// How often more of the host is carved, where a facet of what stays would have to be divided.
-const RETRIES: usize = 3;
-
-/// Then so many times as far.
-const FARTHER: f64 = 1.5;
+/// How often more of the host is carved round facets of what stays that would have to be divided.
+const RETRIES: usize = 8;
 
 /// How far surfaces may stray where devices meet walls, as a part of the device's edges.
 const STRAY: f64 = 0.05;
@@ -138,22 +137,28 @@ fn room(
     lap: &mut impl FnMut() -> f64,
 ) -> Result<(Carved, Gap)> {
     let nearest = NearestTriangle::new(&devices.points, &devices.triangles, threads);
-    let mut carve = options.carve;
+    let mut carved = Carved::new(&part.mesh, devices, &nearest, options, threads);
+    let mut divided = Vec::new();
     for _ in 0..=RETRIES {
         threads.watch().go_on("making room for devices", 0, 0)?;
-        let carved = Carved::new(&part.mesh, devices, &nearest, carve, options, threads);
         report.seconds.carve += lap();
-        let gap = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
+        let filled = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
         report.seconds.fill += lap();
-        if let Some(gap) = gap {
-            return Ok((carved, gap));
+        divided = match filled {
+            Filled::Done(gap) => return Ok((carved, *gap)),
+            Filled::Divided(faces) => faces,
+        };
+        if !carved.take_around(&part.mesh, &divided) {
+            break;
         }
-        carve *= FARTHER;
     }
-    Err(Error::input(
-        "the room between the host and the devices could not be filled without dividing facets that stay",
-    )
-    .remedy("carve farther, or refine the host there first"))
+    let place = divided.first().map(|face| centroid(face.map(|v| part.mesh.points[v.index()])));
+    Err(Error::input(format!(
+        "the room between the host and the devices could not be filled without dividing {} facets that stay",
+        divided.len()
+    ))
+    .at(place.map_or_else(String::new, |place| format!("one at {}", told(place))))
+    .remedy("carve farther (--carve) and reach farther (--reach), or refine the host there first (--adapt all, --size)"))
 }
 
 /// Puts ids of cells in place of those of tets of the zone, and parts what is left of the host from what came.

@@ -1,9 +1,9 @@
 //! What a moving mesh is told: patches by label, since ids do not outlast a change.
 
 use crate::base::{Error, Result, VertexId};
-use crate::contact;
+use crate::contact::{self, Room};
 use crate::mesh::history::Rules;
-use crate::mesh::{Boundary, Mesh, Surface, cone_volume};
+use crate::mesh::{Boundary, Mesh, Surface, cone_volume, seamless};
 use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTolerance};
 use crate::remesh;
 
@@ -163,14 +163,18 @@ impl Watching {
     pub(super) fn bodies(&self, mesh: &Mesh) -> Result<Vec<contact::Body>> {
         let boundary = Surface::boundary_of(mesh);
         let bodies = contact::Body::of_mesh(mesh, "surface", &self.patches, 0)?;
+        let is_closed = |triangles: &Vec<_>| contact::is_closed(&seamless(&mesh.points, triangles));
         let body = |(mut body, _): (contact::Body, _)| {
             let all = boundary.turned(&body.triangles);
-            if let Some(mut triangles) = all.filter(|triangles| contact::is_closed(triangles)) {
+            if let Some(mut triangles) = all.filter(is_closed) {
                 // The outer wall is the room; what is closed otherwise is a body in it, and faces the volume.
                 let origin = mesh.points[triangles[0][0].index()];
                 let volume = |t: &[VertexId; 3]| cone_volume(t.iter().copied(), &mesh.points, origin);
-                body.is_room = triangles.iter().map(volume).sum::<f64>() >= 0.0;
-                if !body.is_room {
+                body.room = match triangles.iter().map(volume).sum::<f64>() >= 0.0 {
+                    true => Room::Yes,
+                    false => Room::No,
+                };
+                if body.room == Room::No {
                     triangles.iter_mut().for_each(|t| t.swap(1, 2));
                 }
                 body.triangles = triangles;

@@ -7,7 +7,7 @@ pub(crate) mod oracle;
 use std::f64::consts::TAU;
 
 use motet::base::{Point, VertexId};
-use motet::contact::Body;
+use motet::contact::{Body, Room};
 
 use crate::common::Numbers;
 
@@ -48,7 +48,7 @@ pub(crate) fn bodies(shapes: &[Shape]) -> (Vec<Point>, Vec<Body>) {
     for (i, shape) in shapes.iter().enumerate() {
         let first = points.len() as u32;
         let triangles = shape.triangles.iter().map(|t| t.map(|v| VertexId(first + v))).collect();
-        bodies.push(Body { name: format!("body{i}"), triangles, is_room: false });
+        bodies.push(Body { name: format!("body{i}"), triangles, room: Room::Found });
         points.extend(&shape.points);
     }
     (points, bodies)

@@ -25,7 +25,9 @@ A, B are surfaces (.vtp .stl .obj .vtu ..), volume meshes (their boundary counts
 them go on together, files that are no series stand still, and OUT is a series). Lengths are in units of the
 mesh, times in those of the velocity or of the series.
 
-A closed surface has an inside, where gaps are negative; a vessel closed by caps holds others inside: name it by --room.
+A closed surface has an inside, where gaps are negative. One that encloses most of another surface's area in the first
+frame, such as a vessel closed by caps round a stent, is taken for its room: there gaps are negative outside. The report
+says which; --room names rooms, --no-room says that all closed surfaces are solid.
 
 Examples:
   A stent in a vessel, warned of where nearer than 0.1:
@@ -59,8 +61,12 @@ pub(crate) struct ContactArgs {
     #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) within: Option<f64>,
     /// The surface of this name (of its file or patch) is the wall of a room that the others are in: negative outside. Repeatable
+    /// [default: closed surfaces that enclose most of another one in the first frame]
     #[arg(long, value_name = "NAME", help_heading = "Gaps")]
     pub(crate) room: Vec<String>,
+    /// No surface is a room: what lies inside a closed one is where it must not be
+    #[arg(long, conflicts_with = "room", help_heading = "Gaps")]
+    pub(crate) no_room: bool,
     /// Count only places that face each other through free space, not through the thickness of a body
     #[arg(long, help_heading = "Gaps")]
     pub(crate) facing: bool,

@@ -63,7 +63,10 @@ pub(crate) fn replace(
                 told.largest_over = told.largest_over.max(error);
                 told.largest_under = told.largest_under.max(-error);
             }
-            body.gap[i] = found.copysign(body.gap[i]);
+            // No way through free space leads from where a vertex must not be: there the exact depth stays.
+            if found.is_finite() || body.gap[i] > 0.0 {
+                body.gap[i] = found.copysign(body.gap[i]);
+            }
             body.warning[i] = warn.is_some_and(|warn| body.gap[i] < warn);
         }
     }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use motet::base::{CellId, Point};
-use motet::contact::Body;
+use motet::contact::{Body, Contact, Room};
 use motet::{Error, Mesh, Result, io};
 
 use super::args::ContactArgs;
@@ -86,13 +86,16 @@ impl<'a> Frames<'a> {
             return Err(Error::options(format!("no surface has a vector point array `{name}`"))
                 .remedy("`motet info FILE` lists the arrays of a file"));
         }
+        if self.args.no_room || !self.args.room.is_empty() {
+            frame.bodies.iter_mut().for_each(|body| body.room = Room::No);
+        }
         for name in &self.args.room {
             let Some(body) = frame.bodies.iter_mut().find(|body| body.name == *name) else {
                 let known: Vec<_> = frame.bodies.iter().map(|body| body.name.as_str()).collect();
                 return Err(Error::options(format!("--room {name}: no surface of that name"))
                     .remedy(format!("there are {}", known.join(", "))));
             };
-            body.is_room = true;
+            body.room = Room::Yes;
         }
         Ok(frame)
     }
@@ -101,7 +104,18 @@ impl<'a> Frames<'a> {
 impl Frame {
     /// Whether the bodies have the same triangles, so that only points moved.
     pub(crate) fn is_moved_of(&self, other: &Self) -> bool {
-        self.points.len() == other.points.len() && self.bodies == other.bodies
+        let same = |body: &Body, other: &Body| body.name == other.name && body.triangles == other.triangles;
+        self.points.len() == other.points.len()
+            && self.bodies.len() == other.bodies.len()
+            && self.bodies.iter().zip(&other.bodies).all(|(body, other)| same(body, other))
+    }
+
+    /// Keeps what was found to be a room in an earlier frame, whose surfaces are the same under the same names but have other triangles.
+    pub(crate) fn keep_rooms(&mut self, earlier: &Contact) {
+        let ids = 0..earlier.n_bodies() as u32;
+        if ids.clone().map(|id| earlier.name(id)).eq(self.bodies.iter().map(|body| body.name.as_str())) {
+            ids.zip(&mut self.bodies).for_each(|(id, body)| body.room = earlier.room(id));
+        }
     }
 
     fn add_velocity(&mut self, mesh: &Mesh, name: Option<&str>) -> Result<bool> {

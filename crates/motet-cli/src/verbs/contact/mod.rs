@@ -48,12 +48,12 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     let mut handle: Option<(Contact, Frame)> = None;
     let mut next = Some(frames.read(0, console)?);
     for k in 0..n {
-        let Some(frame) = next.take() else { break };
+        let Some(mut frame) = next.take() else { break };
         if k + 1 < n {
             next = Some(frames.read(k + 1, console)?);
         }
         let measuring = Instant::now();
-        let mut contact = prepared(handle.take(), &frame, args, &threads)?;
+        let mut contact = prepared(handle.take(), &mut frame, args, &threads)?;
         let mut gaps = contact.measure(&threads);
         report.seconds.measure += measuring.elapsed().as_secs_f64();
         let beside = by_delaunay(&contact, &mut gaps, args, &threads, console)?;
@@ -92,19 +92,21 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
 /// The handle of the frame before, where only points moved; else a new one.
 fn prepared(
     last: Option<(Contact, Frame)>,
-    frame: &Frame,
+    frame: &mut Frame,
     args: &ContactArgs,
     threads: &Threads,
 ) -> Result<Contact> {
-    let told = |e: Error| match (e.file(), frame.sources.as_slice()) {
-        (None, [one]) => e.in_file(&one.file),
+    let file = (frame.sources.len() == 1).then(|| frame.sources[0].file.clone());
+    let told = |e: Error| match (e.file(), file) {
+        (None, Some(file)) => e.in_file(&file),
         _ => e,
     };
-    if let Some((mut contact, last)) = last
-        && frame.is_moved_of(&last)
-    {
-        contact.refit(&frame.points, threads).map_err(told)?;
-        return Ok(contact);
+    if let Some((mut contact, last)) = last {
+        if frame.is_moved_of(&last) {
+            contact.refit(&frame.points, threads).map_err(told)?;
+            return Ok(contact);
+        }
+        frame.keep_rooms(&contact);
     }
     Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(told)
 }

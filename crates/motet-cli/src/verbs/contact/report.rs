@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::Point;
-use motet::contact::{Ahead, Contact, Gaps, PairGap};
+use motet::contact::{Ahead, Contact, Gaps, PairGap, Room};
 use motet::geometry::distance::Feature;
 use serde::Serialize;
 
@@ -24,6 +24,8 @@ pub(super) struct Report {
     pub(super) first_warning: Option<f64>,
     pub(super) first_touch: Option<f64>,
     pub(super) bodies: Vec<BodyFacts>,
+    /// Which surfaces lie in which rooms, decided in the first frame.
+    pub(super) rooms: Vec<InRoom>,
     pub(super) steps: Vec<Step>,
     pub(super) seconds: Stages,
 }
@@ -48,6 +50,15 @@ pub(super) struct BodyFacts {
     pub(super) triangles: usize,
     pub(super) closed: bool,
     pub(super) room: bool,
+}
+
+/// A surface in a room.
+#[derive(Debug, Serialize)]
+pub(super) struct InRoom {
+    pub(super) room: String,
+    pub(super) surface: String,
+    /// The part of its area that is inside in the first frame; null where the room was told.
+    pub(super) share: Option<f64>,
 }
 
 /// What was found in one frame.
@@ -108,7 +119,8 @@ pub(super) struct Group {
     /// The body that the nearest of them is near to.
     pub(super) near: Option<String>,
     pub(super) vertices: usize,
-    pub(super) gap: f64,
+    /// Null where triangles at the vertices are near enough to warn, but none of the vertices is within reach.
+    pub(super) gap: Option<f64>,
     /// The point of its file.
     pub(super) point: usize,
     pub(super) place: Point,
@@ -133,6 +145,7 @@ impl Report {
             first_warning: None,
             first_touch: None,
             bodies: Vec::new(),
+            rooms: Vec::new(),
             steps: Vec::new(),
             seconds: Stages::default(),
         }
@@ -151,9 +164,13 @@ impl Report {
                 vertices: spread.vertices,
                 triangles: body.triangles.len(),
                 closed: contact.is_closed(id),
-                room: body.is_room,
+                room: body.room == Room::Yes || contact.rooms().iter().any(|within| within.room == id),
             });
             self.bodies = facts.collect();
+            let name = |body: u32| contact.name(body).to_owned();
+            let rooms = contact.rooms().iter();
+            self.rooms =
+                rooms.map(|w| InRoom { room: name(w.room), surface: name(w.body), share: w.share }).collect();
         }
         self.warning |= step.warning;
         if step.warning {
@@ -182,7 +199,7 @@ impl Step {
             body: name(g.bodies[0]),
             near: (g.bodies[1] != motet::contact::NONE).then(|| name(g.bodies[1])),
             vertices: g.n_vertices,
-            gap: g.gap,
+            gap: g.gap.is_finite().then_some(g.gap),
             point: g.vertex.index() - frame.sources[g.bodies[0] as usize].first_point,
             place: g.place,
         };

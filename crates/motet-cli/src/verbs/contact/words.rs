@@ -2,7 +2,7 @@
 
 use super::delaunay::Beside;
 use super::histogram::Histogram;
-use super::report::{Pair, Report, Stages, Step};
+use super::report::{InRoom, Pair, Report, Stages, Step};
 use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time as time_of};
@@ -23,11 +23,11 @@ impl Report {
             bodies.row([body.name.clone(), count(body.vertices), count(body.triangles), closed.into()]);
         }
         console.say(bodies);
+        self.tell_rooms(console);
         match self.steps.as_slice() {
             [step] => step.tell(self.warn, console),
             steps => self.tell_series(steps, console),
         }
-        self.hint_at_rooms(console);
         console.say(format_args!("wrote {}", self.output.display()));
         let Stages { measure, look_ahead, write, total } = self.seconds;
         let [measure, look_ahead, write, total] = [measure, look_ahead, write, total].map(seconds);
@@ -60,24 +60,28 @@ impl Report {
         }
     }
 
-    /// A closed surface around all others is a room as a rule.
-    fn hint_at_rooms(&self, console: &Console) {
-        let Some(step) = self.steps.first() else { return };
-        for pair in &step.pairs {
-            for (own, other) in [(0, 1), (1, 0)] {
-                let find = |name: &String| self.bodies.iter().find(|body| body.name == *name);
-                let (Some(a), Some(b)) = (find(&pair.bodies[own]), find(&pair.bodies[other])) else {
-                    continue;
-                };
-                if pair.wrong[own] == a.vertices && !b.room {
-                    console.warn(format_args!(
-                        "all of {} is inside {}: if that is the wall of a room, say --room {}",
-                        a.name, b.name, b.name
-                    ));
-                }
+    /// Says what was taken for a room, and why.
+    fn tell_rooms(&self, console: &Console) {
+        for body in self.bodies.iter().filter(|body| body.room && !body.closed) {
+            console.warn(format_args!(
+                "{} is open, so nothing tells which side of it is inside: --room {} has no effect; `motet cap` closes rims",
+                body.name, body.name
+            ));
+        }
+        for InRoom { room, surface, share } in &self.rooms {
+            if let Some(share) = share {
+                console.say(format_args!(
+                    "{room} is taken for the room of {surface}, {} % of whose area lies inside (--no-room: {room} is solid)",
+                    percent(*share)
+                ));
             }
         }
     }
+}
+
+/// The part in percent, rounded down: 100 is all of it.
+fn percent(part: f64) -> String {
+    format!("{}", (1000.0 * part).floor() / 10.0)
 }
 
 impl Step {
@@ -138,7 +142,7 @@ impl Step {
                 "warned: {} vertices of {} within {}{near}, nearest point {} at {}",
                 count(group.vertices),
                 group.body,
-                short(group.gap),
+                group.gap.map_or("the warning distance by their triangles".into(), short),
                 group.point,
                 group.place.map(short).join(", ")
             ));

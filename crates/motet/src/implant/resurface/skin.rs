@@ -2,13 +2,19 @@
 
 use super::cubes::Lattice;
 use super::old::Old;
-use crate::base::{Id, Point, Threads, VertexId, rising};
+use crate::base::{Id, Point, Sets, Threads, VertexId, rising};
 use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
 use crate::spatial::runs::in_runs;
 
 /// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones (after Labelle and Shewchuk 2007).
 const NEAR: [f64; 2] = [0.412, 0.25];
+
+/// Cuts stay so far from the ends of their edges, as a part of these, so that no two are at one place.
+const LEAST: f64 = 0.1;
+
+/// After so many rounds in which vertices that make pinches stay, all stay.
+const ROUNDS: usize = 8;
 
 /// Triangles that face outward.
 pub(super) struct Skin {
@@ -24,28 +30,30 @@ struct Cut {
 }
 
 impl Skin {
+    /// A closed 2-manifold: also where parts of the old surface touch, or come nearer than the lattice is fine.
+    ///
+    /// Without vertices that move onto cuts this is the level set of a function that is linear in each tet and 0 at no vertex, which is a manifold. Vertices on the
+    /// surface can make two sheets meet in an edge or a vertex; those that do stay where they are, and their edges are cut.
     pub(super) fn new(mut lattice: Lattice, old: &Old, threads: &Threads) -> Self {
         let windings = old.windings(&lattice, threads);
-        let mut signs: Vec<i8> = windings.iter().map(|&w| if old.is_inside(w) { -1 } else { 1 }).collect();
+        let signs: Vec<i8> = windings.iter().map(|&w| if old.is_inside(w) { -1 } else { 1 }).collect();
         let cuts = cuts(&lattice, &signs, &windings, old, threads);
-        warp(&mut lattice, &mut signs, &cuts);
-        let left: Vec<Cut> =
-            cuts.into_iter().filter(|cut| cut.ends.iter().all(|v| signs[v.index()] != 0)).collect();
-        let mut cutter = Cutter {
-            signs: &signs,
-            lattice: &lattice,
-            cuts: &left,
-            triangles: Vec::new(),
-            closing: Vec::new(),
-        };
-        for tet in &lattice.tets {
-            cutter.cut(*tet);
+        let mut moves = moves(&lattice, &cuts);
+        let unmoved = std::mem::take(&mut lattice.points);
+        let mut round = 0;
+        loop {
+            let (points, triangles) = cut_along(&mut lattice, &unmoved, &signs, &cuts, &moves);
+            let mut pinched = pinches(&triangles);
+            pinched.retain(|v| moves.get(v.index()).is_some_and(Option::is_some));
+            if pinched.is_empty() {
+                return Self::compact(&points, triangles);
+            }
+            round += 1;
+            match round < ROUNDS {
+                true => pinched.iter().for_each(|v| moves[v.index()] = None),
+                false => moves.fill(None),
+            }
         }
-        let (mut triangles, closing) = (cutter.triangles, cutter.closing);
-        triangles.extend(single(closing));
-        let mut points = lattice.points;
-        points.extend(left.iter().map(|cut| cut.place));
-        Self::compact(&points, triangles)
     }
 
     /// Corners numbered as they come.
@@ -89,9 +97,9 @@ fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &
     in_runs(edges.len(), threads, |near, run| run.map(|i| cut(near, edges[i])).collect())
 }
 
-/// Moves vertices onto the nearest of the cuts that are too near to them.
-fn warp(lattice: &mut Lattice, signs: &mut [i8], cuts: &[Cut]) {
-    let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); signs.len()];
+/// For each vertex the nearest of the cuts that are too near to it: where it moves.
+fn moves(lattice: &Lattice, cuts: &[Cut]) -> Vec<Option<Point>> {
+    let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); lattice.points.len()];
     for cut in cuts {
         let [a, b] = cut.ends.map(|v| lattice.points[v.index()]);
         let is_middle = cut.ends.map(|v| v.index() >= lattice.n_corners);
@@ -106,11 +114,72 @@ fn warp(lattice: &mut Lattice, signs: &mut [i8], cuts: &[Cut]) {
             }
         }
     }
-    for ((near, sign), point) in nearest.into_iter().zip(signs).zip(&mut lattice.points) {
-        if near.0 < 1.0 {
-            (*sign, *point) = (0, near.1);
+    nearest.into_iter().map(|(part, place)| (part < 1.0).then_some(place)).collect()
+}
+
+/// The points of the lattice, moved, and behind them the cuts that are left; and the triangles of the surface over these.
+fn cut_along(
+    lattice: &mut Lattice,
+    unmoved: &[Point],
+    signs: &[i8],
+    cuts: &[Cut],
+    moves: &[Option<Point>],
+) -> (Vec<Point>, Vec<[VertexId; 3]>) {
+    let signs: Vec<i8> =
+        signs.iter().zip(moves).map(|(&s, place)| if place.is_some() { 0 } else { s }).collect();
+    let is_left = |cut: &&Cut| cut.ends.iter().all(|v| signs[v.index()] != 0);
+    let left: Vec<Cut> = cuts.iter().filter(is_left).copied().collect();
+    lattice.points = unmoved.iter().zip(moves).map(|(&p, place)| place.unwrap_or(p)).collect();
+    let mut cutter =
+        Cutter { signs: &signs, lattice, cuts: &left, triangles: Vec::new(), closing: Vec::new() };
+    for tet in &lattice.tets {
+        cutter.cut(*tet);
+    }
+    let (mut triangles, closing) = (cutter.triangles, cutter.closing);
+    triangles.extend(single(closing));
+    let mut points = std::mem::take(&mut lattice.points);
+    let place = |cut: &Cut| {
+        let [a, b] = cut.ends.map(|v| unmoved[v.index()]);
+        let share = distance(a, cut.place) / distance(a, b);
+        // Only cuts at vertices that make pinches are so near to an end: at other vertices, these move.
+        if (LEAST..=1.0 - LEAST).contains(&share) {
+            return cut.place;
+        }
+        add(a, scale(sub(b, a), share.clamp(LEAST, 1.0 - LEAST)))
+    };
+    points.extend(left.iter().map(place));
+    (points, triangles)
+}
+
+/// The vertices where triangles are no manifold: on edges that not just two of them use, and where they are more than one fan.
+fn pinches(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
+    // A side, the triangle and its two corners there by their places among all corners.
+    let mut sides: Vec<([VertexId; 2], [u32; 2])> = Vec::with_capacity(3 * triangles.len());
+    for (t, triangle) in (0u32..).zip(triangles) {
+        for [i, j] in [[0, 1], [1, 2], [2, 0]] {
+            let (u, v) = (triangle[i as usize], triangle[j as usize]);
+            let corners = [3 * t + i, 3 * t + j];
+            sides.push(if u < v { ([u, v], corners) } else { ([v, u], [corners[1], corners[0]]) });
         }
     }
+    sides.sort_unstable();
+    // Corners that are joined by triangles with a common edge are one fan.
+    let mut fans = Sets::new(3 * triangles.len());
+    let mut pinches = Vec::new();
+    for same in sides.chunk_by(|x, y| x.0 == y.0) {
+        match same {
+            [x, y] => (0..2).for_each(|k| fans.join(x.1[k], y.1[k])),
+            _ => pinches.extend(same[0].0),
+        }
+    }
+    let corners = triangles.as_flattened();
+    let mut roots: Vec<(VertexId, u32)> = (0..).zip(corners).map(|(k, &v)| (v, fans.root(k))).collect();
+    roots.sort_unstable();
+    roots.dedup();
+    pinches.extend(roots.chunk_by(|x, y| x.0 == y.0).filter(|fans| fans.len() > 1).map(|fans| fans[0].0));
+    pinches.sort_unstable();
+    pinches.dedup();
+    pinches
 }
 
 /// Cuts tets one by one. A corner of the skin is a vertex of the lattice, or a cut by its number behind those.

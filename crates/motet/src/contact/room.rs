@@ -1,0 +1,112 @@
+//! Which bodies are rooms: closed surfaces that others are meant to lie within, such as a vessel round a stent.
+//!
+//! A closed surface has an inside, and nothing in its triangles says whether that is solid. Whoever knows says so ([`Room`]); otherwise a closed surface that encloses most of
+//! another body's area is the room of that body. Rooms are a matter of pairs: a balloon is a body in its vessel, and the room of the wire in it.
+
+use serde::Serialize;
+
+use super::body::Prepared;
+use super::inside::{Place, places};
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::triangle::area;
+use crate::mesh::bounds;
+use crate::preflight::crossings;
+
+/// A surface is a room of what it encloses with more than this part of its area.
+const MOST: f64 = 0.5;
+
+/// Whether a body is the wall of a room that others are within: the sign of its distances to these is turned.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Room {
+    /// Of each body of which it encloses most of the area at first, if it is closed, shares no vertex with it, and does not lie in it likewise. The default.
+    #[default]
+    Found,
+    /// Of none.
+    No,
+    /// Of all others, but of rooms that enclose it.
+    Yes,
+    /// Of these, by their places in the list of bodies.
+    Of(Vec<u32>),
+}
+
+/// A body that lies in another, which is its room.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Within {
+    /// The body that is the room.
+    pub room: u32,
+    /// The body that lies in it.
+    pub body: u32,
+    /// The part of the body's area that was inside when this was found; `None` where it was told.
+    pub share: Option<f64>,
+}
+
+/// # Errors
+/// When a room is that of a body that is not there, or of itself.
+pub(super) fn check(rooms: &[Room]) -> Result<()> {
+    for (own, room) in rooms.iter().enumerate() {
+        let Room::Of(others) = room else { continue };
+        if let Some(other) = others.iter().find(|&&b| b as usize >= rooms.len() || b as usize == own) {
+            return Err(Error::options(format!("body {own} is told to be the room of body {other}")).remedy(
+                format!("there are {} bodies, numbered from 0; give others than itself", rooms.len()),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// All pairs of a room and a body in it, by room, then by body.
+pub(super) fn within(points: &[Point], bodies: &[Prepared], told: &[Room], threads: &Threads) -> Vec<Within> {
+    let ids = || 0..bodies.len() as u32;
+    let pairs = ids().flat_map(|room| ids().map(move |body| [room, body])).filter(|[a, b]| a != b);
+    let share = |room: u32, body: u32| {
+        let [room, body] = [room, body].map(|id| &bodies[id as usize]);
+        if body.is_joined(room) { 0.0 } else { share_within(points, body, room, threads) }
+    };
+    let within = |[room, body]: [u32; 2]| {
+        let told_within = Within { room, body, share: None };
+        match &told[room as usize] {
+            Room::No => None,
+            Room::Of(others) => others.contains(&body).then_some(told_within),
+            Room::Yes => {
+                let is_in_it = told[body as usize] == Room::Yes && share(body, room) > MOST;
+                (!is_in_it).then_some(told_within)
+            }
+            Room::Found => {
+                let inside = share(room, body);
+                let is_found = inside > MOST && share(body, room) <= MOST;
+                is_found.then_some(Within { share: Some(inside), ..told_within })
+            }
+        }
+    };
+    pairs.filter_map(within).collect()
+}
+
+/// The part of a body's area inside a closed surface; the rest is outside, and what lies on the surface does not count. Each corner stands for a third of its triangle.
+fn share_within(points: &[Point], body: &Prepared, room: &Prepared, threads: &Threads) -> f64 {
+    if !room.is_closed || !may_enclose(points, room, body) {
+        return 0.0;
+    }
+    let crossings = crossings(points, &body.triangles, &room.triangles, threads);
+    let own = body.joined_vertices();
+    let places = places(points, &own, &body.joined, &room.joined, &crossings, threads);
+    let (mut inside, mut outside) = (0.0, 0.0);
+    for (t, triangle) in (0..).zip(&body.joined) {
+        let third = area(body.corners(points, t)) / 3.0;
+        for v in triangle {
+            match own.binary_search(v).map(|i| places[i]) {
+                Ok(Place::Inside) => inside += third,
+                Ok(Place::Outside) => outside += third,
+                _ => {}
+            }
+        }
+    }
+    if inside > 0.0 { inside / (inside + outside) } else { 0.0 }
+}
+
+/// Whether the room's box meets that of the body.
+fn may_enclose(points: &[Point], room: &Prepared, body: &Prepared) -> bool {
+    let of = |vertices: &[VertexId]| vertices.iter().map(|v| points[v.index()]).collect::<Vec<_>>();
+    let boxes = [room, body].map(|body| bounds(&of(&body.vertices)));
+    let [Some([low, high]), Some([from, to])] = boxes else { return false };
+    (0..3).all(|k| low[k] <= to[k] && from[k] <= high[k])
+}
