@@ -120,7 +120,7 @@ impl Mover {
         let begin = Instant::now();
         let mut setup = Setup::default();
         let boundary = Boundary::of(&mesh.cells);
-        options.method.check()?;
+        options.check()?;
         check_input(mesh, &boundary, options)?;
         let mut clock = Instant::now();
         setup.seconds.boundary = (clock - begin).as_secs_f64();

@@ -34,6 +34,7 @@ pub fn remesh(mesh: &TetMesh, options: &Options, threads: &Threads) -> Result<Ou
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
     let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
+    threads.watch().go_on("joining tets", 0, 0)?;
     let mut complex = Complex::new(mesh)?;
     report.seconds.join = clock.lap();
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::{Error, Result};
+use crate::geometry::vector::LARGEST;
 
 /// More layers than this on one wall are refused: no flow needs them, and a slip of the pen should not fill the memory.
 pub const MOST_LAYERS: u32 = 200;
@@ -42,7 +43,7 @@ impl Stack {
         if !(1..=MOST_LAYERS).contains(&count) {
             return refuse(format!("{count} layers"), "ask for 1 to 200 layers");
         }
-        if !(first > 0.0 && first.is_finite()) {
+        if !(first > 0.0 && first <= LARGEST) {
             return refuse(format!("a first layer of thickness {first}"), "give a length above 0");
         }
         if !(growth > 0.0 && growth.is_finite()) {
@@ -52,7 +53,7 @@ impl Stack {
             );
         }
         let levels = self.levels();
-        if !(levels[levels.len() - 1].is_finite() && levels.windows(2).all(|pair| pair[0] < pair[1])) {
+        if !(levels[levels.len() - 1] <= LARGEST && levels.windows(2).all(|pair| pair[0] < pair[1])) {
             return refuse(
                 format!("{count} layers from {first} on that grow by {growth} are beyond numbers"),
                 "ask for fewer layers, or a growth nearer to 1",
