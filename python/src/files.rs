@@ -30,12 +30,9 @@ pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: Given) -> PyResult<Vec<
 
 /// The label of each cell as region and as patch, 0 for cells without one; `None` where the mesh has no such labels.
 #[pyfunction]
-pub(crate) fn labels<'py>(
-    py: Python<'py>,
-    mesh: Given,
-) -> (Option<Bound<'py, PyArray1<i32>>>, Option<Bound<'py, PyArray1<i32>>>) {
+pub(crate) fn labels(py: Python<'_>, mesh: Given) -> [Option<Bound<'_, PyArray1<i32>>>; 2] {
     let ids = |labels: Option<Labels>| labels.map(|labels| PyArray1::from_vec(py, labels.ids));
-    (ids(mesh.0.regions()), ids(mesh.0.patches()))
+    [ids(mesh.0.regions()), ids(mesh.0.patches())]
 }
 
 /// Names of regions and patches as field data, from the name of a field to the label that is its value.

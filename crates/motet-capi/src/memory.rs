@@ -91,12 +91,11 @@ pub(crate) fn fill_rows<T>(
     Ok(done)
 }
 
-/// Fails where rows that are read where they lie share memory with rows that are to be written; copies do not.
-pub(crate) fn apart(read: &Cow<'_, [Point]>, written: *mut f64, n: i64, step: i64) -> Result<()> {
-    let Cow::Borrowed(rows) = read else { return Ok(()) };
+/// Fails where rows that are read share memory with rows that are to be written. Rows that were copied do not.
+pub(crate) fn apart(read: &[Point], written: *mut f64, n: i64, step: i64) -> Result<()> {
     let length = extent(count(n, "rows")?, stride(step, "rows")?);
     let end = written.addr().saturating_add(length.saturating_mul(size_of::<f64>()));
-    let read = rows.as_ptr_range();
+    let read = read.as_ptr_range();
     match read.start.addr() < end && written.addr() < read.end.addr() {
         false => Ok(()),
         true => {

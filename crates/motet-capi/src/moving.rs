@@ -103,7 +103,8 @@ impl MotetMovingOptions {
             within: optional(self.within).unwrap_or(f64::INFINITY),
             ..contact::Options::default()
         };
-        let watching = Watching { patches, options, horizon: optional(self.horizon), hold: optional(self.hold) };
+        let watching =
+            Watching { patches, options, horizon: optional(self.horizon), hold: optional(self.hold) };
         Ok((!watching.patches.is_empty()).then_some(watching))
     }
 }

@@ -78,7 +78,8 @@ impl Line {
         let begin = Instant::now();
         let mut stage = Pace::default();
         let mut steps = self.steps.map(|of| Pace::new(Progress { stage: self.verb, done: 0, of }));
-        let styles = ["{bar:24} {wide_msg}", "{spinner} {wide_msg}"]
+        // A line of 80 columns has room for the longest stage.
+        let styles = ["{bar:12} {wide_msg}", "{spinner} {wide_msg}"]
             .map(|text| ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar()));
         while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
             let at = begin.elapsed();
@@ -87,7 +88,9 @@ impl Line {
                 Some(steps) => {
                     let done = usize::try_from(self.bar.position()).unwrap_or(usize::MAX);
                     steps.take(Progress { done, ..steps.now }, at);
-                    (format!("{}; {}", steps.text(at), stage.part()), steps.now.of)
+                    let within = Some(stage.part()).filter(|part| !part.is_empty());
+                    let text = steps.text(at) + &within.map_or_else(String::new, |part| format!("; {part}"));
+                    (text, steps.now.of)
                 }
                 None => {
                     self.bar.set_position(stage.now.done as u64);

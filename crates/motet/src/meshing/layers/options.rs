@@ -43,7 +43,7 @@ impl Stack {
         if !(1..=MOST_LAYERS).contains(&count) {
             return refuse(format!("{count} layers"), "ask for 1 to 200 layers");
         }
-        if !(first > 0.0 && first <= LARGEST) {
+        if !(first > 0.0 && first.is_finite()) {
             return refuse(format!("a first layer of thickness {first}"), "give a length above 0");
         }
         if !(growth > 0.0 && growth.is_finite()) {
