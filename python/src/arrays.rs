@@ -1,27 +1,94 @@
 //! Numpy arrays from lists of the library, whose memory they take over, and lists from arrays.
 
+use std::ops::Deref;
+
 use bytemuck::allocation::cast_vec;
 use motet::base::{Point, VertexId};
 use motet::mesh::{Field, Values};
+use numpy::ndarray::{Dimension, Ix1, Ix2};
 use numpy::{
-    Element, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    Element, PyArray, PyArray1, PyArray2, PyArrayDyn, PyArrayMethods, PyReadonlyArray, PyReadwriteArray,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
 use crate::error::{input, raised};
 
+/// An array that is read where it lies. Another type, another number of axes, or memory that another call writes at the same time are errors of the input.
+pub(crate) struct Read<'py, T: Element, D: Dimension>(PyReadonlyArray<'py, T, D>);
+
+/// An array that is written where it lies. Errors as for [`Read`], and for arrays that are read-only.
+pub(crate) struct Written<'py, T: Element, D: Dimension>(pub(crate) PyReadwriteArray<'py, T, D>);
+
 /// Points or vectors, shape `(n, 3)`.
-pub(crate) type Vectors<'py> = PyReadonlyArray2<'py, f64>;
+pub(crate) type Vectors<'py> = Read<'py, f64, Ix2>;
+/// Points or vectors that are written, shape `(n, 3)`.
+pub(crate) type VectorsOut<'py> = Written<'py, f64, Ix2>;
 /// Numbers of vertices, cells, triangles.
-pub(crate) type Ids<'py> = PyReadonlyArray1<'py, u32>;
+pub(crate) type Ids<'py> = Read<'py, u32, Ix1>;
+
+impl<'py, T: Element, D: Dimension> Deref for Read<'py, T, D> {
+    type Target = PyReadonlyArray<'py, T, D>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<'a, 'py, T: Element, D: Dimension> FromPyObject<'a, 'py> for Read<'py, T, D> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let array = array::<T, D>(given)?;
+        array.try_readonly().map(Self).map_err(|_| written())
+    }
+}
+
+impl<'a, 'py, T: Element, D: Dimension> FromPyObject<'a, 'py> for Written<'py, T, D> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
+        let array = array::<T, D>(given)?;
+        array.try_readwrite().map(Self).map_err(|failed| {
+            input(format!("an array that is to be written cannot be: {failed}; give one that is writeable and shares no memory with another"))
+        })
+    }
+}
+
+fn written() -> PyErr {
+    input("an array that is to be read is being written by this or another call; give it memory of its own")
+}
+
+/// An array of a type and a number of axes.
+fn array<'py, T: Element, D: Dimension>(
+    given: Borrowed<'_, 'py, PyAny>,
+) -> PyResult<Bound<'py, PyArray<T, D>>> {
+    if let Ok(array) = given.cast::<PyArray<T, D>>() {
+        return Ok(array.to_owned());
+    }
+    let found = match given.cast::<PyUntypedArray>() {
+        Ok(array) => format!("an array of {} and {} axes", array.dtype(), array.ndim()),
+        Err(_) => format!("{}", given.get_type()),
+    };
+    let axes = D::NDIM.map_or_else(String::new, |n| format!(" and {n} axes"));
+    Err(input(format!("expected an array of {}{axes}, found {found}", T::get_dtype(given.py()))))
+}
 
 /// The rows of an array that is contiguous and has three columns.
 pub(crate) fn rows<'a>(array: &'a Vectors<'_>, what: &str) -> PyResult<&'a [Point]> {
     let flat = array.as_slice().ok().filter(|_| array.shape()[1] == 3);
     flat.map(|flat| flat.as_chunks::<3>().0).ok_or_else(|| {
         input(format!("{what} of shape {:?}, expected (n, 3), contiguous and of float64", array.shape()))
+    })
+}
+
+/// The rows of an array that is to be written, contiguous and of three columns.
+pub(crate) fn rows_mut<'a>(out: &'a mut VectorsOut<'_>, what: &str) -> PyResult<&'a mut [Point]> {
+    let shape = out.0.shape().to_vec();
+    let flat = out.0.as_slice_mut().ok().filter(|_| shape[1] == 3);
+    flat.map(|flat| flat.as_chunks_mut::<3>().0).ok_or_else(|| {
+        input(format!("{what} of shape {shape:?}, expected (n, 3), contiguous and of float64"))
     })
 }
 
@@ -71,12 +138,12 @@ macro_rules! across {
             $(if let Ok(array) = array.cast::<PyArrayDyn<$t>>() {
                 let shape = array.shape().to_vec();
                 let components = shape.iter().skip(1).product();
-                let array = array.try_readonly()?;
+                let array = array.try_readonly().map_err(|_| written())?;
                 let values: Vec<$t> = array.as_array().iter().copied().collect();
                 return Ok(Field { name, components, values: Values::$variant(values) });
             })*
             if let Ok(array) = array.cast::<PyArrayDyn<bool>>() {
-                let values: Vec<u8> = array.try_readonly()?.as_array().iter().map(|&b| b.into()).collect();
+                let values: Vec<u8> = array.try_readonly().map_err(|_| written())?.as_array().iter().map(|&b| b.into()).collect();
                 return Ok(Field { components: array.shape().iter().skip(1).product(), name, values: values.into() });
             }
             match array.extract::<Vec<String>>() {

@@ -7,11 +7,12 @@ use std::collections::BTreeMap;
 use motet::Mesh;
 use motet::base::{Csr, VertexId};
 use motet::mesh::{CellKind, Cells, Field, LabelNames};
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::PyArray1;
+use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{Ids, Vectors, from_field, ids, rows, to_field, vectors};
+use crate::arrays::{Ids, Read, Vectors, from_field, ids, rows, to_field, vectors};
 use crate::error::{OrRaise, input};
 
 /// A mesh that came from Python, checked.
@@ -34,7 +35,7 @@ impl<'py> FromPyObject<'_, 'py> for Given {
 }
 
 fn cells(mesh: &Borrowed<'_, '_, PyAny>) -> PyResult<Cells> {
-    let kinds: PyReadonlyArray1<'_, u8> = mesh.getattr("kinds")?.extract()?;
+    let kinds: Read<'_, u8, Ix1> = mesh.getattr("kinds")?.extract()?;
     let offsets: Ids<'_> = mesh.getattr("offsets")?.extract()?;
     let vertices: Ids<'_> = mesh.getattr("connectivity")?.extract()?;
     let faces: Ids<'_> = mesh.getattr("faces")?.extract()?;

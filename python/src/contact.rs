@@ -3,13 +3,14 @@
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{self, Body, Gaps, NONE, Options, Room};
 use numpy::PyArray1;
+use numpy::ndarray::Ix2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 
-use crate::arrays::{Vectors, ids, rows, table, vectors};
+use crate::arrays::{Read, Vectors, ids, rows, table, vectors};
 use crate::border::Given;
-use crate::error::{OrRaise, input};
+use crate::error::{OrRaise, called, input};
 use crate::report::report;
 use crate::words::threads;
 
@@ -52,7 +53,7 @@ impl Contact {
     fn new(
         py: Python<'_>,
         points: Vectors<'_>,
-        bodies: Vec<(String, numpy::PyReadonlyArray2<'_, u32>, Option<bool>)>,
+        bodies: Vec<(String, Read<'_, u32, Ix2>, Option<bool>)>,
         warn: Option<f64>,
         own: bool,
         within: f64,
@@ -62,7 +63,7 @@ impl Contact {
     ) -> PyResult<Self> {
         let points = rows(&points, "points")?.to_vec();
         let threads = self::threads(threads)?;
-        let body = |(name, triangles, is_room): (String, numpy::PyReadonlyArray2<'_, u32>, Option<bool>)| {
+        let body = |(name, triangles, is_room): (String, Read<'_, u32, Ix2>, Option<bool>)| {
             let triangles = triangles.as_array();
             if triangles.ncols() != 3 {
                 return Err(input(format!("{name}: triangles of {} columns, expected 3", triangles.ncols())));
@@ -82,7 +83,7 @@ impl Contact {
         let bodies: Vec<Body> = bodies.into_iter().map(body).collect::<PyResult<_>>()?;
         let names = bodies.iter().map(|body| body.name.clone()).collect();
         let options = Options { warn, own, within, facing, fold };
-        let contact = py.detach(|| contact::Contact::new(points, bodies, options, &threads)).or_raise()?;
+        let contact = called(py, || contact::Contact::new(points, bodies, options, &threads))?;
         Ok(Self { contact, names, threads })
     }
 
@@ -96,11 +97,11 @@ impl Contact {
 
     fn refit(&mut self, py: Python<'_>, points: Vectors<'_>) -> PyResult<()> {
         let points = rows(&points, "points")?;
-        py.detach(|| self.contact.refit(points, &self.threads)).or_raise()
+        called(py, || self.contact.refit(points, &self.threads))
     }
 
     fn measure<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let gaps = py.detach(|| self.contact.measure(&self.threads));
+        let gaps = called(py, || Ok(self.contact.measure(&self.threads)))?;
         let all = PyDict::new(py);
         all.set_item("least", gaps.least())?;
         all.set_item("pairs", report(py, &self.pairs(&gaps))?)?;
@@ -129,7 +130,7 @@ impl Contact {
         horizon: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let velocity = rows(&velocity, "velocity")?;
-        let ahead = py.detach(|| self.contact.look_ahead(velocity, horizon, &self.threads)).or_raise()?;
+        let ahead = called(py, || self.contact.look_ahead(velocity, horizon, &self.threads))?;
         self.ahead(py, ahead)
     }
 
@@ -141,7 +142,7 @@ impl Contact {
         dt: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let points = rows(&points, "points")?;
-        let ahead = py.detach(|| self.contact.look_ahead_to(points, dt, &self.threads)).or_raise()?;
+        let ahead = called(py, || self.contact.look_ahead_to(points, dt, &self.threads))?;
         self.ahead(py, ahead)
     }
 }

@@ -1,5 +1,8 @@
 //! Errors of the library as exceptions of Python: the classes are those of `motet.errors`.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use motet::{Error, ErrorKind};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -23,21 +26,54 @@ pub(crate) fn options(what: impl Into<String>) -> PyErr {
 }
 
 fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
+    let place = match error.kind() {
+        ErrorKind::Io | ErrorKind::Output => FILE,
+        ErrorKind::Options => OPTIONS,
+        _ => INPUT,
+    };
+    let file = error.file().map(std::path::Path::to_path_buf);
+    let parts = (error.to_string(), error.what(), file, error.place(), error.remedy_text());
+    Ok(PyErr::from_value(class(py, place)?.call1(parts)?))
+}
+
+const INPUT: usize = 0;
+const FILE: usize = 1;
+const OPTIONS: usize = 2;
+const INTERNAL: usize = 3;
+
+/// One of the classes of `motet.errors`.
+fn class(py: Python<'_>, place: usize) -> PyResult<Bound<'_, PyType>> {
     let classes = CLASSES.get_or_try_init(py, || {
         let module = py.import("motet.errors")?;
-        ["InputError", "FileError", "OptionsError"]
+        ["InputError", "FileError", "OptionsError", "InternalError"]
             .into_iter()
             .map(|name| Ok(module.getattr(name)?.cast_into::<PyType>()?.unbind()))
             .collect::<PyResult<Vec<_>>>()
     })?;
-    let place = match error.kind() {
-        ErrorKind::Io | ErrorKind::Output => 1,
-        ErrorKind::Options => 2,
-        _ => 0,
-    };
-    let file = error.file().map(std::path::Path::to_path_buf);
-    let parts = (error.to_string(), error.what(), file, error.place(), error.remedy_text());
-    Ok(PyErr::from_value(classes[place].bind(py).call1(parts)?))
+    Ok(classes[place].bind(py).clone())
+}
+
+/// What comes of a call of the library. Other threads of Python go on meanwhile.
+///
+/// # Errors
+/// The exception that fits the error of the library; `InternalError` where it panics.
+pub(crate) fn called<T: Send>(py: Python<'_>, call: impl FnOnce() -> motet::Result<T> + Send) -> PyResult<T> {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(call))) {
+        Ok(outcome) => outcome.or_raise(),
+        Err(panic) => Err(fault(&*panic)),
+    }
+}
+
+/// A panic of the library as an exception.
+pub(crate) fn fault(panic: &(dyn Any + Send)) -> PyErr {
+    let what = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let what = what.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    Python::attach(|py| internal(py, &what).unwrap_or_else(|failed| failed))
+}
+
+fn internal(py: Python<'_>, what: &str) -> PyResult<PyErr> {
+    let message = format!("a fault of motet itself: {what}");
+    Ok(PyErr::from_value(class(py, INTERNAL)?.call1((message, what))?))
 }
 
 /// `?` for results of the library.

@@ -5,7 +5,7 @@ use motet::mesh::history::{self, Origins};
 use pyo3::prelude::*;
 
 use crate::arrays::{from_field, ids, to_field};
-use crate::error::{OrRaise, input};
+use crate::error::{called, input};
 use crate::report::report;
 use crate::words::one_of;
 use motet::mesh::history::Rule;
@@ -61,13 +61,36 @@ impl History {
         let rule = rule
             .map(|rule| one_of("rule", rule, &[("mean", mean), ("inherit", Rule::Inherit)]))
             .transpose()?;
-        let new = py.detach(|| match (on_points, rule) {
+        let new = called(py, || match (on_points, rule) {
             (true, None) => self.0.transfer_points(&field).map(Some),
             (false, None) => self.0.transfer_cells(&field).map(Some),
             (true, Some(rule)) => self.0.transfer_points_by(&field, rule),
             (false, Some(rule)) => self.0.transfer_cells_by(&field, rule),
         });
-        from_field(py, new.or_raise()?.ok_or_else(|| input("the rule leaves nothing"))?)
+        from_field(py, new?.ok_or_else(|| input("the rule leaves nothing"))?)
+    }
+
+    /// All of it, as dictionaries and lists.
+    fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        report(py, &self.0)
+    }
+
+    /// The history that [`Self::state`] told of.
+    #[staticmethod]
+    fn of_state(state: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let restored = pythonize::depythonize(state);
+        restored.map(Self).map_err(|failed| input(format!("is no history: {failed}")))
+    }
+
+    fn __repr__(&self) -> String {
+        let (vertices, cells) = (&self.0.vertices, &self.0.cells);
+        format!(
+            "vertices {} -> {}, cells {} -> {}",
+            vertices.n_old(),
+            vertices.len(),
+            cells.n_old(),
+            cells.len()
+        )
     }
 
     /// This change, then a later one.

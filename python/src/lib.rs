@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `arrays` | numpy arrays from lists of the library, and lists from arrays |
 //! | `border` | whole meshes across the border |
+//! | `command` | the command line |
 //! | `error` | errors as Python's exceptions |
 //! | `watch` | long calls: Ctrl-C and progress |
 //! | `words` | what a call may say: patches, rules of arrays, threads |
@@ -12,6 +13,7 @@
 
 mod arrays;
 mod border;
+mod command;
 mod contact;
 mod error;
 mod files;
@@ -35,15 +37,19 @@ mod _motet {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::command::command;
+    #[pymodule_export]
     use crate::contact::{Contact, bodies};
     #[pymodule_export]
-    use crate::files::{cell_kinds, formats, quality, read, summary, write};
+    use crate::files::{
+        cell_kinds, formats, labels, name_fields, names_of_fields, quality, read, summary, write,
+    };
     #[pymodule_export]
     use crate::history::History;
     #[pymodule_export]
     use crate::implant::implant;
     #[pymodule_export]
-    use crate::meshing::mesh;
+    use crate::meshing::{Caps, mesh};
     #[pymodule_export]
     use crate::motion::{
         Mover, PointMover, choose, interface_vertices, mesh_velocity, patch_vertices, prescribed,
@@ -55,7 +61,7 @@ mod _motet {
     #[pymodule_export]
     use crate::remesh::remesh;
     #[pymodule_export]
-    use crate::series::{SeriesWriter, read_nodal, read_series, write_nodal};
+    use crate::series::{SeriesWriter, is_series, read_nodal, read_series, write_nodal};
 
     #[pymodule_export]
     use crate::shapes::{aneurysm, ball, box_grid, coil, mixed, sphere_in_box, stent, tube};

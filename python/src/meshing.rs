@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use motet::base::Point;
 use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{Options, Seed, Sizes, Surfaces, fill, sizes_by};
+use motet::meshing::{self, Options, Seed, Sizes, Surfaces, fill, sizes_by};
 use motet::preflight::{Repair, Repairs, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;
@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 use serde::Serialize;
 
 use crate::border::{Given, parts};
-use crate::error::OrRaise;
+use crate::error::{OrRaise, called};
 use crate::report::report;
 use crate::watch::watched;
 
@@ -81,6 +81,23 @@ pub(crate) fn mesh<'py>(
     let not_reached = filled.not_reached(&options);
     let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
     Ok((parts(py, filled.mesh)?, told, not_reached))
+}
+
+/// The caps of a surface, put on any frame of it.
+#[pyclass(frozen, module = "motet._motet")]
+pub(crate) struct Caps(meshing::Caps);
+
+#[pymethods]
+impl Caps {
+    #[new]
+    fn new(py: Python<'_>, surface: Given) -> PyResult<Self> {
+        called(py, || meshing::Caps::of(&surface.0)).map(Self)
+    }
+
+    /// A frame of the surface, closed.
+    fn close<'py>(&self, py: Python<'py>, frame: Given) -> PyResult<Bound<'py, PyDict>> {
+        parts(py, called(py, || self.0.close(&frame.0))?)
+    }
 }
 
 impl Asked {

@@ -7,12 +7,12 @@ use motet::motion::{
     self, BoundaryMotion, Extent, FacetSet, Interface, Limits, Method, MethodWords, Options, Prescribed,
     RigidLayer, SlideTolerance,
 };
-use numpy::{PyArray1, PyReadwriteArray2, PyUntypedArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{Ids, Vectors, ids, rows, vectors, vertices};
+use crate::arrays::{Ids, Vectors, VectorsOut, ids, rows, rows_mut, vectors, vertices};
 use crate::border::Given;
-use crate::error::{OrRaise, input};
+use crate::error::{OrRaise, called, input};
 use crate::report::{concluded, report};
 use crate::watch::{beside, watched};
 use crate::words::{Facets, all_facets, threads};
@@ -108,23 +108,18 @@ impl Mover {
     }
 
     /// Reads and writes where the arrays are.
-    fn step(
-        &self,
-        py: Python<'_>,
-        displacement: Vectors<'_>,
-        mut out: PyReadwriteArray2<'_, f64>,
-    ) -> PyResult<()> {
-        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
-        py.detach(|| self.mover.step(displacement, out, &self.threads)).or_raise()
+    fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
+        called(py, || self.mover.step(displacement, out, &self.threads))
     }
 
     fn advance<'py>(
         &mut self,
         py: Python<'py>,
         displacement: Vectors<'_>,
-        mut out: PyReadwriteArray2<'_, f64>,
+        mut out: VectorsOut<'_>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
         let watch = Watch::new();
         let threads = std::mem::take(&mut self.threads).watched(&watch);
         let advance = |threads: &Threads| self.mover.advance(displacement, out, threads);
@@ -133,13 +128,6 @@ impl Mover {
         let certificate = certificate?;
         concluded(py, &certificate, certificate.not_reached())
     }
-}
-
-fn rows_mut<'a>(out: &'a mut PyReadwriteArray2<'_, f64>) -> PyResult<&'a mut [Point]> {
-    let shape = out.shape().to_vec();
-    let flat = out.as_slice_mut().ok().filter(|_| shape[1] == 3);
-    flat.map(|flat| flat.as_chunks_mut::<3>().0)
-        .ok_or_else(|| input(format!("out of shape {shape:?}, expected (n, 3), contiguous and of float64")))
 }
 
 /// Moves points after nodes, without a mesh.
@@ -155,7 +143,7 @@ impl PointMover {
     fn new(py: Python<'_>, nodes: Vectors<'_>, points: Vectors<'_>, threads: usize) -> PyResult<Self> {
         let (nodes, points) = (rows(&nodes, "nodes")?, rows(&points, "points")?);
         let threads = self::threads(threads)?;
-        let mover = py.detach(|| motion::PointMover::new(nodes, points, &threads)).or_raise()?;
+        let mover = called(py, || motion::PointMover::new(nodes, points, &threads))?;
         Ok(Self { mover, threads })
     }
 
@@ -166,14 +154,9 @@ impl PointMover {
     }
 
     /// Reads and writes where the arrays are.
-    fn step(
-        &self,
-        py: Python<'_>,
-        displacement: Vectors<'_>,
-        mut out: PyReadwriteArray2<'_, f64>,
-    ) -> PyResult<()> {
-        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out)?);
-        py.detach(|| self.mover.step(displacement, out, &self.threads)).or_raise()
+    fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
+        let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
+        called(py, || self.mover.step(displacement, out, &self.threads))
     }
 }
 

@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{Vectors, rows, to_field, vectors};
 use crate::border::{Given, parts};
-use crate::error::OrRaise;
+use crate::error::{OrRaise, called};
 use crate::history::History;
 use crate::refine::Criterion;
 use crate::report::{concluded, report};
@@ -134,14 +134,14 @@ impl MovingMesh {
     /// Goes on from what `save` wrote.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
-        let mesh = motet::io::read(&path).or_raise()?;
+        let mesh = called(py, || motet::io::read(&path))?;
         let options = asked.options(&mesh)?;
         let load = |threads: &Threads| moving::MovingMesh::load(&path, options, threads);
         Ok(Self { moving: watched(py, threads, None, load)?, threads: self::threads(threads)? })
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.moving.save(&path)).or_raise()
+        called(py, || self.moving.save(&path))
     }
 
     #[getter]
@@ -224,7 +224,7 @@ impl MovingMesh {
         self.moving.remembers(step)
     }
 
-    fn history_since(&self, py: Python<'_>, step: usize) -> Option<History> {
-        py.detach(|| self.moving.history_since(step)).map(History)
+    fn history_since(&self, py: Python<'_>, step: usize) -> PyResult<Option<History>> {
+        Ok(called(py, || Ok(self.moving.history_since(step)))?.map(History))
     }
 }

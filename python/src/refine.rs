@@ -11,13 +11,14 @@ use motet::refine::{
     Aim, Amount, Condition, Estimator, HessianSizes, Limits, MeshRefinement, Options, Relation, Size, Target,
     Wanted, fix_sizes,
 };
-use numpy::PyReadonlyArray1;
+use numpy::ndarray::Ix1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
 
+use crate::arrays::Read;
 use crate::border::{Given, parts};
-use crate::error::{OrRaise, input, options};
+use crate::error::{OrRaise, called, input, options};
 use crate::history::History;
 use crate::report::report;
 use crate::watch::watched;
@@ -248,8 +249,7 @@ impl Refinement {
     #[new]
     fn new(py: Python<'_>, mesh: Given, threads: usize) -> PyResult<Self> {
         let threads = self::threads(threads)?;
-        let refinement =
-            py.detach(|| MeshRefinement::new(&mesh.0, Options::default(), &threads)).or_raise()?;
+        let refinement = called(py, || MeshRefinement::new(&mesh.0, Options::default(), &threads))?;
         Ok(Self { refinement, threads })
     }
 
@@ -273,7 +273,7 @@ impl Refinement {
     fn change<'py>(
         &mut self,
         py: Python<'py>,
-        cells: PyReadonlyArray1<'_, bool>,
+        cells: Read<'_, bool, Ix1>,
         is_back: bool,
         carry: BTreeMap<String, String>,
     ) -> PyResult<(History, Bound<'py, PyAny>)> {
@@ -293,12 +293,10 @@ impl Refinement {
             .filter(|(_, cell)| is_marked[cell.index()])
             .map(|(t, _)| TetId::new(t))
             .collect();
-        let (summary, history): (_, history::History) = py
-            .detach(|| match is_back {
-                false => self.refinement.refine(&marked, &rules, &self.threads),
-                true => self.refinement.coarsen(&marked, &rules, &self.threads),
-            })
-            .or_raise()?;
+        let (summary, history): (_, history::History) = called(py, || match is_back {
+            false => self.refinement.refine(&marked, &rules, &self.threads),
+            true => self.refinement.coarsen(&marked, &rules, &self.threads),
+        })?;
         Ok((History(history), report(py, &Done::of(&summary))?))
     }
 }

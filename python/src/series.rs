@@ -3,16 +3,24 @@
 use std::path::PathBuf;
 
 use motet::io::{self, NodalSeries, WriteOptions};
-use numpy::{PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
+use numpy::ndarray::Ix3;
+use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
+use crate::arrays::Read;
 use crate::border::Given;
-use crate::error::{OrRaise, input};
+use crate::error::{OrRaise, called, input};
 
 /// The times and files of a series.
 #[pyfunction]
 pub(crate) fn read_series(path: PathBuf) -> PyResult<Vec<(f64, PathBuf)>> {
     io::read_series(path).or_raise()
+}
+
+/// Whether a path is that of a series, by its ending.
+#[pyfunction]
+pub(crate) fn is_series(path: PathBuf) -> bool {
+    io::is_series(path)
 }
 
 /// A series that is being written.
@@ -28,7 +36,7 @@ impl SeriesWriter {
 
     /// Adds a mesh: its file, and what that cannot hold.
     fn add(&mut self, py: Python<'_>, time: f64, mesh: Given) -> PyResult<(PathBuf, Vec<String>)> {
-        py.detach(|| self.0.add(time, &mesh.0)).or_raise()
+        called(py, || self.0.add(time, &mesh.0))
     }
 }
 
@@ -38,7 +46,7 @@ type Nodal<'py> = (Vec<f64>, Vec<i64>, Bound<'py, PyAny>);
 /// Values of nodes over time.
 #[pyfunction]
 pub(crate) fn read_nodal(py: Python<'_>, path: PathBuf) -> PyResult<Nodal<'_>> {
-    let series = py.detach(|| NodalSeries::read(path)).or_raise()?;
+    let series = called(py, || NodalSeries::read(path))?;
     let shape = [series.ids.len(), series.times.len(), series.components];
     let values = numpy::PyArray1::from_vec(py, series.values).reshape(shape)?;
     Ok((series.times, series.ids, values.into_any()))
@@ -51,7 +59,7 @@ pub(crate) fn write_nodal(
     path: PathBuf,
     times: Vec<f64>,
     ids: Vec<i64>,
-    values: PyReadonlyArray3<'_, f64>,
+    values: Read<'_, f64, Ix3>,
 ) -> PyResult<()> {
     let &[n_nodes, n_times, components] = values.shape() else { unreachable!("three axes by its type") };
     if (n_nodes, n_times) != (ids.len(), times.len()) {
@@ -62,5 +70,5 @@ pub(crate) fn write_nodal(
         )));
     }
     let series = NodalSeries { times, ids, components, values: values.as_array().iter().copied().collect() };
-    py.detach(|| series.write(path)).or_raise()
+    called(py, || series.write(path))
 }

@@ -1,6 +1,7 @@
 //! Meshes that the library makes itself: for tests, documentation and first tries.
 
 use motet::base::Point;
+use motet::geometry::vector::in_range;
 use motet::mesh::shapes::{self, Aneurysm, Coil, Stent, TubeOptions, WallCells};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -11,7 +12,7 @@ use crate::error::{OrRaise, options};
 #[pyfunction]
 pub(crate) fn sphere_in_box(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(layers), 1)?;
-    room([n, n, n + 6 * layers])?;
+    room([n as f64, n as f64, n as f64 + 6.0 * layers as f64])?;
     parts(py, shapes::sphere_in_box(n, layers))
 }
 
@@ -23,21 +24,26 @@ pub(crate) fn box_grid(
     high: Point,
 ) -> PyResult<Bound<'_, PyDict>> {
     at_least(n[0].min(n[1]).min(n[2]), 1)?;
-    room(n)?;
+    room(n.map(|n| n as f64))?;
+    if !(0..3).all(|k| low[k] < high[k]) || !in_range(low) || !in_range(high) {
+        return Err(options(format!(
+            "a box from {low:?} to {high:?}, expected finite corners, the second above the first"
+        )));
+    }
     parts(py, shapes::box_grid(n, [low, high]))
 }
 
 #[pyfunction]
 pub(crate) fn ball(py: Python<'_>, n: usize, layers: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(layers), 1)?;
-    room([n, n, n + 6 * layers])?;
+    room([n as f64, n as f64, n as f64 + 6.0 * layers as f64])?;
     parts(py, shapes::ball(n, layers))
 }
 
 #[pyfunction]
 pub(crate) fn mixed(py: Python<'_>, n: usize) -> PyResult<Bound<'_, PyDict>> {
     at_least(n, 1)?;
-    room([n; 3])?;
+    room([n as f64; 3])?;
     parts(py, shapes::mixed(n))
 }
 
@@ -52,10 +58,10 @@ pub(crate) fn tube(
     wedges: bool,
 ) -> PyResult<Bound<'_, PyDict>> {
     at_least(n.min(slices), 1)?;
-    room([n, n + wall_layers, 4 * slices])?;
     let wall_cells = if wedges { WallCells::Wedges } else { WallCells::Tets };
     let options =
         TubeOptions { radius, length, n, slices, wall_layers, wall_cells, ..TubeOptions::default() };
+    options.check().or_raise()?;
     parts(py, shapes::tube(&options))
 }
 
@@ -96,8 +102,8 @@ pub(crate) fn coil(
 }
 
 /// Whether memory has room for so many points along three directions.
-fn room(n: [usize; 3]) -> PyResult<()> {
-    shapes::check_count(n.iter().map(|&n| n as f64 + 1.0).product()).or_raise()
+fn room(n: [f64; 3]) -> PyResult<()> {
+    shapes::check_count(n.iter().map(|n| n + 1.0).product()).or_raise()
 }
 
 /// The largest count along one direction: beyond it ids would not suffice.

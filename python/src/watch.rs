@@ -1,6 +1,5 @@
 //! Long calls: work goes on beside, on a thread of its own, while the one that called listens for Ctrl-C and tells how far it is.
 
-use std::panic::resume_unwind;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -8,7 +7,7 @@ use std::time::Duration;
 use motet::base::{Progress, Threads, Watch};
 use pyo3::prelude::*;
 
-use crate::error::OrRaise;
+use crate::error::{OrRaise, fault};
 use crate::words::threads;
 
 /// How often it listens.
@@ -50,8 +49,11 @@ pub(crate) fn beside<T: Send>(
                     raised.iter().for_each(|_| watch.stop());
                 }
             }
-            let (threads, outcome) = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
-            (threads, raised.map_or_else(|| outcome.or_raise(), Err))
+            let (threads, outcome) = match worker.join() {
+                Ok((threads, outcome)) => (threads, outcome.or_raise()),
+                Err(panic) => (Threads::single(), Err(fault(&*panic))),
+            };
+            (threads, raised.map_or(outcome, Err))
         })
     })
 }

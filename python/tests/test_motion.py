@@ -164,3 +164,69 @@ def test_what_means_nothing_is_told(call, told):
     assert isinstance(error.value, motet.Error) and told in str(error.value)
     with pytest.raises(TypeError):
         motet.Mover(shapes.box(), speed=1)
+
+
+def test_arrays_that_share_memory_are_refused():
+    mesh = shapes.sphere_in_box(4, 3)
+    mover = motet.Mover(mesh)
+    n, k = mesh.n_points, len(mover.boundary)
+    memory = np.zeros((n + k, 3))
+    apart = mover.step(memory[n:], memory[:n])
+    np.testing.assert_array_equal(apart, mesh.points)
+    raw = bytearray(8 * 3 * n)
+    views = [np.frombuffer(raw, np.float64).reshape(-1, 3) for _ in range(2)]
+    for call in (mover.step, mover.advance):
+        for out in (memory[: n], memory[k - 1 : n + k - 1]):
+            with pytest.raises(motet.InputError, match="shares memory"):
+                call(memory[:k], out)
+        # Two arrays that know nothing of each other.
+        with pytest.raises(motet.InputError, match="shares memory"):
+            call(views[0][:k], views[1])
+    whole = motet.PointMover(mesh.points[mover.boundary], mesh.points)
+    with pytest.raises(motet.InputError, match="shares memory"):
+        whole.step(memory[:k], memory[:n])
+
+
+@pytest.mark.parametrize(
+    "out",
+    [
+        lambda n: np.zeros((n, 4))[:, :3],
+        lambda n: np.zeros((2 * n, 3))[::2],
+        lambda n: np.zeros((n, 3), order="F"),
+        lambda n: np.zeros((n, 3), np.float32),
+        lambda n: np.zeros((n, 3), ">f8"),
+        lambda n: np.zeros((n + 1, 3)),
+        lambda n: np.zeros(3 * n),
+        lambda n: np.zeros((n, 3)).tolist(),
+        lambda n: np.broadcast_to(np.zeros(3), (n, 3)),
+    ],
+)
+def test_places_that_cannot_be_written_are_refused(out):
+    mesh = shapes.box((2, 2, 2))
+    mover = motet.Mover(mesh)
+    still = np.zeros((len(mover.boundary), 3))
+    for call in (mover.step, mover.advance):
+        with pytest.raises(motet.InputError, match="contiguous"):
+            call(still, out(mesh.n_points))
+
+
+def test_the_native_part_refuses_what_numpy_knows_to_be_shared():
+    """Behind the checks of the package: arrays of other types, and memory that is read and written at once, raise and do not panic."""
+    mesh = shapes.box((2, 2, 2))
+    native = motet.Mover(mesh)._mover
+    memory = np.zeros((mesh.n_points, 3))
+    k = len(native.boundary)
+    for displacement, out in [(memory[:k], memory), (memory[:k].astype("f4"), memory.copy()), (memory[0], memory.copy()), (memory[:k].tolist(), memory.copy())]:
+        with pytest.raises(motet.InputError):
+            native.step(displacement, out)
+    fixed = memory.copy()
+    fixed.flags.writeable = False
+    with pytest.raises(motet.InputError, match="writeable"):
+        native.step(memory[:k], fixed)
+
+
+def test_arrays_of_a_mesh_of_other_types_are_told():
+    mesh = shapes.box((1, 1, 1))
+    mesh.connectivity = mesh.connectivity.astype(np.int64)
+    with pytest.raises(motet.InputError, match="expected an array of uint32 and 1 axes, found an array of int64"):
+        mesh.summary()

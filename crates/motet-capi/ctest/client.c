@@ -211,6 +211,9 @@ static void motion(void)
     REFUSED(motet_mover_step(mover, displacement, n, 3, points, N_POINTS - 1, 3, &error), MOTET_ERROR_OPTIONS, "expected 343");
     REFUSED(motet_mover_step(NULL, displacement, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "mover is NULL");
     REFUSED(motet_mover_step(mover, displacement, n, 3, NULL, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "points is NULL");
+    /* Rows that are read and written at once. */
+    REFUSED(motet_mover_step(mover, points + 3, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_OPTIONS, "share memory");
+    REFUSED(motet_mover_advance(mover, points, n, 3, points, N_POINTS, 3, NULL, &error), MOTET_ERROR_OPTIONS, "share memory");
     displacement[0] = NAN;
     REFUSED(motet_mover_step(mover, displacement, n, 3, points, N_POINTS, 3, &error), MOTET_ERROR_INPUT, "finite");
     motet_mover_free(mover);
@@ -333,6 +336,84 @@ static void changing(void)
     motet_outcome_free(outcome);
     motet_mesh_free(mesh);
     motet_mesh_free(device);
+}
+
+/* Numbers that mean nothing, in every option that is one, are refused by name of the option's kind: none is taken for "not given". */
+static void numbers(void)
+{
+    static const double wrong[2] = {NAN, -2};
+    motet_error *error = NULL;
+    motet_mesh *mesh = cube(), *device = octahedron(0.5, 0.5, 0.5, 0.2);
+    const motet_mesh *const devices[1] = {device};
+    const char *names[1] = {"seed"};
+    static const int32_t triangles[2][3] = {{0, 1, 2}, {3, 4, 5}};
+    static const double points[6][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, still[6][3];
+    static const int64_t counts[2] = {1, 1};
+    motet_mover_options mover;
+    motet_remesh_options repair;
+    motet_implant_options implant;
+    motet_fill_options fill;
+    motet_contact_options contact;
+    motet_moving_options moving;
+    motet_mover *no_mover = NULL;
+    motet_outcome *outcome = NULL;
+    motet_contact *handle = NULL;
+    motet_moving *no_moving = NULL;
+    motet_refinement *refinement = NULL;
+    double time;
+    int i;
+    OK(motet_refinement_new(mesh, 1, &refinement, &error));
+    OK(motet_contact_new(points[0], 6, 3, triangles[0], counts, NULL, 2, NULL, &handle, &error));
+    for (i = 0; i < 2; i++) {
+        const double x = wrong[i];
+#define SET(options, init) init(&options, sizeof options)
+#define MOVER(member) \
+    (SET(mover, motet_mover_options_init), mover.method = MOTET_LAPLACE, mover.member = x, motet_mover_new(mesh, &mover, &no_mover, &error))
+#define REPAIR(member) (SET(repair, motet_remesh_options_init), repair.surface = 1, repair.member = x, motet_remesh(mesh, &repair, &outcome, &error))
+#define IMPLANT(member) \
+    (SET(implant, motet_implant_options_init), implant.conform = 1, implant.member = x, motet_implant(mesh, devices, names, 1, &implant, &outcome, &error))
+#define FILL(member)                                                                                                      \
+    (SET(fill, motet_fill_options_init), fill.graded = 1, fill.layers = 2, fill.first_layer = 0.01, fill.member = x, \
+     motet_fill(devices, names, NULL, 1, &fill, &outcome, &error))
+#define CONTACT(member) \
+    (SET(contact, motet_contact_options_init), contact.member = x, motet_contact_new(points[0], 6, 3, triangles[0], counts, NULL, 2, &contact, &none, &error))
+#define MOVING(member) (SET(moving, motet_moving_options_init), moving.surface = 1, moving.member = x, motet_moving_new(mesh, &moving, &no_moving, &error))
+        motet_contact *none = NULL;
+        REFUSED(MOVER(rigid_layer), MOTET_ERROR_OPTIONS, "rigid layer");
+        REFUSED(MOVER(residual), MOTET_ERROR_OPTIONS, "residual");
+        REFUSED(MOVER(factor_gib), MOTET_ERROR_OPTIONS, "factor");
+        REFUSED(REPAIR(min_eas), MOTET_ERROR_OPTIONS, "EAS");
+        REFUSED(REPAIR(min_dihedral_deg), MOTET_ERROR_OPTIONS, "degrees");
+        REFUSED(REPAIR(distance), MOTET_ERROR_OPTIONS, "stray");
+        CHECK(REPAIR(edge_length) != MOTET_OK);
+        motet_error_free(error), error = NULL;
+        REFUSED(IMPLANT(tolerance), MOTET_ERROR_OPTIONS, "tolerance");
+        REFUSED(IMPLANT(stray), MOTET_ERROR_OPTIONS, "stray");
+        REFUSED(IMPLANT(edge_length), MOTET_ERROR_OPTIONS, "size");
+        REFUSED(IMPLANT(growth), MOTET_ERROR_OPTIONS, "grow");
+        REFUSED(IMPLANT(carve), MOTET_ERROR_OPTIONS, "edges");
+        REFUSED(IMPLANT(reach), MOTET_ERROR_OPTIONS, "edges");
+        REFUSED(IMPLANT(min_eas), MOTET_ERROR_OPTIONS, "EAS");
+        REFUSED(FILL(edge_length), MOTET_ERROR_OPTIONS, "size");
+        REFUSED(FILL(growth), MOTET_ERROR_OPTIONS, "grow");
+        REFUSED(FILL(min_eas), MOTET_ERROR_OPTIONS, "EAS");
+        REFUSED(FILL(first_layer), MOTET_ERROR_OPTIONS, "first layer");
+        REFUSED(FILL(layer_growth), MOTET_ERROR_OPTIONS, "grow");
+        REFUSED(CONTACT(warn), MOTET_ERROR_OPTIONS, "warning");
+        REFUSED(CONTACT(within), MOTET_ERROR_OPTIONS, "reach");
+        REFUSED(CONTACT(fold), MOTET_ERROR_OPTIONS, "fold");
+        REFUSED(motet_contact_ahead(handle, still[0], 6, 3, x, &time, &error), MOTET_ERROR_OPTIONS, "horizon");
+        REFUSED(MOVING(rigid_layer), MOTET_ERROR_OPTIONS, "rigid layer");
+        REFUSED(MOVING(min_eas), MOTET_ERROR_OPTIONS, "EAS");
+        REFUSED(MOVING(distance), MOTET_ERROR_OPTIONS, "stray");
+        REFUSED(MOVING(margin), MOTET_ERROR_OPTIONS, "margin");
+        REFUSED(MOVING(floor), MOTET_ERROR_OPTIONS, "floor");
+        REFUSED(MOVING(keep_tets), MOTET_ERROR_OPTIONS, "keep_tets");
+        REFUSED(motet_refinement_near(refinement, device, x, 0.5, NULL, &error), MOTET_ERROR_OPTIONS, "size");
+        REFUSED(motet_refinement_near(refinement, device, 0.5, x, NULL, &error), MOTET_ERROR_OPTIONS, "grow");
+        CHECK(no_mover == NULL && outcome == NULL && none == NULL && no_moving == NULL);
+    }
+    motet_refinement_free(refinement), motet_contact_free(handle), motet_mesh_free(mesh), motet_mesh_free(device);
 }
 
 static void refinement(void)
@@ -518,6 +599,7 @@ int main(void)
     motion();
     parts();
     changing();
+    numbers();
     refinement();
     contact();
     loop();

@@ -4,7 +4,8 @@
  *
  * Arrays.    Counts are int64_t, ids int32_t, from 0. Coordinates and vectors are doubles, three a row; a stride is the number of doubles from one row to the
  *            next, 3 where they lie end to end (then they are read and written where they lie), more where other values stand between. Arrays that are given are
- *            read during the call alone; arrays that come out are written into memory of the caller, as long as the count before it says.
+ *            read during the call alone; arrays that come out are written into memory of the caller, as long as the count before it says, and shared with
+ *            none that is read.
  * Units.     Lengths are in whatever unit the mesh has, angles in degrees.
  * Handles.   Whatever a call gives through a pointer to a pointer belongs to the caller, who hands it back to the _free of its kind; NULL may be freed. What is
  *            borrowed from a handle, a text or a mesh of an outcome, lives as long as the handle, and as long as it is not changed.

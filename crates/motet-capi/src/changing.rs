@@ -14,7 +14,8 @@ use serde_json::json;
 
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    count, expect, free, give, handle, owned, place, room, sized, text, texts, threads, values, versioned,
+    count, expect, free, give, handle, optional, owned, place, room, sized, text, texts, threads, values,
+    versioned,
 };
 use crate::mesh::{MotetMesh, field, json, on_points};
 
@@ -134,14 +135,9 @@ versioned! {
     }
 }
 
-/// A number that is left to motet where it is not above 0.
-fn given(x: f64) -> Option<f64> {
-    (x != 0.0).then_some(x)
-}
-
 /// What a surface may do, by the numbers of the header.
 pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
-    let distance = given(distance);
+    let distance = optional(distance);
     match rule {
         0 => Ok(SurfaceRule::Keep),
         1 => Ok(SurfaceRule::Adapt { distance }),
@@ -159,7 +155,7 @@ impl MotetRemeshOptions {
             surface: surface_rule(self.surface, self.distance)?,
             keep_layers: self.repair_layers == 0,
             held: remesh::Held::of_names(mesh, &owned(self.hold, self.n_hold, "hold")?)?,
-            sizes: match (self.sizes.is_null(), given(self.edge_length)) {
+            sizes: match (self.sizes.is_null(), optional(self.edge_length)) {
                 (true, length) => length.map(remesh::Sizes::Uniform),
                 (false, _) => {
                     let sizes = values(self.sizes, count(self.n_sizes, "sizes")?, "sizes")?;
@@ -213,11 +209,11 @@ impl MotetImplantOptions {
         Ok(implant::Options {
             interface: match self.conform {
                 0 => Interface::Match,
-                _ => Interface::Conform { tolerance: given(self.tolerance) },
+                _ => Interface::Conform { tolerance: optional(self.tolerance) },
             },
             outside: if self.keep_outside != 0 { Outside::Keep } else { Outside::Cut },
-            stray: (self.stray >= 0.0).then_some(self.stray),
-            size: given(self.edge_length),
+            stray: (self.stray != -1.0).then_some(self.stray),
+            size: optional(self.edge_length),
             growth: self.growth,
             adapt: match self.adapt {
                 0 => Adapt::No,
@@ -288,10 +284,10 @@ versioned! {
 
 impl MotetFillOptions {
     fn options(&self) -> Result<meshing::Options> {
-        let (largest, growth) = (given(self.edge_length), given(self.growth));
+        let (largest, growth) = (optional(self.edge_length), optional(self.growth));
         let sizes = meshing::Sizes::of(largest, self.graded != 0, growth, None);
         let layers = self.layers()?;
-        Ok(meshing::Options { layers, ..meshing::Options::with_sizes(sizes, given(self.min_eas)) })
+        Ok(meshing::Options { layers, ..meshing::Options::with_sizes(sizes, optional(self.min_eas)) })
     }
 
     fn layers(&self) -> Result<Option<Layers>> {

@@ -6,8 +6,8 @@ use motet::{Error, Result};
 
 use crate::guard::{MotetError, guarded};
 use crate::memory::{
-    count, expect, free, give, handle, handle_mut, id, place, room, rows, sized, threads, values, versioned,
-    vertex,
+    count, expect, free, give, handle, handle_mut, id, optional, place, room, rows, sized, threads, values,
+    versioned, vertex,
 };
 
 /// Surfaces and the threads that measure them.
@@ -48,9 +48,9 @@ pub(crate) unsafe extern "C" fn motet_contact_new(
         let points = rows(points, n_points, stride, "points")?.into_owned();
         let bodies = bodies(points.len(), triangles, counts, is_room, n_bodies)?;
         let options = Options {
-            warn: (asked.warn > 0.0).then_some(asked.warn),
+            warn: optional(asked.warn),
             own: asked.own != 0,
-            within: if asked.within > 0.0 { asked.within } else { f64::INFINITY },
+            within: optional(asked.within).unwrap_or(f64::INFINITY),
             facing: asked.facing != 0,
             fold: asked.fold,
         };
@@ -191,7 +191,7 @@ pub(crate) unsafe extern "C" fn motet_contact_ahead(
     guarded(error, || {
         let MotetContact { contact, threads } = handle(contact, "contact")?;
         let time = handle_mut(time, "time")?;
-        let horizon = if horizon == 0.0 { f64::INFINITY } else { horizon };
+        let horizon = optional(horizon).unwrap_or(f64::INFINITY);
         let ahead = contact.look_ahead(&rows(velocity, n_points, stride, "velocity")?, horizon, threads)?;
         *time = ahead.first.map_or(f64::INFINITY, |first| first.time);
         Ok(())

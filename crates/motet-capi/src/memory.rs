@@ -16,6 +16,11 @@ pub(crate) fn count(n: i64, what: &str) -> Result<usize> {
     usize::try_from(n).map_err(|_| Error::options(format!("{n} {what}, expected 0 or more")))
 }
 
+/// A number of an option, `None` where it is 0: then it is left to motet. The library judges any other, and refuses those that mean nothing.
+pub(crate) fn optional(x: f64) -> Option<f64> {
+    (x != 0.0).then_some(x)
+}
+
 /// Fails where a count is not what it has to be.
 pub(crate) fn expect(n: i64, expected: usize, what: &str) -> Result<()> {
     match usize::try_from(n) == Ok(expected) {
@@ -54,7 +59,7 @@ fn stride(stride: i64, what: &str) -> Result<usize> {
 
 /// How many doubles `n` rows take.
 fn extent(n: usize, stride: usize) -> usize {
-    if n == 0 { 0 } else { (n - 1) * stride + 3 }
+    if n == 0 { 0 } else { (n - 1).saturating_mul(stride).saturating_add(3) }
 }
 
 /// Rows of three; where they lie if they lie end to end, else copied.
@@ -84,6 +89,20 @@ pub(crate) fn fill_rows<T>(
     let done = fill(&mut rows)?;
     rows.iter().enumerate().for_each(|(i, row)| flat[i * step..][..3].copy_from_slice(row));
     Ok(done)
+}
+
+/// Fails where rows that are read share memory with rows that are to be written. Rows that were copied do not.
+pub(crate) fn apart(read: &[Point], written: *mut f64, n: i64, step: i64) -> Result<()> {
+    let length = extent(count(n, "rows")?, stride(step, "rows")?);
+    let end = written.addr().saturating_add(length.saturating_mul(size_of::<f64>()));
+    let read = read.as_ptr_range();
+    match read.start.addr() < end && written.addr() < read.end.addr() {
+        false => Ok(()),
+        true => {
+            Err(Error::options("points share memory with displacement")
+                .remedy("give them memory of their own"))
+        }
+    }
 }
 
 /// A text.

@@ -12,8 +12,8 @@ use motet::{Error, Mesh, Result};
 
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    count, expect, fill_rows, free, give, handle, handle_mut, id, place, put, room, rows, sized, texts,
-    threads, values, versioned, vertex,
+    apart, count, expect, fill_rows, free, give, handle, handle_mut, id, optional, place, put, room, rows,
+    sized, texts, threads, values, versioned, vertex,
 };
 use crate::mesh::MotetMesh;
 
@@ -81,18 +81,19 @@ impl MotetMoverOptions {
 
 /// How far a rigid layer reaches, if there is one.
 pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
-    match (distance > 0.0, cells > 0) {
-        (true, true) => {
+    match (optional(distance), cells > 0) {
+        (Some(_), true) => {
             Err(Error::options("a rigid layer by a distance and by cells").remedy("give one of them"))
         }
-        (true, false) => Ok(Some(Extent::Distance(distance))),
-        (false, true) => Ok(Some(Extent::Cells(cells))),
-        (false, false) => Ok(None),
+        (Some(distance), false) => Ok(Some(Extent::Distance(distance))),
+        (None, true) => Ok(Some(Extent::Cells(cells))),
+        (None, false) => Ok(None),
     }
 }
 
 /// A method by its number: the header has them in this order.
 pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
+    words.check()?;
     let asked = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
     asked.ok_or_else(|| Error::options(format!("there is no method {number}")).remedy("MOTET_DELAUNAY is 0"))
 }
@@ -185,6 +186,7 @@ pub(crate) unsafe extern "C" fn motet_mover_step(
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
+        apart(&displacement, points, n_points, points_stride)?;
         fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
     })
 }
@@ -241,6 +243,7 @@ pub(crate) unsafe extern "C" fn motet_mover_advance(
         expect(n_boundary, mover.boundary().len(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_boundary, displacement_stride, "displacement")?;
+        apart(&displacement, points, n_points, points_stride)?;
         let reached = fill_rows(points, n_points, points_stride, "points", |out| {
             mover.advance(&displacement, out, threads)
         })?;
@@ -301,6 +304,7 @@ pub(crate) unsafe extern "C" fn motet_point_mover_step(
         expect(n_nodes, mover.n_nodes(), "displacements")?;
         expect(n_points, mover.reference().len(), "points")?;
         let displacement = rows(displacement, n_nodes, displacement_stride, "displacement")?;
+        apart(&displacement, points, n_points, points_stride)?;
         fill_rows(points, n_points, points_stride, "points", |out| mover.step(&displacement, out, threads))
     })
 }

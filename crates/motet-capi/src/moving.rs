@@ -13,8 +13,8 @@ use serde_json::json;
 use crate::changing::{MotetOutcome, surface_rule};
 use crate::guard::{MotetError, guarded, quiet};
 use crate::memory::{
-    count, expect, fill_rows, free, give, handle, handle_mut, owned, place, put, rows, sized, text, threads,
-    versioned,
+    count, expect, fill_rows, free, give, handle, handle_mut, optional, owned, place, put, rows, sized, text,
+    threads, versioned,
 };
 use crate::mesh::{MotetMesh, field, on_points};
 use crate::motion::{extent, method};
@@ -60,7 +60,7 @@ versioned! {
         threads: i32 = 0,
         hold_names: *const *const c_char = ptr::null(),
         n_hold_names: i64 = 0,
-        slide_tolerance: f64 = SlideTolerance::default().0,
+        slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
     }
 }
 
@@ -103,14 +103,13 @@ impl MotetMovingOptions {
 
     fn watching(&self) -> Result<Option<Watching>> {
         let patches = owned(self.watch, self.n_watch, "watch")?;
-        let above_zero = |x: f64| (x > 0.0).then_some(x);
         let options = contact::Options {
-            warn: above_zero(self.warn),
-            within: above_zero(self.within).unwrap_or(f64::INFINITY),
+            warn: optional(self.warn),
+            within: optional(self.within).unwrap_or(f64::INFINITY),
             ..contact::Options::default()
         };
         let watching =
-            Watching { patches, options, horizon: above_zero(self.horizon), hold: above_zero(self.hold) };
+            Watching { patches, options, horizon: optional(self.horizon), hold: optional(self.hold) };
         Ok((!watching.patches.is_empty()).then_some(watching))
     }
 }

@@ -5,15 +5,14 @@ use std::cell::RefCell;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::rc::Rc;
-use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressStyle};
 use motet::Error;
 use motet::base::printable;
 use serde::Serialize;
 
 use crate::args::Common;
 use crate::exit::Outcome;
+use crate::progress::Meter;
 
 /// Where words go, and how many. A closed pipe is no failure: the words are dropped. Any other failure of standard output
 /// is kept until [`finish`](Console::finish) tells it.
@@ -155,15 +154,8 @@ impl Console {
         let _ = writeln!(io::stderr(), "error: {}", lines(&text));
     }
 
-    /// A bar of `steps` steps on standard error; invisible where that is no terminal.
-    pub(crate) fn bar(&self, steps: u64, what: &'static str) -> ProgressBar {
-        if self.quiet {
-            return ProgressBar::hidden();
-        }
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {eta} left");
-        let bar = ProgressBar::new(steps).with_message(what);
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.enable_steady_tick(Duration::from_millis(200));
-        bar
+    /// A line on standard error that follows the work; invisible where that is no terminal. `steps`: how many equal ones the verb makes.
+    pub(crate) fn meter(&self, verb: &'static str, steps: Option<usize>) -> Meter {
+        Meter::new(verb, steps, self.quiet)
     }
 }

@@ -1,7 +1,5 @@
 //! How outcomes become exit statuses: the contract that scripts rely on.
 
-use std::process::ExitCode;
-
 use motet::{Error, ErrorKind};
 use serde_json::json;
 
@@ -47,7 +45,7 @@ fn of_kind(kind: ErrorKind) -> u8 {
 }
 
 /// The status of a verb that ran; an error is printed first.
-pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> ExitCode {
+pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> u8 {
     let code = match outcome {
         Ok(Outcome::Done) => DONE,
         Ok(Outcome::NotReached(why)) => {
@@ -61,13 +59,13 @@ pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> Exit
             code
         }
     };
-    ExitCode::from(match console.finish() {
+    match console.finish() {
         Ok(()) => code,
         Err(error) => {
             console.error(&error);
             if code == DONE { ELSE } else { code }
         }
-    })
+    }
 }
 
 fn described(error: &Error, code: u8) -> serde_json::Value {
@@ -82,7 +80,7 @@ fn described(error: &Error, code: u8) -> serde_json::Value {
 }
 
 /// The status of a call that could not be read, or that only asked for help.
-pub(crate) fn misread(misread: &clap::Error, json: bool) -> ExitCode {
+pub(crate) fn misread(misread: &clap::Error, json: bool) -> u8 {
     let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
     let console = Console::plain(json);
     if code == DONE {
@@ -97,8 +95,8 @@ pub(crate) fn misread(misread: &clap::Error, json: bool) -> ExitCode {
     match console.finish() {
         Err(error) if code == DONE => {
             console.error(&error);
-            ExitCode::from(ELSE)
+            ELSE
         }
-        _ => ExitCode::from(code),
+        _ => code,
     }
 }

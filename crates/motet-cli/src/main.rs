@@ -1,45 +1,7 @@
-//! The command line of motet: words in, calls of the library, words out.
-//!
-//! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
-//! here: how the call is read (`args`, `words`), how the user is spoken to (`console`,
-//! `table`), how failures become exit statuses (`exit`), what outputs are refused
-//! (`outputs`), what becomes of arrays (`arrays`).
-
-mod args;
-mod arrays;
-mod console;
-mod exit;
-mod outputs;
-mod table;
-mod verbs;
-mod words;
+//! The program `motet`: the words of the call in, the exit status out.
 
 use std::process::ExitCode;
 
-use clap::Parser as _;
-
-use crate::args::{Call, Verb};
-use crate::console::Console;
-
 fn main() -> ExitCode {
-    let call = match Call::try_parse() {
-        Ok(call) => call,
-        Err(misread) => return exit::misread(&misread, std::env::args_os().any(|a| a == "--json")),
-    };
-    let console = Console::new(&call.common);
-    let outcome = match call.verb {
-        Verb::Info(args) => verbs::info::run(&args, &console),
-        Verb::Convert(args) => verbs::convert::run(&args, &console),
-        Verb::Cap(args) => verbs::cap::run(&args, &console),
-        Verb::Mesh(args) => verbs::meshing::run(&args, &call.common, &console),
-        Verb::Move(args) => verbs::moving::run(&args, &call.common, &console),
-        Verb::Remesh(args) => verbs::remesh::run(&args, &call.common, &console),
-        Verb::Refine(args) => verbs::refine::run(&args, &call.common, &console),
-        Verb::Implant(args) => verbs::implant::run(&args, &call.common, &console),
-        Verb::Contact(args) => verbs::contact::run(&args, &call.common, &console),
-        Verb::Run(args) => verbs::run::run(&args, &call.common, &console),
-        Verb::Report(args) => verbs::report::run(&args, &console),
-        Verb::Demo(args) => verbs::demo::run(&args, &call.common, &console),
-    };
-    exit::status(outcome, &console)
+    ExitCode::from(motet_cli::run(std::env::args_os()))
 }

@@ -10,9 +10,10 @@ Handles (:class:`Mover`, :class:`MovingMesh`, :class:`Refinement`, :class:`Conta
 """
 from . import shapes
 from ._motet import __version__, formats
+from ._cap import cap
 from ._changing import Changed, History, implant, mesh, remesh
 from ._contact import Ahead, Body, Contact, Gaps
-from .errors import Error, FileError, InputError, OptionsError
+from .errors import Error, FileError, InputError, InternalError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, read
 from ._motion import Moved, Mover, PointMover, mesh_velocity, move
 from ._moving import MovingMesh
@@ -21,7 +22,7 @@ from ._report import Report
 from ._series import SeriesWriter, read_nodal, read_series, write_nodal
 
 __all__ = [
-    "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "Mesh", "MeshLike", "Moved", "Mover",
-    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_nodal",
+    "Ahead", "Body", "Changed", "Contact", "Error", "FileError", "Gaps", "History", "InputError", "InternalError", "Mesh", "MeshLike", "Moved", "Mover",
+    "MovingMesh", "OptionsError", "PointMover", "Refinement", "Report", "SeriesWriter", "as_mesh", "cap", "formats", "implant", "mesh", "mesh_velocity", "move", "read", "read_nodal",
     "read_series", "refine", "remesh", "shapes", "write_nodal", "__version__",
 ]  # fmt: skip

@@ -12,10 +12,12 @@ from . import _motet
 from .errors import OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._report import Progress, Report, report
+from ._words import checked, checked_class
 
 Carry = Literal["mean", "inherit", "drop"]
 
 
+@checked_class
 class History:
     """Where everything in a new mesh came from; carries any array of the old mesh along, at any later time."""
 
@@ -70,6 +72,16 @@ class History:
         """This change and a later one, as one."""
         return History(self._native.then(later._native))
 
+    def __repr__(self) -> str:
+        return f"motet.History: {self._native!r}"
+
+    def __reduce__(self) -> Any:
+        return _restored, (self._native.state(),)
+
+
+def _restored(state: Any) -> History:
+    return History(_motet.History.of_state(state))
+
 
 def _signed(old: NDArray[np.uint32]) -> NDArray[np.int64]:
     signed = old.astype(np.int64)
@@ -77,7 +89,7 @@ def _signed(old: NDArray[np.uint32]) -> NDArray[np.int64]:
     return signed
 
 
-@dataclass
+@dataclass(repr=False)
 class Changed:
     """What a verb made of a mesh."""
 
@@ -93,12 +105,16 @@ class Changed:
         """Whether the requested result was reached."""
         return self.not_reached is None
 
+    def __repr__(self) -> str:
+        return f"motet.Changed: {'complete' if self.complete else 'not complete'}; {self.mesh!r}"
+
 
 def _changed(native: tuple) -> Changed:
     parts, history, told, not_reached = native
     return Changed(Mesh._of(parts), History(history), report(told), not_reached)
 
 
+@checked
 def remesh(
     mesh: MeshLike,
     *,
@@ -160,6 +176,7 @@ def remesh(
     return _changed(native)
 
 
+@checked
 def implant(
     host: MeshLike,
     devices: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
@@ -240,6 +257,7 @@ class _Filling:
     hole_edges: int
 
 
+@checked
 def mesh(
     surfaces: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
     *,

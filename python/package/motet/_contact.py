@@ -11,9 +11,10 @@ from . import _motet
 from .errors import OptionsError
 from ._mesh import MeshLike, as_mesh, named
 from ._report import Report, report
+from ._words import NotPickled, checked_class
 
 
-@dataclass
+@dataclass(repr=False)
 class Body:
     """The gap at each vertex of a surface; all arrays have a row a vertex."""
 
@@ -30,8 +31,12 @@ class Body:
     warning: NDArray[np.bool_]
     """Whether a triangle at the vertex is nearer to another surface than the warning distance."""
 
+    def __repr__(self) -> str:
+        least = f", least gap {self.gap.min():.4g}" if len(self.gap) else ""
+        return f"motet.Body: {len(self.vertices)} vertices{least}, {int(self.warning.sum())} warn"
 
-@dataclass
+
+@dataclass(repr=False)
 class Gaps:
     """The gaps of all surfaces at one time."""
 
@@ -43,8 +48,11 @@ class Gaps:
     warnings: list[Report]
     """Groups of connected vertices that warn."""
 
+    def __repr__(self) -> str:
+        return f"motet.Gaps: least {self.least:.4g}, between {', '.join(self.bodies)}; {len(self.warnings)} warnings"
 
-@dataclass
+
+@dataclass(repr=False)
 class Ahead:
     """When surfaces will touch; nothing touches earlier."""
 
@@ -53,8 +61,13 @@ class Ahead:
     times: dict[str, NDArray[np.float64]]
     """For each vertex: no triangle at it touches before this."""
 
+    def __repr__(self) -> str:
+        first = "no contact" if self.first is None else f"first contact at {self.first.time:.4g}"
+        return f"motet.Ahead: {first}, of {', '.join(self.times)}"
 
-class Contact:
+
+@checked_class
+class Contact(NotPickled):
     """Two or more surfaces, or one with itself, measured again and again while their points move.
 
     Parameters
@@ -80,6 +93,8 @@ class Contact:
     All distances are exact up to rounding, in the unit of the points.
     """
 
+    _instead = "pickle the surfaces, and set another one up"
+
     def __init__(
         self,
         surfaces: MeshLike | Sequence[MeshLike] | Mapping[str, MeshLike],
@@ -104,10 +119,14 @@ class Contact:
         if strange:
             raise OptionsError(f"room: no surface {', '.join(sorted(strange))}; there are {', '.join(name for name, _ in bodies)}")
         self.points = np.concatenate(points)
+        self._names = [name for name, _ in bodies]
         self._native = _motet.Contact(
             self.points, [(name, triangles, None if room is None else name in room) for name, triangles in bodies], warn=warn, own=own, within=within, facing=facing,
             fold=fold, threads=threads,
         )  # fmt: skip
+
+    def __repr__(self) -> str:
+        return f"motet.Contact: {len(self._names)} surfaces ({', '.join(self._names)}), {len(self.points)} points"
 
     @property
     def rooms(self) -> list[Report]:

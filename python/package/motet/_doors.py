@@ -1,10 +1,16 @@
-"""Meshes of meshio and PyVista, in and out. Neither is needed otherwise."""
+"""Meshes of meshio and PyVista, in and out. Neither is needed otherwise.
+
+Neither has names of labels. They go as field data ``region:NAME`` and ``patch:NAME``, whose value is the label, as in the files that motet writes; to meshio
+as sets of cells, too. From meshio come the names of Gmsh's physical groups as well (field data ``NAME: [label, dimension]``).
+"""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from . import _motet
 from .errors import InputError
 from ._mesh import KINDS, NAMES, Mesh, ids
 
@@ -16,7 +22,13 @@ def from_meshio(mesh: Any) -> Mesh:
         raise InputError(f"cells of kind {', '.join(strange)} cannot come from meshio; write a file and read it with motet.read")
     blocks = [(block.type, block.data) for block in mesh.cells]
     cell_data = {name: np.concatenate(list(arrays)) for name, arrays in mesh.cell_data.items()}
-    return Mesh(_in_space(mesh.points), blocks, point_data=mesh.point_data, cell_data=cell_data)
+    new = Mesh(_in_space(mesh.points), blocks, point_data=mesh.point_data, cell_data=cell_data)
+    field_data = dict(mesh.field_data)
+    if "gmsh:physical" in cell_data:
+        _take_groups(new, field_data)
+    _take_field_data(new, field_data)
+    _take_sets(new, mesh)
+    return new
 
 
 def to_meshio(mesh: Mesh) -> Any:
@@ -38,7 +50,101 @@ def to_meshio(mesh: Mesh) -> Any:
         blocks.append((kind, rows.astype(np.int64)))
         for name, array in mesh.cell_data.items():
             arrays[name].append(np.asarray(array)[first:last])
-    return meshio.Mesh(mesh.points.copy(), blocks, point_data=dict(mesh.point_data), cell_data=arrays)
+    field_data = {name: np.asarray(values) for name, values in _field_data(mesh).items()}
+    new = meshio.Mesh(mesh.points.copy(), blocks, point_data=dict(mesh.point_data), cell_data=arrays, field_data=field_data)
+    if mesh.region_names or mesh.patch_names:
+        new.cell_sets = _sets(mesh, [len(block) for block in new.cells])
+    if "gmsh:physical" in mesh.cell_data:
+        # As meshio has the names of physical groups, and writes them into files of Gmsh.
+        for names, dim in ((mesh.region_names, 3), (mesh.patch_names, 2)):
+            new.field_data.update({name: np.array([label, dim]) for label, name in names.items() if name not in new.field_data})
+    return new
+
+
+def _take_groups(new: Mesh, field_data: dict[str, Any]) -> None:
+    """Takes over the names of Gmsh's physical groups, which are field data of a label and a dimension."""
+    names = {3: new.region_names, 2: new.patch_names}
+    for name, values in list(field_data.items()):
+        pair = np.asarray(values)
+        if pair.shape == (2,) and np.issubdtype(pair.dtype, np.integer) and 0 <= pair[1] <= 3:
+            names.get(int(pair[1]), {})[int(pair[0])] = name
+            del field_data[name]
+
+
+def _take_field_data(new: Mesh, field_data: Mapping[str, Any]) -> None:
+    """Takes over field data: numbers, texts, and names of labels, which go where the mesh has them."""
+    for name, values in field_data.items():
+        array = np.asarray(values)
+        if array.dtype.kind in "biuf":
+            new.field_data[name] = np.atleast_1d(array)
+        elif array.dtype.kind == "U" and not name.startswith("_PYVISTA"):
+            new.field_data[name] = np.atleast_1d(array).tolist()
+    single = [(name, int(array.flat[0])) for name, array in new.field_data.items() if _is_label(array)]
+    regions, patches, taken = _motet.names_of_fields(single)
+    for name in taken:
+        del new.field_data[name]
+    new.region_names.update(regions)
+    new.patch_names.update(patches)
+
+
+def _is_label(array: Any) -> bool:
+    return isinstance(array, np.ndarray) and array.size == 1 and array.dtype.kind in "iu" and abs(int(array.flat[0])) < 2**63
+
+
+def _take_sets(new: Mesh, mesh: Any) -> None:
+    """Takes over names of sets of cells. Where the mesh has labels, a set is the name of the label that all of its cells have and no other; else sets become
+    labels, of a cell in several sets the smallest."""
+    sets = {name: _members(lists, mesh.cells) for name, lists in mesh.cell_sets.items() if not name.startswith("gmsh:")}
+    if not sets:
+        return
+    dims = np.repeat([block.dim for block in mesh.cells], [len(block) for block in mesh.cells])
+    found = dict(zip((3, 2), _motet.labels(new)))
+    for dim, array, names in ((3, "region", new.region_names), (2, "patch", new.patch_names)):
+        of_dim = {name: members & (dims == dim) for name, members in sets.items()}
+        of_dim = {name: members for name, members in of_dim.items() if members.any()}
+        labels = found[dim]
+        if labels is not None:
+            for name, members in of_dim.items():
+                label = int(labels[members][0])
+                if label and label not in names and np.array_equal(labels == label, members):
+                    names[label] = name
+        elif of_dim and not np.any(new.cell_data.get(array, 0)):
+            labels = np.zeros(len(dims), np.int32)
+            by_size = sorted(of_dim.items(), key=lambda one: -np.count_nonzero(one[1]))
+            for label, (_, members) in enumerate(by_size, 1):
+                labels[members] = label
+            new.cell_data[array] = labels
+            names.update({label: name for label, (name, _) in enumerate(by_size, 1) if (labels == label).any()})
+
+
+def _members(lists: Any, blocks: Any) -> np.ndarray:
+    """Which of all cells are in a set, that has the ids within each block."""
+    is_in = [np.zeros(len(block), bool) for block in blocks]
+    for mine, ids_of_block in zip(is_in, lists):
+        if ids_of_block is not None:
+            mine[np.asarray(ids_of_block, np.int64)] = True
+    return np.concatenate(is_in or [np.zeros(0, bool)])
+
+
+def _sets(mesh: Mesh, lengths: list[int]) -> dict[str, list[np.ndarray]]:
+    """The cells of each name, block by block. A region and a patch of one name are one set."""
+    regions, patches = _motet.labels(mesh)
+    ends = np.cumsum(lengths)[:-1]
+    members: dict[str, np.ndarray] = {}
+    for labels, names in ((regions, mesh.region_names), (patches, mesh.patch_names)):
+        if labels is None:
+            continue
+        for label, name in names.items():
+            of_label = labels == label
+            members[name] = members[name] | of_label if name in members else of_label
+    return {name: [np.flatnonzero(of_block) for of_block in np.split(is_in, ends)] for name, is_in in members.items() if is_in.any()}
+
+
+def _field_data(mesh: Mesh) -> dict[str, Any]:
+    """Field data with the names of labels."""
+    names = {name: np.array([label], np.int32) for name, label in _motet.name_fields(mesh.region_names, mesh.patch_names)}
+    others = {name: values if isinstance(values, list) else np.asarray(values) for name, values in mesh.field_data.items()}
+    return {**others, **names}
 
 
 def from_pyvista(mesh: Any) -> Mesh:
@@ -56,6 +162,7 @@ def from_pyvista(mesh: Any) -> Mesh:
         new.faces = _faces(grid)
     new.point_data = {name: np.asarray(grid.point_data[name]) for name in grid.point_data.keys()}
     new.cell_data = {name: np.asarray(grid.cell_data[name]) for name in grid.cell_data.keys()}
+    _take_field_data(new, {name: data.field_data[name] for name in data.field_data.keys()})
     return new
 
 
@@ -82,6 +189,8 @@ def to_pyvista(mesh: Mesh) -> Any:
         grid.point_data[name] = array
     for name, array in mesh.cell_data.items():
         grid.cell_data[name] = array
+    for name, values in _field_data(mesh).items():
+        grid.field_data[name] = values
     return grid
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from .errors import InputError
 from ._report import Report, report
+from ._words import checked, checked_class
 
 # Names of kinds of cells, as meshio has them, and VTK's numbers.
 KINDS = _motet.cell_kinds()
@@ -22,6 +23,7 @@ BY_COLUMNS = {2: "line", 3: "triangle", 4: "tetra"}
 Cells = Union[ArrayLike, Mapping[str, ArrayLike], Sequence[tuple[str, ArrayLike]]]
 
 
+@checked_class
 class Mesh:
     """Points, cells of any kinds, and the arrays on them: all that a file holds.
 
@@ -153,7 +155,7 @@ class Mesh:
 
         lost = _motet.write(path, self)
         for what in lost:
-            warnings.warn(what, stacklevel=2)
+            warnings.warn(what, stacklevel=3)
         return lost
 
     def patch_vertices(self, patch: str | int) -> NDArray[np.uint32]:
@@ -201,16 +203,18 @@ MeshLike = Any
 """A :class:`Mesh`, a path of a file, a ``meshio.Mesh``, or a data set of PyVista or VTK."""
 
 
+@checked
 def read(path: str | os.PathLike[str]) -> Mesh:
     """Reads a mesh; the format goes by the ending. What of the file could not be used is warned of."""
     import warnings
 
     parts, notes = _motet.read(path)
     for note in notes:
-        warnings.warn(note, stacklevel=2)
+        warnings.warn(note, stacklevel=3)
     return Mesh._of(parts)
 
 
+@checked
 def as_mesh(mesh: MeshLike) -> Mesh:
     """A mesh from whatever is one: see :data:`MeshLike`."""
     from ._doors import from_meshio, from_pyvista

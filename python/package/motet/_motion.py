@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Union
 
 import numpy as np
@@ -12,6 +12,7 @@ from . import _motet
 from .errors import InputError, OptionsError
 from ._mesh import Mesh, MeshLike, as_mesh, ids, point
 from ._report import Progress, Report, report
+from ._words import NotPickled, checked, checked_class
 
 Patch = Union[str, int, ArrayLike]
 """A patch by its name or label, or facets as an array of vertex ids, a row each."""
@@ -36,29 +37,16 @@ class _Asked:
     substeps: int
 
 
-def _asked(
-    *,
-    method: str = "delaunay",
-    bodies: Sequence[Patch] = (),
-    within_walls: bool = False,
-    smooth: int = 0,
-    also_moved: ArrayLike | None = None,
-    rigid_layer: float | None = None,
-    rigid_layer_cells: int | None = None,
-    rigid_layer_at: Sequence[Patch] = (),
-    slide: Sequence[Patch] = (),
-    slide_tolerance: float = 0.05,
-    residual: float = 1e-6,
-    factor_gib: float = 0.0,
-    substeps: int = 50,
-) -> _Asked:
-    if rigid_layer is not None and rigid_layer_cells is not None:
+def _asked(given: Mapping[str, Any]) -> _Asked:
+    """What the native mover is told, by the words of a call that has them all."""
+    if given["rigid_layer"] is not None and given["rigid_layer_cells"] is not None:
         raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
-    moved = None if also_moved is None else ids(also_moved, "also_moved")
-    return _Asked(
-        method, _facets(bodies), within_walls, smooth, moved, rigid_layer, rigid_layer_cells, _facets(rigid_layer_at), _facets(slide),
-        slide_tolerance, residual, factor_gib, substeps,
-    )  # fmt: skip
+    words = {field.name: given[field.name] for field in fields(_Asked)}
+    for patches in ("bodies", "rigid_layer_at", "slide"):
+        words[patches] = _facets(words[patches])
+    if words["also_moved"] is not None:
+        words["also_moved"] = ids(words["also_moved"], "also_moved")
+    return _Asked(**words)
 
 
 def _facet(patch: Patch) -> Any:
@@ -83,7 +71,8 @@ def _vectors(array: ArrayLike, n: int, what: str) -> NDArray[np.float64]:
     return vectors
 
 
-class Mover:
+@checked_class
+class Mover(NotPickled):
     """Moves the vertices of one mesh after its boundary: set up once, a weighted sum a step.
 
     The Delaunay graph of the boundary (Liu, Qin, Xia 2006) and what goes past it; a step depends on the displacement alone, never on the steps
@@ -131,8 +120,29 @@ class Mover:
         A patch that is not there, a method that is none.
     """
 
-    def __init__(self, mesh: MeshLike, *, threads: int = 1, progress: Progress | None = None, **options: Any):
-        self._mover = _motet.Mover(as_mesh(mesh), _asked(**options), threads, progress)
+    _instead = "pickle the mesh and the options, and set another one up"
+
+    def __init__(
+        self,
+        mesh: MeshLike,
+        *,
+        method: str = "delaunay",
+        bodies: Sequence[Patch] = (),
+        within_walls: bool = False,
+        smooth: int = 0,
+        also_moved: ArrayLike | None = None,
+        rigid_layer: float | None = None,
+        rigid_layer_cells: int | None = None,
+        rigid_layer_at: Sequence[Patch] = (),
+        slide: Sequence[Patch] = (),
+        residual: float = 1e-6,
+        factor_gib: float = 0.0,
+        substeps: int = 50,
+        threads: int = 1,
+        progress: Progress | None = None,
+    ):
+        self._mover = _motet.Mover(as_mesh(mesh), _asked(locals()), threads, progress)
+        self._method = method
         self._boundary = self._mover.boundary
         self._reference = self._mover.reference
         self._boundary.flags.writeable = self._reference.flags.writeable = False
@@ -152,6 +162,9 @@ class Mover:
         """What setting up found, and how long it took."""
         return report(self._mover.setup)
 
+    def __repr__(self) -> str:
+        return f"motet.Mover: {len(self._reference)} points after {len(self._boundary)} of the boundary, method {self._method}"
+
     def weights(self, vertex: int) -> tuple[tuple[int, ...], tuple[float, ...]] | None:
         """The four vertices that a vertex follows, and their weights; None where it follows something else."""
         found = self._mover.weights(vertex)
@@ -165,14 +178,15 @@ class Mover:
         displacement : array (k, 3)
             Of each vertex of :attr:`boundary`, from its first place. Contiguous float64 is read where it lies, all else is copied.
         out : float64 array (n, 3), contiguous
-            Where the points go; a new array if None.
+            Where the points go; a new array if None. It shares no memory with ``displacement``.
 
         Returns
         -------
         The points, ``out`` itself where it was given.
         """
-        out = _checked_out(out, self._reference.shape)
-        self._mover.step(self._displacement(displacement), out)
+        given = self._displacement(displacement)
+        out = _checked_out(out, self._reference.shape, given)
+        self._mover.step(given, out)
         return out
 
     def advance(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> tuple[NDArray[np.float64], Report]:
@@ -187,15 +201,17 @@ class Mover:
             ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``; with quadratic cells
             ``worst_curved_jacobian``, the least scaled Jacobian with cell and place.
         """
-        out = _checked_out(out, self._reference.shape)
-        certificate = self._mover.advance(self._displacement(displacement), out)
+        given = self._displacement(displacement)
+        out = _checked_out(out, self._reference.shape, given)
+        certificate = self._mover.advance(given, out)
         return out, report(certificate)
 
     def _displacement(self, displacement: ArrayLike) -> NDArray[np.float64]:
         return _vectors(displacement, len(self._boundary), "displacement")
 
 
-class PointMover:
+@checked_class
+class PointMover(NotPickled):
     """Moves any points after nodes by their Delaunay graph, without a mesh: for processes that have a part of it each.
 
     All give the nodes of the whole boundary, in any order, and their own points. Cells are not known, so nothing is certified.
@@ -213,10 +229,15 @@ class PointMover:
         The nodes do not span space.
     """
 
+    _instead = "pickle the nodes and the points, and set another one up"
+
     def __init__(self, nodes: ArrayLike, points: ArrayLike, *, threads: int = 1):
         self._n_nodes = len(np.asarray(nodes))
         self._n_points = len(np.asarray(points))
         self._native = _motet.PointMover(_vectors(nodes, self._n_nodes, "nodes"), _vectors(points, self._n_points, "points"), threads)
+
+    def __repr__(self) -> str:
+        return f"motet.PointMover: {self._n_points} points after {self._n_nodes} nodes"
 
     @property
     def n_outside(self) -> int:
@@ -225,21 +246,25 @@ class PointMover:
 
     def step(self, displacement: ArrayLike, out: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         """Moves the points from their first place; parameters as for :meth:`Mover.step`."""
-        out = _checked_out(out, (self._n_points, 3))
-        self._native.step(_vectors(displacement, self._n_nodes, "displacement"), out)
+        given = _vectors(displacement, self._n_nodes, "displacement")
+        out = _checked_out(out, (self._n_points, 3), given)
+        self._native.step(given, out)
         return out
 
 
-def _checked_out(out: NDArray[np.float64] | None, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def _checked_out(out: NDArray[np.float64] | None, shape: tuple[int, ...], given: NDArray[np.float64]) -> NDArray[np.float64]:
     if out is None:
         return np.empty(shape)
     fits = isinstance(out, np.ndarray) and out.dtype == np.float64 and out.shape == shape
     if not fits or not out.flags.c_contiguous or not out.flags.writeable:
         raise InputError(f"out is to be a contiguous, writeable array of float64 of shape {shape}")
+    # Both are contiguous: where their bounds overlap, they do.
+    if np.may_share_memory(out, given):
+        raise InputError("out shares memory with displacement: give it memory of its own, or none")
     return out
 
 
-@dataclass
+@dataclass(repr=False)
 class Moved:
     """What a motion came to."""
 
@@ -255,6 +280,9 @@ class Moved:
         """Whether the mesh is where it was asked to be."""
         return self.certificate.complete
 
+    def __repr__(self) -> str:
+        return f"motet.Moved: {'complete' if self.complete else f'{100 * self.certificate.fraction:.4g} % of the way'}; {self.mesh!r}"
+
     @property
     def not_reached(self) -> str | None:
         """Why the mesh is not where it was requested to be; None where it is."""
@@ -264,6 +292,7 @@ class Moved:
 Turn = Union[tuple[ArrayLike, float], tuple[ArrayLike, float, ArrayLike]]
 
 
+@checked
 def move(
     mesh: MeshLike,
     *,
@@ -273,9 +302,19 @@ def move(
     steps: int = 1,
     method: str = "delaunay",
     least: float | None = None,
+    bodies: Sequence[Patch] = (),
+    within_walls: bool = False,
+    smooth: int = 0,
+    also_moved: ArrayLike | None = None,
+    rigid_layer: float | None = None,
+    rigid_layer_cells: int | None = None,
+    rigid_layer_at: Sequence[Patch] = (),
+    slide: Sequence[Patch] = (),
+    residual: float = 1e-6,
+    factor_gib: float = 0.0,
+    substeps: int = 50,
     threads: int = 0,
     progress: Progress | None = None,
-    **options: Any,
 ) -> Moved:
     """Moves a mesh after its boundary, once. For motion step after step keep a :class:`Mover`.
 
@@ -295,12 +334,12 @@ def move(
         As for :class:`Mover`, or ``auto``: the cheapest that keeps the worst cell at ``least``.
     least : float
         The bound of ``auto``: the EAS that no tet may be below. Half of the worst one that came, at most 0.1, if None.
+    bodies, within_walls, smooth, also_moved, rigid_layer, rigid_layer_cells, rigid_layer_at, slide, residual, factor_gib, substeps
+        As for :class:`Mover`.
     threads : int
         0 for all cores.
     progress : callable
         As of :func:`remesh`.
-    **options
-        As for :class:`Mover`.
 
     Returns
     -------
@@ -318,19 +357,27 @@ def move(
             options["also_moved"] = np.unique(np.concatenate([inside, *also]))
     told = {**(translate or {}), **(rotate or {})}
     if told:
-        also = [] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")]
-        options["also_moved"] = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(told))), *also]))
+        also = [] if also_moved is None else [ids(also_moved, "also_moved")]
+        also_moved = np.unique(np.concatenate([_motet.patch_vertices(given, _facets(list(told))), *also]))
     auto = method == "auto"
     if least is not None and not auto:
         raise OptionsError("least is a bound to choose a method by, but one is given: method='auto'")
-    first = Mover(given, method="delaunay" if auto else method, threads=threads, progress=progress, **options)
+
+    def mover(name: str) -> Mover:
+        return Mover(
+            given, method=name, bodies=bodies, within_walls=within_walls, smooth=smooth, also_moved=also_moved, rigid_layer=rigid_layer,
+            rigid_layer_cells=rigid_layer_cells, rigid_layer_at=rigid_layer_at, slide=slide, residual=residual, factor_gib=factor_gib,
+            substeps=substeps, threads=threads, progress=progress,
+        )  # fmt: skip
+
+    first = mover("delaunay" if auto else method)
     frames = _frames(given, first.boundary, displacement, translate, rotate, steps)
     choice = None
     if auto:
-        name, bound, tried = _motet.choose(given, _asked(method="bodies", **options), least, frames, threads, progress)
+        name, bound, tried = _motet.choose(given, _asked({**locals(), "method": "bodies"}), least, frames, threads, progress)
         choice = report({"method": name, "least": bound, "tried": tried})
         if name != "delaunay":
-            first = Mover(given, method=name, threads=threads, progress=progress, **options)
+            first = mover(name)
     points = first.reference.copy()
     certificate = Report()
     for k, frame in enumerate(frames):
@@ -370,6 +417,7 @@ def _frames(given: Mesh, boundary, displacement, translate, rotate, steps) -> li
     return _motet.prescribed(given, boundary, list(motions.items()), fractions)
 
 
+@checked
 def mesh_velocity(before: ArrayLike, points: ArrayLike, dt: float) -> NDArray[np.float64]:
     """The velocity of each point, (n, 3), by backward difference over a time."""
     before = np.ascontiguousarray(before, np.float64)

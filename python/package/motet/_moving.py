@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
 from os import PathLike
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,51 +12,58 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from ._changing import Carry, History
 from ._mesh import Mesh, MeshLike, as_mesh
-from ._refinement import _criteria
+from ._refinement import _criteria, several
 from ._report import Progress, Report, report
+from ._words import NotPickled, checked_class
 from .errors import OptionsError
 
 
-@dataclass(kw_only=True)
+@dataclass
 class _Asked:
     """What the native handle is told."""
 
-    method: str = "delaunay"
-    bodies: Sequence[str | int] = ()
-    within_walls: bool = False
-    smooth: int = 0
-    inside: Sequence[str | int] = ()
-    slide: Sequence[str | int] = ()
-    slide_tolerance: float = 0.05
-    rigid_layer: float | None = None
-    rigid_layer_cells: int | None = None
-    rigid_layer_at: Sequence[str | int] = ()
-    repair: bool = True
-    min_eas: float = 0.2
-    surface: str = "keep"
-    distance: float | None = None
-    hold_names: Sequence[str | int] = ()
-    margin: float = 0.05
-    floor: float = 0.05
-    keep_tets: float = 0.9
-    contents: Sequence[str] = ()
-    carry: Mapping[str, Carry] = field(default_factory=dict)
-    watch: Sequence[str | int] = ()
-    warn: float | None = None
-    within: float = float("inf")
-    horizon: float | None = None
-    hold: float | None = None
-    remembered: int = 64
+    method: str
+    bodies: Sequence[str | int]
+    within_walls: bool
+    smooth: int
+    inside: Sequence[str | int]
+    slide: Sequence[str | int]
+    slide_tolerance: float
+    rigid_layer: float | None
+    rigid_layer_cells: int | None
+    rigid_layer_at: Sequence[str | int]
+    repair: bool
+    min_eas: float
+    surface: str
+    distance: float | None
+    hold_names: Sequence[str | int]
+    margin: float
+    floor: float
+    keep_tets: float
+    contents: Sequence[str]
+    carry: Mapping[str, Carry] | None
+    watch: Sequence[str | int]
+    warn: float | None
+    within: float
+    horizon: float | None
+    hold: float | None
+    remembered: int
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any]) -> _Asked:
+        """By the words of a call that has them all."""
+        return cls(**{field.name: given[field.name] for field in fields(cls)})
 
     def __post_init__(self) -> None:
         if self.rigid_layer is not None and self.rigid_layer_cells is not None:
             raise OptionsError("rigid_layer is a distance and rigid_layer_cells a number of cells: give one of them")
         for patches in ("bodies", "inside", "slide", "rigid_layer_at", "watch", "hold_names"):
-            setattr(self, patches, [str(patch) for patch in getattr(self, patches)])
+            setattr(self, patches, [str(patch) for patch in several(getattr(self, patches))])
         self.contents, self.carry = list(self.contents), dict(self.carry or {})
 
 
-class MovingMesh:
+@checked_class
+class MovingMesh(NotPickled):
     """A mesh that moves with its walls and stays good: moved, certified, repaired, refined, watched, its arrays carried along.
 
     Displacements are always given for the walls as they came, counted from there, whatever the mesh becomes; what becomes bad is repaired while it still has
@@ -92,20 +99,88 @@ class MovingMesh:
         As of :func:`remesh`, while it is set up.
     """
 
-    def __init__(self, mesh: MeshLike, *, threads: int = 0, progress: Progress | None = None, **options: Any):
-        self._native = _motet.MovingMesh(as_mesh(mesh), _Asked(**options), threads, progress)
+    _instead = "use save and load, or pickle its mesh"
+
+    def __init__(
+        self,
+        mesh: MeshLike,
+        *,
+        method: str = "delaunay",
+        bodies: Sequence[str | int] = (),
+        within_walls: bool = False,
+        smooth: int = 0,
+        inside: Sequence[str | int] = (),
+        slide: Sequence[str | int] = (),
+        slide_tolerance: float = 0.05,
+        rigid_layer: float | None = None,
+        rigid_layer_cells: int | None = None,
+        rigid_layer_at: Sequence[str | int] = (),
+        repair: bool = True,
+        min_eas: float = 0.2,
+        surface: Literal["keep", "adapt", "loose"] = "keep",
+        distance: float | None = None,
+        hold_names: Sequence[str | int] = (),
+        margin: float = 0.05,
+        floor: float = 0.05,
+        keep_tets: float = 0.9,
+        contents: Sequence[str] = (),
+        carry: Mapping[str, Carry] | None = None,
+        watch: Sequence[str | int] = (),
+        warn: float | None = None,
+        within: float = float("inf"),
+        horizon: float | None = None,
+        hold: float | None = None,
+        remembered: int = 64,
+        threads: int = 0,
+        progress: Progress | None = None,
+    ):
+        self._native = _motet.MovingMesh(as_mesh(mesh), _Asked.of(locals()), threads, progress)
         self._mesh: Mesh | None = None
 
     @classmethod
-    def load(cls, path: str | PathLike[str], *, threads: int = 0, **options: Any) -> MovingMesh:
+    def load(
+        cls,
+        path: str | PathLike[str],
+        *,
+        method: str = "delaunay",
+        bodies: Sequence[str | int] = (),
+        within_walls: bool = False,
+        smooth: int = 0,
+        inside: Sequence[str | int] = (),
+        slide: Sequence[str | int] = (),
+        slide_tolerance: float = 0.05,
+        rigid_layer: float | None = None,
+        rigid_layer_cells: int | None = None,
+        rigid_layer_at: Sequence[str | int] = (),
+        repair: bool = True,
+        min_eas: float = 0.2,
+        surface: Literal["keep", "adapt", "loose"] = "keep",
+        distance: float | None = None,
+        hold_names: Sequence[str | int] = (),
+        margin: float = 0.05,
+        floor: float = 0.05,
+        keep_tets: float = 0.9,
+        contents: Sequence[str] = (),
+        carry: Mapping[str, Carry] | None = None,
+        watch: Sequence[str | int] = (),
+        warn: float | None = None,
+        within: float = float("inf"),
+        horizon: float | None = None,
+        hold: float | None = None,
+        remembered: int = 64,
+        threads: int = 0,
+    ) -> MovingMesh:
         """Goes on from what :meth:`save` wrote, with the same options, to the same bytes."""
         moving = cls.__new__(cls)
-        moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked(**options), threads), None
+        moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked.of(locals()), threads), None
         return moving
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes all that the next steps depend on, as a .vtu that ParaView opens."""
         self._native.save(path)
+
+    def __repr__(self) -> str:
+        return f"motet.MovingMesh: step {self.step}, time {self.time:.6g}; {self.mesh!r}"
 
     @property
     def driven_places(self) -> NDArray[np.float64]:
@@ -167,10 +242,35 @@ class MovingMesh:
         self._mesh = None
         return report(self._native.advance(time, np.ascontiguousarray(displacement, np.float64), progress))
 
-    def refine(self, *, generations: int | None = None, coarsen: bool = False, **criteria: Any) -> list[Report]:
+    def refine(
+        self,
+        *,
+        everything: bool = False,
+        near: Sequence[tuple[MeshLike, float]] = (),
+        near_size: Sequence[tuple[MeshLike, float] | tuple[MeshLike, float, float]] = (),
+        box: Sequence[tuple[ArrayLike, ArrayLike]] = (),
+        ball: Sequence[tuple[ArrayLike, float]] = (),
+        region: Sequence[str | int] = (),
+        patch: Sequence[str | int | tuple[str | int, float]] = (),
+        size: float | str | None = None,
+        where: Sequence[str] = (),
+        gradient: Sequence[str] = (),
+        vorticity: Sequence[str] = (),
+        q: Sequence[str] = (),
+        jump: Mapping[str, float] | None = None,
+        recovery: Mapping[str, float] | None = None,
+        hessian: Mapping[str | tuple[str, ...], float | str] | None = None,
+        smallest: float | None = None,
+        generations: int | None = None,
+        coarsen: bool = False,
+    ) -> list[Report]:
         """Divides tets and takes divisions back, by the criteria of :func:`refine`; what changed, in order."""
+        criteria = _criteria(
+            everything=everything, near=near, near_size=near_size, box=box, ball=ball, region=region, patch=patch, size=size, where=where,
+            gradient=gradient, vorticity=vorticity, q=q, jump=jump, recovery=recovery, hessian=hessian, smallest=smallest,
+        )  # fmt: skip
         self._mesh = None
-        return [report(change) for change in self._native.refine(_criteria(**criteria), generations, coarsen)]
+        return [report(change) for change in self._native.refine(criteria, generations, coarsen)]
 
     def coarsen(self, *, smallest: float = 0.0) -> Report | None:
         """Takes back by lengths what ``refine`` cannot, since repairs have changed what was divided; None where nothing changed.

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _motet
 from ._changing import Carry, Changed, History, _changed
 from .errors import InputError, OptionsError
-from ._mesh import Mesh, MeshLike, as_mesh, point
+from ._mesh import Mesh, MeshLike, as_mesh, ids, point
 from ._report import Progress, Report, report
+from ._words import checked, checked_class
 
 
 @dataclass
@@ -29,6 +30,7 @@ class _Asked:
     forget: bool
 
 
+@checked
 def refine(
     mesh: MeshLike,
     *,
@@ -104,18 +106,15 @@ def refine(
     if not criteria and not coarsen and not coarsen_where:
         raise OptionsError("nothing says what to divide: give a criterion, such as near_size=[(stent, 0.05)], or coarsen=True")
     asked = _Asked(
-        criteria, coarsen, _several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
+        criteria, coarsen, several(coarsen_where), generations, limit_generation, smallest, at_most, None if surface is None else as_mesh(surface),
         dict(carry or {}), forget,
     )  # fmt: skip
     return _changed(_motet.refined(as_mesh(mesh), asked, threads, progress))
 
 
-def _criteria(smallest: float | None = None, **words: Any) -> list:
+def _criteria(smallest: float | None, **words: Any) -> list:
     """What the criteria of :func:`refine` mark, by their names; those that are not given mark nothing."""
     make = _motet.Criterion
-    unknown = set(words) - set(_MAKERS)
-    if unknown:
-        raise TypeError(f"no criterion is called {', '.join(sorted(unknown))}; there are {', '.join(_MAKERS)}")
     given = ((maker, words[name]) for name, maker in _MAKERS.items() if words.get(name) is not None)
     return [criterion for maker, words in given for criterion in maker(make, words, smallest)]
 
@@ -127,20 +126,20 @@ _MAKERS: dict[str, Callable[[Any, Any, float | None], list]] = {
     "near_size": lambda make, given, _: [make.near_size(as_mesh(one), h, *(growth or (0.5,))) for one, h, *growth in given],
     "box": lambda make, given, _: [make.box(point(low), point(high)) for low, high in given],
     "ball": lambda make, given, _: [make.ball(point(centre), radius) for centre, radius in given],
-    "region": lambda make, given, _: [make.region(str(name)) for name in _several(given)],
-    "patch": lambda make, given, _: [make.patch(str(p[0]), p[1]) if isinstance(p, tuple) else make.patch(str(p), None) for p in _several(given)],
+    "region": lambda make, given, _: [make.region(str(name)) for name in several(given)],
+    "patch": lambda make, given, _: [make.patch(str(p[0]), p[1]) if isinstance(p, tuple) else make.patch(str(p), None) for p in several(given)],
     "size": lambda make, given, _: [make.size_array(given) if isinstance(given, str) else make.size(given)],
-    "where": lambda make, given, _: [make.where(text) for text in _several(given)],
-    "gradient": lambda make, given, _: [make.gradient(text) for text in _several(given)],
-    "vorticity": lambda make, given, _: [make.vorticity(text) for text in _several(given)],
-    "q": lambda make, given, _: [make.q(text) for text in _several(given)],
+    "where": lambda make, given, _: [make.where(text) for text in several(given)],
+    "gradient": lambda make, given, _: [make.gradient(text) for text in several(given)],
+    "vorticity": lambda make, given, _: [make.vorticity(text) for text in several(given)],
+    "q": lambda make, given, _: [make.q(text) for text in several(given)],
     "jump": lambda make, given, _: [make.jump(array, amount) for array, amount in given.items()],
     "recovery": lambda make, given, _: [make.recovery(array, amount) for array, amount in given.items()],
     "hessian": lambda make, given, smallest: [_hessian(arrays, aim, smallest) for arrays, aim in given.items()],
 }
 
 
-def _several(words: Any) -> list:
+def several(words: Any) -> list:
     if isinstance(words, (str, int)):
         raise OptionsError(f"{words!r} is one, a list is expected: [{words!r}]")
     return list(words)
@@ -157,6 +156,7 @@ def _hessian(arrays: str | tuple[str, ...], aim: float | str, smallest: float | 
     return _motet.Criterion.hessian(names, error=float(aim), smallest=smallest)
 
 
+@checked_class
 class Refinement:
     """A mesh whose tets are divided and taken back, step after step, by marks of the caller's own.
 
@@ -166,7 +166,14 @@ class Refinement:
 
     def __init__(self, mesh: MeshLike, *, threads: int = 0):
         self._native = _motet.Refinement(as_mesh(mesh), threads)
+        self._threads = threads
         self._mesh: Mesh | None = None
+
+    def __repr__(self) -> str:
+        return f"motet.Refinement: up to {max(0, int(self.generations.max(initial=0)))} generations; {self.mesh!r}"
+
+    def __reduce__(self) -> Any:
+        return _restored, (self.with_memory(), self._threads)
 
     @property
     def mesh(self) -> Mesh:
@@ -201,11 +208,15 @@ class Refinement:
     def _change(self, cells: ArrayLike, is_back: bool, carry: Mapping[str, Carry] | None) -> tuple[History, Report]:
         marks = np.asarray(cells)
         if marks.dtype != bool:
-            chosen = marks
+            chosen = ids(marks, "cells")
             marks = np.zeros(self.mesh.n_cells, bool)
-            if chosen.size and (chosen.min() < 0 or chosen.max() >= len(marks)):
-                raise InputError(f"cells from {chosen.min()} to {chosen.max()}, but the mesh has {len(marks)}")
-            marks[chosen.astype(np.int64)] = True
+            if chosen.size and chosen.max() >= len(marks):
+                raise InputError(f"cells up to {chosen.max()}, but the mesh has {len(marks)}")
+            marks[chosen] = True
         history, told = self._native.change(np.ascontiguousarray(marks), is_back, dict(carry or {}))
         self._mesh = None
         return History(history), report(told)
+
+
+def _restored(mesh: Mesh, threads: int) -> Refinement:
+    return Refinement(mesh, threads=threads)

@@ -8,27 +8,37 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _motet
 from ._mesh import MeshLike, as_mesh
+from ._words import NotPickled, checked, checked_class
 from .errors import InputError
 
 
+@checked
 def read_series(path: str | os.PathLike[str]) -> list[tuple[float, str]]:
     """The times of a series (``.pvd``), and the file of each."""
     return _motet.read_series(path)
 
 
-class SeriesWriter:
+@checked_class
+class SeriesWriter(NotPickled):
     """Meshes over time, as ParaView plays them: a ``.pvd``, and a ``.vtu`` beside it for each time. Points and cells may differ from time to time.
 
     After each :meth:`add` the series on the disk is whole: there is nothing to close. In a ``with`` statement it works as files do.
     """
 
+    _instead = "read the series that it wrote with motet.read_series"
+
     def __init__(self, path: str | os.PathLike[str]):
         self._native = _motet.SeriesWriter(path)
+        self._path, self._n = os.fspath(path), 0
 
     def add(self, time: float, mesh: MeshLike) -> str:
         """Writes a mesh and the series that ends with it; gives the mesh's file."""
         file, _ = self._native.add(time, as_mesh(mesh))
+        self._n += 1
         return file
+
+    def __repr__(self) -> str:
+        return f"motet.SeriesWriter: {self._path}, {self._n} times written"
 
     def __enter__(self) -> SeriesWriter:
         return self
@@ -37,6 +47,7 @@ class SeriesWriter:
         pass
 
 
+@checked
 def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Values of nodes over time, such as displacements of a wall, from the text that svMultiPhysics has them in ("temporal and spatial values").
 
@@ -51,6 +62,7 @@ def read_nodal(path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArr
     return np.array(times), np.array(ids, np.int64), values
 
 
+@checked
 def write_nodal(path: str | os.PathLike[str], times: ArrayLike, ids: ArrayLike, values: ArrayLike) -> None:
     """Writes what :func:`read_nodal` reads, with as many digits as bring each number back to the bit."""
     shaped = np.asarray(values, np.float64)

@@ -34,5 +34,9 @@ class FileError(Error, OSError):
     """The operating system refused a file."""
 
 
+class InternalError(Error, RuntimeError):
+    """A fault of motet itself: please report it, with the call. A handle may be left in a state that means nothing."""
+
+
 class OptionsError(Error, ValueError):
     """Words of a call that mean nothing, or not together."""

@@ -98,13 +98,13 @@ impl WritingArgs {
 /// A series into a file of another kind.
 fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(&args.input)?;
-    let bar = console.bar(frames.len() as u64, "converting");
+    let meter = console.meter("converting", Some(frames.len()));
     let read = frames.iter().map(|(time, file)| {
-        bar.inc(1);
+        meter.step();
         Ok((*time, io::read(file)?))
     });
     let lost = io::write_series(&args.output, read, &args.writing.options())?;
-    bar.finish_and_clear();
+    drop(meter);
     lost.iter().for_each(|what| console.warn(what));
     let n = frames.len();
     console.say(format_args!("{} -> {}: {n} meshes", args.input.display(), args.output.display()));

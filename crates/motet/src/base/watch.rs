@@ -58,11 +58,17 @@ impl Watch {
         })
     }
 
-    /// Says how far the work is, and fails where it is to end. It takes some 20 ns where somebody looks.
+    /// Says how far the work is; see [`Progress`]. It takes some 20 ns where somebody looks. Who calls the library says so of what it does itself, such as reading files.
+    pub fn tell(&self, stage: &'static str, done: usize, of: usize) {
+        if let Some(line) = &self.0 {
+            *line.progress.lock().unwrap_or_else(PoisonError::into_inner) = Progress { stage, done, of };
+        }
+    }
+
+    /// Says how far the work is, and fails where it is to end.
     pub(crate) fn go_on(&self, stage: &'static str, done: usize, of: usize) -> Result<()> {
-        let Some(line) = &self.0 else { return Ok(()) };
-        *line.progress.lock().unwrap_or_else(PoisonError::into_inner) = Progress { stage, done, of };
-        if line.is_stopped.load(Ordering::Relaxed) {
+        self.tell(stage, done, of);
+        if self.0.as_ref().is_some_and(|line| line.is_stopped.load(Ordering::Relaxed)) {
             return Err(Error::new(ErrorKind::Stopped, format!("stopped while {stage}, on request")));
         }
         Ok(())

@@ -259,16 +259,5 @@ fn check(bodies: &[Body], options: &Options) -> Result<()> {
     if bodies.len() > u32::MAX as usize {
         return Err(Error::options("too many surfaces"));
     }
-    let lengths = [
-        ("the warning distance", options.warn),
-        ("the reach", Some(options.within)),
-        ("the fold", Some(options.fold)),
-    ];
-    for (what, length) in lengths {
-        if length.is_some_and(|length| length.is_nan() || length < 0.0) {
-            return Err(Error::options(format!("{what} is {}", length.unwrap_or_default()))
-                .remedy("give a positive number"));
-        }
-    }
-    Ok(())
+    options.check()
 }

@@ -1,5 +1,7 @@
 //! What is measured, and what counts as a gap.
 
+use crate::base::{Error, Result};
+
 /// How contact is looked for. Lengths are in units of the points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
@@ -18,6 +20,24 @@ pub struct Options {
     /// shorter than this many times the straight one. 3 by default: a fold counts once it is narrower than 37 degrees
     /// (along the sides of a wedge of angle `a` it is `cot(a / 2)` times as far as across).
     pub fold: f64,
+}
+
+impl Options {
+    /// # Errors
+    /// Names the first number that means nothing.
+    pub(crate) fn check(&self) -> Result<()> {
+        let lengths = [
+            ("the warning distance", self.warn),
+            ("the reach", Some(self.within)),
+            ("the fold", Some(self.fold)),
+        ];
+        for (what, length) in lengths {
+            if let Some(length) = length.filter(|length| length.is_nan() || *length < 0.0) {
+                return Err(Error::options(format!("{what} is {length}")).remedy("give a positive number"));
+            }
+        }
+        Ok(())
+    }
 }
 
 impl Default for Options {

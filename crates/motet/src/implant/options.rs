@@ -133,14 +133,14 @@ impl Options {
                 "leave it out",
             );
         }
-        if let Some(stray) = self.stray.filter(|stray| !(*stray >= 0.0 && stray.is_finite())) {
+        if let Some(stray) = self.stray.filter(|stray| !(*stray >= 0.0 && *stray <= LARGEST)) {
             return refused(
                 format!("surfaces that may stray by {stray}, expected a length from 0"),
                 "leave it out",
             );
         }
         if let Interface::Conform { tolerance: Some(tolerance) } = self.interface
-            && !(tolerance > 0.0 && tolerance.is_finite())
+            && !(tolerance > 0.0 && tolerance <= LARGEST)
         {
             return refused(format!("a tolerance of {tolerance}, expected a length above 0"), "leave it out");
         }
@@ -149,7 +149,7 @@ impl Options {
                 format!("sizes that grow by {}, expected more than 0 and at most {MOST_GROWTH}", self.growth);
             return refused(what, "0.5 is the default");
         }
-        if !(self.carve > 0.0 && self.carve <= self.reach && self.reach.is_finite()) {
+        if !(self.carve > 0.0 && self.carve <= self.reach && self.reach <= LARGEST) {
             let what = format!(
                 "tets within {} of their edges are to be replaced, and those beyond {} to stay",
                 self.carve, self.reach

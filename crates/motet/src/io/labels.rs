@@ -1,8 +1,6 @@
 //! Labels in formats that have no labels of their own: cell arrays `region` and
 //! `patch`, and their names as field data `region:NAME`, `patch:NAME`.
 
-use std::collections::BTreeMap;
-
 use crate::mesh::{Field, Labels, Mesh, Values};
 
 const REGION: &str = "region";
@@ -19,24 +17,16 @@ pub(super) fn label_fields(mesh: &Mesh) -> (Vec<Field>, Vec<Field>) {
     if mesh.cell_field(PATCH).is_none() {
         cell_data.extend(array(PATCH, mesh.patches()));
     }
-    let mut field_data = Vec::new();
-    for (kind, names) in [(REGION, &mesh.label_names.regions), (PATCH, &mesh.label_names.patches)] {
-        field_data.extend(names.iter().map(|(&id, name)| Field::scalars(format!("{kind}:{name}"), vec![id])));
-    }
-    (cell_data, field_data)
+    let field_data = mesh.label_names.to_entries().map(|(name, id)| Field::scalars(name, vec![id]));
+    (cell_data, field_data.collect())
 }
 
-/// Moves the names of labels from the field data to where the mesh keeps them.
+/// Moves the names of labels from the field data to where the mesh keeps them. Other programs may write the label with more or fewer bytes.
 pub(super) fn take_label_names(mesh: &mut Mesh) {
     let names = &mut mesh.label_names;
-    mesh.field_data
-        .retain(|field| !take(field, REGION, &mut names.regions) && !take(field, PATCH, &mut names.patches));
-}
-
-fn take(field: &Field, kind: &str, names: &mut BTreeMap<i32, String>) -> bool {
-    let name = field.name.strip_prefix(kind).and_then(|rest| rest.strip_prefix(':'));
-    let (Some(name), Values::I32(ids)) = (name, &field.values) else { return false };
-    let &[id] = ids.as_slice() else { return false };
-    names.insert(id, name.to_owned());
-    true
+    mesh.field_data.retain(|field| {
+        let is_whole = !matches!(field.values, Values::Text(_) | Values::F64(_) | Values::F32(_));
+        let label = if is_whole && field.values.len() == 1 { field.values.to_i64() } else { None };
+        !label.is_some_and(|label| names.take_entry(&field.name, label[0]))
+    });
 }

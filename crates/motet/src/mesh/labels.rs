@@ -14,6 +14,33 @@ pub struct LabelNames {
     pub patches: BTreeMap<i32, String>,
 }
 
+/// What field data are called that hold the name of a region, and of a patch: these words, a colon and the name.
+const NAME_FIELDS: [&str; 2] = ["region", "patch"];
+
+impl LabelNames {
+    /// The names as field data, for whatever has arrays but no names of labels: `region:NAME` and `patch:NAME`, and the label that is the one value of each.
+    pub fn to_entries(&self) -> impl Iterator<Item = (String, i32)> {
+        let [region, patch] = NAME_FIELDS;
+        let all = [(region, &self.regions), (patch, &self.patches)];
+        all.into_iter()
+            .flat_map(|(kind, names)| names.iter().map(move |(&id, name)| (format!("{kind}:{name}"), id)))
+    }
+
+    /// Takes a name over from field data as [`Self::to_entries`] makes them; `false` where it is none.
+    pub fn take_entry(&mut self, field: &str, label: i64) -> bool {
+        let [region, patch] = NAME_FIELDS;
+        let Some((kind, name)) = field.split_once(':') else { return false };
+        let names = match kind {
+            kind if kind == region => &mut self.regions,
+            kind if kind == patch => &mut self.patches,
+            _ => return false,
+        };
+        let Ok(id) = i32::try_from(label) else { return false };
+        names.insert(id, name.to_owned());
+        true
+    }
+}
+
 /// A label for each cell of a mesh; 0 for cells of other dimensions and for
 /// cells without one.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -139,4 +166,25 @@ fn label_ids(field: &Field, on_dim: &[bool]) -> Option<Vec<i32>> {
     let ids: Option<Vec<i32>> =
         all.iter().zip(on_dim).map(|(&id, &on)| if on { i32::try_from(id).ok() } else { Some(0) }).collect();
     ids.filter(|ids| ids.iter().any(|&id| id != 0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_go_into_field_data_and_come_back() {
+        let mut given = LabelNames::default();
+        given.regions.insert(3, "blood: outer".to_owned());
+        given.patches.extend([(-1, "wall".to_owned()), (7, String::new()), (i32::MAX, "patch:x".to_owned())]);
+        let mut back = LabelNames::default();
+        for (field, label) in given.to_entries() {
+            assert!(back.take_entry(&field, label.into()), "{field}");
+        }
+        assert_eq!(back, given);
+        for other in ["patch", "patches:wall", "region 3", ":wall", ""] {
+            assert!(!back.take_entry(other, 1), "{other}");
+        }
+        assert!(!back.take_entry("patch:far", 1 << 40) && back == given);
+    }
 }

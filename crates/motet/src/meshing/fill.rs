@@ -148,6 +148,7 @@ pub fn fill(
     let points = inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
     let n_points = joined.points.len() + points.len();
     let mut tets = filled(&joined, points, options, threads)?;
+    threads.watch().go_on("finding regions", 0, 0)?;
     let names = bodies::arrange(&mut tets, surfaces, &triangles, &options.seeds, &options.holes)?;
     let mut report = report(&joined, &tets, n_points);
     let (mut mesh, _) = mesh(&joined, &tets);
@@ -225,6 +226,7 @@ fn inside(
     at_corners: Vec<[f64; 3]>,
     threads: &Threads,
 ) -> Result<Vec<Point>> {
+    threads.watch().go_on("choosing points inside", 0, 0)?;
     let (points, triangles) = (&surfaces.points, &surfaces.triangles);
     match sizes {
         None => Ok(Vec::new()),

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use crate::base::{ErrorKind, Point, Result, Threads};
+use crate::base::{Error, ErrorKind, Point, Result, Threads};
 use crate::mesh::Mesh;
 use crate::motion::certificate::{Certificate, Worst};
 use crate::motion::mover::Mover;
@@ -55,6 +55,10 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     mut frames: impl FnMut() -> Result<I>,
     threads: &Threads,
 ) -> Result<Choice> {
+    if let Some(least) = least.filter(|least| !(0.0..=1.0).contains(least)) {
+        return Err(Error::options(format!("an EAS of {least} as the least, expected a number in [0, 1]"))
+            .remedy("leave it out"));
+    }
     let bodies = match &options.method {
         Method::Bodies(sets) => sets.clone(),
         _ => Vec::new(),

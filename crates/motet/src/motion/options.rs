@@ -2,6 +2,7 @@
 
 use crate::algebra::Tolerance;
 use crate::base::{Csr, Error, Result, VertexId};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::{Boundary, CellKind, Mesh, corners};
 
 /// How the vertices inside follow.
@@ -82,6 +83,18 @@ impl Default for MethodWords {
     }
 }
 
+impl MethodWords {
+    /// # Errors
+    /// When the room for a factor is negative or no number. The residual is judged where a method has one.
+    pub fn check(&self) -> Result<()> {
+        if self.factor_gib >= 0.0 {
+            return Ok(());
+        }
+        Err(Error::options(format!("{} gibibytes for a factor", self.factor_gib))
+            .remedy("give a number from 0 on"))
+    }
+}
+
 impl Method {
     /// All methods, with what is said about each of them.
     pub fn all(words: MethodWords) -> [Self; 7] {
@@ -107,8 +120,9 @@ impl Method {
     /// The method of a [name](Self::name).
     ///
     /// # Errors
-    /// When none is called that; it says what they are called.
+    /// When none is called that; it says what they are called. When [words](MethodWords::check) mean nothing.
     pub fn of_name(name: &str, words: MethodWords) -> Result<Self> {
+        words.check()?;
         let all = Self::all(words);
         let known = all.iter().map(Self::name).collect::<Vec<_>>().join(", ");
         all.into_iter().find(|method| method.name() == name).ok_or_else(|| {
@@ -190,6 +204,21 @@ pub struct Options {
     pub slide_tolerance: SlideTolerance,
     /// Limits of [`Mover::advance`](crate::motion::Mover::advance).
     pub limits: Limits,
+}
+
+impl Options {
+    /// # Errors
+    /// When a number means nothing.
+    pub(crate) fn check(&self) -> Result<()> {
+        self.method.check()?;
+        match self.rigid_layer.as_ref().map(|layer| layer.extent) {
+            Some(Extent::Distance(distance)) if !(0.0..=LARGEST).contains(&distance) => {
+                Err(Error::options(format!("a rigid layer of {distance}, expected a length from 0"))
+                    .remedy("give one in the unit of the mesh, or leave it out"))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// The vertices that move rigidly with their nearest wall facet.

@@ -1,6 +1,6 @@
 //! Divisions taken back by lengths, where nobody knows any more what was whole.
 
-use crate::base::{Result, Threads, VertexId};
+use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::mesh::{TetMesh, TetPart};
@@ -23,8 +23,13 @@ impl MovingMesh {
     /// Nothing is done where less than a twentieth of the tets have such an edge. Where nothing is watched no gap asks for anything.
     ///
     /// # Errors
-    /// When an array cannot be carried, or who watches ends it. Then all is as it was before the call.
+    /// When `smallest` is no length, when an array cannot be carried, or who watches ends it. Then all is as it was before the call.
     pub fn coarsen(&mut self, smallest: f64, threads: &Threads) -> Result<Option<Change>> {
+        if smallest.is_nan() || smallest < 0.0 {
+            return Err(
+                Error::options(format!("a smallest length of {smallest}")).remedy("give one from 0 on")
+            );
+        }
         let gaps = self.gaps_here(threads)?;
         let Self { now, options, .. } = &*self;
         let mut part = TetPart::of(&now.mesh)?;

@@ -2,6 +2,7 @@
 
 use crate::base::{Error, Result, VertexId};
 use crate::contact::{self, Room};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::history::Rules;
 use crate::mesh::{Boundary, Mesh, Surface, cone_volume, seamless};
 use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTolerance};
@@ -61,7 +62,7 @@ impl Options {
                 return Err(Error::options(what).remedy("leave it out"));
             }
         }
-        Ok(())
+        self.watch.as_ref().map_or(Ok(()), Watching::check)
     }
 
     /// The EAS below which a tet is bad.
@@ -138,6 +139,23 @@ impl Motion {
         inside.sort_unstable();
         inside.dedup();
         inside
+    }
+}
+
+impl Watching {
+    /// # Errors
+    /// Names the first number that means nothing.
+    fn check(&self) -> Result<()> {
+        self.options.check()?;
+        if let Some(hold) = self.hold.filter(|hold| !(*hold >= 0.0 && *hold <= LARGEST)) {
+            return Err(Error::options(format!("walls held at a distance of {hold}"))
+                .remedy("give a length from 0 on, or leave it out"));
+        }
+        match self.horizon.filter(|horizon| horizon.is_nan() || *horizon <= 0.0) {
+            None => Ok(()),
+            Some(horizon) => Err(Error::options(format!("a horizon of {horizon}"))
+                .remedy("give a time above 0, or leave it out")),
+        }
     }
 }
 

@@ -143,6 +143,7 @@ impl MeshRefinement {
         threads: &Threads,
         told: impl FnMut(&Step),
     ) -> Result<Reached> {
+        wanted.limits.check()?;
         let identity = || History::identity(self.mesh().points.len(), self.mesh().cells.len());
         let history = wanted.keeps_history.then(identity);
         let reached = Reached { history, ..Reached::default() };

@@ -32,7 +32,6 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     args.check()?;
     outputs::check(&args.output, args.surfaces.iter().map(PathBuf::as_path), "a surface")?;
     args.gap_tets.as_ref().map_or(Ok(()), io::can_write)?;
-    let threads = common.threads()?;
     let frames = Frames::new(args)?;
     let n = frames.times.len();
     if n > 1 && !io::can_write_series(&args.output) {
@@ -41,7 +40,8 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
             args.output.display()
         ));
     }
-    let bar = console.bar(n as u64, "measuring");
+    let meter = console.meter("measuring", Some(n));
+    let threads = common.threads()?.watched(meter.watch());
     let mut report = Report::new(args);
     let mut series =
         io::can_write_series(&args.output).then(|| SeriesWriter::new(&args.output, args.writing.options()));
@@ -79,9 +79,9 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
         let step = Step::new((frames.times[k], file), &contact, &frame, &gaps, ahead.as_ref());
         report.add(&contact, &frame, step.beside(beside));
         handle = Some((contact, frame));
-        bar.inc(1);
+        meter.step();
     }
-    bar.finish_and_clear();
+    drop(meter);
     report.seconds.total = begin.elapsed().as_secs_f64();
     let fails = args.fail_on_warning && report.is_warned();
     let outcome = Outcome::of(fails.then(|| "gaps are smaller than --warn allows".to_owned()));

@@ -27,21 +27,21 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     outputs::check_with_history(&args.output, &args.host, args.arrays.history.as_deref())?;
     outputs::check(&args.output, args.devices.iter().map(AsRef::as_ref), "a device")?;
     let options = args.options()?;
-    let threads = common.threads()?;
-    let bar = console.bar(2, "implanting");
+    let meter = console.meter("implanting", None);
+    let threads = common.threads()?.watched(meter.watch());
+    meter.stage("reading");
     let (host, notes) = io::read_noted(&args.host)?;
     notes.iter().for_each(|what| console.warn(what));
     let rules = args.arrays.rules(&host).map_err(|e| e.in_file(&args.host))?;
     let devices = read(args, &host.label_names, console)?;
     let read = begin.elapsed().as_secs_f64();
-    bar.inc(1);
     let made = implant(&host, &devices, &options, &rules, &threads);
     let Implanted { mut mesh, history, report } =
         made.map_err(|e| in_its_file(e, &args.host, &args.devices, &devices))?;
-    bar.inc(1);
+    meter.stage("writing");
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
-    bar.finish_and_clear();
+    drop(meter);
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());

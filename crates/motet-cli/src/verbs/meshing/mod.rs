@@ -29,16 +29,16 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     if let Some(file) = &args.culprits {
         outputs::check(file, inputs(), "a surface")?;
     }
-    let threads = common.threads()?;
-    let bar = console.bar(4, "meshing");
+    let meter = console.meter("meshing", None);
+    let threads = common.threads()?.watched(meter.watch());
+    meter.stage("reading surfaces");
     let (mut surfaces, sizes) = read(args, console)?;
     let read = begin.elapsed().as_secs_f64();
-    bar.inc(1);
+    meter.stage("checking surfaces");
     let done = args.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
     let checking = Instant::now();
     let preflight = surfaces.preflight(&threads);
     let check = checking.elapsed().as_secs_f64();
-    bar.inc(1);
     if let Some(file) = &args.culprits {
         io::write(
             file,
@@ -48,18 +48,18 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     }
     let mut report = Report::new(args, &preflight, done.as_ref().map_or(&[], |done| &done.done));
     if !preflight.is_fit() {
-        bar.finish_and_clear();
+        drop(meter);
         return Err(refused(args, &surfaces, &report, &preflight, console));
     }
     let filling = Instant::now();
     let options = args.options(sizes, &surfaces)?;
     let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
-    bar.inc(1);
+    meter.stage("writing");
     let writing = Instant::now();
     let lost = io::write(&args.output, &filled.mesh, &args.writing.options())?;
     let write = writing.elapsed().as_secs_f64();
-    bar.finish_and_clear();
+    drop(meter);
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(filled.not_reached(&options));

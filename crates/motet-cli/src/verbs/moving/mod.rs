@@ -54,17 +54,20 @@ pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet:
     let mut plan = Plan::new(&mesh, &boundary, &patches, args, console)?;
     report.find_hanging(&mesh, &boundary);
     let mut options = options(args, &boundary, &patches, &plan)?;
+    let meter = console.meter("setting the motion up", None);
+    let threads = threads.watched(meter.watch());
     if args.method == Method::Auto {
         report.choice = Some(choose(args, (&mesh, &boundary, &patches), &mut options, &threads, console)?);
     }
     let setup = Instant::now();
     let mut mover = Mover::new(&mesh, &options, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    drop(meter);
     report.seconds.setup = setup.elapsed().as_secs_f64();
     report.begin(&mover, &plan, &threads);
     report.warn(console);
 
     let mut sink = Sink::new(args, &mesh, &patches)?;
-    frames(&mut plan, &mut mover, &mut sink, &mut report, &threads, console)?;
+    frames(&mut plan, &mut mover, &mut sink, &mut report, threads, console)?;
     sink.end()?;
     report.end(sink.moved(), begin.elapsed().as_secs_f64());
     let outcome = Outcome::of(report.not_reached());
@@ -184,16 +187,17 @@ fn frames(
     mover: &mut Mover,
     sink: &mut Sink<'_>,
     report: &mut Report,
-    threads: &Threads,
+    threads: Threads,
     console: &Console,
 ) -> motet::Result<()> {
     let n = plan.times.len();
-    let bar = console.bar((n - plan.first) as u64, "moving");
+    let meter = console.meter("moving", Some(n - plan.first));
+    let threads = threads.watched(meter.watch());
     let mut points = mover.reference().to_vec();
     let mut before = (plan.times.first().copied().unwrap_or_default(), points.clone());
     for k in plan.first..n {
         let displacements = plan.displacements(k)?;
-        let certificate = mover.advance(&displacements, &mut points, threads)?;
+        let certificate = mover.advance(&displacements, &mut points, &threads)?;
         let time = before.0 + (plan.times[k] - before.0) * certificate.fraction;
         let is_last = k + 1 == n || !certificate.complete;
         let velocity = if plan.timed { Some(velocity(&before, time, &points)?) } else { None };
@@ -207,13 +211,12 @@ fn frames(
         report.step(Step { step: k, time, file, certificate: certificate.clone() });
         report.measure_openings(&points);
         before = (time, points.clone());
-        bar.inc(1);
+        meter.step();
         if !certificate.complete {
-            bar.finish_and_clear();
             return Ok(());
         }
     }
-    bar.finish_and_clear();
+    drop(meter);
     sink.lost.iter().for_each(|what| console.warn(what));
     Ok(())
 }

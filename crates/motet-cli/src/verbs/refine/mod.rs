@@ -24,7 +24,9 @@ use crate::table::seconds;
 pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {
     let begin = Instant::now();
     outputs::check_with_history(&args.output, &args.mesh, args.arrays.history.as_deref())?;
-    let threads = common.threads()?;
+    let meter = console.meter("refining", None);
+    let threads = common.threads()?.watched(meter.watch());
+    meter.stage("reading");
     let mut criteria = criteria::criteria(args, &threads)?;
     let surface = args.surface.as_deref().map(|file| criteria::target(file, &threads)).transpose()?;
     let (old, notes) = io::read_noted(&args.mesh)?;
@@ -36,15 +38,14 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     let read = begin.elapsed().as_secs_f64();
 
     let wanted = args.wanted(criteria, surface);
-    let bar = console.bar(u64::from(wanted.most_generations()), "refining");
-    let done = refinement.reach(&wanted, &rules, &threads, |_| bar.inc(1));
+    let done = refinement.reach(&wanted, &rules, &threads, |_| ());
     let done = done.map_err(|e| e.in_file(&args.mesh))?;
-    bar.finish_and_clear();
-
+    meter.stage("writing");
     let mut mesh = refinement.with_memory(&threads);
     mesh.point_data.retain(|field| !sizes.contains(&field.name));
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, done.history.as_ref(), &args.output, &args.writing)?;
+    drop(meter);
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));

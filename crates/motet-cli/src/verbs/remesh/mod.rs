@@ -23,23 +23,23 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let begin = Instant::now();
     let mut options = args.options()?;
     outputs::check_with_history(&args.output, &args.mesh, args.arrays.history.as_deref())?;
-    let threads = common.threads()?;
-    let bar = console.bar(3, "remeshing");
+    let meter = console.meter("remeshing", None);
+    let threads = common.threads()?.watched(meter.watch());
+    meter.stage("reading");
     let (old, notes) = io::read_noted(&args.mesh)?;
     let read = begin.elapsed().as_secs_f64();
-    bar.inc(1);
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.held = args.held(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
     let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
-    bar.inc(1);
+    meter.stage("writing");
     let MeshOutcome { mut mesh, history, report, is_turned } = outcome;
     let begin_fields = Instant::now();
     let fields = field_ledger(&old, &mesh, &rules);
     let on_fields = begin_fields.elapsed().as_secs_f64();
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
-    bar.finish_and_clear();
+    drop(meter);
 
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));

@@ -39,18 +39,19 @@ pub(crate) fn carry_out(args: &RunArgs, common: &Common, console: &Console) -> R
     let mut report = Report::new(&job, &output);
     let mut run = Run::begin(&job, args.resume, &mut output, &mut report, &threads, console)?;
     let last = args.until.map_or(job.n_steps(), |until| until.min(job.n_steps()));
-    let bar = console.bar(last.saturating_sub(run.moving.step()) as u64, "moving");
+    let meter = console.meter("moving", Some(last.saturating_sub(run.moving.step())));
+    let threads = threads.watched(meter.watch());
     for k in run.moving.step() + 1..=last {
         let step = run.step(job.time(k), job.time.period, &threads)?;
         output.take(&run.moving, &step)?;
-        bar.suspend(|| report::line(&step, console));
+        meter.suspend(|| report::line(&step, console));
         report.add(&step);
-        bar.inc(1);
+        meter.step();
         if !step.complete {
             break;
         }
     }
-    bar.finish_and_clear();
+    drop(meter);
     report.seconds_total = begin.elapsed().as_secs_f64();
     Ok(report)
 }

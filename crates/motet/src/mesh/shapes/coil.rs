@@ -40,7 +40,7 @@ impl Coil {
     /// # Errors
     /// As for [`wire`]; when a number is not finite, and when the coil would have more points than a shape may.
     pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
-        let n_points = self.turns * steps as f64 * around as f64;
+        let n_points = (self.turns * steps as f64 + 1.0) * (around as f64 + 1.0);
         let sizes = [
             self.radius,
             self.pitch,

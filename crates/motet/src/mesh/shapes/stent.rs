@@ -13,6 +13,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::LARGEST;
 use crate::mesh::Mesh;
 use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::labelled::skin;
@@ -101,7 +102,7 @@ impl Stent {
     /// As [`Stent::triangles`], and when the radius is not larger than the thickness.
     pub fn points(&self, radius: f64) -> Result<Vec<Point>> {
         self.check()?;
-        if !(radius > self.thickness && radius.is_finite()) {
+        if !(radius > self.thickness && radius <= LARGEST) {
             return Err(Error::options(format!(
                 "a radius of {radius} for a thickness of {}",
                 self.thickness
@@ -148,7 +149,7 @@ impl Stent {
         let n = [self.rings, self.crowns, self.segments].map(|n| n as f64).iter().product::<f64>() * 8.0;
         check_count(n)?;
         let lengths = [self.length, self.strut_width, self.thickness, self.link_length];
-        if lengths.iter().any(|x| !(*x > 0.0 && x.is_finite())) {
+        if lengths.iter().any(|x| !(*x > 0.0 && *x <= LARGEST)) {
             return Err(Error::options(format!(
                 "{lengths:?} for length, strut width, thickness and link length"
             ))

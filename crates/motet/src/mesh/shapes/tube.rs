@@ -11,8 +11,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use crate::base::{Point, VertexId};
-use crate::geometry::vector::{add, scale};
+use crate::base::{Error, Point, Result, VertexId};
+use crate::geometry::vector::{LARGEST, add, scale};
+use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::{fan, to_tets};
 use crate::mesh::{CellKind, Cells, Mesh};
@@ -66,6 +67,39 @@ impl Default for TubeOptions {
 }
 
 impl TubeOptions {
+    /// Refuses what [`tube`] cannot make.
+    ///
+    /// # Errors
+    /// When a count is 0 (thin layers apart), when there would be more points than a shape may have, when a length is none, and when the thin layers leave no
+    /// room for the core.
+    pub fn check(&self) -> Result<()> {
+        let Self { n, rings, slices, wall_layers, .. } = *self;
+        if n == 0 || rings == 0 || slices == 0 {
+            return Err(Error::options(format!("{n} cells, {rings} rings and {slices} slices"))
+                .remedy("give 1 or more of each"));
+        }
+        let section = (n as f64 + 1.0) * (n as f64 + 4.0 * (rings as f64 + wall_layers as f64 + 1.0));
+        check_count(section * (slices as f64 + 1.0))?;
+        let lengths = [self.radius, self.length, self.first_layer, self.growth];
+        if !lengths.iter().all(|x| *x > 0.0 && *x <= LARGEST) {
+            return Err(Error::options(format!(
+                "{lengths:?} for radius, length, the first layer and its growth"
+            ))
+            .remedy("give numbers above 0"));
+        }
+        if self.outer_radius() <= CORE {
+            return Err(Error::options(format!("{wall_layers} wall layers leave no room for the core"))
+                .remedy("ask for fewer, or for thinner ones"));
+        }
+        Ok(())
+    }
+
+    /// The radius within the thin layers, as a part of the tube's.
+    fn outer_radius(&self) -> f64 {
+        let layers = std::iter::successors(Some(self.first_layer), |thickness| Some(thickness * self.growth));
+        layers.take(self.wall_layers).fold(1.0, |radius, thickness| radius - thickness)
+    }
+
     /// The radius of each ring of vertices, wall first, as a part of the tube's.
     fn ring_radii(&self) -> Vec<f64> {
         let mut radii = vec![1.0];
@@ -91,7 +125,7 @@ const ROUNDNESS: f64 = 0.6;
 /// The tube that `options` describe, along z from 0. Region `lumen`; patches
 /// `wall`, `inlet` (at z = 0) and `outlet`.
 ///
-/// Panics when a count is 0 (thin layers apart) or the thin layers fill the tube.
+/// Panics when a count is 0 (thin layers apart) or the thin layers fill the tube: see [`TubeOptions::check`].
 pub fn tube(options: &TubeOptions) -> Mesh {
     assert!(options.n > 0 && options.rings > 0 && options.slices > 0, "a mesh has cells");
     let section = Section::new(options);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::base::{Csr, Error, Point, Result, VertexId};
-use crate::geometry::vector::{add, distance, dot, in_range, norm, scale, sub};
+use crate::geometry::vector::{LARGEST, add, distance, dot, in_range, norm, scale, sub};
 use crate::mesh::Mesh;
 use crate::mesh::shapes::frames::{directions, frames};
 use crate::mesh::shapes::labelled::skin;
@@ -122,7 +122,7 @@ fn stretch([before, after]: [Point; 2]) -> impl Fn(Point) -> Point {
 }
 
 fn check(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usize) -> Result<()> {
-    if !(radius > 0.0 && radius.is_finite()) || around < 3 {
+    if !(radius > 0.0 && radius <= LARGEST) || around < 3 {
         return Err(Error::options(format!("a wire of radius {radius} with {around} sides"))
             .remedy("give a radius larger than 0 and at least three sides"));
     }

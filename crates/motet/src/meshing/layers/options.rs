@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::base::{Error, Result};
+use crate::geometry::vector::LARGEST;
 
 /// More layers than this on one wall are refused: no flow needs them, and a slip of the pen should not fill the memory.
 pub const MOST_LAYERS: u32 = 200;
@@ -52,7 +53,7 @@ impl Stack {
             );
         }
         let levels = self.levels();
-        if !(levels[levels.len() - 1].is_finite() && levels.windows(2).all(|pair| pair[0] < pair[1])) {
+        if !(levels[levels.len() - 1] <= LARGEST && levels.windows(2).all(|pair| pair[0] < pair[1])) {
             return refuse(
                 format!("{count} layers from {first} on that grow by {growth} are beyond numbers"),
                 "ask for fewer layers, or a growth nearer to 1",

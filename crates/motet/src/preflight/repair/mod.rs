@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::surfaces::{Role, Surfaces};
 use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::vector::LARGEST;
 use work::Work;
 
 pub use report::{Repair, RepairKind, Repaired};
@@ -65,7 +66,7 @@ pub fn repair(
 ) -> Result<Repaired> {
     let mut work = Work::new(&Surfaces::new(points, triangles, surface_of, roles));
     let vertex_to_kept = match repairs.merge {
-        Some(distance) if distance.is_nan() || distance < 0.0 || distance.is_infinite() => {
+        Some(distance) if !(0.0..=LARGEST).contains(&distance) => {
             return Err(Error::options(format!("vertices nearer than {distance} cannot be merged"))
                 .remedy("give a distance that is 0 or more"));
         }

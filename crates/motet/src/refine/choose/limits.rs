@@ -2,6 +2,7 @@
 
 use super::estimate::{corners, longest_edge};
 use super::wish::Wish;
+use crate::base::{Error, Result};
 use crate::mesh::TetMesh;
 
 /// Beyond these limits no tet is divided. Tets that must be, so that others fit, are all the same.
@@ -17,6 +18,16 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// # Errors
+    /// When the smallest length is negative or no number.
+    pub(crate) fn check(&self) -> Result<()> {
+        match self.smallest.filter(|smallest| smallest.is_nan() || *smallest < 0.0) {
+            None => Ok(()),
+            Some(smallest) => Err(Error::options(format!("a smallest length of {smallest}"))
+                .remedy("give one from 0 on, or leave it out")),
+        }
+    }
+
     /// Takes back wishes beyond the limits: such tets stay. `generations` has that of each tet; where it is empty all are of generation 0.
     pub fn apply(&self, mesh: &TetMesh, generations: &[u8], wishes: &mut [Wish]) {
         let longest = |t: usize| longest_edge(corners(mesh, mesh.tets[t]));

@@ -1,0 +1,196 @@
+//! How far a verb has come, on a terminal: the stage, how much of it is done where that is known, and how long the rest of it takes.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use motet::base::{Progress, Watch};
+
+/// How often the line is drawn anew.
+const EVERY: Duration = Duration::from_millis(200);
+/// No estimate before this: the first parts of a stage say little of the others.
+const SOONEST: Duration = Duration::from_secs(1);
+
+/// A line on standard error that follows the work, until it is dropped. Where standard error is no terminal there is no line, and nothing that follows.
+pub(crate) struct Meter {
+    bar: ProgressBar,
+    watch: Watch,
+    follower: Option<(Sender<()>, JoinHandle<()>)>,
+}
+
+impl Meter {
+    /// For a verb that makes a number of equal steps, such as frames, or of one that does not (`None`).
+    pub(crate) fn new(verb: &'static str, steps: Option<usize>, is_hidden: bool) -> Self {
+        let bar = if is_hidden { ProgressBar::hidden() } else { ProgressBar::no_length() };
+        if bar.is_hidden() {
+            return Self { bar, watch: Watch::default(), follower: None };
+        }
+        let watch = Watch::new();
+        let (done, is_done) = channel();
+        let line = Line { bar: bar.clone(), watch: watch.clone(), verb, steps };
+        let follower = Some((done, thread::spawn(move || line.follow(&is_done))));
+        Self { bar, watch, follower }
+    }
+
+    /// What the library says how far it is.
+    pub(crate) fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// A stage of the verb itself, such as reading a file.
+    pub(crate) fn stage(&self, name: &'static str) {
+        self.watch.tell(name, 0, 0);
+    }
+
+    /// Another of the steps is done.
+    pub(crate) fn step(&self) {
+        self.bar.inc(1);
+    }
+
+    /// Does something with the line out of the way, such as printing.
+    pub(crate) fn suspend<T>(&self, call: impl FnOnce() -> T) -> T {
+        self.bar.suspend(call)
+    }
+}
+
+impl Drop for Meter {
+    fn drop(&mut self) {
+        if let Some((done, follower)) = self.follower.take() {
+            drop(done);
+            // It only draws: what became of it changes nothing.
+            let _ = follower.join();
+        }
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The line as the thread that draws it has it.
+struct Line {
+    bar: ProgressBar,
+    watch: Watch,
+    verb: &'static str,
+    steps: Option<usize>,
+}
+
+impl Line {
+    fn follow(&self, is_done: &Receiver<()>) {
+        let begin = Instant::now();
+        let mut stage = Pace::default();
+        let mut steps = self.steps.map(|of| Pace::new(Progress { stage: self.verb, done: 0, of }));
+        // A line of 80 columns has room for the longest stage.
+        let styles = ["{bar:12} {wide_msg}", "{spinner} {wide_msg}"]
+            .map(|text| ProgressStyle::with_template(text).unwrap_or_else(|_| ProgressStyle::default_bar()));
+        while is_done.recv_timeout(EVERY) == Err(RecvTimeoutError::Timeout) {
+            let at = begin.elapsed();
+            stage.take(self.watch.progress(), at);
+            let (text, of) = match &mut steps {
+                Some(steps) => {
+                    let done = usize::try_from(self.bar.position()).unwrap_or(usize::MAX);
+                    steps.take(Progress { done, ..steps.now }, at);
+                    let within = Some(stage.part()).filter(|part| !part.is_empty());
+                    let text = steps.text(at) + &within.map_or_else(String::new, |part| format!("; {part}"));
+                    (text, steps.now.of)
+                }
+                None => {
+                    self.bar.set_position(stage.now.done as u64);
+                    (format!("{}: {}", self.verb, stage.text(at)), stage.now.of)
+                }
+            };
+            self.bar.set_length(of as u64);
+            self.bar.set_style(styles[usize::from(of == 0)].clone());
+            self.bar.set_message(text);
+            self.bar.tick();
+        }
+    }
+}
+
+/// One thing that goes on, and since when.
+#[derive(Default)]
+struct Pace {
+    now: Progress,
+    /// How much of it was done when it began, and when that was.
+    first: usize,
+    began: Duration,
+}
+
+impl Pace {
+    fn new(now: Progress) -> Self {
+        Self { now, ..Self::default() }
+    }
+
+    /// How far it is `at` this time. A stage that comes again begins anew.
+    fn take(&mut self, now: Progress, at: Duration) {
+        if now.stage != self.now.stage || now.done < self.now.done {
+            (self.first, self.began) = (now.done, at);
+        }
+        self.now = now;
+    }
+
+    /// How long the rest takes at the speed so far; `None` where it is not known how much there is, or too early to say.
+    fn left(&self, at: Duration) -> Option<Duration> {
+        let took = at.saturating_sub(self.began);
+        let (made, rest) = (self.now.done - self.first, self.now.of.saturating_sub(self.now.done));
+        let is_known = made > 0 && rest > 0 && took >= SOONEST;
+        is_known.then(|| took.mul_f64(rest as f64 / made as f64))
+    }
+
+    /// The stage and how much of it is done.
+    fn part(&self) -> String {
+        match self.now {
+            Progress { stage, done, of } if of > 0 => format!("{stage}, {done} of {of}"),
+            Progress { stage, .. } => stage.to_owned(),
+        }
+    }
+
+    fn text(&self, at: Duration) -> String {
+        match self.left(at) {
+            Some(left) => format!("{}, {} left", self.part(), rough(left)),
+            None => self.part(),
+        }
+    }
+}
+
+fn rough(time: Duration) -> String {
+    match time.as_secs_f64() {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(s: u64) -> Duration {
+        Duration::from_secs(s)
+    }
+
+    #[test]
+    fn what_is_left_is_told_of_a_stage_alone_and_by_work_done() {
+        let mut pace = Pace::default();
+        pace.take(Progress { stage: "reading", done: 0, of: 0 }, seconds(0));
+        assert_eq!((pace.left(seconds(50)), pace.text(seconds(50)).as_str()), (None, "reading"));
+        // The 50 seconds before say nothing of this stage.
+        pace.take(Progress { stage: "repairing", done: 0, of: 40 }, seconds(50));
+        assert_eq!(pace.text(seconds(60)), "repairing, 0 of 40");
+        pace.take(Progress { stage: "repairing", done: 10, of: 40 }, seconds(60));
+        assert_eq!(pace.left(seconds(60)), Some(seconds(30)));
+        assert_eq!(pace.text(seconds(60)), "repairing, 10 of 40, 30 s left");
+        pace.take(Progress { stage: "repairing", done: 40, of: 40 }, seconds(90));
+        assert_eq!(pace.left(seconds(90)), None);
+        // Another round of the same.
+        pace.take(Progress { stage: "repairing", done: 2, of: 10 }, seconds(100));
+        pace.take(Progress { stage: "repairing", done: 6, of: 10 }, seconds(104));
+        assert_eq!(pace.left(seconds(104)), Some(seconds(4)));
+    }
+
+    #[test]
+    fn more_done_than_there_was_to_do_is_no_time() {
+        let mut pace = Pace::default();
+        pace.take(Progress { stage: "moving", done: 9, of: 8 }, seconds(0));
+        assert_eq!(pace.left(seconds(5)), None);
+        assert_eq!([50, 300, 9000].map(|s| rough(seconds(s))), ["50 s", "5 min", "2 h"]);
+    }
+}

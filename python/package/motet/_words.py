@@ -1,0 +1,50 @@
+"""Calls whose keywords are checked: one that is not known names the nearest that is."""
+from __future__ import annotations
+
+import difflib
+import functools
+import inspect
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Class = TypeVar("Class", bound=type)
+
+
+def checked(function: Function) -> Function:
+    """The function, with a TypeError for unknown keywords that names the nearest known one."""
+    known = [p.name for p in inspect.signature(function).parameters.values() if p.kind is not p.POSITIONAL_ONLY and p.name not in ("self", "cls")]
+    allowed = frozenset(known)
+
+    @functools.wraps(function)
+    def call(*args: Any, **words: Any) -> Any:
+        if not allowed.issuperset(words):
+            unknown = next(word for word in words if word not in allowed)
+            name = function.__qualname__.removesuffix(".__init__")
+            nearest = difflib.get_close_matches(unknown, known, n=1, cutoff=0.5)
+            hint = f"did you mean {nearest[0]!r}?" if nearest else f"it takes {', '.join(known) or 'none'}"
+            raise TypeError(f"{name}() has no keyword {unknown!r}: {hint}")
+        return function(*args, **words)
+
+    return call  # type: ignore[return-value]
+
+
+def checked_class(cls: Class) -> Class:
+    """A class whose constructor and public methods are :func:`checked`."""
+    for name, member in list(vars(cls).items()):
+        if name.startswith("_") and name != "__init__":
+            continue
+        if isinstance(member, classmethod):
+            setattr(cls, name, classmethod(checked(member.__func__)))
+        elif inspect.isfunction(member) and not any(p.kind is p.VAR_KEYWORD for p in inspect.signature(member).parameters.values()):
+            setattr(cls, name, checked(member))
+    return cls
+
+
+class NotPickled:
+    """A handle that is not pickled, and says what can be stored instead."""
+
+    _instead = ""
+
+    def __reduce__(self) -> Any:
+        raise TypeError(f"a motet.{type(self).__name__} cannot be pickled or copied: {self._instead}")

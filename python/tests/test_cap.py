@@ -1,0 +1,53 @@
+"""Open rims closed."""
+import numpy as np
+import pytest
+
+import motet
+from motet import shapes
+
+
+def open_vessel():
+    whole = shapes.aneurysm()
+    patch = whole.cell_data["patch"]
+    wall = next(label for label, name in whole.patch_names.items() if name == "wall")
+    return motet.Mesh(whole.points, whole.triangles[patch == wall])
+
+
+def test_a_vessel_is_closed():
+    vessel = open_vessel()
+    closed = motet.cap(vessel)
+    assert closed.summary().surface.closed and not vessel.summary().surface.closed
+    assert list(closed.patch_names.values()) == ["wall", "cap_1", "cap_2"]
+    np.testing.assert_array_equal(closed.points[: vessel.n_points], vessel.points)
+    assert motet.mesh(closed).complete
+
+
+def test_frames_get_the_same_triangles(tmp_path):
+    vessel = open_vessel()
+    moved = [vessel.points * s for s in (1.1, 1.2)]
+    closed = motet.cap([vessel, moved[0], motet.Mesh(moved[1], vessel.triangles)])
+    for frame, scale in zip(closed, (1.0, 1.1, 1.2)):
+        np.testing.assert_array_equal(frame.connectivity, closed[0].connectivity)
+        np.testing.assert_allclose(frame.points, scale * closed[0].points, rtol=1e-12, atol=1e-14)
+    with motet.SeriesWriter(tmp_path / "wall.pvd") as writer:
+        for time, points in zip((0.0, 0.5), (vessel.points, moved[0])):
+            writer.add(time, motet.Mesh(points, vessel.triangles))
+    series = motet.cap(tmp_path / "wall.pvd")
+    assert [time for time, _ in series] == [0.0, 0.5]
+    for (_, frame), same in zip(series, closed):
+        np.testing.assert_array_equal(frame.points, same.points)
+
+
+@pytest.mark.parametrize(
+    "given, told",
+    [
+        (lambda: shapes.aneurysm(), "no open rim"),
+        (lambda: [], "no frames"),
+        (lambda: [open_vessel().points], "triangles"),
+        (lambda: [open_vessel(), open_vessel().points[1:]], "points"),
+        (lambda: [open_vessel(), shapes.aneurysm(around=12)], "points"),
+    ],
+)
+def test_what_cannot_be_capped_is_told(given, told):
+    with pytest.raises(motet.InputError, match=told):
+        motet.cap(given())

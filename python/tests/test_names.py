@@ -1,0 +1,132 @@
+"""Names of regions and patches: through PyVista and meshio and back, in memory and by files."""
+import numpy as np
+import pytest
+from test_mesh import same
+
+import motet
+from motet import shapes
+
+meshio = pytest.importorskip("meshio")
+pyvista = pytest.importorskip("pyvista")
+
+
+def two_regions():
+    """Two boxes side by side, one of tets and one of wedges and tets, with a region and a patch that have one name, and labels without a name."""
+    first, second = shapes.box((2, 2, 2)), shapes.tube(n=1, slices=2, wall_layers=1, wall_cells="wedges")
+    points = np.concatenate([first.points, second.points + [5.0, 0.0, 0.0]])
+    cells, region, patch = [], [], []
+    for mesh, shift, label in ((first, 0, 7), (second, first.n_points, 3)):
+        for kind in ("tetra", "wedge", "triangle"):
+            rows = mesh.cells(kind)
+            if len(rows):
+                cells.append((kind, rows + shift))
+                is_surface = kind == "triangle"
+                region.append(np.full(len(rows), 0 if is_surface else label, np.int32))
+                patch.append(np.where(is_surface, mesh.cell_data["patch"][mesh.cell_ids(kind)] + label, 0).astype(np.int32))
+    return motet.Mesh(
+        points, cells, cell_data={"region": np.concatenate(region), "patch": np.concatenate(patch)},
+        region_names={7: "wall", 3: "blood: outer"}, patch_names={4: "wall", 5: "inlet", 6: "outlet", 8: "a-b_c"},
+    )  # fmt: skip
+
+
+ALL = [two_regions, shapes.sphere_in_box, shapes.aneurysm, shapes.mixed]
+
+
+def names(mesh):
+    return mesh.region_names, mesh.patch_names
+
+
+@pytest.mark.parametrize("shape", ALL)
+def test_in_memory(shape):
+    mesh = shape()
+    assert mesh.patch_names
+    for back in (motet.as_mesh(mesh.to_pyvista()), motet.as_mesh(mesh.to_meshio())):
+        assert names(back) == names(mesh)
+        same(back, mesh)
+        assert not back.field_data
+
+
+@pytest.mark.parametrize("shape", ALL)
+@pytest.mark.parametrize("ending", [".vtu", ".vtk"])
+def test_by_files_that_motet_writes(shape, ending, tmp_path):
+    mesh, path = shape(), tmp_path / f"mesh{ending}"
+    mesh.save(path)
+    assert names(motet.as_mesh(pyvista.read(path))) == names(mesh)
+    if ending == ".vtu":
+        assert names(motet.as_mesh(meshio.read(path))) == names(mesh)
+
+
+@pytest.mark.parametrize("shape", ALL)
+def test_by_files_that_pyvista_writes(shape, tmp_path):
+    mesh, path = shape(), tmp_path / "mesh.vtu"
+    mesh.to_pyvista().save(path)
+    for back in (motet.read(path), motet.as_mesh(pyvista.read(path)), motet.as_mesh(meshio.read(path))):
+        assert names(back) == names(mesh)
+        np.testing.assert_array_equal(back.cell_data["patch"], mesh.cell_data["patch"])
+
+
+def test_names_in_more_bytes_are_names(tmp_path):
+    """A program of numpy's default integers writes the labels so."""
+    grid = shapes.aneurysm().to_pyvista()
+    for name in grid.field_data.keys():
+        grid.field_data[name] = np.asarray(grid.field_data[name], np.int64)
+    grid.save(tmp_path / "mesh.vtu")
+    assert names(motet.read(tmp_path / "mesh.vtu")) == names(shapes.aneurysm())
+
+
+def test_surfaces_of_pyvista_keep_names():
+    surface = shapes.aneurysm().to_pyvista().extract_surface(algorithm="dataset_surface")
+    surface.field_data["patch:inlet"] = np.array([2])
+    assert motet.as_mesh(surface).patch_names[2] == "inlet"
+
+
+def test_field_data_that_are_no_names_stay():
+    mesh = shapes.box((1, 1, 1))
+    mesh.field_data = {"time": np.array([0.25]), "pair": np.array([1, 2]), "patch": np.array([3]), "region:x": np.array([0.5]), "who": ["me", "you"]}
+    for back in (motet.as_mesh(mesh.to_pyvista()), motet.as_mesh(mesh.to_meshio())):
+        assert back.field_data.keys() == mesh.field_data.keys() and names(back) == names(mesh)
+        np.testing.assert_array_equal(back.field_data["pair"], [1, 2])
+        assert back.field_data["who"] == ["me", "you"]
+
+
+def test_meshio_gets_sets_of_cells():
+    mesh = two_regions()
+    given = mesh.to_meshio()
+    starts = np.cumsum([0] + [len(block) for block in given.cells])
+    cells = lambda name: np.concatenate([ids + start for ids, start in zip(given.cell_sets[name], starts)])  # noqa: E731
+    np.testing.assert_array_equal(cells("inlet"), np.flatnonzero(mesh.cell_data["patch"] == 5))
+    np.testing.assert_array_equal(cells("blood: outer"), np.flatnonzero(mesh.cell_data["region"] == 3))
+    both = (mesh.cell_data["region"] == 7) | (mesh.cell_data["patch"] == 4)
+    np.testing.assert_array_equal(cells("wall"), np.flatnonzero(both))
+    # Without the field data the sets alone bring the names back.
+    given.field_data = {}
+    assert names(motet.as_mesh(given)) == names(mesh)
+
+
+def test_sets_of_meshio_become_labels():
+    """As files of Abaqus have them: sets, but no labels."""
+    box = shapes.box((2, 1, 1))
+    blocks = [("tetra", box.tets.astype(np.int64)), ("triangle", box.triangles.astype(np.int64))]
+    n = len(box.tets)
+    sets = {"all": [np.arange(n), np.arange(0)], "left": [np.arange(n // 2), None], "floor": [np.arange(0), np.array([0, 3])]}
+    mesh = motet.as_mesh(meshio.Mesh(box.points, blocks, cell_sets=sets))
+    told = mesh.summary()
+    assert told.regions["left"].cells == n // 2 and told.regions["all"].cells == n - n // 2
+    assert told.patches["floor"].cells == 2
+
+
+def test_groups_of_gmsh(tmp_path):
+    """What meshio reads of a file with physical groups is what motet reads of it; and meshio writes such files from meshes that had groups."""
+    mesh, path = two_regions(), tmp_path / "mesh.msh"
+    # A name is one group for meshio, not one of each dimension.
+    mesh.patch_names[4] = "side"
+    mesh.save(path)
+    read = motet.read(path)
+    assert names(read) == names(mesh)
+    by_meshio = motet.as_mesh(meshio.read(path))
+    assert names(by_meshio) == names(read)
+    again = tmp_path / "again.msh"
+    given = by_meshio.to_meshio()
+    given.cell_sets = {}
+    meshio.write(again, given, file_format="gmsh22")
+    assert names(motet.read(again)) == names(read)
