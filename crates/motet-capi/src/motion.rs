@@ -43,7 +43,7 @@ versioned! {
         n_wall: i64 = 0,
         also_moved: *const i32 = ptr::null(),
         n_also_moved: i64 = 0,
-        slide_tolerance: f64 = SlideTolerance::default().0,
+        slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
     }
 }
 

@@ -186,7 +186,7 @@ pub(crate) unsafe extern "C" fn motet_moving_mesh(moving: *const MotetMoving) ->
 }
 
 /// Puts a row for each of some things where the caller has room.
-fn given(all: &[Point], out: *mut f64, n: i64, stride: i64, what: &str) -> Result<()> {
+fn put_rows(all: &[Point], out: *mut f64, n: i64, stride: i64, what: &str) -> Result<()> {
     expect(n, all.len(), what)?;
     fill_rows(out, n, stride, what, |out| {
         out.copy_from_slice(all);
@@ -206,7 +206,7 @@ macro_rules! rows_out {
             error: *mut *mut MotetError,
         ) -> i32 {
             let of: fn(&MovingMesh) -> Vec<Point> = $of;
-            guarded(error, || given(&of(&handle(moving, "moving")?.moving), out, n, stride, $what))
+            guarded(error, || put_rows(&of(&handle(moving, "moving")?.moving), out, n, stride, $what))
         })*
     };
 }

@@ -185,7 +185,7 @@ fn the_array_of_qualities_is_of_oriented_tets() {
     let mesh = shaken();
     let values = |mesh: &Mesh| -> Field { mesh.tet_field("eas", eas) };
     let other = renumbered(&mesh, |cell| cell % 2 == 0);
-    let [ours, theirs] = [&mesh, &other].map(|mesh| values(mesh).to_f64().unwrap());
+    let [ours, theirs] = [&mesh, &other].map(|mesh| values(mesh).values.to_f64().unwrap());
     for (x, y) in ours.iter().zip(&theirs) {
         assert!(x.is_nan() && y.is_nan() || (x - y).abs() < 1e-12, "{x} and {y}");
     }

@@ -135,6 +135,7 @@ class Mover(NotPickled):
         rigid_layer_cells: int | None = None,
         rigid_layer_at: Sequence[Patch] = (),
         slide: Sequence[Patch] = (),
+        slide_tolerance: float = 0.05,
         residual: float = 1e-6,
         factor_gib: float = 0.0,
         substeps: int = 50,
@@ -310,6 +311,7 @@ def move(
     rigid_layer_cells: int | None = None,
     rigid_layer_at: Sequence[Patch] = (),
     slide: Sequence[Patch] = (),
+    slide_tolerance: float = 0.05,
     residual: float = 1e-6,
     factor_gib: float = 0.0,
     substeps: int = 50,
@@ -334,7 +336,7 @@ def move(
         As for :class:`Mover`, or ``auto``: the cheapest that keeps the worst cell at ``least``.
     least : float
         The bound of ``auto``: the EAS that no tet may be below. Half of the worst one that came, at most 0.1, if None.
-    bodies, within_walls, smooth, also_moved, rigid_layer, rigid_layer_cells, rigid_layer_at, slide, residual, factor_gib, substeps
+    bodies, within_walls, smooth, also_moved, rigid_layer, rigid_layer_cells, rigid_layer_at, slide, slide_tolerance, residual, factor_gib, substeps
         As for :class:`Mover`.
     threads : int
         0 for all cores.
@@ -353,8 +355,8 @@ def move(
         displacement = _whole(given, displacement)
         inside = _motet.interface_vertices(given, displacement)
         if len(inside):
-            also = [] if options.get("also_moved") is None else [ids(options["also_moved"], "also_moved")]
-            options["also_moved"] = np.unique(np.concatenate([inside, *also]))
+            also = [] if also_moved is None else [ids(also_moved, "also_moved")]
+            also_moved = np.unique(np.concatenate([inside, *also]))
     told = {**(translate or {}), **(rotate or {})}
     if told:
         also = [] if also_moved is None else [ids(also_moved, "also_moved")]
@@ -366,8 +368,8 @@ def move(
     def mover(name: str) -> Mover:
         return Mover(
             given, method=name, bodies=bodies, within_walls=within_walls, smooth=smooth, also_moved=also_moved, rigid_layer=rigid_layer,
-            rigid_layer_cells=rigid_layer_cells, rigid_layer_at=rigid_layer_at, slide=slide, residual=residual, factor_gib=factor_gib,
-            substeps=substeps, threads=threads, progress=progress,
+            rigid_layer_cells=rigid_layer_cells, rigid_layer_at=rigid_layer_at, slide=slide, slide_tolerance=slide_tolerance, residual=residual,
+            factor_gib=factor_gib, substeps=substeps, threads=threads, progress=progress,
         )  # fmt: skip
 
     first = mover("delaunay" if auto else method)

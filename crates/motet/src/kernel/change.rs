@@ -3,7 +3,7 @@
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold};
-use crate::kernel::spare::sorted;
+use crate::kernel::spare::{Side, sorted};
 
 /// A tet to come.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,8 +92,10 @@ impl Change {
     pub fn judge(&self, complex: &Complex, vertices: [VertexId; 4], corners: [Point; 4]) -> f64 {
         complex.judge(corners, |i| {
             let facet = sorted(FACETS[i].map(|corner| vertices[corner]));
-            let is_new = self.walls.iter().any(|wall| sorted(wall.vertices) == facet);
-            is_new || complex.is_wall_of(&self.cavity, facet)
+            match complex.side_of(&self.cavity, facet) {
+                Side::Inside if self.walls.iter().any(|wall| sorted(wall.vertices) == facet) => Side::Wall,
+                side => side,
+            }
         })
     }
 

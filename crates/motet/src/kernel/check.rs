@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::base::{TetId, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::tet::{EDGES, FACETS};
+use crate::geometry::tet::FACETS;
 use crate::kernel::change::{Change, NewWall, VertexChange};
 use crate::kernel::complex::{Complex, Hold};
 use crate::kernel::link::{Behind, HalfFacet, WallId};
@@ -186,12 +186,6 @@ impl Complex {
             let is_in_fill = change.fill.iter().any(|tet| tet.vertices.contains(&v));
             if is_in_fill == (gone == Some(v)) {
                 return Err(Reject::Vertex(v));
-            }
-        }
-        Ok(())
-    }
-
-                }
             }
         }
         Ok(())

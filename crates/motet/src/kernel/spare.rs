@@ -1,15 +1,16 @@
 //! Tets that walls force count as good.
 //!
-//! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done. Nothing raises its quality, and as the worst tet
-//! of every cavity around it, it would forbid each change that helps a neighbour. So such tets are marked, each by its id: the mark is the quality
-//! stored for it. A tet that a change puts in place of marked ones is judged again, by the walls it will lie between. The value of a quality marks
-//! nothing: elsewhere another tet can have the same one, and need repair.
+//! Where two walls meet at an angle, the tet between them has that dihedral angle, whatever is done; and a tet on a narrow wall has its narrow angle.
+//! Nothing raises the quality of such a tet, and as the worst of every cavity around it, it would forbid each change that helps a neighbour. So such
+//! tets are marked, each by its id: the mark is the quality stored for it. A tet that a change puts in place of marked ones is judged again, by the
+//! walls it will have. The value of a quality marks nothing: elsewhere another tet can have the same one, and need repair.
 
 use std::cell::Cell;
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::dihedral;
-use crate::geometry::tet::EDGES;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::geometry::triangle;
 use crate::kernel::complex::{Complex, UNMEASURED};
 use crate::kernel::link::HalfFacet;
 
@@ -24,9 +25,25 @@ pub fn is_reached(quality: f64, best: f64) -> bool {
     quality > 0.0 && best - quality < NEARLY
 }
 
+/// The highest EAS of a tet of which a facet has an angle of so many degrees.
+pub fn best_at(degrees: f64) -> f64 {
+    if degrees < 60.0 { degrees / 60.0 } else { (180.0 - degrees) / 120.0 }
+}
+
+/// What a facet of a tet is to the quality of the tet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// No wall.
+    Inside,
+    /// A wall whose angles may change.
+    Wall,
+    /// A wall whose angles stay: any wall of a surface that is kept, otherwise one that a marked tet has.
+    Firm,
+}
+
 impl Complex {
     /// Counts `tets` as good from now on, and of the tets that changes bring those whose quality is below `limit` and as high as two walls on both sides of the
-    /// tet allow. All until [`Self::spare_none`].
+    /// tet, or the angles of a wall that is [`Side::Firm`], allow. All until [`Self::spare_none`].
     ///
     /// Cannot be taken back by [`Self::undo`].
     pub fn spare(&mut self, tets: &[TetId], limit: f64) {
@@ -49,26 +66,47 @@ impl Complex {
         self.qualities[tet.index()].get() == SPARED
     }
 
-    /// The quality of a tet to come, of which `is_wall` tells the facets that will be walls: its EAS, unless walls force it and such tets are spared.
+    /// The quality of a tet to come, whose facets will be `sides`: its EAS, unless walls force it and such tets are spared.
     #[inline]
-    pub fn judge(&self, corners: [Point; 4], is_wall: impl Fn(usize) -> bool) -> f64 {
+    pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
-        if quality < self.spared_below && is_forced(corners, quality, is_wall) { SPARED } else { quality }
+        if quality < self.spared_below && is_forced(corners, quality, sides) { SPARED } else { quality }
     }
 
-    /// Whether one of `tets` has a wall with these vertices, in rising order.
-    pub fn is_wall_of(&self, tets: &[TetId], vertices: [VertexId; 3]) -> bool {
-        let mut facets = tets.iter().flat_map(|&tet| (0..4).map(move |i| (tet, i)));
-        facets.any(|(tet, i)| self.is_wall(tet, i) && sorted(self.facet(HalfFacet::new(tet, i))) == vertices)
+    /// What facet `i` of a tet is.
+    pub fn side(&self, tet: TetId, i: usize) -> Side {
+        match self.is_wall(tet, i) {
+            false => Side::Inside,
+            true if self.keeps_surface() || self.is_spared(tet) => Side::Firm,
+            true => Side::Wall,
+        }
+    }
+
+    /// What the facet with these vertices, in rising order, is to those of `tets` that have it.
+    pub fn side_of(&self, tets: &[TetId], vertices: [VertexId; 3]) -> Side {
+        let facets = tets.iter().flat_map(|&tet| (0..4).map(move |i| (tet, i)));
+        let same = facets.filter(|&(tet, i)| {
+            self.is_wall(tet, i) && sorted(self.facet(HalfFacet::new(tet, i))) == vertices
+        });
+        same.map(|(tet, i)| self.side(tet, i)).max().unwrap_or(Side::Inside)
     }
 }
 
-/// Whether the angle between two walls of a tet decides its quality.
-fn is_forced(corners: [Point; 4], quality: f64, is_wall: impl Fn(usize) -> bool) -> bool {
+/// Whether the angle between two walls of a tet, or an angle of a firm one, decides its quality.
+fn is_forced(corners: [Point; 4], quality: f64, sides: impl Fn(usize) -> Side) -> bool {
+    let sides = [0, 1, 2, 3].map(sides);
+    if sides == [Side::Inside; 4] {
+        return false;
+    }
     let angles = dihedral::angles(corners);
     // The facets at an edge are those opposite to the two other vertices.
-    let is_between = |edge: usize| EDGES[5 - edge].into_iter().all(&is_wall);
+    let is_between = |edge: usize| EDGES[5 - edge].into_iter().all(|i| sides[i] != Side::Inside);
+    let is_narrow = |i: usize| {
+        let wall = FACETS[i].map(|corner| corners[corner]);
+        (0..3).any(|corner| is_reached(quality, best_at(triangle::angle_at(wall, corner).to_degrees())))
+    };
     (0..6).any(|edge| is_reached(quality, angles[edge] / dihedral::REGULAR) && is_between(edge))
+        || (0..4).any(|i| sides[i] == Side::Firm && is_narrow(i))
 }
 
 /// The vertices of a facet in rising order.

@@ -211,6 +211,13 @@ impl Options {
     /// When a number means nothing.
     pub(crate) fn check(&self) -> Result<()> {
         self.method.check()?;
+        let SlideTolerance(tolerance) = self.slide_tolerance;
+        if !(0.0..1.0).contains(&tolerance) {
+            return Err(Error::options(format!(
+                "the tolerance of sliding patches must be in [0, 1), a part of their radius; got {tolerance}"
+            ))
+            .remedy("give a number such as 0.05"));
+        }
         match self.rigid_layer.as_ref().map(|layer| layer.extent) {
             Some(Extent::Distance(distance)) if !(0.0..=LARGEST).contains(&distance) => {
                 Err(Error::options(format!("a rigid layer of {distance}, expected a length from 0"))
@@ -238,25 +245,14 @@ pub struct SlideTolerance(
     pub f64,
 );
 
-impl Default for SlideTolerance {
-    fn default() -> Self {
-        Self(0.05)
-    }
+impl SlideTolerance {
+    /// What is taken where nothing is given.
+    pub const DEFAULT: Self = Self(0.05);
 }
 
-impl Options {
-    /// # Errors
-    /// When a number means nothing.
-    pub(crate) fn check(&self) -> Result<()> {
-        self.method.check()?;
-        let SlideTolerance(tolerance) = self.slide_tolerance;
-        if !(0.0..1.0).contains(&tolerance) {
-            return Err(Error::options(format!(
-                "{tolerance} is no part of its radius that a sliding patch may be off its plane"
-            ))
-            .remedy("give a number from 0 to below 1, such as 0.05"));
-        }
-        Ok(())
+impl Default for SlideTolerance {
+    fn default() -> Self {
+        Self::DEFAULT
     }
 }
 

@@ -98,7 +98,7 @@ impl FaceRemoval {
         complex.judge(vertices.map(|v| complex.point(v)), |i| {
             let mut facet = FACETS[i].map(|corner| vertices[corner]);
             facet.sort_unstable();
-            complex.is_wall_of(&self.cavity, facet)
+            complex.side_of(&self.cavity, facet)
         })
     }
 

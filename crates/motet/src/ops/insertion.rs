@@ -6,7 +6,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::tet::FACETS;
-use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
+use crate::kernel::{Behind, Change, Complex, Fill, Hold, Side, VertexChange};
 use crate::ops::smoothing::Corner;
 use crate::ops::{Anywhere, Smoothing};
 
@@ -37,7 +37,7 @@ impl Insertion {
         self.find_cavity(complex, seed, point, low, change) && {
             let rim = self.rim.iter().map(|&(tet, facet, quality)| {
                 let [a, b, c] = FACETS[facet].map(|corner| complex.point(complex.vertices(tet)[corner]));
-                Corner { points: [a, c, b, point], place: 3, quality, tet: None }
+                Corner { points: [a, c, b, point], place: 3, quality, of: (tet, Some(facet)) }
             });
             let point = self.smoothing.best_place(complex, rim, point, enough, &Anywhere);
             self.fill(complex, point, change);
@@ -100,7 +100,9 @@ impl Insertion {
                 }
             }
             let [a, b, c] = corners.map(|corner| complex.point(complex.vertices(tet)[corner]));
-            let quality = complex.measure([a, c, b, point]);
+            // The facet of the rim is opposite the new vertex, the others lie inside.
+            let side = |i: usize| if i == 3 { complex.side(tet, facet) } else { Side::Inside };
+            let quality = complex.judge([a, c, b, point], side);
             is_open &= quality > bar || matches!(behind, Behind::Tet(_));
             self.rim.push((tet, facet, quality));
         }

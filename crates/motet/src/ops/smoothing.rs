@@ -6,7 +6,7 @@
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::vector::{add, dot, norm, scale, sub};
-use crate::kernel::{Change, Complex, Fill, VertexChange};
+use crate::kernel::{Change, Complex, Fill, Side, VertexChange};
 
 /// Qualities that are at most so far above the worst count as nearly smallest.
 const NEARLY: f64 = 0.03;
@@ -59,8 +59,8 @@ pub(super) struct Corner {
     pub(super) points: [Point; 4],
     pub(super) place: usize,
     pub(super) quality: f64,
-    /// Which tet it is; `None` for one to come.
-    pub(super) tet: Option<TetId>,
+    /// The tet that it is; or of one to come, whose other facets lie inside, a tet and which facet there is its facet 3.
+    pub(super) of: (TetId, Option<usize>),
 }
 
 impl Smoothing {
@@ -79,7 +79,7 @@ impl Smoothing {
             points: complex.corners(tet),
             place: complex.place(tet, vertex),
             quality: complex.quality(tet),
-            tet: Some(tet),
+            of: (tet, None),
         };
         let point = self.best_place(complex, star.iter().map(corner), complex.point(vertex), enough, track);
         change.clear();
@@ -203,7 +203,11 @@ impl Corner {
     fn at(&self, complex: &Complex, place: Point) -> f64 {
         let mut points = self.points;
         points[self.place] = place;
-        complex.judge(points, |i| self.tet.is_some_and(|tet| complex.is_wall(tet, i)))
+        complex.judge(points, |i| match self.of {
+            (tet, None) => complex.side(tet, i),
+            (tet, Some(facet)) if i == 3 => complex.side(tet, facet),
+            _ => Side::Inside,
+        })
     }
 }
 

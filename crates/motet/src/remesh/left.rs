@@ -8,8 +8,8 @@ use crate::base::{Point, TetId};
 use crate::geometry::quality::{dihedral, eas};
 use crate::geometry::tent::Tent;
 use crate::geometry::tet::{EDGES, FACETS, centroid};
-use crate::geometry::vector::{cross, dot, norm, sub};
-use crate::kernel::{Complex, Hold, Shell, Star, is_reached};
+use crate::geometry::triangle;
+use crate::kernel::{Complex, Hold, Shell, Star, best_at, is_reached};
 use crate::remesh::classify::{DEFECT_NAMES, classify};
 use crate::remesh::surface::Surface;
 
@@ -168,14 +168,12 @@ struct WallBound {
 /// For each wall that a tet has the angle that decides: the one farthest from 60 degrees.
 fn wall_bounds(complex: &Complex, tet: TetId) -> impl Iterator<Item = WallBound> {
     let corners = complex.corners(tet);
-    let quality = |degrees: f64| if degrees < 60.0 { degrees / 60.0 } else { (180.0 - degrees) / 120.0 };
     let of_wall = move |i: usize| {
         let [a, b, c] = FACETS[i];
         let bounds = [[a, b, c], [b, c, a], [c, a, b]].map(|corner| {
             let [p, q, r] = corner.map(|place| corners[place]);
-            let (u, v) = (sub(q, p), sub(r, p));
-            let degrees = norm(cross(u, v)).atan2(dot(u, v)).to_degrees();
-            WallBound { bound: (degrees, quality(degrees)), corner }
+            let degrees = triangle::angle_at([p, q, r], 0).to_degrees();
+            WallBound { bound: (degrees, best_at(degrees)), corner }
         });
         bounds.into_iter().min_by(|x, y| x.bound.1.total_cmp(&y.bound.1))
     };
