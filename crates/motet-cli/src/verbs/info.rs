@@ -23,7 +23,8 @@ use crate::words::{self, shown};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
-an inverted one, bad below 0.2. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
+an inverted one, bad below 0.2. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges; of triangles
+4 sqrt(3) A over that sum, 1 for an equilateral one.
 Lengths are in units of the mesh, angles in degrees.
 
 Examples:
@@ -113,6 +114,7 @@ impl Report<'_> {
             if kinds.is_empty() { "none".into() } else { kinds.join(", ") }
         ));
         self.tell_size(console);
+        self.tell_triangles(console);
         self.tell_arrays(console);
         self.tell_labels(console);
         self.tell_quality(console);
@@ -142,6 +144,21 @@ impl Report<'_> {
                 yes_or_no(surface.closed)
             ));
         }
+    }
+
+    /// Lengths of edges and shape of triangles of a surface.
+    fn tell_triangles(&self, console: &Console) {
+        let Some(triangles) = &self.summary.triangles else { return };
+        let [least, median, largest] = triangles.edges.map(short);
+        let [x, y, z] = triangles.worst_at.map(short);
+        console.say(format_args!("  edges     {least} to {largest} long, median {median}"));
+        console.say(format_args!(
+            "  triangles mean ratio at least {}, mean {}; smallest angle {} degrees; worst: cell {} at ({x}, {y}, {z})",
+            short(triangles.mean_ratio.min),
+            short(triangles.mean_ratio.mean),
+            short(triangles.min_angle_deg),
+            triangles.worst_cell
+        ));
     }
 
     fn tell_arrays(&self, console: &Console) {
