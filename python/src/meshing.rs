@@ -31,6 +31,8 @@ pub(crate) struct Asked {
     layers_on: BTreeMap<String, (u32, f64, f64)>,
     keep_prisms: bool,
     repair: bool,
+    cut: bool,
+    voids: bool,
     merge: f64,
     hole_edges: usize,
 }
@@ -69,11 +71,15 @@ pub(crate) fn mesh<'py>(
         }
     };
     let (repaired, options, filled) = watched(py, threads, progress, |threads| {
-        let repaired = match asked.repairs() {
-            Some(repairs) => joined.repair(&repairs, threads)?.done,
-            None => Vec::new(),
+        let (repaired, at_points) = match asked.repairs() {
+            Some(repairs) => {
+                let repaired = joined.repair(&repairs, threads)?;
+                let at_points = by_array.map(|sizes| repaired.at_points(&sizes));
+                (repaired.done, at_points)
+            }
+            None => (Vec::new(), by_array),
         };
-        let options = asked.options(by_array, &joined)?;
+        let options = asked.options(at_points, &joined)?;
         let filled = fill(&joined, &joined.preflight(threads), &options, threads)?;
         Ok((repaired, options, filled))
     })?;
@@ -107,6 +113,7 @@ impl Asked {
         Ok(Options {
             seeds: self.seeds.iter().map(seed).collect(),
             holes: self.holes.clone(),
+            voids: self.voids,
             layers: self.layers(surfaces)?,
             ..Options::with_sizes(sizes, self.min_eas)
         })
@@ -130,6 +137,8 @@ impl Asked {
     }
 
     fn repairs(&self) -> Option<Repairs> {
-        self.repair.then(|| Repairs::all(self.merge, self.hole_edges))
+        let all = || Repairs::all(self.merge, self.hole_edges);
+        let asked = if self.repair { all() } else { Repairs::default() };
+        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..asked })
     }
 }

@@ -294,8 +294,10 @@ typedef struct motet_fill_options {
     double first_layer; /* thickness of the first */
     double layer_growth; /* how many times as thick each next one is; default 1.2 */
     int32_t keep_prisms; /* 1: layers stay wedges and pyramids; default 0 */
-    int32_t repair;     /* 1: duplicates, orientation and small holes are mended first; default 0 */
+    int32_t repair;     /* 1: T-junctions, faces on each other, duplicates, orientation and small holes are mended first; default 0 */
     int32_t threads;    /* default 0 */
+    int32_t cut;        /* 1: surfaces that go through each other are divided where they do; default 0 */
+    int32_t voids;      /* 1: what closed surfaces turned inward enclose is left out; default 0 */
 } motet_fill_options;
 
 void motet_fill_options_init(motet_fill_options *options, size_t size);

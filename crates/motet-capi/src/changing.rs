@@ -279,6 +279,8 @@ versioned! {
         keep_prisms: i32 = 0,
         repair: i32 = 0,
         threads: i32 = 0,
+        cut: i32 = 0,
+        voids: i32 = 0,
     }
 }
 
@@ -287,7 +289,8 @@ impl MotetFillOptions {
         let (largest, growth) = (optional(self.edge_length), optional(self.growth));
         let sizes = meshing::Sizes::of(largest, self.graded != 0, growth, None);
         let layers = self.layers()?;
-        Ok(meshing::Options { layers, ..meshing::Options::with_sizes(sizes, optional(self.min_eas)) })
+        let voids = self.voids != 0;
+        Ok(meshing::Options { layers, voids, ..meshing::Options::with_sizes(sizes, optional(self.min_eas)) })
     }
 
     fn layers(&self) -> Result<Option<Layers>> {
@@ -326,8 +329,11 @@ pub(crate) unsafe extern "C" fn motet_fill(
         };
         let all: Vec<(&Mesh, Role, &str)> = (0..n).map(one).collect::<Result<_>>()?;
         let mut surfaces = Surfaces::new(&all)?;
-        if asked.repair != 0 {
-            surfaces.repair(&Repairs::all(0.0, MOST_HOLE_EDGES), &threads)?;
+        if asked.repair != 0 || asked.cut != 0 {
+            let all = || Repairs::all(0.0, MOST_HOLE_EDGES);
+            let repairs = if asked.repair != 0 { all() } else { Repairs::default() };
+            let repairs = Repairs { cut: asked.cut != 0, keep_inward: asked.voids != 0, ..repairs };
+            surfaces.repair(&repairs, &threads)?;
         }
         let preflight = surfaces.preflight(&threads);
         let options = asked.options()?;

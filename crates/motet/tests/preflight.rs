@@ -10,7 +10,9 @@ use motet::geometry::vector::distance;
 use motet::io::{self, WriteOptions};
 use motet::mesh::firsts_at_place;
 use motet::mesh::{CellKind, Surface};
-use motet::preflight::{Fault, FaultKind, Preflight, Repairs, Role, culprits, preflight, renamed, repair};
+use motet::preflight::{
+    Fault, FaultKind, Preflight, RepairKind, Repairs, Role, culprits, preflight, renamed, repair,
+};
 use preflight_oracle::{Told, crosses, faults};
 use proptest::prelude::*;
 
@@ -74,11 +76,14 @@ fn any_coordinate() -> impl Strategy<Value = f64> {
 fn any_repairs() -> impl Strategy<Value = Repairs> {
     let distances = [None, Some(0.0), Some(1e-9), Some(1.0), Some(1e300)];
     let merge = prop::sample::select(distances.to_vec());
-    (merge, any::<[bool; 3]>(), prop::option::of(0usize..8)).prop_map(|(merge, asked, close_holes)| Repairs {
+    (merge, any::<[bool; 6]>(), prop::option::of(0usize..8)).prop_map(|(merge, asked, close_holes)| Repairs {
         merge,
         drop_degenerate: asked[0],
         drop_duplicates: asked[1],
         orient: asked[2],
+        imprint: asked[3],
+        cut: asked[4],
+        keep_inward: asked[5],
         close_holes,
     })
 }
@@ -123,9 +128,12 @@ proptest! {
             prop_assert_eq!(&mended.triangles, &triangles);
             prop_assert!(mended.done.is_empty());
         }
-        let after = preflight(&points, &mended.triangles, &mended.surface_of, &roles, &one);
+        prop_assert!(points.len() <= mended.points.len() && mended.new_points.len() == mended.points.len() - points.len());
+        let after = preflight(&mended.points, &mended.triangles, &mended.surface_of, &roles, &one);
         prop_assert!(!repairs.drop_duplicates || after.count(FaultKind::Duplicate) == 0);
         prop_assert!(!repairs.drop_degenerate || after.count(FaultKind::RepeatedVertex) == 0);
+        let is_left = mended.count(RepairKind::LeftMeeting) > 0;
+        prop_assert!(!repairs.cut || !repairs.drop_degenerate || is_left || after.count(FaultKind::Crossing) == 0);
     }
 }
 

@@ -16,6 +16,9 @@ type Triangles = Vec<[VertexId; 3]>;
 
 const ALL: Repairs = Repairs {
     merge: Some(0.0),
+    imprint: true,
+    cut: false,
+    keep_inward: false,
     drop_degenerate: true,
     drop_duplicates: true,
     orient: true,

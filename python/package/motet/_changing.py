@@ -253,6 +253,8 @@ class _Filling:
     layers_on: dict
     keep_prisms: bool
     repair: bool
+    cut: bool
+    voids: bool
     merge: float
     hole_edges: int
 
@@ -273,6 +275,8 @@ def mesh(
     repair: bool = False,
     merge: float = 0.0,
     hole_edges: int = 32,
+    cut: bool = False,
+    voids: bool = False,
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
@@ -301,7 +305,12 @@ def mesh(
     keep_prisms : bool
         Whether layers stay wedges and pyramids.
     repair, merge, hole_edges : bool, float, int
-        Mends the surfaces first: duplicates, orientation, points nearer than ``merge``, holes of at most so many edges.
+        Mends the surfaces first: vertices on edges (T-junctions) and faces that lie on each other, duplicates, orientation, points nearer than ``merge``, holes of at most
+        so many edges.
+    cut : bool
+        Whether surfaces that go through each other, or touch, are divided where they do: each room between them is a region.
+    voids : bool
+        Whether what closed surfaces turned inward enclose is left out.
     progress : callable
         As of :func:`remesh`.
 
@@ -323,7 +332,7 @@ def mesh(
         size=None if size == "auto" else size, is_graded=size == "auto", growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
-        keep_prisms=keep_prisms, repair=repair, merge=merge, hole_edges=hole_edges,
+        keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,
     )  # fmt: skip
     parts, told, not_reached = _motet.mesh(given, asked, threads, progress)
     return Changed(Mesh._of(parts), None, report(told), not_reached)

@@ -25,7 +25,8 @@ use crate::words::{self, shown};
 #[command(after_help = "\
 Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
 an inverted one, bad below 0.2. Thin tets of boundary layers are not bad. Tets are oriented by their
-neighbours, whichever way the file numbers them. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges.
+neighbours, whichever way the file numbers them. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges; of triangles
+4 sqrt(3) A over that sum, 1 for an equilateral one.
 Quadratic cells are inverted where the determinant of their Jacobian is not positive everywhere inside. Their
 scaled Jacobian is that determinant over what it is at the centre of the cell with straight edges: 1 for a
 straight tet, 0 or less where the cell is folded. EAS, volume and boundary take their edges as straight.
@@ -120,6 +121,7 @@ impl Report<'_> {
             if kinds.is_empty() { "none".into() } else { kinds.join(", ") }
         ));
         self.tell_size(console);
+        self.tell_triangles(console);
         self.tell_arrays(console);
         self.tell_labels(console);
         self.tell_quality(console);
@@ -150,6 +152,21 @@ impl Report<'_> {
                 yes_or_no(surface.closed)
             ));
         }
+    }
+
+    /// Lengths of edges and shape of triangles of a surface.
+    fn tell_triangles(&self, console: &Console) {
+        let Some(triangles) = &self.summary.triangles else { return };
+        let [least, median, largest] = triangles.edges.map(short);
+        let [x, y, z] = triangles.worst_at.map(short);
+        console.say(format_args!("  edges     {least} to {largest} long, median {median}"));
+        console.say(format_args!(
+            "  triangles mean ratio at least {}, mean {}; smallest angle {} degrees; worst: cell {} at ({x}, {y}, {z})",
+            short(triangles.mean_ratio.min),
+            short(triangles.mean_ratio.mean),
+            short(triangles.min_angle_deg),
+            triangles.worst_cell
+        ));
     }
 
     fn tell_arrays(&self, console: &Console) {

@@ -8,6 +8,7 @@ mod needle;
 pub mod overlap;
 pub mod predicates;
 pub mod quality;
+pub(crate) mod rounding;
 pub mod segment;
 pub mod symmetric;
 pub mod tent;

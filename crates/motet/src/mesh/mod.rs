@@ -35,7 +35,7 @@ pub(crate) use boundary::corners;
 pub use cell_kind::CellKind;
 pub use cells::Cells;
 pub use coincident::firsts_at_place;
-pub use edge_lengths::mean_edge_lengths;
+pub use edge_lengths::{edge_lengths, mean_edge_lengths};
 pub use exchange::{Mesh, bounds, largest_extent};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels, unused_name};

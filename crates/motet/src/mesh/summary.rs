@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::base::{CellId, Point, VertexId};
-use crate::geometry::vector::in_range;
+use crate::geometry::vector::{distance, in_range};
 use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
 use crate::mesh::curved::CurvedSummary;
-use crate::mesh::{Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, triangulate};
+use crate::mesh::{Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, edge_lengths, triangulate};
 
 /// A tet below this EAS is bad.
 pub const BAD_EAS: f64 = 0.2;
@@ -32,6 +32,8 @@ pub struct Summary {
     pub patches: BTreeMap<String, PatchSummary>,
     /// All surface cells together; `None` where there is none.
     pub surface: Option<PatchSummary>,
+    /// Shape of the triangles of a mesh without volume cells; `None` where it has volume cells, or no triangle of finite points.
+    pub triangles: Option<TriangleSummary>,
     /// The boundary of the volume cells; `None` where there is no volume cell.
     pub boundary: Option<BoundarySummary>,
     /// Shape of the tets (of quadratic ones the corners); `None` where there is no tet.
@@ -71,6 +73,21 @@ pub struct PatchSummary {
     pub area: f64,
     /// Whether exactly two of them meet at each of their edges.
     pub closed: bool,
+}
+
+/// Shape of the triangles of a surface.
+#[derive(Clone, Debug, Serialize)]
+pub struct TriangleSummary {
+    /// The least, the median and the largest length of their edges.
+    pub edges: [f64; 3],
+    /// `4 sqrt(3) area / sum of squared edge lengths`: 1 for an equilateral triangle, 0 for one without area.
+    pub mean_ratio: MinMean,
+    /// The smallest angle in degrees.
+    pub min_angle_deg: f64,
+    /// The cell of the triangle of least mean ratio.
+    pub worst_cell: CellId,
+    /// The centre of that triangle.
+    pub worst_at: Point,
 }
 
 /// The boundary of the volume cells.
@@ -149,6 +166,7 @@ impl Summary {
             regions: mesh.regions().map(|labels| regions(mesh, &labels, &volumes)).unwrap_or_default(),
             patches: mesh.patches().map(|labels| patches(mesh, &labels)).unwrap_or_default(),
             surface: surface_cells().next().map(|_| patch(mesh, &surface_cells().collect::<Vec<_>>())),
+            triangles: if has_volume { None } else { triangle_shapes(mesh) },
             boundary: has_volume
                 .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
             quality: tet_quality(mesh, &tets),
@@ -218,6 +236,43 @@ fn patch(mesh: &Mesh, cells: &[SurfaceCell]) -> PatchSummary {
     }
     summary.closed = is_closed(SurfaceFacets::from_cells(cells.iter().copied()).rings.iter());
     summary
+}
+
+/// Shape of the triangles whose points are finite; other surface cells count as the triangles that they are divided into.
+fn triangle_shapes(mesh: &Mesh) -> Option<TriangleSummary> {
+    let mut all: Vec<[VertexId; 3]> = Vec::new();
+    let (mut worst, mut sum, mut min_angle) = ((f64::INFINITY, CellId::new(0), [0.0; 3]), 0.0, f64::INFINITY);
+    for (cell, kind, vertices) in mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2)) {
+        triangulate(kind, vertices, &mesh.points, &mut |triangle| {
+            let corners = triangle.map(|v| mesh.points[v.index()]);
+            if !corners.into_iter().all(in_range) {
+                return;
+            }
+            let ratio = triangle_mean_ratio(corners);
+            let angles = (0..3).map(|k| triangle::angle_at(corners, k));
+            min_angle = angles.fold(min_angle, f64::min);
+            sum += ratio;
+            if ratio < worst.0 {
+                worst = (ratio, cell, triangle::centroid(corners));
+            }
+            all.push(triangle);
+        });
+    }
+    let edges = edge_lengths(&mesh.points, all.iter().copied())?;
+    Some(TriangleSummary {
+        edges,
+        mean_ratio: MinMean { min: worst.0, mean: sum / all.len() as f64 },
+        min_angle_deg: min_angle.to_degrees(),
+        worst_cell: worst.1,
+        worst_at: worst.2,
+    })
+}
+
+/// 1 for an equilateral triangle, 0 for one without area or extent.
+fn triangle_mean_ratio([a, b, c]: [Point; 3]) -> f64 {
+    let squares: f64 = [[a, b], [b, c], [c, a]].iter().map(|[p, q]| distance(*p, *q).powi(2)).sum();
+    let ratio = 4.0 * 3f64.sqrt() * triangle::area([a, b, c]) / squares;
+    if ratio.is_finite() { ratio } else { 0.0 }
 }
 
 /// Shape of the tets whose points are finite.

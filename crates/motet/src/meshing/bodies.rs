@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use serde::Serialize;
 
+use super::fill::Options;
 use super::surfaces::Surfaces;
-use crate::base::{Error, Point, Result, VertexId, rising};
+use crate::base::{Error, Point, Result, VertexId, rising, runs_alike};
 use crate::delaunay::Constrained;
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, holds, volume};
@@ -35,6 +36,8 @@ pub struct Body {
     pub prisms: usize,
     /// Its volume.
     pub volume: f64,
+    /// Whether the surfaces, as they face, leave it out: closed ones turned inward enclose it.
+    pub is_void: bool,
 }
 
 /// The bodies of a mesh, by their numbers.
@@ -51,6 +54,7 @@ pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
             tets: 0,
             prisms: 0,
             volume: 0.0,
+            is_void: false,
         });
         body.tets += 1;
         body.volume += volume([a, b, c, d].map(|v| mesh.points[v.index()]));
@@ -73,7 +77,17 @@ pub(super) fn count_cells(bodies: &mut [Body], mesh: &Mesh) {
 /// The side of a triangle: a body, or `None` outside of all.
 type Side = Option<u32>;
 
-/// Leaves out the bodies with holes and numbers the others from the outside in; the names by the new numbers.
+/// What is known of bodies, by their numbers.
+#[derive(Debug, Default)]
+pub(super) struct Arranged {
+    pub(super) names: BTreeMap<u32, String>,
+    /// The bodies that closed surfaces turned inward enclose, and that are there all the same.
+    pub(super) voids: BTreeSet<u32>,
+    /// How many of those were left out.
+    pub(super) n_left_out: usize,
+}
+
+/// Leaves out the bodies with holes, and on request those that are voids and not named by a seed, and numbers the others from the outside in.
 ///
 /// Names are those of seeds; of other bodies, where there are several closed surfaces, that of the smallest that holds the body.
 ///
@@ -83,16 +97,21 @@ pub(super) fn arrange(
     tets: &mut Constrained,
     surfaces: &Surfaces,
     triangles: &[[VertexId; 3]],
-    seeds: &[Seed],
-    holes: &[Point],
-) -> Result<BTreeMap<u32, String>> {
+    options: &Options,
+) -> Result<Arranged> {
+    let Options { seeds, holes, .. } = options;
     let mut names = BTreeMap::new();
     for seed in seeds {
         let body = body_at(tets, seed.place)?;
         check_seed(&names, body, seed)?;
         names.insert(body, seed.name.clone());
     }
-    let holes = holes.iter().map(|&place| hole_at(tets, place, &names)).collect::<Result<BTreeSet<_>>>()?;
+    let mut holes =
+        holes.iter().map(|&place| hole_at(tets, place, &names)).collect::<Result<BTreeSet<_>>>()?;
+    let voids: BTreeSet<u32> = &voids(tets, surfaces, triangles) - &holes;
+    let left_out: BTreeSet<u32> =
+        voids.iter().copied().filter(|body| options.voids && !names.contains_key(body)).collect();
+    holes.extend(&left_out);
     let order = from_outside(&tets.triangle_to_bodies);
     let by_surface = Holders::find(tets, surfaces, triangles).names(surfaces, &order);
     for (body, name) in by_surface {
@@ -104,10 +123,51 @@ pub(super) fn arrange(
     let kept = order.iter().filter(|body| !holes.contains(body));
     let new: BTreeMap<u32, u32> = kept.copied().zip(0..).collect();
     if new.is_empty() && !order.is_empty() {
-        return Err(Error::options("every body is a hole").remedy("leave a body to be filled"));
+        return Err(Error::options("every body is a hole or a void").remedy("leave a body to be filled"));
     }
     renumber(tets, &new);
-    Ok(names.into_iter().filter_map(|(body, name)| Some((*new.get(&body)?, name))).collect())
+    Ok(Arranged {
+        names: names.into_iter().filter_map(|(body, name)| Some((*new.get(&body)?, name))).collect(),
+        voids: voids.iter().filter_map(|body| new.get(body).copied()).collect(),
+        n_left_out: left_out.len(),
+    })
+}
+
+/// The bodies that the closed surfaces go round as often one way as the other, by the way their triangles face. None where that
+/// depends on the way taken into a body, since triangles do not face the same side.
+fn voids(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> BTreeSet<u32> {
+    let mut faces: BTreeMap<[VertexId; 3], i32> = BTreeMap::new();
+    for (t, _) in surfaces
+        .triangles
+        .iter()
+        .zip(&surfaces.surface_of)
+        .filter(|(_, s)| surfaces.roles[**s as usize] == Role::Boundary)
+    {
+        *faces.entry(rising(*t)).or_default() += if runs_alike(*t, rising(*t)) { 1 } else { -1 };
+    }
+    let inward = |i: usize| {
+        let t = triangles[i];
+        let n = faces.get(&rising(t)).copied().unwrap_or(0);
+        if runs_alike(t, rising(t)) { n } else { -n }
+    };
+    let beyond = beyond(&tets.triangle_to_bodies);
+    let mut turns: BTreeMap<Side, i32> = BTreeMap::from([(None, 0)]);
+    let mut todo = VecDeque::from([None]);
+    while let Some(side) = todo.pop_front() {
+        for &(i, other) in beyond.get(&side).map_or(&[][..], Vec::as_slice) {
+            let is_inward = tets.triangle_to_bodies[i][0] == side;
+            let there = turns[&side] + if is_inward { inward(i) } else { -inward(i) };
+            match turns.get(&other) {
+                Some(known) if *known != there => return BTreeSet::new(),
+                Some(_) => {}
+                None => {
+                    turns.insert(other, there);
+                    todo.push_back(other);
+                }
+            }
+        }
+    }
+    turns.into_iter().filter(|(_, turns)| *turns == 0).filter_map(|(side, _)| side).collect()
 }
 
 fn renumber(tets: &mut Constrained, new: &BTreeMap<u32, u32>) {

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::bodies::{self, Body, Seed};
+use super::bodies::{self, Arranged, Body, Seed};
 use super::compact::{compact, named};
 use super::graded;
 use super::interior;
 use super::layers::{self, Grown, Layers};
 use super::size_field::SizeField;
-use super::sizes::Sizes;
+use super::sizes::{Coarse, Sizes};
 use super::surfaces::Surfaces;
 use crate::base::{Error, Point, Result, Threads, VertexId, reasons};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
@@ -33,6 +33,8 @@ pub struct Options {
     pub seeds: Vec<Seed>,
     /// Places in bodies that are left out. Default: none.
     pub holes: Vec<Point>,
+    /// Whether bodies that closed surfaces turned inward enclose are left out, such as the cavity of a hollow body; those that a seed names stay. Default: false.
+    pub voids: bool,
     /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
     /// Layers of thin cells on walls. Default: `None`.
@@ -105,6 +107,10 @@ pub struct Report {
     pub triangles_kept: usize,
     /// Triangles with nothing enclosed on either side, which are left out.
     pub triangles_outside: usize,
+    /// The lengths of edges of a surface that is far coarser than the size of edges inside: tets on it are bad.
+    pub coarse: Option<Coarse>,
+    /// Bodies that were left out, since closed surfaces turned inward enclose them.
+    pub voids: usize,
     /// The worst EAS, before tets were improved.
     pub worst_eas: f64,
     /// Tets of no positive volume in the mesh that came of it.
@@ -130,6 +136,7 @@ pub fn fill(
     }
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
+    let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(surfaces));
     let joined = surfaces.without_shared();
     let triangles = joined.triangles.clone();
     let at_corners = options.sizes.as_ref().map_or_else(Vec::new, |sizes| sizes.at_corners(&joined));
@@ -141,21 +148,25 @@ pub fn fill(
         }
         // This tells which body lies on which side, and where places are.
         let mut whole = filled(&joined, Vec::new(), options, threads)?;
-        let names = bodies::arrange(&mut whole, surfaces, &triangles, &options.seeds, &options.holes)?;
+        let arranged = bodies::arrange(&mut whole, surfaces, &triangles, options)?;
         let grown = Grown::new(&joined, layers, whole.triangle_to_bodies, threads)?;
-        return fill_with_layers(grown, &at_corners, names, layers, options, threads);
+        let mut filled = fill_with_layers(grown, &at_corners, arranged, layers, options, threads)?;
+        filled.report.coarse = coarse;
+        return Ok(filled);
     }
     let points = inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
     let n_points = joined.points.len() + points.len();
     let mut tets = filled(&joined, points, options, threads)?;
     threads.watch().go_on("finding regions", 0, 0)?;
-    let names = bodies::arrange(&mut tets, surfaces, &triangles, &options.seeds, &options.holes)?;
+    let arranged = bodies::arrange(&mut tets, surfaces, &triangles, options)?;
     let mut report = report(&joined, &tets, n_points);
     let (mut mesh, _) = mesh(&joined, &tets);
-    mesh.label_names.regions = region_names(names);
+    mesh.label_names.regions = region_names(&arranged);
     drop(tets);
-    let (mesh, improved) = improve(mesh, options, threads)?;
-    (report.bodies, report.not_positive) = (bodies::told(&mesh), not_positive(&mesh));
+    let (mesh, improved) = improve(mesh, options, coarse.is_some(), threads)?;
+    report.coarse = coarse;
+    (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh));
+    report.voids = arranged.n_left_out;
     Ok(Filled { report, mesh, improved, layers: None })
 }
 
@@ -163,7 +174,7 @@ pub fn fill(
 fn fill_with_layers(
     mut grown: Grown,
     at_corners: &[[f64; 3]],
-    names: BTreeMap<u32, String>,
+    arranged: Arranged,
     layers: &Layers,
     options: &Options,
     threads: &Threads,
@@ -177,10 +188,11 @@ fn fill_with_layers(
     let mut report = report(grown.core(), &tets, n_points);
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
     let mut glued = grown.glue(&core, &core_to_mesh);
-    glued.label_names.regions = region_names(names);
-    let (mut mesh, improved) = improve(glued, options, threads)?;
+    glued.label_names.regions = region_names(&arranged);
+    let (mut mesh, improved) = improve(glued, options, false, threads)?;
     let split = layers::split(mesh.clone());
-    (report.bodies, report.not_positive) = (bodies::told(&split), not_positive(&split));
+    (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split));
+    report.voids = arranged.n_left_out;
     match layers.keep_prisms {
         true => bodies::count_cells(&mut report.bodies, &mesh),
         false => mesh = split,
@@ -208,15 +220,32 @@ fn filled(
     Ok(tets)
 }
 
-fn improve(mesh: Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Option<remesh::Report>)> {
+/// Repairs bad tets; where the surface is far coarser than the sizes in one round, since most of those on it stay bad however long they are tried.
+fn improve(
+    mesh: Mesh,
+    options: &Options,
+    is_coarse: bool,
+    threads: &Threads,
+) -> Result<(Mesh, Option<remesh::Report>)> {
     let Some(improve) = &options.improve else { return Ok((mesh, None)) };
-    let outcome = remesh_mesh(&mesh, improve, &Rules::default(), threads)?;
+    let rounds = if is_coarse { improve.rounds.min(1) } else { improve.rounds };
+    let improve = remesh::Options { rounds, ..improve.clone() };
+    let outcome = remesh_mesh(&mesh, &improve, &Rules::default(), threads)?;
     Ok((outcome.mesh, Some(outcome.report)))
 }
 
 /// Names of bodies as those of regions, which are numbered from 1.
-fn region_names(names: BTreeMap<u32, String>) -> BTreeMap<i32, String> {
-    names.into_iter().map(|(body, name)| (body as i32 + 1, name)).collect()
+fn region_names(arranged: &Arranged) -> BTreeMap<i32, String> {
+    arranged.names.iter().map(|(&body, name)| (body as i32 + 1, name.clone())).collect()
+}
+
+/// The bodies of a mesh that was made, and which of them are voids.
+fn bodies_of(mesh: &Mesh, arranged: &Arranged) -> Vec<Body> {
+    let mut bodies = bodies::told(mesh);
+    for body in &mut bodies {
+        body.is_void = arranged.voids.contains(&(body.region as u32).wrapping_sub(1));
+    }
+    bodies
 }
 
 /// Points inside, of the sizes that are asked for.
@@ -261,6 +290,8 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
         points_inside: used(surfaces.points.len()..is_named.len()) - points_on_edges,
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
+        coarse: None,
+        voids: 0,
         worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
         not_positive: 0,
         bodies: Vec::new(),

@@ -33,5 +33,5 @@ pub(crate) use compact::{compact, named};
 pub use fill::{Filled, Options, Report, fill};
 pub(crate) use graded::points_between;
 pub(crate) use interior::EDGE_OVER_SIDE;
-pub use sizes::{Grading, MOST_GROWTH, Sizes, sizes_by};
+pub use sizes::{Coarse, Grading, MOST_GROWTH, Sizes, sizes_by};
 pub use surfaces::Surfaces;

@@ -1,13 +1,42 @@
 //! How long edges inside are to be: what a caller can ask for, held against what can be done.
 
+use std::fmt;
+
+use serde::Serialize;
+
 use super::surfaces::Surfaces;
 use crate::base::{Error, Result};
-use crate::geometry::vector::LARGEST;
-use crate::mesh::{Field, Mesh, Surface, firsts_at_place, mean_edge_lengths};
+use crate::geometry::triangle::area;
+use crate::geometry::vector::{LARGEST, distance};
+use crate::mesh::{Field, Mesh, Surface, edge_lengths, firsts_at_place, mean_edge_lengths};
 
 /// Sizes that grow faster than this part of the distance mean nothing: neighbours in the lattice differ by a factor of 2 at most. Below it a cube of
 /// the lattice is never so large that what is small within it goes unseen from its middle.
 pub const MOST_GROWTH: f64 = 0.7;
+
+/// Edges of the surface that are so many times as long as edges inside are to be leave bad tets.
+const COARSE: f64 = 3.0;
+
+/// A surface that is far coarser than the size of edges inside.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Coarse {
+    /// The size of edges inside.
+    pub size: f64,
+    /// The least, the median and the largest length of the edges of the surface.
+    pub edges: [f64; 3],
+}
+
+impl fmt::Display for Coarse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { size, edges: [least, median, largest] } = self;
+        write!(
+            f,
+            "the surface is far coarser than the size {size}: its edges are {least:.4} to {largest:.4} long, the median is {median:.4}. It is kept as it is, so \
+             tets on its long edges are bad, and one round of repair is made. Give a larger --size, or fill without one and divide the surface, too: `motet mesh ... -o \
+             coarse.vtu`, `motet remesh coarse.vtu -o even.vtu --surface adapt`, `motet remesh even.vtu -o fine.vtu --sizes {size} --surface adapt`"
+        )
+    }
+}
 
 /// How long edges inside are to be, in units of the surface.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,6 +89,20 @@ impl Sizes {
             Self::Uniform(size) => check_length(*size),
             Self::Graded(grading) => grading.check(surfaces),
         }
+    }
+
+    /// Whether most of the surface has edges far longer than the size that is the same everywhere: no good tets stand on these. `None` where it has not.
+    pub fn coarse(&self, surfaces: &Surfaces) -> Option<Coarse> {
+        let Self::Uniform(size) = *self else { return None };
+        let (mut all, mut coarse) = (0.0, 0.0);
+        for triangle in &surfaces.triangles {
+            let corners @ [a, b, c] = triangle.map(|v| surfaces.points[v.index()]);
+            let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
+            all += area(corners);
+            coarse += if longest > COARSE * size { area(corners) } else { 0.0 };
+        }
+        let edges = edge_lengths(&surfaces.points, surfaces.triangles.iter().copied())?;
+        (2.0 * coarse > all).then_some(Coarse { size, edges })
     }
 
     /// The sizes at the corners of each triangle, where they are not the same everywhere.

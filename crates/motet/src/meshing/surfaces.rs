@@ -169,6 +169,7 @@ impl Surfaces {
             threads,
         )?;
         self.patches = done.labels(&self.patches);
+        self.points = done.points.clone();
         self.triangles = done.triangles.clone();
         self.surface_of = done.surface_of.clone();
         self.join();

@@ -30,20 +30,20 @@ pub fn crossings(
     b: &[[VertexId; 3]],
     threads: &Threads,
 ) -> Vec<[u32; 2]> {
-    pairs(points, a, b, threads, |_, _| true)
+    crossings_of(points, [a, b], threads, |_, _| true)
 }
 
 /// All pairs of triangles of one surface that meet in more than they share, the smaller id first; rising.
 ///
 /// Panics when a triangle names a point beyond `points`.
 pub fn own_crossings(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<[u32; 2]> {
-    pairs(points, triangles, triangles, threads, |i, j| i < j)
+    crossings_of(points, [triangles, triangles], threads, |i, j| i < j)
 }
 
-fn pairs(
+/// The pairs of a triangle of `a` and one of `b` that `admit` wants and that meet in more than vertices and edges that they share; rising.
+pub(super) fn crossings_of(
     points: &[Point],
-    a: &[[VertexId; 3]],
-    b: &[[VertexId; 3]],
+    [a, b]: [&[[VertexId; 3]]; 2],
     threads: &Threads,
     admit: impl Fn(u32, u32) -> bool + Sync + Send,
 ) -> Vec<[u32; 2]> {

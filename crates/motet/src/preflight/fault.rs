@@ -49,9 +49,9 @@ fault_kinds! {
     Duplicate = "duplicate_triangle", "triangles of one surface with the same vertices",
         "ask for duplicates to be dropped";
     Crossing = "crossing", "triangles meet in more than the vertices and edges that they share",
-        "move the surfaces apart or cut them along their intersection in the program that made them; points that should be one, merge";
+        "`--repair` divides edges at vertices on them and faces that lie on each other, `--cut` also what goes through each other; or move the surfaces apart";
     OpenEdge = "open_edge", "the surface ends at the edge",
-        "close the hole, or ask for small holes to be closed; a surface that may be open is a membrane";
+        "`motet cap SURFACE -o CLOSED` closes open ends, `--repair` small holes (`--hole-edges`); a surface that may be open is a `--membrane`";
     NonManifoldEdge = "non_manifold_edge", "more than two triangles of one surface meet at the edge",
         "remove the triangles that do not belong there, or give inner walls as a surface of their own";
     NonManifoldVertex = "non_manifold_vertex", "the surface touches itself at the vertex",

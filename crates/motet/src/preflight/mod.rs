@@ -10,7 +10,7 @@
 //! | closed parts | that face inward |
 //!
 //! [`preflight`] lists every one, with ids and a place. Some are *fatal*: a conforming mesh of tets with these triangles as facets cannot be
-//! made, or what is inside is not said. Others are notes. [`repair`] mends what it is asked to mend, and tells what it did; [`culprits`] shows what is wrong.
+//! made, or what is inside is not said. Others are notes. [`repair`] mends what is requested, and reports what it did; triangles that meet are divided by `cut`; [`culprits`] shows what is wrong.
 //! All tests are exact, and have no tolerance.
 //!
 //! ```
@@ -27,6 +27,7 @@
 
 mod crossing;
 mod culprits;
+pub(crate) mod cut;
 mod edges;
 mod enclosed;
 mod fault;
@@ -49,6 +50,6 @@ pub(crate) use joint::joint;
 pub use renamed::renamed;
 pub use repair::{Repair, RepairKind, Repaired, Repairs, repair};
 pub use report::{FaultCount, Preflight};
-pub use rims::open_rims;
+pub use rims::{Rim, open_rims};
 pub use search::preflight;
 pub use surfaces::Role;

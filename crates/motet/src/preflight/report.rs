@@ -5,8 +5,12 @@ use std::fmt;
 use serde::Serialize;
 
 use super::fault::{Fault, FaultKind};
+use super::rims::Rim;
 use super::surfaces::Surfaces;
 use crate::base::Error;
+
+/// An error names so many rims.
+const TOLD_RIMS: usize = 4;
 
 /// How many faults of a kind there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -29,6 +33,10 @@ pub struct Preflight {
     pub n_triangles: usize,
     /// How many points no triangle uses.
     pub n_orphans: usize,
+    /// The rims of surfaces that have to be closed, the longest first.
+    pub rims: Vec<Rim>,
+    /// How many of the open edges of such surfaces are in no rim, since triangles there do not face the same side.
+    pub n_torn_edges: usize,
     /// The kinds that occur, with their counts.
     pub counts: Vec<FaultCount>,
     /// Every fault.
@@ -36,7 +44,11 @@ pub struct Preflight {
 }
 
 impl Preflight {
-    pub(super) fn new(surfaces: &Surfaces, mut faults: Vec<Fault>) -> Self {
+    pub(super) fn new(
+        surfaces: &Surfaces,
+        mut faults: Vec<Fault>,
+        (rims, n_torn_edges): (Vec<Rim>, usize),
+    ) -> Self {
         faults.sort_by(|x, y| key(x).cmp(&key(y)));
         let mut is_used = vec![false; surfaces.points.len()];
         surfaces.triangles.as_flattened().iter().for_each(|v| is_used[v.index()] = true);
@@ -44,6 +56,8 @@ impl Preflight {
             n_surfaces: surfaces.roles.len(),
             n_triangles: surfaces.triangles.len(),
             n_orphans: is_used.iter().filter(|is_used| !**is_used).count(),
+            rims,
+            n_torn_edges,
             counts: faults.chunk_by(|x, y| x.kind == y.kind).map(count).collect(),
             faults,
         }
@@ -52,6 +66,14 @@ impl Preflight {
     /// Whether nothing stops the meshing.
     pub fn is_fit(&self) -> bool {
         self.counts.iter().all(|count| count.fatal == 0)
+    }
+
+    /// How many rims there are, and the longest ones.
+    fn told_rims(&self) -> String {
+        let n = self.rims.len();
+        let longest: Vec<String> = self.rims.iter().take(TOLD_RIMS).map(Rim::to_string).collect();
+        let more = if n > TOLD_RIMS { format!("; and {} more", n - TOLD_RIMS) } else { String::new() };
+        format!("the open edges make {n} rim{}: {}{more}", if n == 1 { "" } else { "s" }, longest.join("; "))
     }
 
     /// How many faults of this kind there are, notes included.
@@ -64,7 +86,10 @@ impl Preflight {
         let fault = self.faults.iter().find(|fault| fault.is_fatal)?;
         let kind = fault.kind;
         let n = self.counts.iter().find(|count| count.kind == kind).map_or(1, |count| count.fatal);
-        let what = format!("surfaces that can be meshed were expected, and here {}", kind.meaning());
+        let mut what = format!("surfaces that can be meshed were expected, and here {}", kind.meaning());
+        if kind == FaultKind::OpenEdge && !self.rims.is_empty() {
+            what = format!("{what}; {}", self.told_rims());
+        }
         let others = self.counts.iter().filter(|count| count.kind != kind && count.fatal > 0);
         let others: String = others.map(|count| format!(", {} {}", count.fatal, count.kind.name())).collect();
         Some(

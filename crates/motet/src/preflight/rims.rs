@@ -1,6 +1,11 @@
 //! The rims of holes: open edges, one after the other, as a triangle in the hole would run along them.
 
+use std::fmt;
+
+use serde::Serialize;
+
 use crate::base::{Point, VertexId};
+use crate::geometry::vector::{add, distance, in_range, scale};
 use crate::preflight::sides::{Side, edges, sorted_sides};
 use crate::preflight::surfaces::{Role, Surfaces};
 
@@ -19,6 +24,59 @@ pub(super) struct RimEdge {
 pub(super) struct Rims {
     pub(super) closed: Vec<Vec<RimEdge>>,
     pub(super) torn: Vec<Vec<RimEdge>>,
+}
+
+/// A closed chain of open edges of a surface that has to be closed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rim {
+    /// The surface.
+    pub surface: u32,
+    /// How many edges it has.
+    pub edges: usize,
+    /// The sum of their lengths.
+    pub length: f64,
+    /// The largest distance of its vertices from its centre, twice.
+    pub diameter: f64,
+    /// The mean of its vertices.
+    pub centre: Point,
+}
+
+impl Rim {
+    /// `None` where a vertex is not finite.
+    fn of(points: &[Point], edges: &[RimEdge]) -> Option<Self> {
+        let at = |v: VertexId| points[v.index()];
+        if !edges.iter().all(|edge| in_range(at(edge.from)) && in_range(at(edge.to))) {
+            return None;
+        }
+        let part = 1.0 / edges.len() as f64;
+        let centre = edges.iter().fold([0.0; 3], |sum, edge| add(sum, scale(at(edge.from), part)));
+        Some(Self {
+            surface: edges.first()?.surface,
+            edges: edges.len(),
+            length: edges.iter().map(|edge| distance(at(edge.from), at(edge.to))).sum(),
+            diameter: 2.0 * edges.iter().map(|edge| distance(at(edge.from), centre)).fold(0.0, f64::max),
+            centre,
+        })
+    }
+}
+
+impl fmt::Display for Rim {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.centre;
+        write!(
+            f,
+            "surface {}, {} edges, {:.6} long, {:.6} across, centre ({x:.6}, {y:.6}, {z:.6})",
+            self.surface, self.edges, self.length, self.diameter
+        )
+    }
+}
+
+/// The closed rims of surfaces that have to be closed, the longest first; and how many open edges are in none.
+pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> (Vec<Rim>, usize) {
+    let found = rims(surfaces.points.len(), sides, |surface| surfaces.role(surface) == Role::Boundary);
+    let mut rims: Vec<Rim> = found.closed.iter().filter_map(|rim| Rim::of(surfaces.points, rim)).collect();
+    rims.sort_by(|a, b| b.length.total_cmp(&a.length));
+    (rims, found.torn.iter().map(Vec::len).sum())
 }
 
 /// The rims of one surface: vertices in the order in which a triangle in the hole would have them, and those of open edges that lead nowhere, since triangles there

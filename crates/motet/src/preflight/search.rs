@@ -6,7 +6,7 @@ use super::report::Preflight;
 use super::sides::sorted_sides;
 use super::single::{Firsts, shapes};
 use super::surfaces::{Role, Surfaces};
-use super::{edges, meeting, parts, single};
+use super::{edges, meeting, parts, rims, single};
 use crate::base::{Point, Threads, VertexId};
 
 /// Everything that stops surfaces from being meshed, and what else is worth knowing of them.
@@ -32,7 +32,7 @@ pub fn preflight(
     faults.extend(meeting::faults(&surfaces, &shapes, &firsts, threads));
     faults.extend(edges::faults(&surfaces, &sides));
     faults.extend(parts::faults(&surfaces, &Parts::new(triangles.len(), &sides)));
-    Preflight::new(&surfaces, faults)
+    Preflight::new(&surfaces, faults, rims::of_boundaries(&surfaces, &sides))
 }
 
 /// The surfaces without a triangle.

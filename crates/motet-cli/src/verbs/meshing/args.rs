@@ -42,6 +42,9 @@ Examples:
     motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers 5,0.02,1.2
   The same on one patch, more on another:
     motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers wall=5,0.02,1.2 --layers sac=8,0.01,1.2
+  Two bodies that overlap, as three regions; faults that cross each other:
+    motet mesh bodies.stl -o bodies.vtu --cut
+    motet mesh box.stl --membrane fault1.stl --membrane fault2.stl -o box.vtu --cut
   What is wrong with a surface, to look at:
     motet mesh scan.stl -o scan.vtu --culprits wrong.vtp
 
@@ -71,6 +74,10 @@ pub(crate) struct MeshArgs {
     /// Leave out what the surfaces enclose round a place. Repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = words::place, allow_hyphen_values = true)]
     pub(crate) hole: Vec<Point>,
+    /// Leave out what closed surfaces turned inward enclose, such as the cavity of a hollow body. With --repair such surfaces stay
+    /// turned inward
+    #[arg(long)]
+    pub(crate) voids: bool,
     /// Repair tets below this EAS, the surface kept [default: 0.2 with sizes]
     #[arg(long, value_name = "EAS")]
     pub(crate) min_eas: Option<f64>,
@@ -87,9 +94,14 @@ pub(crate) struct MeshArgs {
     /// Leave layers as wedges and pyramids, not divided into tets: for formats that hold these, such as VTU, VTK and MSH
     #[arg(long, requires = "layers")]
     pub(crate) keep_prisms: bool,
-    /// Mend first: drop triangles without area and those that are there twice, turn all outward, close small holes
+    /// Mend first: divide edges at vertices on them (T-junctions) and faces that lie on each other alike, drop triangles without area and
+    /// those that are there twice, turn all outward, close small holes
     #[arg(long)]
     pub(crate) repair: bool,
+    /// Divide surfaces that go through each other along the lines where they do, and those that touch: each room between them is a
+    /// region. Alone, or with --repair
+    #[arg(long)]
+    pub(crate) cut: bool,
     /// Close holes of at most so many edges
     #[arg(long, value_name = "N", default_value_t = 32, requires = "repair")]
     pub(crate) hole_edges: usize,
@@ -121,12 +133,15 @@ impl MeshArgs {
             edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
             seeds: self.seed.clone(),
             holes: self.hole.clone(),
+            voids: self.voids,
             layers: stacks(&self.layers, &self.layers_on, self.keep_prisms, surfaces)?,
             ..Options::with_sizes(sizes, self.min_eas)
         })
     }
 
     pub(super) fn repairs(&self) -> Option<Repairs> {
-        self.repair.then(|| Repairs::all(self.merge.unwrap_or(0.0), self.hole_edges))
+        let all = || Repairs::all(self.merge.unwrap_or(0.0), self.hole_edges);
+        let asked = if self.repair { all() } else { Repairs::default() };
+        (self.repair || self.cut).then_some(Repairs { cut: self.cut, keep_inward: self.voids, ..asked })
     }
 }

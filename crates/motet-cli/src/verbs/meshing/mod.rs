@@ -36,6 +36,10 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let read = begin.elapsed().as_secs_f64();
     meter.stage("checking surfaces");
     let done = args.repairs().map(|repairs| surfaces.repair(&repairs, &threads)).transpose()?;
+    let sizes = match (&done, sizes) {
+        (Some(done), Some(sizes)) => Some(done.at_points(&sizes)),
+        (_, sizes) => sizes,
+    };
     let checking = Instant::now();
     let preflight = surfaces.preflight(&threads);
     let check = checking.elapsed().as_secs_f64();
@@ -53,6 +57,9 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     }
     let filling = Instant::now();
     let options = args.options(sizes, &surfaces)?;
+    if let Some(coarse) = options.sizes.as_ref().and_then(|sizes| sizes.coarse(&surfaces)) {
+        console.warn(coarse);
+    }
     let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
     meter.stage("writing");

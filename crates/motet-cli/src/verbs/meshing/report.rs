@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use motet::meshing;
-use motet::preflight::{Preflight, Repair};
+use motet::preflight::{FaultKind, Preflight, Repair, RepairKind};
 use motet::remesh;
 use serde::Serialize;
 
@@ -80,8 +80,14 @@ impl<'a> Report<'a> {
         if !self.repairs.is_empty() {
             console.say(format_args!("{} repairs (--json lists them)", count(self.repairs.len())));
         }
+        self.tell_divided(console);
         console.say(self.preflight);
+        for rim in self.preflight.rims.iter().take(TOLD) {
+            console.say(format_args!("  rim: {rim}"));
+        }
+        let in_rims = self.preflight.n_torn_edges == 0;
         let fatal = self.preflight.faults.iter().filter(|fault| fault.is_fatal);
+        let fatal = fatal.filter(|fault| !in_rims || fault.kind != FaultKind::OpenEdge);
         for fault in fatal.clone().take(TOLD) {
             console.say(format_args!("  {}: {fault}", fault.kind.name()));
         }
@@ -92,6 +98,31 @@ impl<'a> Report<'a> {
         }
         if let Some(filled) = &self.filled {
             self.tell_filled(filled, console);
+        }
+    }
+
+    /// Where triangles were divided, by kind: how many places, and the first of them.
+    fn tell_divided(&self, console: &Console) {
+        for (kind, what) in [
+            (RepairKind::TJunction, "vertices on edges (T-junctions): the edges are divided there"),
+            (RepairKind::Imprinted, "pairs of triangles lie on each other: they are divided alike"),
+            (
+                RepairKind::CutCrossing,
+                "pairs of triangles go through each other: they are divided where they do",
+            ),
+            (RepairKind::KeptWall, "walls between bodies, on which each body has a triangle: one is kept"),
+            (
+                RepairKind::LeftMeeting,
+                "surface that cannot be divided where it meets itself or others: it is left as it is",
+            ),
+        ] {
+            let of_kind = || self.repairs.iter().filter(|repair| repair.kind == kind);
+            let place = of_kind().find_map(|repair| repair.at);
+            let first =
+                place.map_or_else(String::new, |at| format!("; the first at ({})", at.map(short).join(", ")));
+            if of_kind().next().is_some() {
+                console.say(format_args!("  {} {what}{first}", count(of_kind().count())));
+            }
         }
     }
 
@@ -109,6 +140,12 @@ impl<'a> Report<'a> {
             count(filled.points_inside),
             count(filled.points_on_edges)
         ));
+        if filled.voids > 0 {
+            console.say(format_args!(
+                "{} voids are left out: surfaces turned inward enclose them",
+                count(filled.voids)
+            ));
+        }
         if filled.triangles_outside > 0 {
             console.warn(format_args!(
                 "{} triangles enclose nothing, and are left out",
@@ -135,8 +172,10 @@ impl<'a> Report<'a> {
         }
         for body in filled.bodies.iter().take(TOLD) {
             let name = body.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));
+            let void =
+                if body.is_void { "; surfaces turned inward enclose it: --voids leaves it out" } else { "" };
             console.say(format_args!(
-                "region {}{name}: {} tets{}, volume {}",
+                "region {}{name}: {} tets{}, volume {}{void}",
                 body.region,
                 count(body.tets),
                 if body.prisms > 0 { format!(" and {} prisms", count(body.prisms)) } else { String::new() },

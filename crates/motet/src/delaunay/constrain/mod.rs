@@ -10,7 +10,7 @@
 //!
 //! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, or with tets that have no volume in the
 //! digits of their coordinates, all begins anew (`attempts`), there with triangles in one plane but for the rounding of their coordinates
-//! (`rounding`), of which flat tets belong to the outside (`shed`), and at last with each triangle for itself (`levels`); the best counts. Flat
+//! (`geometry::rounding`), of which flat tets belong to the outside (`shed`), and at last with each triangle for itself (`levels`); the best counts. Flat
 //! tets inside are made anew (`flat_tets`).
 //!
 //! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
@@ -42,7 +42,6 @@ mod pierce;
 mod plane;
 mod recone;
 mod restore;
-mod rounding;
 mod segments;
 mod share;
 mod shed;
@@ -60,6 +59,7 @@ use hashbrown::HashSet;
 use super::Triangulation;
 use super::input::{self, Scaled};
 use crate::base::{Csr, Error, Point, Result, TetId, Threads, VertexId, rising};
+use crate::geometry::rounding;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, distance, scale};
 use crate::mesh::bounds;

@@ -3,6 +3,7 @@
 mod degenerate;
 mod fill;
 mod holes;
+mod joints;
 mod merge;
 mod orient;
 mod report;
@@ -17,12 +18,18 @@ use work::Work;
 
 pub use report::{Repair, RepairKind, Repaired};
 
-/// What to repair. By default nothing; what is asked for is done in the order of the fields.
+/// What to repair. By default nothing; what is asked for is done in the order of the fields, but triangles without area go before others are divided, and once more then.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Repairs {
     /// Vertices nearer to one of smaller id than this distance, in the unit of the points, become one with it. At 0 those at exactly
     /// the same place do. No vertex moves farther than that: chains of near vertices do not run together.
     pub merge: Option<f64>,
+    /// Edges are divided at vertices that lie on them (T-junctions), and triangles that touch or lie on each other where they do, so that they share vertices,
+    /// edges and whole triangles. What is nearer than the rounding of coordinates, as their digits tell it, is one place. Of triangles of one surface that then face each other
+    /// one stays, as the wall between two bodies.
+    pub imprint: bool,
+    /// Triangles that go through each other are divided along the line where they do; this imprints as well. What lies in two bodies becomes a body of its own.
+    pub cut: bool,
     /// Triangles without area go. Where the middle one of three corners on a line divides the longest edge, the other triangles of that edge are
     /// divided there, so that what was closed stays closed and nothing moves.
     pub drop_degenerate: bool,
@@ -31,18 +38,23 @@ pub struct Repairs {
     pub drop_duplicates: bool,
     /// Triangles are turned so that neighbours face the same side; as few as can be of an open part, and a closed part outward, also within another.
     pub orient: bool,
+    /// Closed parts that face inward stay so when triangles are turned: they bound voids.
+    pub keep_inward: bool,
     /// Holes of boundaries with a rim of at most so many edges are filled without new points; of more than 1000 none is. Neighbours have to face the same side.
     pub close_holes: Option<usize>,
 }
 
 impl Repairs {
-    /// All of them: points nearer than `merge` become one, holes of at most so many edges are closed.
+    /// All of them but `cut`: points nearer than `merge` become one, holes of at most so many edges are closed.
     pub fn all(merge: f64, hole_edges: usize) -> Self {
         Self {
             merge: Some(merge),
+            imprint: true,
+            cut: false,
             drop_degenerate: true,
             drop_duplicates: true,
             orient: true,
+            keep_inward: false,
             close_holes: Some(hole_edges),
         }
     }
@@ -50,7 +62,7 @@ impl Repairs {
 
 /// Repairs surfaces; whether they are fit then is for [`preflight`](super::preflight) to say.
 ///
-/// Takes what [`preflight`](super::preflight) takes. Points stay as they are: those that nothing uses any more are orphans.
+/// Takes what [`preflight`](super::preflight) takes. Points stay as they are, and those that nothing uses any more are orphans; new ones stand behind them.
 ///
 /// # Errors
 /// When the distance to merge within is negative or no number.
@@ -76,17 +88,34 @@ pub fn repair(
     if repairs.drop_degenerate {
         degenerate::drop_all(&mut work, threads);
     }
+    let wants_joints = repairs.imprint || repairs.cut;
+    let Some(divided) = wants_joints.then(|| joints::divide(&mut work, repairs.cut, threads)).flatten()
+    else {
+        finish(&mut work, repairs, threads);
+        return Ok(work.finish(vertex_to_kept, Vec::new()));
+    };
+    let names = vertex_to_kept.iter().map(|v| divided.names[v.index()]);
+    let vertex_to_kept = names.chain((points.len()..divided.points.len()).map(VertexId::new)).collect();
+    let mut work = Work { points: &divided.points, pieces: divided.pieces, ..work };
+    if repairs.drop_degenerate {
+        degenerate::drop_all(&mut work, threads);
+    }
+    finish(&mut work, repairs, threads);
+    Ok(work.finish(vertex_to_kept, divided.origins))
+}
+
+/// What comes once triangles share what they have in common.
+fn finish(work: &mut Work, repairs: &Repairs, threads: &Threads) {
     if repairs.drop_duplicates {
         work.drop_duplicates();
     }
     if repairs.orient {
-        orient::orient(&mut work);
+        orient::orient(work, repairs.keep_inward);
     }
     if let Some(longest) = repairs.close_holes {
-        holes::close(&mut work, longest, threads);
+        holes::close(work, longest, threads);
         if repairs.orient {
-            orient::orient(&mut work);
+            orient::orient(work, repairs.keep_inward);
         }
     }
-    Ok(work.finish(vertex_to_kept))
 }

@@ -6,7 +6,7 @@ use crate::base::Csr;
 use crate::preflight::parts::Parts;
 use crate::preflight::sides::{Side, edges};
 
-pub(super) fn orient(work: &mut Work) {
+pub(super) fn orient(work: &mut Work, keep_inward: bool) {
     let lists = work.lists();
     let sides = work.sides(&lists);
     let parts = Parts::new(work.pieces.len(), &sides);
@@ -20,7 +20,9 @@ pub(super) fn orient(work: &mut Work) {
             }
         }
     }
-    turn_outward(work);
+    if !keep_inward {
+        turn_outward(work);
+    }
 }
 
 fn turn_outward(work: &mut Work) {

@@ -10,6 +10,16 @@ use crate::base::{Point, VertexId};
 pub enum RepairKind {
     /// A vertex became one with another.
     MergedVertex,
+    /// An edge was divided at a vertex that lies on it: a T-junction. The vertex comes first, then the ends of the edge.
+    TJunction,
+    /// Two triangles that lie on each other, in one plane, were divided alike.
+    Imprinted,
+    /// Two triangles that go through each other were divided along the line where they do.
+    CutCrossing,
+    /// Of triangles that face each other one stayed, as the wall between two bodies.
+    KeptWall,
+    /// Triangles that meet stayed as they were: what would come of dividing them would meet in more than it shares.
+    LeftMeeting,
     /// A triangle that named a vertex twice went.
     DroppedRepeated,
     /// A triangle whose corners lay on a line went; its neighbours at the longest edge were divided.
@@ -59,6 +69,10 @@ pub struct Repaired {
     pub new_to_old: Vec<Option<u32>>,
     /// For each the old triangle whose labels it takes: its own, or where it fills a hole one at the rim.
     pub takes_after: Vec<u32>,
+    /// The points that were given, then new ones, where triangles were divided.
+    pub points: Vec<Point>,
+    /// For each new point the vertices of the triangle in which it lies, and their weights.
+    pub new_points: Vec<([VertexId; 3], [f64; 3])>,
     /// For each vertex the one that stands for it now.
     pub vertex_to_kept: Vec<VertexId>,
     /// Everything that was done, in that order, and what could not be.
@@ -69,6 +83,16 @@ impl Repaired {
     /// How often something was done.
     pub fn count(&self, kind: RepairKind) -> usize {
         self.done.iter().filter(|repair| repair.kind == kind).count()
+    }
+
+    /// Values at all points, from those at the points that were given: linear in the triangles where there are new ones.
+    ///
+    /// Panics when there are fewer values than there were points.
+    pub fn at_points(&self, given: &[f64]) -> Vec<f64> {
+        let of = |(vertices, weights): &([VertexId; 3], [f64; 3])| {
+            vertices.iter().zip(weights).map(|(v, weight)| weight * given[v.index()]).sum()
+        };
+        given.iter().copied().chain(self.new_points.iter().map(of)).collect()
     }
 
     /// Labels of the new triangles, from those of the old ones.

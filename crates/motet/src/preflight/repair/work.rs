@@ -1,5 +1,6 @@
 //! Triangles under repair: where each comes from, and what was done so far.
 
+use super::joints::Origin;
 use super::report::{Repair, RepairKind, Repaired};
 use crate::base::{Point, VertexId};
 use crate::preflight::fault::mean;
@@ -23,7 +24,7 @@ pub(super) struct Work<'a> {
     pub(super) points: &'a [Point],
     pub(super) roles: &'a [Role],
     pub(super) pieces: Vec<Piece>,
-    done: Vec<Repair>,
+    pub(super) done: Vec<Repair>,
 }
 
 /// Triangles and their surfaces, as the search wants them.
@@ -107,7 +108,8 @@ impl<'a> Work<'a> {
         self.pieces.retain(|_| goes.next() != Some(true));
     }
 
-    pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>) -> Repaired {
+    /// `new_points` tells where points that came lie in the surfaces as they were.
+    pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>, new_points: Vec<Origin>) -> Repaired {
         for piece in self.pieces.clone().iter().filter(|piece| piece.is_turned && !piece.is_new) {
             self.tell(RepairKind::Turned, vec![piece.takes_after], piece.vertices.to_vec());
         }
@@ -117,6 +119,8 @@ impl<'a> Work<'a> {
             takes_after: self.pieces.iter().map(|piece| piece.takes_after).collect(),
             triangles: lists.triangles,
             surface_of: lists.surface_of,
+            points: self.points.to_vec(),
+            new_points,
             vertex_to_kept,
             done: self.done,
         }

@@ -8,12 +8,12 @@ use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 /// What a point is, so that every pair of triangles that has it gives it the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Name {
-    /// A vertex of either surface.
+    /// A vertex.
     Vertex(VertexId),
-    /// Where an edge of the first crosses one of the second; smaller vertices first.
+    /// Where two edges cross, the smaller one first; of each the smaller vertex first.
     Edges([VertexId; 2], [VertexId; 2]),
-    /// Where an edge of one goes through a triangle of the other: 0 of the first, 1 of the second, and its number.
-    Through([VertexId; 2], u8, u32),
+    /// Where an edge goes through a triangle, by its number.
+    Through([VertexId; 2], u32),
 }
 
 /// Where a point lies on a triangle.
@@ -23,6 +23,17 @@ pub(super) enum On {
     /// From this corner to the next.
     Edge(usize),
     Inside,
+}
+
+impl On {
+    /// Whether it lies on the edge from corner `k` to the next, its ends included.
+    fn is_along(self, k: usize) -> bool {
+        match self {
+            On::Corner(c) => c == k || c == (k + 1) % 3,
+            On::Edge(e) => e == k,
+            On::Inside => false,
+        }
+    }
 }
 
 /// A point that two triangles have in common.
@@ -44,11 +55,9 @@ pub(super) struct Common {
     pub(super) is_flat: bool,
 }
 
-/// A triangle of a surface.
+/// One of two triangles that may meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// 0 of the first surface, 1 of the second.
-    pub(super) surface: u8,
     pub(super) number: u32,
     pub(super) vertices: [VertexId; 3],
     pub(super) corners: [Point; 3],
@@ -104,21 +113,47 @@ impl Common {
             return None;
         }
         let mut common = Self::default();
-        common.add_vertices(a, b, of_a, near);
-        common.add_vertices(b, a, of_b, near);
-        common.add_passages(a, b, of_a, near);
-        common.add_passages(b, a, of_b, near);
+        common.add_vertices(0, [a, b], of_a, near);
+        common.add_vertices(1, [b, a], of_b, near);
+        common.add_passages(0, [a, b], of_a, near);
+        common.add_passages(1, [b, a], of_b, near);
         common.is_flat = of_a.iter().chain(&of_b).all(|x| *x == 0.0);
         if common.is_flat {
             common.add_crossings(a, b, near);
-            common.join_along_edges(a, b);
+            common.join_along_edges([a, b]);
         } else {
             common.join_in_line();
         }
         (!common.points.is_empty()).then_some(common)
     }
 
-    fn add(&mut self, first: u8, name: Name, at: Point, on: [On; 2]) {
+    /// Whether the triangles have more in common than corners of both.
+    pub(super) fn is_to_be_divided(&self) -> bool {
+        self.points.iter().any(|p| !matches!(p.on, [On::Corner(_), On::Corner(_)]))
+    }
+
+    /// Whether the triangles go through each other: what they have in common is a segment that lies on no edge of either. Where it lies on an edge,
+    /// they touch.
+    pub(super) fn is_crossing(&self) -> bool {
+        let is_on_edge = |s: usize| (0..3).any(|k| self.points.iter().all(|p| p.on[s].is_along(k)));
+        let goes_through = self.points.iter().any(|p| matches!(p.name, Name::Through(..)));
+        !self.is_flat && (goes_through || self.points.len() > 1 && !is_on_edge(0) && !is_on_edge(1))
+    }
+
+    /// Whether the triangles lie on each other, in one plane with an area in common.
+    pub(super) fn is_overlap(&self) -> bool {
+        let is_on_edge = |s: usize| (0..3).any(|k| self.points.iter().all(|p| p.on[s].is_along(k)));
+        self.is_flat && self.points.len() > 2 && !is_on_edge(0) && !is_on_edge(1)
+    }
+
+    /// The mean of what they have in common.
+    pub(super) fn middle(&self) -> Point {
+        let part = 1.0 / self.points.len() as f64;
+        self.points.iter().fold([0.0; 3], |sum, p| add(sum, scale(p.at, part)))
+    }
+
+    /// `on` tells where the point lies on triangle `first` of the two, and on the other.
+    fn add(&mut self, first: usize, name: Name, at: Point, on: [On; 2]) {
         let on = if first == 0 { on } else { [on[1], on[0]] };
         if !self.points.iter().any(|known| known.name == name) {
             self.points.push(Shared { name, at, on });
@@ -126,20 +161,20 @@ impl Common {
     }
 
     /// Vertices of `a` that lie on `b`.
-    fn add_vertices(&mut self, a: &Side, b: &Side, of_a: [f64; 3], near: f64) {
+    fn add_vertices(&mut self, first: usize, [a, b]: [&Side; 2], of_a: [f64; 3], near: f64) {
         for k in (0..3).filter(|&k| of_a[k] == 0.0) {
             let on = match b.vertices.iter().position(|v| *v == a.vertices[k]) {
                 Some(corner) => Some(On::Corner(corner)),
                 None => b.locate(a.corners[k], near),
             };
             if let Some(on) = on {
-                self.add(a.surface, Name::Vertex(a.vertices[k]), a.corners[k], [On::Corner(k), on]);
+                self.add(first, Name::Vertex(a.vertices[k]), a.corners[k], [On::Corner(k), on]);
             }
         }
     }
 
     /// Edges of `a` that go through the plane of `b`, within `b`.
-    fn add_passages(&mut self, a: &Side, b: &Side, of_a: [f64; 3], near: f64) {
+    fn add_passages(&mut self, first: usize, [a, b]: [&Side; 2], of_a: [f64; 3], near: f64) {
         for k in 0..3 {
             let (of_k, of_next) = (of_a[k], of_a[(k + 1) % 3]);
             if of_k * of_next >= 0.0 {
@@ -151,10 +186,10 @@ impl Common {
             let Some(on) = b.locate(at, near) else { continue };
             let (name, at) = match on {
                 On::Corner(corner) => (Name::Vertex(b.vertices[corner]), b.corners[corner]),
-                On::Edge(other) => (edges(a, edge, b.edge(other).0), at),
-                On::Inside => (Name::Through(edge, b.surface, b.number), at),
+                On::Edge(other) => (edges(edge, b.edge(other).0), at),
+                On::Inside => (Name::Through(edge, b.number), at),
             };
-            self.add(a.surface, name, at, [On::Edge(k), on]);
+            self.add(first, name, at, [On::Edge(k), on]);
         }
     }
 
@@ -175,7 +210,7 @@ impl Common {
             let (of_p, of_q) = (side(r, s, p), side(r, s, q));
             if of_r * of_s < 0.0 && of_p * of_q < 0.0 {
                 let at = add(p, scale(sub(q, p), of_p / (of_p - of_q)));
-                self.add(a.surface, edges(a, of_a, of_b), at, [On::Edge(i), On::Edge(j)]);
+                self.add(0, edges(of_a, of_b), at, [On::Edge(i), On::Edge(j)]);
             }
         }
     }
@@ -194,17 +229,11 @@ impl Common {
     }
 
     /// In one plane, what they have in common is bounded by parts of edges.
-    fn join_along_edges(&mut self, a: &Side, b: &Side) {
+    fn join_along_edges(&mut self, sides: [&Side; 2]) {
         for (side, k) in [0, 1].into_iter().flat_map(|side| (0..3).map(move |k| (side, k))) {
-            let of = if usize::from(a.surface) == side { a } else { b };
-            let start = of.corners[k];
-            let is_there = |on: On| match on {
-                On::Corner(c) => c == k || c == (k + 1) % 3,
-                On::Edge(e) => e == k,
-                On::Inside => false,
-            };
+            let start = sides[side].corners[k];
             let mut along: Vec<usize> =
-                (0..self.points.len()).filter(|&i| is_there(self.points[i].on[side])).collect();
+                (0..self.points.len()).filter(|&i| self.points[i].on[side].is_along(k)).collect();
             let off = |i: usize| distance(start, self.points[i].at);
             along.sort_by(|&i, &j| off(i).total_cmp(&off(j)));
             self.segments.extend(along.windows(2).map(|pair| [pair[0], pair[1]]));
@@ -212,7 +241,7 @@ impl Common {
     }
 }
 
-/// The name of a crossing of an edge of `a` with one of the other surface.
-fn edges(a: &Side, of_a: [VertexId; 2], other: [VertexId; 2]) -> Name {
-    if a.surface == 0 { Name::Edges(of_a, other) } else { Name::Edges(other, of_a) }
+/// The name of a crossing of two edges.
+fn edges(a: [VertexId; 2], b: [VertexId; 2]) -> Name {
+    Name::Edges(a.min(b), a.max(b))
 }

@@ -18,7 +18,7 @@ const MOST_DIGITS: i32 = 9;
 const COARSEST: f64 = 1e-5;
 
 /// A bound on how far rounding has moved each coordinate. The digits of all coordinates tell what they were written with: `f64`, `f32`, a number of decimals or of digits.
-pub(super) fn of(points: &[Point]) -> f64 {
+pub(crate) fn of(points: &[Point]) -> f64 {
     let all = || points.as_flattened().iter().copied();
     let largest = all().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let of_double = ROUNDINGS * 0.5 * f64::EPSILON * largest;

@@ -12,6 +12,12 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
+/// A walk of more steps than this goes round in circles, or is longer than looking at all triangles takes.
+const MOST_STEPS: usize = 1000;
+
+/// So many points leave many edges in the way of a segment.
+const MANY: usize = 64;
+
 /// Where flips go round in circles.
 const MOST_FLIPS: usize = 10_000;
 
@@ -28,6 +34,8 @@ pub(super) struct Plane<'a> {
     /// The triangle to the left of each edge, by the vertex opposite.
     apex: BTreeMap<[usize; 2], usize>,
     fixed: BTreeSet<[usize; 2]>,
+    /// The point that came in last, or a corner.
+    last: usize,
 }
 
 impl<'a> Plane<'a> {
@@ -42,7 +50,8 @@ impl<'a> Plane<'a> {
             list.iter().for_each(|&i| on[i] |= 1 << k);
         }
         let turn = orient3d(points[0], points[1], points[2], beside);
-        let mut plane = Self { points, on, beside, turn, apex: BTreeMap::new(), fixed: BTreeSet::new() };
+        let mut plane =
+            Self { points, on, beside, turn, apex: BTreeMap::new(), fixed: BTreeSet::new(), last: 0 };
         plane.add([0, 1, 2]);
         for (k, list) in on_edges.iter().enumerate() {
             let mut from = k;
@@ -90,21 +99,32 @@ impl<'a> Plane<'a> {
 
     /// Puts in a point within the triangle. None where it is not.
     pub(super) fn insert(&mut self, p: usize) -> Option<()> {
-        for [i, j, k] in self.triangles() {
-            let edges = [[i, j, k], [j, k, i], [k, i, j]];
-            let sides = edges.map(|[i, j, _]| self.side([i, j, p]));
-            if sides.contains(&-1) {
-                continue;
+        let [i, j, k] = self.walk_to(p).or_else(|| {
+            self.triangles()
+                .into_iter()
+                .find(|&[i, j, k]| [[i, j, p], [j, k, p], [k, i, p]].iter().all(|&turn| self.side(turn) >= 0))
+        })?;
+        let edges = [[i, j, k], [j, k, i], [k, i, j]];
+        let sides = edges.map(|[i, j, _]| self.side([i, j, p]));
+        match edges.iter().zip(sides).filter(|(_, side)| *side == 0).collect::<Vec<_>>()[..] {
+            [] => {
+                self.remove([i, j, k]);
+                edges.iter().for_each(|&[i, j, _]| self.add([i, j, p]));
             }
-            match edges.iter().zip(sides).filter(|(_, side)| *side == 0).collect::<Vec<_>>()[..] {
-                [] => {
-                    self.remove([i, j, k]);
-                    edges.iter().for_each(|&[i, j, _]| self.add([i, j, p]));
-                }
-                [(&[i, j, _], _)] => self.divide_edge([i, j], p),
-                _ => return None,
-            }
-            return Some(());
+            [(&[i, j, _], _)] => self.divide_edge([i, j], p),
+            _ => return None,
+        }
+        self.last = p;
+        Some(())
+    }
+
+    /// The triangle that holds a point, by going towards it from where the last point came in. None where that leads nowhere soon.
+    fn walk_to(&self, p: usize) -> Option<[usize; 3]> {
+        let (&[mut i, mut j], &(mut k)) = self.apex.range([self.last, 0]..).next()?;
+        for _ in 0..MOST_STEPS {
+            let beyond = [[i, j], [j, k], [k, i]].into_iter().find(|&[u, v]| self.side([u, v, p]) < 0);
+            let Some([u, v]) = beyond else { return Some([i, j, k]) };
+            (i, j, k) = (v, u, *self.apex.get(&[v, u])?);
         }
         None
     }
@@ -116,8 +136,13 @@ impl<'a> Plane<'a> {
         }
         let mut from = p;
         while from != q {
-            let to = self.next_on_way(from, q)?;
-            self.free_way([from, to])?;
+            let is_there = |plane: &Self, to| {
+                plane.apex.contains_key(&[from, to]) || plane.apex.contains_key(&[to, from])
+            };
+            let to = if is_there(self, q) { q } else { self.next_on_way(from, q)? };
+            if !is_there(self, to) {
+                self.free_way([from, to])?;
+            }
             self.fixed.extend([[from, to], [to, from]]);
             from = to;
         }
@@ -177,6 +202,13 @@ impl<'a> Plane<'a> {
         self.add([a, d, c]);
         self.add([d, b, c]);
         Some([c, d])
+    }
+
+    /// Flips what is not Delaunay where there are many points: then few edges are in the way of segments.
+    pub(super) fn even_out_many(&mut self) {
+        if self.points.len() > MANY {
+            self.even_out();
+        }
     }
 
     /// Flips what is not Delaunay.

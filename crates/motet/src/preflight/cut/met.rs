@@ -1,0 +1,73 @@
+//! What was found where triangles met: for a report.
+
+use super::Pair;
+use super::points::Points;
+use crate::base::{Point, VertexId};
+
+/// How triangles met.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum MetKind {
+    /// A given vertex lies on an edge that it is no end of.
+    VertexOnEdge,
+    /// Two triangles lie on each other, in one plane.
+    Overlap,
+    /// Two triangles go through each other.
+    Crossing,
+}
+
+/// One place where triangles met.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Met {
+    pub(crate) kind: MetKind,
+    /// The triangles, as they were given; none of a vertex on an edge.
+    pub(crate) triangles: Vec<u32>,
+    /// The vertex on an edge, and the ends of that.
+    pub(crate) vertices: Vec<VertexId>,
+    pub(crate) at: Point,
+}
+
+/// The pairs that lie on each other or go through each other, of triangles that were given apart.
+pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Met> {
+    let met = |(numbers, common): &Pair| {
+        let kind = match () {
+            () if common.is_overlap() => MetKind::Overlap,
+            () if common.is_crossing() => MetKind::Crossing,
+            () => return None,
+        };
+        let triangles = numbers.map(&origin);
+        let are_apart = triangles[0] != triangles[1];
+        are_apart.then(|| Met {
+            kind,
+            triangles: triangles.to_vec(),
+            vertices: Vec::new(),
+            at: common.middle(),
+        })
+    };
+    pairs.iter().filter_map(met).collect()
+}
+
+/// The given vertices that lie on edges of given vertices.
+pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<Met> {
+    let is_given = |v: &VertexId| v.index() < n_given;
+    let edges = found.on_edges().filter(|(ends, _)| ends.iter().all(is_given));
+    let met = |(ends, list): ([VertexId; 2], &[VertexId])| {
+        let of = |v: &VertexId| Met {
+            kind: MetKind::VertexOnEdge,
+            triangles: Vec::new(),
+            vertices: vec![*v, ends[0], ends[1]],
+            at: points[v.index()],
+        };
+        list.iter().filter(|v| is_given(v)).map(of).collect::<Vec<_>>()
+    };
+    edges.flat_map(met).collect()
+}
+
+/// Puts them in order, each pair and each vertex on an edge once, wherever a round found it.
+pub(super) fn sort(met: &mut Vec<Met>) {
+    met.sort_by(|x, y| key(x).cmp(&key(y)));
+    met.dedup_by(|x, y| key(x) == key(y));
+}
+
+fn key(met: &Met) -> (MetKind, &[u32], &[VertexId]) {
+    (met.kind, &met.triangles, &met.vertices)
+}

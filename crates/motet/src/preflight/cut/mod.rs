@@ -1,0 +1,206 @@
+//! Triangles divided where they meet, so that what they have in common is vertices, edges and whole triangles of both.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | pairs | `common` | points that two triangles have in common, by what they are: a vertex, two edges, an edge and a triangle |
+//! | points | `points` | each once, whatever pair has found it; put on edges and in triangles |
+//! | pieces | `plane` | each triangle with its points and segments |
+//!
+//! Points have names, so pieces fit by their ids, whatever rounding does to coordinates. What is nearer than a given distance is one place. Where three triangles
+//! cross in one point, two of them are divided along one segment first; the next round divides their pieces, of which that segment is an edge. Whether the pieces
+//! meet in what they share alone is asked with exact signs at the end.
+
+mod common;
+mod met;
+mod plane;
+mod points;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crate::base::{Csr, Point, Threads, VertexId, rising};
+use crate::geometry::vector::distance;
+use crate::preflight::crossing::crossings_of;
+use crate::preflight::renamed;
+use crate::spatial::BoxTree;
+use crate::spatial::runs::{around, corners, in_runs};
+use common::{Common, Side};
+pub(crate) use met::{Met, MetKind};
+use points::Points;
+
+/// Pieces that still meet after so many rounds are not looked at again.
+const ROUNDS: usize = 8;
+
+/// So many pairs of triangles are not divided: they take too much memory.
+const MOST_PAIRS: usize = 2_000_000;
+
+/// Which triangles are divided where they meet.
+pub(crate) struct Rule<'a> {
+    /// The group of each triangle.
+    pub(crate) group_of: &'a [u32],
+    /// Whether triangles of two groups are looked at.
+    pub(crate) admits: &'a (dyn Fn(u32, u32) -> bool + Sync),
+    /// What is nearer than this is one place.
+    pub(crate) near: f64,
+    /// Whether triangles that go through each other are divided too, or only those that touch or lie on each other.
+    pub(crate) crossings: bool,
+}
+
+/// Triangles that are divided.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cut {
+    /// The points that were given, then new ones.
+    pub(crate) points: Vec<Point>,
+    /// The pieces, turned as the triangles are, and the triangle that each is or is a part of; in the order of those.
+    pub(crate) pieces: Vec<([VertexId; 3], u32)>,
+    /// The vertex that each given point is now.
+    pub(crate) names: Vec<VertexId>,
+    /// Where triangles met.
+    pub(crate) met: Vec<Met>,
+}
+
+/// A pair of triangles, and what they have in common beside corners of both.
+type Pair = ([u32; 2], Common);
+
+impl Cut {
+    /// Divides triangles by a rule. `None` where pieces of those that are looked at would still meet in more than they share.
+    ///
+    /// Of two vertices at one place the one of smaller id stays.
+    pub(crate) fn new(
+        points: &[Point],
+        triangles: &[[VertexId; 3]],
+        rule: &Rule,
+        threads: &Threads,
+    ) -> Option<Self> {
+        let mut cut = Self {
+            points: points.to_vec(),
+            pieces: triangles.iter().copied().zip(0..).collect(),
+            names: (0..points.len()).map(VertexId::new).collect(),
+            met: Vec::new(),
+        };
+        for _ in 0..ROUNDS {
+            cut.join_vertices(rule);
+            let pairs = cut.pairs(rule, threads)?;
+            cut.round(&pairs, rule.near)?;
+            if cut.is_sound(rule, threads) {
+                met::sort(&mut cut.met);
+                return Some(cut);
+            }
+            if pairs.is_empty() {
+                break;
+            }
+        }
+        None
+    }
+
+    fn triangles(&self) -> Vec<[VertexId; 3]> {
+        self.pieces.iter().map(|piece| piece.0).collect()
+    }
+
+    /// Divides all pieces once.
+    fn round(&mut self, pairs: &[Pair], near: f64) -> Option<()> {
+        if pairs.is_empty() {
+            return Some(());
+        }
+        let (triangles, n_given) = (self.triangles(), self.names.len());
+        let found = Points::new(&self.points, &triangles, pairs, near);
+        let origin = |number: u32| self.pieces[number as usize].1;
+        self.met.extend(met::of_pairs(pairs, origin));
+        self.met.extend(met::of_edges(&found, n_given, &self.points));
+        let divided = found.divide(pairs)?;
+        let pieces = divided.pieces.into_iter().map(|(piece, t)| (piece, self.pieces[t as usize].1));
+        self.pieces = pieces.collect();
+        self.points = divided.points;
+        self.names.iter_mut().for_each(|v| *v = divided.same[v.index()]);
+        Some(())
+    }
+
+    /// Makes one of vertices at one place; pieces that this leaves without area go.
+    fn join_vertices(&mut self, rule: &Rule) {
+        let names = joined(&self.points, &self.pieces, rule);
+        let renamed = renamed(&self.triangles(), &names);
+        self.pieces.iter_mut().zip(renamed).for_each(|(piece, new)| piece.0 = new);
+        self.pieces.retain(|([a, b, c], _)| a != b && b != c && c != a);
+        self.names.iter_mut().for_each(|v| *v = names[v.index()]);
+    }
+
+    /// The pairs of pieces that have to be divided. `None` where there are too many.
+    fn pairs(&self, rule: &Rule, threads: &Threads) -> Option<Vec<Pair>> {
+        let corners = |i: usize| corners(&self.points, self.pieces[i].0);
+        let boxes: Vec<_> = (0..self.pieces.len()).map(|i| widened(around(&corners(i)), rule.near)).collect();
+        let (tree, n_found) = (BoxTree::new(&boxes), AtomicUsize::new(0));
+        let side = |i: usize| {
+            let (vertices, number) = (self.pieces[i].0, i as u32);
+            Side { number, vertices, corners: corners(i) }
+        };
+        let group = |i: usize| rule.group_of[self.pieces[i].1 as usize];
+        let found = in_runs(self.pieces.len(), threads, |touching, run| {
+            let mut found = Vec::new();
+            for i in run {
+                tree.touching(around(&corners(i)), touching);
+                for &j in
+                    touching.iter().filter(|&&j| i < j as usize && (rule.admits)(group(i), group(j as usize)))
+                {
+                    if n_found.load(Ordering::Relaxed) > MOST_PAIRS {
+                        return found;
+                    }
+                    let common = Common::of(&side(i), &side(j as usize), rule.near);
+                    let wanted = |common: &Common| {
+                        common.is_to_be_divided() && (rule.crossings || !common.is_crossing())
+                    };
+                    if let Some(common) = common.filter(wanted) {
+                        n_found.fetch_add(1, Ordering::Relaxed);
+                        found.push(([i as u32, j], common));
+                    }
+                }
+            }
+            found
+        });
+        (n_found.into_inner() <= MOST_PAIRS).then_some(found)
+    }
+
+    /// Whether the pieces that are looked at meet in what they share alone, or are the same triangle.
+    fn is_sound(&self, rule: &Rule, threads: &Threads) -> bool {
+        let group = |i: u32| rule.group_of[self.pieces[i as usize].1 as usize];
+        let all = self.triangles();
+        let admit = |i: u32, j: u32| i < j && (rule.admits)(group(i), group(j));
+        let is_same = |&[i, j]: &[u32; 2]| rising(all[i as usize]) == rising(all[j as usize]);
+        let crossings = crossings_of(&self.points, [&all, &all], threads, admit);
+        crossings.iter().all(|pair| is_same(pair) || !rule.crossings && self.goes_through(*pair, rule.near))
+    }
+
+    /// Whether two pieces go through each other.
+    fn goes_through(&self, pair: [u32; 2], near: f64) -> bool {
+        let [a, b] = pair.map(|number| {
+            let vertices = self.pieces[number as usize].0;
+            Side { number, vertices, corners: corners(&self.points, vertices) }
+        });
+        Common::of(&a, &b, near).is_some_and(|common| common.is_crossing())
+    }
+}
+
+/// For each vertex that pieces use the one that it is to be: the nearest of smaller id at its place, of a group that its own are held against.
+fn joined(points: &[Point], pieces: &[([VertexId; 3], u32)], rule: &Rule) -> Vec<VertexId> {
+    let mut groups: Vec<(VertexId, u32)> =
+        pieces.iter().flat_map(|(t, origin)| t.map(|v| (v, rule.group_of[*origin as usize]))).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    let groups = Csr::from_pairs(points.len(), || groups.iter().map(|(v, group)| (v.index(), *group)));
+    let used: Vec<usize> = (0..points.len()).filter(|&v| !groups.list(v).is_empty()).collect();
+    let boxes: Vec<_> = used.iter().map(|&v| [points[v]; 2]).collect();
+    let (tree, mut touching) = (BoxTree::new(&boxes), Vec::new());
+    let mut names: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
+    for &v in &used {
+        tree.touching(widened([points[v]; 2], rule.near), &mut touching);
+        let admits =
+            |w: usize| groups.list(v).iter().any(|&g| groups.list(w).iter().any(|&h| (rule.admits)(g, h)));
+        let off = |w: usize| distance(points[v], points[w]);
+        let others = touching.iter().map(|&i| used[i as usize]).filter(|&w| w < v && off(w) <= rule.near);
+        let nearest = others.filter(|&w| admits(w)).min_by(|&w, &u| off(w).total_cmp(&off(u)));
+        names[v] = nearest.map_or(names[v], |w| names[w]);
+    }
+    names
+}
+
+fn widened([low, high]: [Point; 2], by: f64) -> [Point; 2] {
+    [low.map(|x| x - by), high.map(|x| x + by)]
+}

@@ -1,0 +1,229 @@
+//! The points that triangles have in common: each once, put on edges and in triangles, and those divided.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::Pair;
+use super::common::{Name, On};
+use super::plane::Plane;
+use crate::base::{Point, VertexId, rising};
+use crate::geometry::segment;
+use crate::geometry::vector::{add, distance, scale, sub};
+
+/// All points, and where they go.
+pub(super) struct Points<'a> {
+    triangles: &'a [[VertexId; 3]],
+    near: f64,
+    points: Vec<Point>,
+    names: HashMap<Name, VertexId>,
+    on_edge: BTreeMap<[VertexId; 2], Vec<VertexId>>,
+    inside: BTreeMap<u32, BTreeSet<VertexId>>,
+    /// The vertex that each point is now.
+    same: Vec<VertexId>,
+}
+
+/// Triangles in pieces, and the points that they use.
+pub(super) struct Divided {
+    pub(super) points: Vec<Point>,
+    /// The pieces, turned as the triangles are, and the triangle that each is or is a part of; in the order of those.
+    pub(super) pieces: Vec<([VertexId; 3], u32)>,
+    /// The vertex that each point is now.
+    pub(super) same: Vec<VertexId>,
+}
+
+impl<'a> Points<'a> {
+    /// The points of all pairs. What is nearer than `near` is one place.
+    pub(super) fn new(points: &[Point], triangles: &'a [[VertexId; 3]], pairs: &[Pair], near: f64) -> Self {
+        let mut found = Self {
+            triangles,
+            near,
+            points: points.to_vec(),
+            names: HashMap::new(),
+            on_edge: BTreeMap::new(),
+            inside: BTreeMap::new(),
+            same: Vec::new(),
+        };
+        for (numbers, common) in pairs {
+            for shared in &common.points {
+                let id = match shared.name {
+                    Name::Vertex(v) => v,
+                    name => *found.names.entry(name).or_insert_with(|| {
+                        found.points.push(shared.at);
+                        VertexId::new(found.points.len() - 1)
+                    }),
+                };
+                (0..2).for_each(|s| found.put(id, numbers[s], shared.on[s]));
+            }
+        }
+        found.same = (0..found.points.len()).map(VertexId::new).collect();
+        found.merge();
+        found
+    }
+
+    /// Puts a point where it lies on a triangle.
+    fn put(&mut self, id: VertexId, triangle: u32, on: On) {
+        let vertices = self.triangles[triangle as usize];
+        match on {
+            On::Corner(_) => {}
+            On::Edge(k) => {
+                self.on_edge.entry(rising([vertices[k], vertices[(k + 1) % 3]])).or_default().push(id);
+            }
+            On::Inside => {
+                self.inside.entry(triangle).or_default().insert(id);
+            }
+        }
+    }
+
+    /// The points on edges: the ends of the edge, and the points between in their order.
+    pub(super) fn on_edges(&self) -> impl Iterator<Item = ([VertexId; 2], &[VertexId])> {
+        self.on_edge.iter().map(|(ends, list)| (*ends, list.as_slice()))
+    }
+
+    fn at(&self, v: VertexId) -> Point {
+        self.points[v.index()]
+    }
+
+    fn id(&self, mut v: VertexId) -> VertexId {
+        while self.same[v.index()] != v {
+            v = self.same[v.index()];
+        }
+        v
+    }
+
+    fn id_of(&self, name: Name) -> VertexId {
+        match name {
+            Name::Vertex(v) => self.id(v),
+            name => self.id(self.names[&name]),
+        }
+    }
+
+    /// Puts the points of edges in their order, and makes points at one place one.
+    fn merge(&mut self) {
+        let mut on_edge = std::mem::take(&mut self.on_edge);
+        for ([from, to], list) in &mut on_edge {
+            let start = self.at(*from);
+            let off = |v: VertexId| distance(start, self.points[v.index()]);
+            list.sort_by(|&v, &w| off(v).total_cmp(&off(w)).then(v.cmp(&w)));
+            list.dedup();
+            let all: Vec<VertexId> = [*from].into_iter().chain(list.iter().copied()).chain([*to]).collect();
+            all.windows(2).for_each(|pair| self.unite(pair[0], pair[1]));
+        }
+        let inside: Vec<Vec<VertexId>> =
+            self.inside.values().map(|set| set.iter().copied().collect()).collect();
+        for mut points in inside {
+            points.sort_by(|&v, &w| self.at(v)[0].total_cmp(&self.at(w)[0]).then(v.cmp(&w)));
+            for (i, &v) in points.iter().enumerate() {
+                let is_beside = |w: &&VertexId| self.at(v)[0] - self.at(**w)[0] <= self.near;
+                let beside: Vec<VertexId> = points[..i].iter().rev().take_while(is_beside).copied().collect();
+                beside.into_iter().for_each(|w| self.unite(w, v));
+            }
+        }
+        for ([from, to], list) in &mut on_edge {
+            list.iter_mut().for_each(|v| *v = self.id(*v));
+            list.dedup();
+            list.retain(|v| v != from && v != to);
+        }
+        on_edge.retain(|_, list| !list.is_empty());
+        self.on_edge = on_edge;
+    }
+
+    /// Given vertices come before those that were found: the smaller id stays.
+    fn unite(&mut self, v: VertexId, w: VertexId) {
+        let [v, w] = rising([self.id(v), self.id(w)]);
+        if v != w && distance(self.at(v), self.at(w)) <= self.near {
+            self.same[w.index()] = v;
+        }
+    }
+
+    /// Divides the triangles from the last to the first: of two that lie on each other, the first takes the edges of the other's pieces, so both are divided alike.
+    pub(super) fn divide(self, pairs: &[Pair]) -> Option<Divided> {
+        let mut segments: BTreeMap<u32, BTreeSet<[VertexId; 2]>> = BTreeMap::new();
+        let mut flat: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, (numbers, common)) in pairs.iter().enumerate() {
+            for number in *numbers {
+                let ends = common.segments.iter().map(|ends| ends.map(|i| self.id_of(common.points[i].name)));
+                segments.entry(number).or_default().extend(ends.filter(|[v, w]| v != w).map(rising));
+            }
+            if common.is_flat {
+                flat.entry(numbers[0]).or_default().push(i);
+            }
+        }
+        let mut pieces: BTreeMap<u32, Vec<[VertexId; 3]>> = BTreeMap::new();
+        for t in (0..self.triangles.len() as u32).rev() {
+            let mut own = segments.remove(&t).unwrap_or_default();
+            for (numbers, common) in flat.get(&t).into_iter().flatten().map(|&i| &pairs[i]) {
+                let shared: BTreeSet<VertexId> = common.points.iter().map(|p| self.id_of(p.name)).collect();
+                let edges = pieces[&numbers[1]].iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+                own.extend(edges.filter(|edge| edge.iter().all(|v| shared.contains(v))).map(rising));
+            }
+            pieces.insert(t, self.triangle(t, &own)?);
+        }
+        let pieces =
+            pieces.into_iter().flat_map(|(t, pieces)| pieces.into_iter().map(move |piece| (piece, t)));
+        let pieces = pieces.collect();
+        let same = (0..self.points.len()).map(|v| self.id(VertexId::new(v))).collect();
+        Some(Divided { points: self.points, pieces, same })
+    }
+
+    /// The pieces of one triangle: none where points at one place have left it no area.
+    fn triangle(&self, number: u32, segments: &BTreeSet<[VertexId; 2]>) -> Option<Vec<[VertexId; 3]>> {
+        let given = self.triangles[number as usize];
+        let triangle @ [a, b, c] = given.map(|v| self.id(v));
+        if a == b || b == c || c == a {
+            return Some(Vec::new());
+        }
+        let mut ids = triangle.to_vec();
+        let mut on_edges: [Vec<usize>; 3] = Default::default();
+        for (k, places) in on_edges.iter_mut().enumerate() {
+            let [from, to] = [given[k], given[(k + 1) % 3]];
+            let Some(list) = self.on_edge.get(&rising([from, to])) else { continue };
+            let mut list = list.clone();
+            if from > to {
+                list.reverse();
+            }
+            for v in list {
+                if triangle.contains(&v) {
+                    return Some(Vec::new());
+                }
+                places.push(ids.len());
+                ids.push(v);
+            }
+        }
+        let n_on_edges = ids.len();
+        let known: BTreeSet<VertexId> = ids.iter().copied().collect();
+        let inside: BTreeSet<VertexId> =
+            self.inside.get(&number).into_iter().flatten().map(|&v| self.id(v)).collect();
+        ids.extend(inside.difference(&known));
+        if ids.len() == 3 {
+            return Some(vec![triangle]);
+        }
+        let points: Vec<Point> = ids.iter().map(|&v| self.at(v)).collect();
+        let mut plane = Plane::new(&points, &on_edges)?;
+        for p in n_on_edges..ids.len() {
+            plane.insert(p)?;
+        }
+        plane.even_out_many();
+        let local: HashMap<VertexId, usize> = ids.iter().copied().zip(0..).collect();
+        let places = segments.iter().filter_map(|[v, w]| Some([*local.get(v)?, *local.get(w)?]));
+        for segment in places.flat_map(|ends| self.parted(&points, ends)) {
+            // What another segment is in the way of is divided when these pieces are looked at again.
+            let _ = plane.join(segment);
+        }
+        plane.even_out();
+        Some(plane.triangles().into_iter().map(|t| t.map(|i| ids[i])).collect())
+    }
+
+    /// A segment between two points, parted at those on it.
+    fn parted(&self, points: &[Point], [p, q]: [usize; 2]) -> Vec<[usize; 2]> {
+        let ends = [points[p], points[q]];
+        let place = |i: usize| segment::closest(ends, points[i]);
+        let is_on = |i: &usize| {
+            let t = place(*i);
+            let at = add(ends[0], scale(sub(ends[1], ends[0]), t));
+            *i != p && *i != q && t > 0.0 && t < 1.0 && distance(at, points[*i]) <= self.near
+        };
+        let mut way: Vec<usize> = (0..points.len()).filter(is_on).collect();
+        way.sort_by(|&i, &j| place(i).total_cmp(&place(j)).then(i.cmp(&j)));
+        let way: Vec<usize> = [p].into_iter().chain(way).chain([q]).collect();
+        way.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+    }
+}

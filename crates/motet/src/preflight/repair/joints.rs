@@ -1,0 +1,226 @@
+//! Triangles divided where they touch, lie on each other or go through each other, so that they share vertices, edges and whole triangles.
+//!
+//! What counts as one place is told by the digits of the coordinates (`geometry::rounding`). Surfaces that are right already stay as they are: within a part that
+//! hangs together by edges something must meet exactly, or a vertex of a rim must lie on an open edge; else only different parts are looked at.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::report::{Repair, RepairKind};
+use super::work::{Piece, Work};
+use crate::base::{Point, Sets, Threads, VertexId, rising, runs_alike};
+use crate::geometry::triangle::{self, centroid};
+use crate::geometry::vector::{add, distance, in_range, scale, sub};
+use crate::geometry::{rounding, segment};
+use crate::preflight::crossing::own_crossings;
+use crate::preflight::cut::{Cut, Met, MetKind, Rule};
+use crate::preflight::single::{Shape, shapes};
+use crate::preflight::surfaces::Role;
+use crate::spatial::{BoxTree, WindingNumber, around};
+
+/// A new point of surfaces: the vertices of the triangle that it lies in, and their weights.
+pub(super) type Origin = ([VertexId; 3], [f64; 3]);
+
+/// What dividing came to: all points, where the new ones lie, and the vertex that each given one is now.
+pub(super) struct Joints {
+    pub(super) points: Vec<Point>,
+    pub(super) origins: Vec<Origin>,
+    pub(super) names: Vec<VertexId>,
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// Divides what meets; `crossings`: also what goes through each other. `None` where nothing has to be divided, or where no digits are left to do so, which is reported.
+pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Option<Joints> {
+    let lists = work.lists();
+    let shapes = shapes(&lists.surfaces(work), threads);
+    let sound: Vec<u32> =
+        (0..).zip(&shapes).filter(|(_, shape)| **shape == Shape::Sound).map(|(t, _)| t).collect();
+    let triangles: Vec<[VertexId; 3]> = sound.iter().map(|&t| work.pieces[t as usize].vertices).collect();
+    if triangles.is_empty() {
+        return None;
+    }
+    let used: Vec<Point> = triangles.as_flattened().iter().map(|v| work.points[v.index()]).collect();
+    // Two points can be off by as much each.
+    let near = 2.0 * rounding::of(&used);
+    let parts = Parts::new(work.points, &triangles, near, threads);
+    let admits = |p: u32, q: u32| p != q || parts.is_faulty[p as usize];
+    let rule = Rule { group_of: &parts.part_of, admits: &admits, near, crossings };
+    let Some(cut) = Cut::new(work.points, &triangles, &rule, threads) else {
+        work.tell(RepairKind::LeftMeeting, Vec::new(), Vec::new());
+        return None;
+    };
+    let is_changed = cut.pieces.len() != triangles.len()
+        || cut.pieces.iter().zip(&triangles).any(|(piece, t)| piece.0 != *t);
+    if is_changed {
+        tell(work, &cut, &sound);
+    }
+    let origins = origins(work, &cut, &sound);
+    let mut joints =
+        Joints { pieces: pieces(work, &cut, &sound), points: cut.points, origins, names: cut.names };
+    let is_shared = share(work, &mut joints);
+    (is_changed || is_shared).then_some(joints)
+}
+
+/// The parts of surfaces that hang together by edges, of whichever surface.
+struct Parts {
+    /// The part of each triangle.
+    part_of: Vec<u32>,
+    /// Whether triangles of the part meet in more than they share, or a vertex of a rim lies on an open edge.
+    is_faulty: Vec<bool>,
+}
+
+impl Parts {
+    fn new(points: &[Point], triangles: &[[VertexId; 3]], near: f64, threads: &Threads) -> Self {
+        let of = |(t, [a, b, c]): (u32, &[VertexId; 3])| {
+            [[*a, *b], [*b, *c], [*c, *a]].map(|edge| (rising(edge), t))
+        };
+        let mut edges: Vec<([VertexId; 2], u32)> = (0..).zip(triangles).flat_map(of).collect();
+        edges.sort_unstable();
+        let mut sets = Sets::new(triangles.len());
+        let mut open = Vec::new();
+        for same in edges.chunk_by(|x, y| x.0 == y.0) {
+            same[1..].iter().for_each(|other| sets.join(same[0].1, other.1));
+            if same.len() == 1 {
+                open.push(same[0]);
+            }
+        }
+        let part_of: Vec<u32> = (0..triangles.len() as u32).map(|t| sets.root(t)).collect();
+        let mut is_faulty = vec![false; triangles.len()];
+        for pair in own_crossings(points, triangles, threads) {
+            let [i, j] = pair.map(|t| t as usize);
+            let is_twice = rising(triangles[i]) == rising(triangles[j]);
+            if part_of[i] == part_of[j] && !is_twice {
+                is_faulty[part_of[i] as usize] = true;
+            }
+        }
+        for t in at_open_edges(points, &open, near) {
+            is_faulty[part_of[t as usize] as usize] = true;
+        }
+        Self { part_of, is_faulty }
+    }
+}
+
+/// The triangles of open edges on which the end of another one lies.
+fn at_open_edges(points: &[Point], open: &[([VertexId; 2], u32)], near: f64) -> Vec<u32> {
+    let at = |v: VertexId| points[v.index()];
+    let mut ends: Vec<VertexId> = open.iter().flat_map(|edge| edge.0).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let tree = BoxTree::new(&ends.iter().map(|&v| [at(v); 2]).collect::<Vec<_>>());
+    let (mut touching, mut found) = (Vec::new(), Vec::new());
+    for &(edge, t) in open {
+        let [from, to] = edge.map(at);
+        let [low, high] = around([from, to]);
+        tree.touching([low.map(|x| x - near), high.map(|x| x + near)], &mut touching);
+        let is_on = |v: VertexId| {
+            let p = at(v);
+            let foot = add(from, scale(sub(to, from), segment::closest([from, to], p)));
+            !edge.contains(&v) && distance(foot, p) <= near
+        };
+        if touching.iter().any(|&i| is_on(ends[i as usize])) {
+            found.push(t);
+        }
+    }
+    found
+}
+
+/// The pieces, each as the triangle that it is a part of; those without area stay as they are.
+fn pieces(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Piece> {
+    let mut is_sound = vec![false; work.pieces.len()];
+    sound.iter().for_each(|&t| is_sound[t as usize] = true);
+    let others = (0..work.pieces.len()).filter(|&t| !is_sound[t]);
+    let renamed = |t: usize| work.pieces[t].vertices.map(|v| cut.names[v.index()]);
+    let mut all: Vec<(usize, [VertexId; 3])> = others.map(|t| (t, renamed(t))).collect();
+    all.extend(cut.pieces.iter().map(|&(vertices, i)| (sound[i as usize] as usize, vertices)));
+    all.sort_by_key(|piece| piece.0);
+    all.into_iter().map(|(t, vertices)| Piece { vertices, ..work.pieces[t] }).collect()
+}
+
+/// Where each new point lies in a triangle that has it.
+fn origins(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Origin> {
+    let n_given = work.points.len();
+    let mut origins = vec![([VertexId(0); 3], [1.0, 0.0, 0.0]); cut.points.len() - n_given];
+    for (vertices, i) in &cut.pieces {
+        let of = work.pieces[sound[*i as usize] as usize].vertices;
+        let corners = of.map(|v| work.points[v.index()]);
+        for v in vertices.iter().filter(|v| v.index() >= n_given) {
+            origins[v.index() - n_given] = (of, triangle::closest(corners, cut.points[v.index()]));
+        }
+    }
+    origins
+}
+
+/// Reports what was found where triangles met.
+fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
+    for (v, &name) in cut.names.iter().enumerate().filter(|(v, name)| name.index() != *v) {
+        work.tell(RepairKind::MergedVertex, Vec::new(), vec![VertexId::new(v), name]);
+    }
+    for Met { kind, triangles, vertices, at } in &cut.met {
+        let kind = match kind {
+            MetKind::VertexOnEdge => RepairKind::TJunction,
+            MetKind::Overlap => RepairKind::Imprinted,
+            MetKind::Crossing => RepairKind::CutCrossing,
+        };
+        let triangles = triangles.iter().map(|&i| work.old(sound[i as usize])).collect();
+        work.done.push(Repair { kind, triangles, vertices: vertices.clone(), at: Some(*at) });
+    }
+}
+
+/// Of pieces of one surface with the same vertices leaves one; where as many face either side only if they lie inside the rest of the
+/// surface, since they part two bodies there, and else none. Whether there were any.
+fn share(work: &mut Work, joints: &mut Joints) -> bool {
+    let mut same: BTreeMap<(u32, [VertexId; 3]), Vec<usize>> = BTreeMap::new();
+    for (i, piece) in joints.pieces.iter().enumerate() {
+        let [a, b, c] = rising(piece.vertices);
+        if a != b && b != c {
+            same.entry((piece.surface, [a, b, c])).or_default().push(i);
+        }
+    }
+    same.retain(|_, list| list.len() > 1);
+    let mut goes = vec![false; joints.pieces.len()];
+    let mut even = Vec::new();
+    for (&(surface, _), list) in &same {
+        list.iter().for_each(|&i| goes[i] = true);
+        let first = joints.pieces[list[0]].vertices;
+        let faces_as_first = |i: &&usize| runs_alike(joints.pieces[**i].vertices, first);
+        let n_alike = list.iter().filter(faces_as_first).count();
+        if 2 * n_alike == list.len() {
+            even.push((surface, list));
+            continue;
+        }
+        let of_more = list.iter().find(|i| faces_as_first(i) == (2 * n_alike > list.len()));
+        of_more.iter().for_each(|&&i| goes[i] = false);
+        tell_shared(work, joints, list, &goes, RepairKind::DroppedDuplicate);
+    }
+    let surfaces: BTreeSet<u32> = even.iter().map(|of| of.0).collect();
+    let rests: BTreeMap<u32, WindingNumber> =
+        surfaces.into_iter().map(|surface| (surface, rest_of(joints, &goes, surface))).collect();
+    for (surface, list) in even {
+        let at = middle(joints, list[0]);
+        let is_wall = work.roles[surface as usize] == Role::Boundary && rests[&surface].at(at).abs() > 0.5;
+        goes[list[0]] = !is_wall;
+        let kind = if is_wall { RepairKind::KeptWall } else { RepairKind::DroppedDuplicate };
+        tell_shared(work, joints, list, &goes, kind);
+    }
+    let mut goes = goes.into_iter();
+    joints.pieces.retain(|_| goes.next() != Some(true));
+    !same.is_empty()
+}
+
+fn middle(joints: &Joints, piece: usize) -> Point {
+    centroid(joints.pieces[piece].vertices.map(|v| joints.points[v.index()]))
+}
+
+/// Reports pieces with the same vertices, of which some go.
+fn tell_shared(work: &mut Work, joints: &Joints, list: &[usize], goes: &[bool], kind: RepairKind) {
+    let triangles = list.iter().filter(|&&i| goes[i]).map(|&i| joints.pieces[i].takes_after).collect();
+    let (vertices, at) = (joints.pieces[list[0]].vertices.to_vec(), middle(joints, list[0]));
+    work.done.push(Repair { kind, triangles, vertices, at: in_range(at).then_some(at) });
+}
+
+/// The pieces of a surface that stay, where their corners are finite.
+fn rest_of(joints: &Joints, goes: &[bool], surface: u32) -> WindingNumber {
+    let own = joints.pieces.iter().zip(goes).filter(|(piece, goes)| piece.surface == surface && !**goes);
+    let is_finite = |t: &[VertexId; 3]| t.iter().all(|v| in_range(joints.points[v.index()]));
+    let rest: Vec<_> = own.map(|(piece, _)| piece.vertices).filter(is_finite).collect();
+    WindingNumber::new(&joints.points, &rest)
+}
