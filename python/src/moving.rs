@@ -127,7 +127,7 @@ impl MovingMesh {
         Ok(Self { moving: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
 
-    /// Goes on from what `save` wrote.
+    /// Goes on from what `save` wrote, with the same options.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
         let mesh = motet::io::read(&path).or_raise()?;
@@ -220,7 +220,7 @@ impl MovingMesh {
         self.moving.remembers(step)
     }
 
-    fn history_since(&self, py: Python<'_>, step: usize) -> Option<History> {
-        py.detach(|| self.moving.history_since(step)).map(History)
+    fn history_since(&self, py: Python<'_>, step: usize) -> PyResult<Option<History>> {
+        Ok(py.detach(|| self.moving.history_since(step)).or_raise()?.map(History))
     }
 }

@@ -94,7 +94,13 @@ class MovingMesh:
 
     @classmethod
     def load(cls, path: str | PathLike[str], *, threads: int = 0, **options: Any) -> MovingMesh:
-        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes."""
+        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes. What changed before is not in it: see :meth:`history_since`.
+
+        Raises
+        ------
+        OptionsError
+            When options differ from those that it was saved with; ``remembered`` may. The message names them.
+        """
         moving = cls.__new__(cls)
         moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked(**options), threads), None
         return moving
@@ -189,6 +195,12 @@ class MovingMesh:
         return self._native.remembers(step)
 
     def history_since(self, step: int) -> History | None:
-        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed."""
+        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed.
+
+        Raises
+        ------
+        OptionsError
+            When changes since ``step`` are not known: those before a state that was loaded, and those before the last ``remembered``. See :meth:`remembers`.
+        """
         found = self._native.history_since(step)
         return None if found is None else History(found)
