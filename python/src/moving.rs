@@ -131,7 +131,7 @@ impl MovingMesh {
         Ok(Self { moving: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
 
-    /// Goes on from what `save` wrote.
+    /// Goes on from what `save` wrote, with the same options.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
         let mesh = called(py, || motet::io::read(&path))?;
@@ -225,6 +225,6 @@ impl MovingMesh {
     }
 
     fn history_since(&self, py: Python<'_>, step: usize) -> PyResult<Option<History>> {
-        Ok(called(py, || Ok(self.moving.history_since(step)))?.map(History))
+        Ok(called(py, || self.moving.history_since(step))?.map(History))
     }
 }

@@ -45,6 +45,10 @@ def test_it_goes_on_to_the_same_bytes(tmp_path):
         broken.advance(k, by)
         assert np.array_equal(whole.points, broken.points)
     assert not broken.remembers(0)
+    with pytest.raises(motet.OptionsError, match="since step 0"):
+        broken.history_since(0)
+    with pytest.raises(motet.OptionsError, match="motion.smoothing was 2 and is 0"):
+        motet.MovingMesh.load(tmp_path / "state.vtu")
 
 
 def test_what_is_refined_follows_the_walls():

@@ -403,11 +403,7 @@ pub(crate) unsafe extern "C" fn motet_moving_since(
         let place = place(outcome, "outcome")?;
         let moving = &handle(moving, "moving")?.moving;
         let step = count(step, "steps")?;
-        if !moving.remembers(step) {
-            return Err(Error::options(format!("the changes since step {step} are not known"))
-                .remedy("ask for a later step, or have more remembered: options.remembered"));
-        }
-        if let Some(history) = moving.history_since(step) {
+        if let Some(history) = moving.history_since(step)? {
             let report = json!({ "since": step, "step": moving.step() });
             give(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, true)?);
         }

@@ -68,6 +68,9 @@ fn what_is_divided_is_remembered_and_taken_back() {
     assert!(three.points == first.points && three.cells == first.cells);
     assert!(three.cell_field("refine_root").is_none());
     assert_eq!(three.point_data, first.point_data);
+    // Or as many levels at once as are asked for.
+    report(&folder, &["refine", "one.vtu", "-o", "four.vtu", "--coarsen", "--generations", "6"]);
+    assert!(folder.read("four.vtu") == folder.read("three.vtu"));
 }
 
 #[test]

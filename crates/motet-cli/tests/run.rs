@@ -158,15 +158,79 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
     let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(0);
     assert!(stdout(&call).contains("goes on after step 5"));
     assert!(bytes(&whole, "out") == bytes(&parted, "out"));
+    // A longer run is the same job, and so is one that is written in another way.
+    let longer = JOB.replace("periods = 2", "periods = 3").replace("[time]", "# all of it\n[time]");
+    parted.write("job.toml", longer.as_bytes());
+    parted.motet(["run", "job.toml", "--resume", "-q", "--until", "13"]).assert().code(0);
+    assert_eq!(read_series(parted.path("out/moved.pvd")).unwrap().len(), 14);
     // Another job does not go on from it.
-    let other = JOB.replace("fixed = [\"box\"]", "inside = []");
-    parted.write("job.toml", other.as_bytes());
-    parted.motet(["run", "job.toml", "--resume", "-q"]).assert().code(0);
+    let before = bytes(&parted, "out");
+    for (from, to, key) in [
+        ("fixed = [\"box\"]", "inside = []", "motion.fixed was [\"box\"] and is []"),
+        ("smooth = 2", "smooth = 3", "motion.smooth was 2 and is 3"),
+        ("shift = [3, 0, 0]", "shift = [2, 0, 0]", "motion.move.0.shift"),
+        ("warn = 1.5", "warn = 1.5\nhold = 0.1", "contact.hold was nothing and is 0.1"),
+        ("steps = 6", "steps = 7", "time.steps was 6 and is 7"),
+    ] {
+        parted.write("job.toml", JOB.replace(from, to).as_bytes());
+        let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(3);
+        assert!(stderr(&call).contains("another job") && stderr(&call).contains(key), "{}", stderr(&call));
+    }
+    parted.write("job.toml", JOB.as_bytes());
+    assert!(bytes(&parted, "out") == before, "what was refused changed nothing");
     let mut fewer = box_mesh();
     fewer.points.iter_mut().for_each(|p| p[0] *= 1.5);
     parted.mesh("box.vtu", &fewer);
     let call = parted.motet(["run", "job.toml", "--resume"]).assert().code(3);
-    assert!(stderr(&call).contains("another job"), "{}", stderr(&call));
+    assert!(stderr(&call).contains("another job") && stderr(&call).contains("mesh was"), "{}", stderr(&call));
+}
+
+#[test]
+fn what_is_missing_of_a_run_to_go_on_with_is_told() {
+    let folder = folder();
+    folder.motet(["run", "job.toml", "-q", "--until", "3"]).assert().code(0);
+    let whole = bytes(&folder, "out");
+    let refused = |name: &str, content: Option<&[u8]>| {
+        let path = folder.path("out").join(name);
+        match content {
+            Some(content) => fs::write(&path, content).unwrap(),
+            None => fs::remove_file(&path).unwrap(),
+        }
+        let call = folder.motet(["run", "job.toml", "--resume"]).assert().code(3);
+        let told = stderr(&call);
+        assert!(told.contains(name) && told.contains("--resume"), "{told}");
+        fs::write(&path, &whole[name]).unwrap();
+    };
+    refused("moved_0002.vtu", None);
+    refused("moved_0002.vtu", Some(b""));
+    let log = &whole["moved.jsonl"];
+    let cut = log.iter().rposition(|c| *c == b'{').unwrap() / 2;
+    refused("moved.jsonl", Some(&log[..cut]));
+    refused("moved.jsonl", None);
+    refused("moved.job.json", None);
+    refused("moved.job.json", Some(b"{"));
+    folder.motet(["run", "job.toml", "--resume", "-q", "--until", "3"]).assert().code(0);
+    assert!(bytes(&folder, "out") == whole);
+}
+
+#[test]
+fn one_run_at_a_time_writes_to_an_output_and_leftovers_of_killed_ones_go() {
+    let folder = folder();
+    fs::create_dir(folder.path("out")).unwrap();
+    // Of a run that was killed, of another output, and of someone else.
+    let left = [".motet-moved_0002.vtu-abc123", ".motet-moved.jsonl-abc123", ".motet-moved.pvd.lock"];
+    let others = [".motet-moved_b.pvd-abc123", ".motet-other_0002.vtu-abc123", ".motet-notes"];
+    left.iter().chain(&others).for_each(|name| folder.write(&format!("out/{name}"), b"1"));
+    let held = motet::io::OutputLock::take(&folder.path("out/moved.pvd")).unwrap();
+    assert!(held.is_some());
+    let call = folder.motet(["run", "job.toml"]).assert().code(1);
+    let told = stderr(&call);
+    assert!(told.contains("another run") && told.contains(&std::process::id().to_string()), "{told}");
+    assert!(!folder.path("out/moved_0000.vtu").exists());
+    drop(held);
+    folder.motet(["run", "job.toml", "-q", "--until", "1"]).assert().code(0);
+    let is_there = |name: &&str| folder.path("out").join(name).exists();
+    assert!(!left.iter().any(is_there) && others.iter().all(is_there));
 }
 
 #[test]

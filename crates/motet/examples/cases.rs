@@ -124,7 +124,7 @@ fn there_and_back(file: &str, patch: &str, by: [&str; 3], steps: &str) -> Result
         let part = time.min(2.0 * n_steps - time) / n_steps;
         let displacement: Vec<Point> = shifts.iter().map(|shift| shift.map(|d| part * d)).collect();
         n_changes += moving.advance(time, &displacement, &threads)?.changes.len();
-        if let Some(history) = moving.history_since(k - 1) {
+        if let Some(history) = moving.history_since(k - 1)? {
             x = history.transfer_points(&x)?;
         }
         if time == n_steps {

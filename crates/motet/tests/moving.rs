@@ -116,7 +116,7 @@ fn as_long_as_nothing_changes_a_step_depends_on_where_the_walls_are_alone() {
     assert_eq!(moving.mesh().points, first);
     moving.advance(4.0, &still, &threads()).unwrap();
     assert_eq!(moving.mesh().points, mesh.points);
-    assert!(moving.history_since(0).is_none());
+    assert!(moving.history_since(0).unwrap().is_none());
     let back: Vec<Point> = first.iter().zip(&mesh.points).map(|(&a, &b)| sub(b, a)).collect();
     assert_eq!(moving.velocity(), back);
 }
@@ -140,7 +140,7 @@ fn histories_lead_from_any_step_to_the_present_one() {
         }
     }
     for (step, field) in kept {
-        let history = moving.history_since(step).expect("there were changes");
+        let history = moving.history_since(step).unwrap().expect("there were changes");
         let carried = history.transfer_points(&field).unwrap().to_vectors().unwrap();
         assert_eq!(carried.len(), moving.mesh().points.len());
         // Kept vertices have the very place that they had then.
@@ -155,7 +155,12 @@ fn histories_lead_from_any_step_to_the_present_one() {
         let displacement = sphere_goes(&short, along(cycle(k)));
         short.advance(k as f64, &displacement, &threads()).unwrap();
     }
-    assert!(!short.remembers(0) && short.history_since(0).is_none());
+    assert!(!short.remembers(0) && short.remembers(12));
+    let told = short.history_since(0).unwrap_err();
+    assert_eq!(told.kind(), ErrorKind::Options);
+    assert!(told.to_string().contains("since step 0 are not known"), "{told}");
+    let told = short.history_since(13).unwrap_err().to_string();
+    assert!(told.contains("step 13") && told.contains("the last one is 12"), "{told}");
 }
 
 #[test]
@@ -188,6 +193,36 @@ fn a_run_that_is_saved_and_loaded_ends_with_the_same_bytes() {
         assert_eq!(broken.velocity(), whole.velocity());
         assert!(broken.remembers(k - 1) && (k < 2 || !broken.remembers(k - 2)));
     }
+}
+
+#[test]
+fn a_state_keeps_the_arrays_in_their_order_and_knows_its_options() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.vtu");
+    let mut mesh = box_mesh();
+    // Labels under a name that writers add their own to.
+    let labels = mesh.cell_data.iter_mut().find(|field| field.name == "patch").unwrap();
+    labels.name = "gmsh:physical".into();
+    mesh.cell_data.retain(|field| field.name != "region");
+    let mut whole = MovingMesh::new(&mesh, options(), &threads()).unwrap();
+    whole.advance(1.0, &sphere_goes(&whole, shift([0.4, 0.0, 0.0])), &threads()).unwrap();
+    whole.save(&file).unwrap();
+    let mut loaded = MovingMesh::load(&file, Options { remembered: 1, ..options() }, &threads()).unwrap();
+    assert_eq!(loaded.mesh(), whole.mesh());
+    for moving in [&mut whole, &mut loaded] {
+        let n = moving.mesh().cells.len();
+        moving.set_cell_field(Field::scalars("later", vec![1.0; n])).unwrap();
+    }
+    assert_eq!(loaded.mesh(), whole.mesh());
+    let told = loaded.history_since(0).unwrap_err().to_string();
+    assert!(told.contains("since step 0 are not known, only those since step 1"), "{told}");
+    assert!(loaded.history_since(1).unwrap().is_none());
+    // Other options are no way to go on.
+    let mut other = options();
+    other.motion.smoothing = 0;
+    let told = MovingMesh::load(&file, other, &threads()).unwrap_err();
+    assert_eq!(told.kind(), ErrorKind::Options);
+    assert!(told.to_string().contains("motion.smoothing was 2 and is 0"), "{told}");
 }
 
 #[test]
@@ -422,7 +457,7 @@ fn walls_that_cannot_be_kept_apart_are_told() {
     let file = folder.path().join("state.vtu");
     MovingMesh::new(&mesh, options(), &threads()).unwrap().save(&file).unwrap();
     let told = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap_err();
-    assert!(told.to_string().contains("moving:wall_body"), "{told}");
+    assert!(told.to_string().contains("watch"), "{told}");
 }
 
 #[test]

@@ -170,7 +170,13 @@ class MovingMesh(NotPickled):
         remembered: int = 64,
         threads: int = 0,
     ) -> MovingMesh:
-        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes."""
+        """Goes on from what :meth:`save` wrote, with the same options, to the same bytes. What changed before is not in it: see :meth:`history_since`.
+
+        Raises
+        ------
+        OptionsError
+            When options differ from those that it was saved with; ``remembered`` may. The message names them.
+        """
         moving = cls.__new__(cls)
         moving._native, moving._mesh = _motet.MovingMesh.load(path, _Asked.of(locals()), threads), None
         return moving
@@ -293,6 +299,12 @@ class MovingMesh(NotPickled):
         return self._native.remembers(step)
 
     def history_since(self, step: int) -> History | None:
-        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed."""
+        """From the mesh after ``step`` (0: the first) to the present one: carries arrays of any time level in between. None where nothing changed.
+
+        Raises
+        ------
+        OptionsError
+            When changes since ``step`` are not known: those before a state that was loaded, and those before the last ``remembered``. See :meth:`remembers`.
+        """
         found = self._native.history_since(step)
         return None if found is None else History(found)

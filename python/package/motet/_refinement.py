@@ -82,7 +82,7 @@ def refine(
     jump, recovery : mapping from point array to a share of the error (a float), or to a number of tets (an int)
     hessian : mapping from one or more point arrays to an error (a float), a part of their range (``"2%"``), or a number of tets (an int)
     generations : int
-        At most so often; once if None, for sizes as often as it takes.
+        At most so often; once if None, for sizes as often as it takes. Where ``coarsen`` stands alone: so many divisions are taken back.
     limit_generation, smallest, at_most : int, float, int
         No tet is divided more often since the first mesh, none whose parts were shorter, no more than bring the mesh to so many tets.
     coarsen, coarsen_where : bool, sequence of conditions

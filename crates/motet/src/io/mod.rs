@@ -13,6 +13,7 @@ mod hdf;
 mod labels;
 mod latin;
 mod legacy;
+mod lock;
 mod medit;
 mod msh;
 mod nodal;
@@ -41,10 +42,11 @@ mod vtkxml;
 mod weld;
 
 pub use format::{Compression, Encoding, Format, Input, Notes, Read, Write, WriteOptions, Written};
+pub use lock::OutputLock;
 pub use nodal::NodalSeries;
 pub use reading::{is_same_file, read_as};
 pub use registry::{can_write, formats, read, read_noted, write};
-pub use replace::{replace, replace_all};
+pub use replace::{remove_drafts, replace, replace_all, settle, sync};
 pub use series::{
     SeriesWriter, can_be_series, can_write_series, file_of, is_series, parse_series, read_series,
     write_series,

@@ -98,7 +98,8 @@ impl Draft {
             }
         };
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".motet-");
+        let prefix = draft_prefix(&place);
+        builder.prefix(&prefix);
         // As any program creates a file: readable for whom the user's umask says.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
@@ -129,7 +130,71 @@ impl Draft {
     }
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// What the name of a file on its way to its place begins with; what follows are [`RANDOM`] characters.
+fn draft_prefix(place: &Path) -> String {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    // Names have 255 bytes at most.
+    let end = (0..=name.len().min(LONGEST)).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
+    format!("{DRAFT}{}-", &name[..end])
+}
+
+/// What the names of files on their way begin with.
+pub(super) const DRAFT: &str = ".motet-";
+
+/// Characters that end such a name.
+const RANDOM: usize = 6;
+
+/// So much of a file's name stands in it.
+const LONGEST: usize = 160;
+
+/// Removes what processes that were killed have left of files on their way: of those alone whose names `is_own` knows. The caller makes sure that no other process
+/// writes files of these names. What cannot be removed stays.
+pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let of = name.to_str().and_then(|name| name.strip_prefix(DRAFT)).and_then(|rest| {
+            let (of, random) = rest.split_at_checked(rest.len().checked_sub(RANDOM + 1)?)?;
+            random.starts_with('-').then_some(of)
+        });
+        if of.is_some_and(&is_own) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// Waits until a file and its name are on the disk, and not in the memory of the system alone.
+///
+/// # Errors
+/// When the system refuses.
+pub fn sync(path: &Path) -> Result<()> {
+    let failed = |e: std::io::Error| Error::output(path, &e);
+    // Some systems sync only what may be written.
+    OpenOptions::new().write(true).open(path).and_then(|file| file.sync_all()).map_err(failed)?;
+    sync_folder(folder_of(path)).map_err(failed)
+}
+
+/// Puts a file in the place of another of the same folder, once its content is on the disk: whenever the machine stops, one of the two is there, whole.
+///
+/// # Errors
+/// When the system refuses.
+pub fn settle(from: &Path, to: &Path) -> Result<()> {
+    let failed = |e: std::io::Error| Error::output(to, &e);
+    OpenOptions::new().write(true).open(from).and_then(|file| file.sync_all()).map_err(failed)?;
+    std::fs::rename(from, to).map_err(failed)?;
+    sync_folder(folder_of(to)).map_err(failed)
+}
+
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> std::io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+#[cfg(not(unix))]
+fn sync_folder(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
+pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -183,6 +248,27 @@ mod tests {
         assert!(replace_all(&[(good.clone(), b"after"), (bad, b"after")]).is_err());
         assert_eq!(std::fs::read(&good).unwrap(), b"before");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn drafts_that_were_left_are_removed_by_the_names_they_were_to_have() {
+        let folder = tempfile::tempdir().unwrap();
+        let draft = |name: &str| Draft::new(&folder.path().join(name)).unwrap();
+        let left: Vec<PathBuf> = ["a.vtu", "b.vtu", &"long".repeat(60)]
+            .into_iter()
+            .map(|name| match draft(name) {
+                Draft::Beside(file, ..) => file.into_temp_path().keep().unwrap(),
+                Draft::Into(_) => unreachable!(),
+            })
+            .collect();
+        std::fs::write(folder.path().join("a.vtu"), b"itself").unwrap();
+        remove_drafts(folder.path(), |name| name == "a.vtu");
+        assert_eq!(left.iter().map(|path| path.exists()).collect::<Vec<_>>(), [false, true, true]);
+        assert!(folder.path().join("a.vtu").exists());
+        settle(&left[1], &folder.path().join("a.vtu")).unwrap();
+        assert_eq!(std::fs::read(folder.path().join("a.vtu")).unwrap(), b"");
+        sync(&folder.path().join("a.vtu")).unwrap();
+        assert!(sync(&folder.path().join("none")).is_err());
     }
 
     #[cfg(unix)]

@@ -167,15 +167,35 @@ impl MovingMesh {
     }
 
     /// From the mesh after `step` (0: the first) to the mesh as it is: carries any array of any time level in between. `None` where the
-    /// connectivity is the same, and where that step is forgotten: [`Options::remembered`], [`Self::remembers`].
-    pub fn history_since(&self, step: usize) -> Option<History> {
+    /// connectivity is the same.
+    ///
+    /// # Errors
+    /// When that step was not made yet, or changes since it are not known: those before a state that was loaded, and those before the last
+    /// [`Options::remembered`]. [`Self::remembers`] asks first.
+    pub fn history_since(&self, step: usize) -> Result<Option<History>> {
         if !self.remembers(step) {
-            return None;
+            return Err(self.not_known(step));
         }
         let later = self.changes.iter().filter(|(at, _)| *at > step).map(|(_, history)| history);
-        later.fold(None, |all: Option<History>, history| {
+        Ok(later.fold(None, |all: Option<History>, history| {
             Some(all.map_or_else(|| History::clone(history), |all| all.then(history)))
-        })
+        }))
+    }
+
+    fn not_known(&self, step: usize) -> Error {
+        let last = self.clock.step;
+        match self.forgotten.filter(|_| step <= last) {
+            None => Error::options(format!("step {step} was not made yet: the last one is {last}"))
+                .remedy(format!("ask for a step up to {last}")),
+            Some(first) => Error::options(format!(
+                "changes since step {step} are not known, only those since step {first}: \
+                 a state that is loaded does not hold those before it was saved, and only the last {} are remembered",
+                self.options.remembered
+            ))
+            .remedy(format!(
+                "carry arrays before the state is saved, have more changes remembered, or ask for step {first} or a later one"
+            )),
+        }
     }
 
     /// Whether all changes since a step are known.

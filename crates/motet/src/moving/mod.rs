@@ -15,6 +15,7 @@
 //! | `swept` | the volume that each facet sweeps in a step, exact to rounding: what a flow on a moving mesh has to know |
 //! | `script` | what walls do in time, told in words or by frames |
 //! | `step` | what a step says of itself |
+//! | `described` | options as text: a state is gone on with by those that it was saved with |
 //! | `state` | all of it in a file, and back: a run that was stopped goes on to the same bytes |
 //!
 //! ```
@@ -33,7 +34,7 @@
 //!     let displacement: Vec<_> = is_sphere.iter().map(|&s| if s { shift } else { [0.0; 3] }).collect();
 //!     let step = moving.advance(f64::from(k), &displacement, &threads)?;
 //!     assert!(step.complete && step.inverted == 0 && step.bad == 0);
-//!     if let Some(history) = moving.history_since(step.step - 1) {
+//!     if let Some(history) = moving.history_since(step.step - 1)? {
 //!         // Arrays of the caller's own follow: history.transfer_points(&old)?
 //!         assert_eq!(history.vertices.len(), moving.mesh().points.len());
 //!     }
@@ -55,6 +56,7 @@
 
 mod coarsen;
 mod contents;
+mod described;
 mod handle;
 mod hold;
 mod legs;

@@ -8,6 +8,7 @@ use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
 use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
+use crate::moving::described::differences;
 use crate::moving::handle::{Clock, MovingMesh};
 use crate::moving::now::{BEFORE, FIRST, FIRST_SIZE, Known, LeftBad, Now, SIZE};
 use crate::moving::options::Options;
@@ -23,6 +24,11 @@ const LEFT: &str = "moving:left";
 const LEFT_EAS: &str = "moving:left_eas";
 const LEFT_FORCED: &str = "moving:left_forced";
 const CLOCK: &str = "moving:clock";
+const OPTIONS: &str = "moving:options";
+const POINT_ARRAYS: &str = "moving:point_arrays";
+const CELL_ARRAYS: &str = "moving:cell_arrays";
+/// Between the names of arrays: in none of them, since no XML has it.
+const BETWEEN: char = '\0';
 
 impl MovingMesh {
     /// Writes all that the next steps depend on. Changes before it are not in it: [`Self::remembers`] nothing that was before.
@@ -50,6 +56,11 @@ impl MovingMesh {
             Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
         ]);
+        file.field_data.extend([
+            text(OPTIONS, &self.options.described()),
+            text(POINT_ARRAYS, &names(&mesh.point_data)),
+            text(CELL_ARRAYS, &names(&mesh.cell_data)),
+        ]);
         if !self.wall.body.is_empty() {
             file.field_data.push(Field::scalars(BODY, self.wall.body.clone()));
         }
@@ -58,10 +69,10 @@ impl MovingMesh {
         io::write(path, &file, &options).map(|_| ())
     }
 
-    /// Goes on from what [`Self::save`] wrote, with the same options.
+    /// Goes on from what [`Self::save`] wrote, with the options that it was saved with; [`Options::remembered`] may differ.
     ///
     /// # Errors
-    /// When the file cannot be read, or is no such file; as [`Self::new`].
+    /// When the file cannot be read, or is no such file; when other options are given: names them; as [`Self::new`].
     pub fn load(path: impl AsRef<Path>, options: Options, threads: &Threads) -> Result<Self> {
         let path = path.as_ref();
         let file = io::read(path)?;
@@ -77,6 +88,14 @@ impl MovingMesh {
             let is_ours = |field: &mut Field| field.name.starts_with(PREFIX);
             taken.fields.extend(list.extract_if(.., is_ours));
         }
+        let differ = differences(&taken.text(OPTIONS)?, &options.described());
+        if !differ.is_empty() {
+            return Err(Error::options(format!("was saved with other options: {}", differ.join("; ")))
+                .remedy("give the options that it was saved with, or start anew from its mesh"));
+        }
+        // Writers add arrays of labels where the mesh has them under other names.
+        arrange(&mut mesh.point_data, &taken.text(POINT_ARRAYS)?)?;
+        arrange(&mut mesh.cell_data, &taken.text(CELL_ARRAYS)?)?;
         let clock = taken.floats(CLOCK)?;
         let &[step, time, dt, n_first] = clock.as_slice() else { return Err(no_state(CLOCK)) };
         let clock = Clock { step: step as usize, time, dt, n_first: n_first as usize };
@@ -133,6 +152,13 @@ impl Taken {
         }
     }
 
+    fn text(&self, name: &str) -> Result<String> {
+        match &self.field(name)?.values {
+            Values::U8(bytes) => String::from_utf8(bytes.clone()).map_err(|_| no_state(name)),
+            _ => Err(no_state(name)),
+        }
+    }
+
     fn left(&self, n_cells: usize) -> Result<Vec<LeftBad>> {
         let (cells, eas, forced) = (self.ids(LEFT)?, self.floats(LEFT_EAS)?, self.floats(LEFT_FORCED)?);
         let is_right = cells.len() == eas.len()
@@ -147,6 +173,25 @@ impl Taken {
             .map(|((cell, eas), forced)| LeftBad { cell: CellId(cell), eas, is_forced: forced != 0.0 })
             .collect())
     }
+}
+
+fn text(name: &str, text: &str) -> Field {
+    Field::scalars(name, text.as_bytes().to_vec())
+}
+
+/// The names of arrays, each with [`BETWEEN`] after it.
+fn names(fields: &[Field]) -> String {
+    fields.iter().flat_map(|field| [field.name.as_str(), "\0"]).collect()
+}
+
+/// Leaves the arrays of these names, in their order.
+fn arrange(fields: &mut Vec<Field>, names: &str) -> Result<()> {
+    let mut all = std::mem::take(fields);
+    for name in names.split_terminator(BETWEEN) {
+        let place = all.iter().position(|field| field.name == name).ok_or_else(|| no_state(name))?;
+        fields.push(all.remove(place));
+    }
+    Ok(())
 }
 
 fn triangles(ids: &[u32]) -> Result<Vec<[VertexId; 3]>> {

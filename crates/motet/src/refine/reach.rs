@@ -25,7 +25,8 @@ pub struct Wanted {
     pub coarsen: bool,
     /// Divisions are taken back first where one of these holds on all eight parts and no criterion marks.
     pub coarsen_where: Vec<Condition>,
-    /// At most so many generations. `None`: one, for criteria that [last](Criterion::lasts) as many as it takes.
+    /// At most so many generations. `None`: one, for criteria that [last](Criterion::lasts) as many as it takes. Where divisions are taken back and no
+    /// criterion says how far: so many levels of them, at least one.
     pub generations: Option<u32>,
     /// No tet is divided beyond these.
     pub limits: Limits,
@@ -230,9 +231,11 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         if active.is_empty() { None } else { Some(active) }
     }
 
-    /// Takes back, level after level, what no criterion needs; one level where nothing says how far.
+    /// Takes back, level after level, what no criterion needs; where none says how far, as many levels as generations are asked for, or one.
     fn take_back(&mut self) -> Result<()> {
-        loop {
+        let says_how_far = !self.wanted.criteria.is_empty() || !self.wanted.coarsen_where.is_empty();
+        let n_levels = if says_how_far { u32::MAX } else { self.wanted.generations.unwrap_or(1).max(1) };
+        for _ in 0..n_levels {
             self.threads.watch().go_on("taking divisions back", 0, 0)?;
             let free = self.free(&self.refinement.part())?;
             let before = self.refinement.mesh().cells.len();
@@ -243,10 +246,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
                 return Ok(());
             }
             self.tell("back", summary, 0, begin);
-            if self.wanted.criteria.is_empty() && self.wanted.coarsen_where.is_empty() {
-                return Ok(());
-            }
         }
+        Ok(())
     }
 
     /// The tets whose division may be taken back.

@@ -104,7 +104,7 @@ pub(crate) struct RefineArgs {
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::q, help_heading = "What to divide, by arrays")]
     pub(crate) q: Vec<Criterion>,
 
-    /// At most so often [default: once; for sizes as often as it takes]
+    /// At most so often [default: once; for sizes as often as it takes]; so many divisions back where --coarsen stands alone
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
     generations: Option<u32>,
     /// No tet is divided more often than this since the first mesh, earlier calls included

@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use motet::base::Point;
 use motet::mesh::history::Carry;
 use motet::{Error, Result, io};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
+
+use crate::verbs::refine::words;
 
 /// All that a job file says.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Job {
     /// Where it lies: names of files are relative to it.
@@ -41,7 +43,7 @@ fn one() -> usize {
     1
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Time {
     pub(super) period: f64,
@@ -55,7 +57,7 @@ impl Default for Time {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Device {
     pub(super) file: PathBuf,
@@ -67,7 +69,7 @@ pub(super) struct Device {
     pub(super) conform: Option<f64>,
 }
 
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Motion {
     pub(super) method: Option<String>,
@@ -88,14 +90,14 @@ pub(super) struct Motion {
     pub(super) moves: Vec<Move>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(super) enum Layer {
     Distance(f64),
     Word(String),
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Match {
     #[default]
@@ -104,7 +106,7 @@ pub(super) enum Match {
     Nearest,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Move {
     pub(super) patch: String,
@@ -117,7 +119,7 @@ pub(super) struct Move {
     pub(super) in_time: Course,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Turn {
     pub(super) axis: Point,
@@ -125,7 +127,7 @@ pub(super) struct Turn {
     pub(super) centre: Option<Point>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Bend {
     pub(super) hinge: Point,
@@ -136,7 +138,7 @@ pub(super) struct Bend {
 }
 
 /// A name of a course, or a table.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(super) enum Course {
     Name(String),
@@ -149,7 +151,7 @@ impl Default for Course {
     }
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Repair {
     pub(super) off: bool,
@@ -180,7 +182,7 @@ impl Default for Repair {
 }
 
 /// Each word as on the command line of `motet refine`.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Refine {
     pub(super) near: Vec<String>,
@@ -203,7 +205,7 @@ pub(super) struct Refine {
     pub(super) coarsen: bool,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Contact {
     pub(super) patches: Vec<String>,
@@ -235,6 +237,24 @@ impl Job {
     /// A file that the job names.
     pub(super) fn path(&self, named: &Path) -> PathBuf {
         self.file.parent().unwrap_or(Path::new("")).join(named)
+    }
+
+    /// The files that it reads, each with the key that names it.
+    pub(super) fn files(&self) -> Vec<(String, PathBuf)> {
+        let mut files = vec![("mesh".to_owned(), self.mesh.clone())];
+        for (i, device) in self.device.iter().enumerate() {
+            files.push((format!("device.{i}.file"), device.file.clone()));
+        }
+        files
+            .extend(self.motion.surfaces.iter().map(|series| ("motion.surfaces".to_owned(), series.clone())));
+        for (i, refine) in self.refine.iter().enumerate() {
+            let near = refine.near.iter().filter_map(|text| words::near(text).ok().map(|near| near.surface));
+            let sized = refine.near_size.iter();
+            let sized = sized.filter_map(|text| words::near_size(text).ok().map(|near| near.surface));
+            let named = near.chain(sized).enumerate();
+            files.extend(named.map(|(k, file)| (format!("refine.{i}, surface {k}"), file)));
+        }
+        files
     }
 
     /// An error of kind input, in the job where no other file is named: what it says does not fit what there is.

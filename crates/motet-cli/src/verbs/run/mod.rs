@@ -5,6 +5,7 @@ mod begin;
 mod course;
 mod job;
 mod output;
+mod record;
 mod report;
 
 use std::time::Instant;
@@ -74,8 +75,13 @@ impl Run {
         threads: &Threads,
         console: &Console,
     ) -> Result<Self> {
+        let record = record::of(job)?;
+        let state = output.state().filter(|_| resume);
+        if state.is_some() {
+            output.check_record(job, &record)?;
+        }
         let Begin { mesh, script, options, refining } = Begin::of(job, threads, console)?;
-        if let Some(state) = output.state().filter(|_| resume) {
+        if let Some(state) = state {
             let moving = MovingMesh::load(&state, options, threads)?;
             if moving.driven_places() != script.places() {
                 return Err(Error::input("is of another job: other vertices are driven")
@@ -93,7 +99,7 @@ impl Run {
         let mut changes = run.refine(0, threads)?;
         changes.extend(run.moving.repair(threads)?);
         let step = Step { changes, ..run.moving.certify(threads)? };
-        output.first(&run.moving, &step)?;
+        output.first(&record, &run.moving, &step)?;
         report::line(&step, console);
         report.add(&step);
         Ok(run)

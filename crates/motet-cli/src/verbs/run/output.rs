@@ -1,19 +1,21 @@
 //! What a run writes: the series, a line a step, the state to go on from.
 //!
-//! Lines and meshes are the same bytes however often a run was stopped; what the clock said has a file of its own.
+//! Lines and meshes are the same bytes however often a run was stopped; what the clock said has a file of its own. One run at a time writes to an output: the lock is the
+//! system's, so that a run that was killed leaves none. All that a state goes on from is on the disk before the state is.
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use motet::geometry::quality::eas;
-use motet::io::{SeriesWriter, WriteOptions, replace};
+use motet::io::{OutputLock, SeriesWriter, WriteOptions, remove_drafts, replace, settle, sync};
 use motet::mesh::Field;
 use motet::moving::{MovingMesh, Step};
 use motet::{Error, Mesh, Result};
 use serde_json::{Value, json};
 
 use super::job::Job;
+use super::record::{self, Record};
 
 /// Where all goes.
 pub(super) struct Output {
@@ -23,15 +25,30 @@ pub(super) struct Output {
     pub(super) log: PathBuf,
     times: PathBuf,
     state: PathBuf,
+    /// The next state, until it is whole.
+    draft: PathBuf,
+    /// Which job it is.
+    record: PathBuf,
+    _lock: Option<OutputLock>,
 }
 
 impl Output {
+    /// # Errors
+    /// When the system refuses its place, or another run writes there.
     pub(super) fn new(job: &Job) -> Result<Self> {
         let series_file = job.path(&job.output);
         let folder = series_file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(&series_file, &e))?;
+        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::output(&series_file, &e))?;
+        let lock = OutputLock::take(&series_file)?;
+        let name = series_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        if lock.is_some() {
+            remove_drafts(folder.unwrap_or(Path::new(".")), |of| is_own(&name, of));
+        }
         Ok(Self {
             series: SeriesWriter::new(&series_file, WriteOptions::default()),
+            draft: series_file.with_file_name(draft_of(&name)),
+            record: series_file.with_extension("job.json"),
+            _lock: lock,
             every: job.every,
             log: series_file.with_extension("jsonl"),
             times: series_file.with_extension("times.jsonl"),
@@ -45,11 +62,57 @@ impl Output {
         self.state.is_file().then(|| self.state.clone())
     }
 
+    /// Whether the state was made by this job.
+    ///
+    /// # Errors
+    /// When it was made by another, or nothing says by which: names what differs.
+    pub(super) fn check_record(&self, job: &Job, now: &Record) -> Result<()> {
+        let differ = record::differences(&record::read(&self.record)?, now);
+        match differ.is_empty() {
+            true => Ok(()),
+            false => {
+                Err(Error::input(format!("is another job than the one to go on with: {}", differ.join("; ")))
+                    .in_file(&job.file)
+                    .remedy(
+                        "change it back, or leave --resume away to start anew; time.periods alone may differ",
+                    ))
+            }
+        }
+    }
+
     /// What an earlier run has written up to a step stays, and no more.
+    ///
+    /// # Errors
+    /// When a frame or a line of it is missing.
     pub(super) fn go_on(&mut self, step: usize) -> Result<()> {
-        self.series.go_on_after(1 + step / self.every)?;
+        let n_frames = 1 + step / self.every;
+        self.series.go_on_after(n_frames)?;
+        let remedy = "put it back, or leave --resume away to start anew";
+        let is_there = |file: &PathBuf| file.metadata().is_ok_and(|it| it.is_file() && it.len() > 0);
+        let mut frames = (0..n_frames).map(|k| self.series.frame_path(k));
+        if let Some(file) = frames.find(|file| !is_there(file)) {
+            return Err(Error::input("is a frame of the run to go on with, and is missing or empty")
+                .in_file(file)
+                .remedy(remedy));
+        }
+        let text = std::fs::read_to_string(&self.log).map_err(|e| Error::io(&self.log, &e).remedy(remedy))?;
+        let is_of_step = |(k, line): (usize, &str)| {
+            let line: Option<Value> =
+                line.strip_suffix('\n').and_then(|line| serde_json::from_str(line).ok());
+            line.is_some_and(|line| line["step"].as_u64() == Some(k as u64))
+        };
+        let n_lines = text.split_inclusive('\n').enumerate().take_while(|line| is_of_step(*line)).count();
+        if n_lines <= step {
+            return Err(Error::input(format!(
+                "has the lines of {n_lines} steps from 0 on, expected {}",
+                step + 1
+            ))
+            .in_file(&self.log)
+            .remedy(remedy));
+        }
+        // What the clock said is of no account for what follows.
         for file in [&self.log, &self.times] {
-            let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, &e))?;
+            let text = std::fs::read_to_string(file).unwrap_or_default();
             let lines: String = text.split_inclusive('\n').take(step + 1).collect();
             replace(file, lines.as_bytes())?;
         }
@@ -57,10 +120,11 @@ impl Output {
     }
 
     /// The first frame; what an earlier run has left goes.
-    pub(super) fn first(&mut self, moving: &MovingMesh, step: &Step) -> Result<()> {
+    pub(super) fn first(&mut self, record: &Record, moving: &MovingMesh, step: &Step) -> Result<()> {
         if self.state.is_file() {
-            std::fs::remove_file(&self.state).map_err(|e| Error::io(&self.state, &e))?;
+            std::fs::remove_file(&self.state).map_err(|e| Error::output(&self.state, &e))?;
         }
+        record::write(&self.record, record)?;
         for file in [&self.log, &self.times] {
             replace(file, b"")?;
         }
@@ -80,14 +144,35 @@ impl Output {
         append(&self.log, &line)?;
         append(&self.times, &json!({ "step": step.step, "seconds": seconds }))?;
         if step.complete {
-            moving.save(&self.state)?;
+            if let Some(file) = &file {
+                sync(file)?;
+                sync(&self.series_file)?;
+            }
+            sync(&self.log)?;
+            moving.save(&self.draft)?;
+            settle(&self.draft, &self.state)?;
         }
         Ok(())
     }
 }
 
+/// The name of a state that is not whole yet.
+fn draft_of(name: &str) -> String {
+    format!(".motet-{name}.state.vtu")
+}
+
+/// Whether a run whose output has this name writes files of that one.
+fn is_own(name: &str, of: &str) -> bool {
+    let is_number = |text: &str| text.len() >= 4 && text.bytes().all(|c| c.is_ascii_digit());
+    of == draft_of(name)
+        || of.strip_prefix(name).is_some_and(|rest| {
+            let frame = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vtu"));
+            matches!(rest, ".pvd" | ".jsonl" | ".times.jsonl" | ".job.json") || frame.is_some_and(is_number)
+        })
+}
+
 fn append(file: &Path, line: &Value) -> Result<()> {
-    let told = |e: &std::io::Error| Error::io(file, e);
+    let told = |e: &std::io::Error| Error::output(file, e);
     let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(|e| told(&e))?;
     // One write a line: a run that is killed leaves whole lines, or a last one that resuming cuts off.
     out.write_all(format!("{line}\n").as_bytes()).map_err(|e| told(&e))

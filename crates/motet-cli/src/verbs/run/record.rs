@@ -1,0 +1,132 @@
+//! Which job a state was made by: what the job says, and what its files hold.
+//!
+//! A run goes on from a state only with the job that the state was made by. What cannot change the steps that were made is left out: how long the run is to be, and
+//! where files lie.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use motet::{Error, Result, io};
+use serde_json::{Value, json};
+
+use super::job::Job;
+
+/// So many differences are named.
+const MOST: usize = 4;
+
+/// Keys with their values as text. A file's value is what it holds.
+pub(super) type Record = BTreeMap<String, String>;
+
+/// The record of a job.
+///
+/// # Errors
+/// When a file that it names cannot be read.
+pub(super) fn of(job: &Job) -> Result<Record> {
+    let mut record = Record::new();
+    let said = serde_json::to_value(job).map_err(|e| Error::io(&job.file, &e.into()))?;
+    flatten("", &said, &mut record);
+    for key in ["output", "time.periods"] {
+        record.remove(key);
+    }
+    record.insert("time.steps".into(), job.steps_in_period().to_string());
+    for (key, named) in job.files() {
+        record.insert(key, content(&job.path(&named))?);
+    }
+    Ok(record)
+}
+
+/// What differs, each by its key, what it was and what it is.
+pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
+    let keys = was.keys().chain(is.keys().filter(|key| !was.contains_key(*key)));
+    let differ = keys.filter(|key| was.get(*key) != is.get(*key));
+    let value = |of: &Record, key: &str| of.get(key).map_or("nothing", String::as_str).to_owned();
+    let mut told: Vec<String> =
+        differ.map(|key| format!("{key} was {} and is {}", value(was, key), value(is, key))).collect();
+    let n = told.len();
+    if n > MOST {
+        told.truncate(MOST);
+        told.push(format!("{} more", n - MOST));
+    }
+    told
+}
+
+/// Reads what [`write`] wrote.
+///
+/// # Errors
+/// When it is not there, or is no record.
+pub(super) fn read(file: &Path) -> Result<Record> {
+    let off = |what: &str| Err(Error::input(what).in_file(file).remedy("leave --resume away to start anew"));
+    match std::fs::read(file) {
+        Err(_) => off("is not there, and tells by which job the state was made"),
+        Ok(bytes) => serde_json::from_slice(&bytes)
+            .or_else(|_| off("is damaged: it tells by which job the state was made")),
+    }
+}
+
+/// Writes a record, and waits until it is on the disk.
+///
+/// # Errors
+/// When the system refuses.
+pub(super) fn write(file: &Path, record: &Record) -> Result<()> {
+    io::replace(file, format!("{:#}\n", json!(record)).as_bytes())?;
+    io::sync(file)
+}
+
+/// A leaf a key, keys within keys joined by dots. What a job leaves away is no key.
+fn flatten(key: &str, value: &Value, record: &mut Record) {
+    let within = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
+    match value {
+        Value::Null => {}
+        Value::Object(all) => all.iter().for_each(|(name, value)| flatten(&within(name), value, record)),
+        Value::Array(all) if all.iter().any(Value::is_object) => {
+            all.iter().enumerate().for_each(|(i, value)| flatten(&within(&i.to_string()), value, record));
+        }
+        other => {
+            record.insert(key.to_owned(), other.to_string());
+        }
+    }
+}
+
+/// What a file holds, or all files of a folder or series: how many bytes, and a sum over them.
+fn content(path: &Path) -> Result<String> {
+    let mut sum = Sum::default();
+    let series = if io::can_write_series(path) { io::read_series(path)? } else { Vec::new() };
+    for file in series.into_iter().map(|(_, file)| file).chain([path.to_owned()]) {
+        // A step of a file with several is all of it.
+        files_of(&io::file_of(&file), &mut |file| {
+            std::fs::read(file).map(|bytes| sum.add(&bytes)).map_err(|e| Error::io(file, &e))
+        })?;
+    }
+    Ok(format!("{} bytes with sum {:016x}", sum.n_bytes, sum.state))
+}
+
+fn files_of(path: &Path, of: &mut impl FnMut(&Path) -> Result<()>) -> Result<()> {
+    if !path.is_dir() {
+        return of(path);
+    }
+    let entries = std::fs::read_dir(path).and_then(|all| all.map(|e| Ok(e?.path())).collect());
+    let mut entries: Vec<PathBuf> = entries.map_err(|e| Error::io(path, &e))?;
+    entries.sort();
+    entries.iter().try_for_each(|entry| files_of(entry, of))
+}
+
+/// FNV-1a (Fowler, Noll and Vo 1991) in 64 bits: tells files apart that were changed, not files that were made to look alike.
+struct Sum {
+    n_bytes: u64,
+    state: u64,
+}
+
+impl Default for Sum {
+    fn default() -> Self {
+        Self { n_bytes: 0, state: 0xcbf2_9ce4_8422_2325 }
+    }
+}
+
+impl Sum {
+    fn add(&mut self, bytes: &[u8]) {
+        self.n_bytes += bytes.len() as u64;
+        for byte in bytes {
+            self.state = (self.state ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

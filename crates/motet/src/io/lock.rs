@@ -1,0 +1,105 @@
+//! One writer of an output at a time: a lock beside it, which the system takes back when its process ends, however it ends.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+use crate::base::{Error, Result};
+use crate::io::replace::{DRAFT, folder_of};
+
+/// The holder removes its file as it ends, so one that was just opened may be no more.
+const TRIES: usize = 16;
+
+/// A lock on an output, as long as it lives.
+#[derive(Debug)]
+pub struct OutputLock {
+    path: PathBuf,
+    /// Locked; closing it gives the lock back.
+    _file: File,
+}
+
+impl OutputLock {
+    /// Takes the lock of an output; `None` on a file system that has no locks.
+    ///
+    /// # Errors
+    /// When another process has it, or the file beside the output cannot be made.
+    pub fn take(output: &Path) -> Result<Option<Self>> {
+        let name = output.file_name().unwrap_or_default().to_string_lossy();
+        let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
+        let failed = |e: &std::io::Error| Error::output(&path, e);
+        for _ in 0..TRIES {
+            let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+            let mut file = open.map_err(|e| failed(&e))?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(busy(output, &mut file)),
+                Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => return Ok(None),
+                Err(TryLockError::Error(e)) => return Err(failed(&e)),
+            }
+            if is_at(&file, &path) {
+                file.set_len(0).map_err(|e| failed(&e))?;
+                writeln!(file, "{}", std::process::id()).map_err(|e| failed(&e))?;
+                return Ok(Some(Self { path, _file: file }));
+            }
+        }
+        Err(Error::new(
+            crate::base::ErrorKind::Output,
+            "other processes take and leave its lock all the time",
+        )
+        .in_file(path))
+    }
+}
+
+impl Drop for OutputLock {
+    fn drop(&mut self) {
+        // Where a file can be removed while it is open. Elsewhere it stays, unlocked.
+        if cfg!(unix) {
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn busy(output: &Path, file: &mut File) -> Error {
+    let mut holder = String::new();
+    let holder = match file.take(20).read_to_string(&mut holder).is_ok().then(|| holder.trim().parse::<u32>())
+    {
+        Some(Ok(id)) => format!(" (process {id})"),
+        _ => String::new(),
+    };
+    Error::new(crate::base::ErrorKind::Output, format!("another run{holder} writes to this output"))
+        .in_file(output)
+        .remedy("wait until it ends, or give this run another output")
+}
+
+#[cfg(unix)]
+fn is_at(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let key = |m: &std::fs::Metadata| (m.dev(), m.ino());
+    matches!((file.metadata(), path.metadata()), (Ok(a), Ok(b)) if key(&a) == key(&b))
+}
+
+#[cfg(not(unix))]
+fn is_at(_: &File, _: &Path) -> bool {
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_has_the_lock_and_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let output = folder.path().join("run.pvd");
+        let held = OutputLock::take(&output).unwrap();
+        assert!(held.is_some());
+        let told = OutputLock::take(&output).unwrap_err().to_string();
+        assert!(told.contains("run.pvd") && told.contains(&std::process::id().to_string()), "{told}");
+        assert!(OutputLock::take(&folder.path().join("other.pvd")).is_ok());
+        drop(held);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        // What a process that was killed has left is no lock.
+        std::fs::write(folder.path().join(".motet-run.pvd.lock"), "4000000000\n").unwrap();
+        assert!(OutputLock::take(&output).unwrap().is_some());
+    }
+}
