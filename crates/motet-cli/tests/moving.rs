@@ -108,7 +108,8 @@ fn a_motion_beyond_the_wall_stops_where_it_must_and_exits_4() {
     assert!(0.0 < fraction && fraction < 4.0 / 6.0, "{fraction}");
     let why = told["not_reached"].as_str().expect("a reason");
     assert!(stderr(&call).contains(&format!("not reached: {why}")), "{}", stderr(&call));
-    let mut near = folder.motet(["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=0.1,0,0", "--json"]);
+    let mut near =
+        folder.motet(["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=0.1,0,0", "--json"]);
     assert!(report(&near.assert().success())["not_reached"].is_null());
     assert!(read(folder.path("out.vtu")).is_ok());
 }

@@ -10,7 +10,9 @@ use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
 use crate::mesh::curved::CurvedSummary;
-use crate::mesh::{Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, edge_lengths, triangulate};
+use crate::mesh::{
+    Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, edge_lengths, triangulate,
+};
 
 /// A tet below this EAS is bad.
 pub const BAD_EAS: f64 = 0.2;
@@ -171,7 +173,9 @@ impl Summary {
                 .then(|| BoundarySummary { facets: boundary.len(), vertices: boundary.vertices.len() }),
             quality: tet_quality(mesh, &tets),
             curved: CurvedSummary::of(mesh),
-            inverted: count(DefectKind::InvertedCell) + count(DefectKind::FlatCell) + count(DefectKind::FoldedCell),
+            inverted: count(DefectKind::InvertedCell)
+                + count(DefectKind::FlatCell)
+                + count(DefectKind::FoldedCell),
             turned: tets.turned.len(),
             conforming: is_conforming(&defects),
             defects,
