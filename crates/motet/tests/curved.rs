@@ -162,10 +162,12 @@ fn cells_of_every_kind_under_a_quadratic_map_have_its_jacobian() {
             let high = samples.iter().map(|s| s.0.abs()).fold(0.0, f64::max);
             assert!(found.determinant <= low + 1e-5 * high, "{kind:?} {found:?} {low}");
             assert!(found.determinant >= low - 0.1 * high, "{kind:?} {found:?} {low}");
-            let nearest = samples
-                .iter()
-                .min_by(|a, b| distance(a.1, found.place).total_cmp(&distance(b.1, found.place)));
-            assert!((nearest.unwrap().0 - found.determinant).abs() < 0.3 * high, "{kind:?} {found:?}");
+            // Where the map folds, several places of the cell lie at one point of space: one of them has that determinant.
+            let extent = samples.iter().map(|s| distance(s.1, samples[0].1)).fold(0.0, f64::max);
+            let is_there = |s: &(f64, Point)| {
+                distance(s.1, found.place) < 0.2 * extent && (s.0 - found.determinant).abs() < 0.1 * high
+            };
+            assert!(samples.iter().any(is_there), "{kind:?} {found:?}");
             let is_folded = !is_upright(kind, &nodes, false);
             n_folded += usize::from(is_folded);
             assert!(
@@ -242,7 +244,7 @@ fn a_cell_that_is_folded_between_its_corners_is_a_defect() {
     assert!(distance(at, mesh.points[pushed]) < 1.0);
     let summary = Summary::of(&mesh);
     let curved = summary.curved.unwrap();
-    assert_eq!((summary.inverted, curved.cells), (expected.len(), mesh.cells.len()));
+    assert_eq!((summary.inverted, curved.cells), (expected.len(), 48));
     assert!(curved.min_scaled_jacobian < 0.0 && expected.contains(&curved.worst_cell));
 }
 

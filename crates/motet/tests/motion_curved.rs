@@ -108,8 +108,9 @@ fn straight_edges_inside_stay_straight_by_every_method() {
     let map = |p: Point| add(turn.apply(p, 1.0), [0.5, 0.2, 0.0]);
     for method in methods() {
         let name = method.name();
+        let options = Options { method, ..Options::default() };
         let mut mover =
-            Mover::new(&mesh, &Options { method, ..Options::default() }, &Threads::single()).unwrap();
+            Mover::new(&mesh, &options, &Threads::single()).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(mover.setup().middles > 0 && mover.setup().left == 0, "{name}");
         let displacement = driven(&mover, map);
         let (out, certificate) = advance(&mut mover, &displacement);

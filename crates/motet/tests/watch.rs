@@ -15,9 +15,9 @@ type Verb = fn(&Threads) -> Result<()>;
 
 /// Each verb that takes long, and what it is at first.
 const VERBS: &[(&str, Verb)] = &[
-    ("repairing tets", repair),
-    ("splitting long edges", bring_to_sizes),
-    ("triangulating points", fill),
+    ("joining tets", repair),
+    ("joining tets", bring_to_sizes),
+    ("choosing points inside", fill),
     ("making a surface anew", conform),
     ("refining", refine),
     ("setting a motion up", set_up),

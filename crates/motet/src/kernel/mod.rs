@@ -31,5 +31,5 @@ pub use extract::{Extract, NEW};
 pub use journal::Mark;
 pub use lines::Line;
 pub use link::{Behind, HalfFacet, Wall, WallId};
-pub use spare::{Side, best_at, is_reached};
+pub use spare::{FLATTEST, Side, best_at, is_reached};
 pub use star::{Shell, Star};

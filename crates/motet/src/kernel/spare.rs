@@ -17,6 +17,9 @@ use crate::kernel::link::HalfFacet;
 /// The quality of a tet that is marked: above that of any tet.
 const SPARED: f64 = f64::INFINITY;
 
+/// A tet below this EAS is next to flat, and never counts as good: two walls of it may come to lie on each other.
+pub const FLATTEST: f64 = 1e-6;
+
 /// A quality within this of the highest that walls allow is as high as they allow.
 const NEARLY: f64 = 1e-6;
 
@@ -70,7 +73,8 @@ impl Complex {
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
-        if quality < self.spared_below && is_forced(corners, quality, sides) { SPARED } else { quality }
+        let may_be_spared = (FLATTEST..self.spared_below).contains(&quality);
+        if may_be_spared && is_forced(corners, quality, sides) { SPARED } else { quality }
     }
 
     /// What facet `i` of a tet is.

@@ -10,7 +10,7 @@ use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::segment;
 use crate::geometry::triangle::{area_vector, closest};
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
-use crate::kernel::{Behind, Change, Complex, HalfFacet, Hold, Shell, VertexChange, Wall};
+use crate::kernel::{Behind, Change, Complex, FLATTEST, HalfFacet, Hold, Shell, VertexChange, Wall};
 use crate::ops::Track;
 use crate::remesh::lines::FirstLines;
 use crate::spatial::NearestTriangle;
@@ -32,9 +32,6 @@ impl Crease {
 const STRAIGHT: f64 = 0.707;
 /// A wall that comes may be turned so far from what it lies on: cosine of 45 degrees.
 const TURNED: f64 = 0.707;
-
-/// A change of walls brings no tet of a lower quality, whatever was there: two walls of a tet of no height may lie on each other.
-const FLATTEST: f64 = 1e-6;
 
 /// The walls of the first mesh, patch by patch.
 pub(super) struct Surface {
@@ -78,6 +75,7 @@ impl Surface {
         if change.walls.is_empty() && change.lines.is_empty() && moved.is_none() {
             return true;
         }
+        // Whatever was there.
         if change.worst() < FLATTEST {
             return false;
         }

@@ -313,18 +313,24 @@ fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
 
 /// Nodes of which no length is known have the mean of those that they share tets with.
 fn with_others(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
-    let known = lengths.len();
-    let mut sums = vec![(0.0, 0.0); n - known];
+    lengths.resize(n, 0.0);
+    let is_known: Vec<bool> = lengths.iter().map(|&length| length > 0.0).collect();
+    let mut sums = vec![(0.0, 0.0); n];
     for tet in tets {
-        for other in tet.iter().filter_map(|&i| (i as usize).checked_sub(known)) {
-            for &near in tet.iter().filter(|i| (**i as usize) < known) {
-                sums[other].0 += lengths[near as usize];
-                sums[other].1 += 1.0;
+        for &other in tet.iter().filter(|i| !is_known[**i as usize]) {
+            for &near in tet.iter().filter(|i| is_known[**i as usize]) {
+                sums[other as usize].0 += lengths[near as usize];
+                sums[other as usize].1 += 1.0;
             }
         }
     }
-    let mean = lengths.iter().sum::<f64>() / known.max(1) as f64;
-    lengths.extend(sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { mean }));
+    let n_known = is_known.iter().filter(|known| **known).count();
+    let mean = lengths.iter().sum::<f64>() / n_known.max(1) as f64;
+    for ((length, known), (sum, count)) in lengths.iter_mut().zip(is_known).zip(sums) {
+        if !known {
+            *length = if count > 0.0 { sum / count } else { mean };
+        }
+    }
     lengths
 }
 
