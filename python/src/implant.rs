@@ -6,11 +6,10 @@ use motet::base::Threads;
 use motet::implant::{Adapt, Device, Implanted, Inside, Interface, Options, Outside};
 use motet::remesh;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::border::{Given, parts};
 use crate::history::History;
-use crate::report::report;
+use crate::report::{Changed, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
@@ -39,7 +38,7 @@ pub(crate) fn implant<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
+) -> PyResult<Changed<'py>> {
     let insides = [("own", None), ("fill", Some(Inside::Filled)), ("hollow", Some(Inside::Hollow))];
     let inside = one_of("inside", inside, &insides)?;
     let device = |(mesh, name): (Given, String)| {

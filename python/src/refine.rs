@@ -20,7 +20,7 @@ use crate::arrays::Read;
 use crate::border::{Given, parts};
 use crate::error::{OrRaise, called, input, options};
 use crate::history::History;
-use crate::report::report;
+use crate::report::{Changed, report};
 use crate::watch::watched;
 use crate::words::{rules, threads};
 
@@ -205,7 +205,7 @@ pub(crate) fn refined<'py>(
     asked: Asked,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
+) -> PyResult<Changed<'py>> {
     let mut mesh = if asked.forget { MeshRefinement::forget(&mesh.0) } else { mesh.0 };
     let rules = rules(&mesh, &asked.carry)?;
     let conditions =

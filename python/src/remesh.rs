@@ -4,12 +4,11 @@ use std::collections::BTreeMap;
 
 use motet::remesh::{Goal, Held, MeshOutcome, Options, Sizes, SurfaceRule, remesh_mesh};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 use crate::border::{Given, parts};
 use crate::error::OrRaise;
 use crate::history::History;
-use crate::report::report;
+use crate::report::{Changed, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
@@ -39,7 +38,7 @@ pub(crate) fn remesh<'py>(
     carry: BTreeMap<String, String>,
     threads: usize,
     progress: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>)> {
+) -> PyResult<Changed<'py>> {
     let options = Options {
         min_eas,
         min_dihedral_deg,

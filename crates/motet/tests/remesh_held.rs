@@ -89,7 +89,7 @@ fn a_region_and_a_patch_that_are_held_stay_to_the_bit() {
 fn what_is_required_stays_and_is_marked_once() {
     let mut first = halves();
     let n = first.cells.len();
-    let is_required = |c: &usize| c % 7 == 0;
+    let is_required = |c: &usize| c.is_multiple_of(7);
     first.set_cell_field(Field::scalars(
         REQUIRED,
         (0..n).map(|c| u8::from(is_required(&c))).collect::<Vec<_>>(),
@@ -133,9 +133,9 @@ fn doubled() -> Mesh {
     let cells: Vec<_> = mesh.cells.iter().map(|(_, kind, v)| (kind, v.to_vec())).collect();
     let n = mesh.points.len();
     let mut twin = vec![None; n];
-    for v in 0..n {
+    for (v, twin) in twin.iter_mut().enumerate() {
         if (mesh.points[v][0] - 1.0).abs() < 1e-9 {
-            twin[v] = Some(VertexId::new(mesh.points.len()));
+            *twin = Some(VertexId::new(mesh.points.len()));
             mesh.points.push(mesh.points[v]);
         }
     }

@@ -144,7 +144,7 @@ impl Complex {
     /// Whether an edge may be divided: it is not fixed, and no line where the surface is kept.
     #[inline]
     pub fn may_divide(&self, a: VertexId, b: VertexId) -> bool {
-        !self.is_fixed_edge(a, b) && !(self.keeps_surface && self.line(a, b).is_some())
+        !(self.is_fixed_edge(a, b) || self.keeps_surface && self.line(a, b).is_some())
     }
 
     /// Lines hold their vertices as features do; those that are no edges of a tet fix theirs.
