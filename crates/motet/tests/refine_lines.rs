@@ -92,6 +92,6 @@ fn of_a_divided_edge_all_parts_are_lines_or_none() {
         .for_each(|(_, kind, v)| cells.push(kind, v.to_vec()));
     mesh.cells = cells;
     mesh.cell_data.iter_mut().for_each(|field| *field = field.pick(kept.iter().copied()));
-    let error = MeshRefinement::new(&mesh, Options::default(), &threads).err().expect("it is refused");
+    let error = MeshRefinement::new(&mesh, Options::default(), &threads).expect_err("it is refused");
     assert!(error.to_string().contains("lines"), "{error}");
 }
