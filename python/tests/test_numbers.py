@@ -97,6 +97,7 @@ OPTIONS = {
     "Mover.smooth": (mover(smooth=as_it_is), COUNT),
     "Mover.rigid_layer": (mover(rigid_layer=as_it_is), LENGTH),
     "Mover.rigid_layer_cells": (mover(rigid_layer_cells=as_it_is), COUNT),
+    "Mover.slide_tolerance": (mover(slide_tolerance=as_it_is), PART),
     "Mover.residual": (mover(method=of("laplace"), residual=as_it_is), PART),
     "Mover.factor_gib": (mover(method=of("laplace"), factor_gib=as_it_is), REACH),
     "Mover.factor_gib, unused": (mover(factor_gib=as_it_is), REACH),
@@ -111,6 +112,7 @@ OPTIONS = {
     "MovingMesh.smooth": (moving(smooth=as_it_is), COUNT),
     "MovingMesh.rigid_layer": (moving(rigid_layer=as_it_is), LENGTH),
     "MovingMesh.rigid_layer_cells": (moving(rigid_layer_cells=as_it_is), COUNT),
+    "MovingMesh.slide_tolerance": (moving(slide_tolerance=as_it_is), PART),
     "MovingMesh.min_eas": (moving(min_eas=as_it_is), PART),
     "MovingMesh.distance": (moving(surface=of("adapt"), distance=as_it_is), LENGTH),
     "MovingMesh.margin": (moving(margin=as_it_is), PART),
@@ -171,7 +173,7 @@ OPTIONS = {
     "shapes.coil.turns of no sides": (lambda x: shapes.coil(turns=x, around=0), (1e9, 1e15)),
 }
 # Options that are the same as of another call, by the code that they go through.
-SAME = {f"move.{name}" for name in ("smooth", "rigid_layer", "rigid_layer_cells", "residual", "factor_gib", "substeps", "threads", "also_moved")}
+SAME = {f"move.{name}" for name in ("smooth", "slide_tolerance", "rigid_layer", "rigid_layer_cells", "residual", "factor_gib", "substeps", "threads", "also_moved")}
 SAME |= {f"MovingMesh.load.{key.removeprefix('MovingMesh.')}" for key in OPTIONS if key.startswith("MovingMesh.") and key.count(".") == 1}
 SAME |= {f"MovingMesh.refine.{key.removeprefix('refine.')}" for key in OPTIONS if key.startswith("refine.")} | {"MovingMesh.refine.hessian"}
 # Whatever number is given means something.
