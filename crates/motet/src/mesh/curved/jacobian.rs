@@ -25,7 +25,7 @@ pub struct Jacobian {
 /// The least `det J` of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastJacobian {
-    /// The least scaled Jacobian: `det J` over what it is at the centre of the cell between the same corners with straight edges (Gmsh's `minSJ`; Toulorge, Geuzaine,
+    /// The least scaled Jacobian: `det J` over what it is at the centre of the cell between the same corners with straight edges (Gmsh's `minSJ` is a lower bound of it; Toulorge, Geuzaine,
     /// Remacle, Lambrechts 2013, *Robust untangling of curvilinear meshes*). 1 for a tet with straight edges, 0 or less where the cell is folded. Where
     /// the straight cell is not upright: over the largest coefficient of `det J`.
     pub scaled: f64,
