@@ -65,14 +65,14 @@ impl Body {
 pub(super) struct Prepared {
     pub(super) name: String,
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// The same, each vertex under the id that it shares with those at its seam.
+    /// The triangles of the body, each vertex under the id that it shares with those at its seam.
     pub(super) joined: Vec<[VertexId; 3]>,
     pub(super) is_closed: bool,
     /// Its vertices, rising.
     pub(super) vertices: Vec<VertexId>,
     /// The joined id of each.
     pub(super) ids: Vec<VertexId>,
-    /// The same with its place in the list of vertices; rising.
+    /// Each joined id with the place of its vertex in the list of vertices, rising.
     by_id: Vec<(VertexId, u32)>,
     /// The vertices of each triangle, by their places in the list of vertices.
     pub(super) places: Vec<[u32; 3]>,

@@ -12,14 +12,14 @@ pub struct Fill {
     pub vertices: [VertexId; 4],
     /// Its region.
     pub region: i32,
-    /// Its quality, as [`Change::judge`] gives it.
+    /// The quality of the tet, as [`Change::judge`] gives it.
     pub quality: f64,
 }
 
 /// A facet of the fill that is to be a wall, where the walls of the surface change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewWall {
-    /// Its vertices, in any order.
+    /// The three vertices of the facet, in any order.
     pub vertices: [VertexId; 3],
     /// Its patch.
     pub patch: i32,
@@ -30,7 +30,7 @@ pub struct NewWall {
 /// An edge of the fill that is to be a line, where lines change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewLine {
-    /// Its vertices, in any order.
+    /// The two vertices of the edge, in any order.
     pub vertices: [VertexId; 2],
     /// What it is: the source of the line that it inherits from.
     pub source: u32,

@@ -77,7 +77,7 @@ impl Part {
         least
     }
 
-    /// Its two halves, cut where the coefficients are farthest from straight lines.
+    /// The two halves of a part, cut where the coefficients are farthest from straight lines.
     fn halves(&self, domain: &Domain, n_made: usize) -> [Self; 2] {
         let mut most = (-1.0, &domain.cuts[0]);
         for cut in &domain.cuts {

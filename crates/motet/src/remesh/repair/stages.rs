@@ -164,7 +164,7 @@ impl Repair {
         }
     }
 
-    /// Its edges on the surface and its lines split.
+    /// The edges of a tet that lie on the surface, and its lines, split.
     fn split_surface(&mut self, tet: TetId) {
         if self.surface.is_none() {
             return;
