@@ -8,7 +8,7 @@ use common::{Folder, cube, stderr, stdout};
 use motet::Mesh;
 use motet::base::{Point, VertexId};
 use motet::io::{read, read_series};
-use motet::mesh::shapes::sphere_in_box;
+use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{CellKind, Cells, Field, bounds};
 use serde_json::Value;
 
@@ -374,6 +374,20 @@ fn a_run_that_is_killed_leaves_a_whole_shorter_series() {
     for (_, file) in series {
         read(file).unwrap();
     }
+}
+
+#[test]
+fn a_series_that_another_process_writes_is_left_alone() {
+    let folder = Folder::new();
+    folder.mesh("box.vtu", &box_grid([2; 3], [[0.0; 3], [1.0; 3]]));
+    let held = motet::io::OutputLock::take(&folder.path("out.pvd")).unwrap();
+    let words = ["move", "box.vtu", "-o", "out.pvd", "--translate", "zmax=0,0,0.1", "--steps", "2"];
+    let told = stderr(&folder.motet(words).assert().code(1));
+    assert!(told.contains("out.pvd") && told.contains(&std::process::id().to_string()), "{told}");
+    assert!(!folder.path("out_0000.vtu").exists() && !folder.path("out.pvd").exists());
+    drop(held);
+    folder.motet(words).assert().code(0);
+    assert_eq!(folder.names(), ["box.vtu", "out.pvd", "out_0000.vtu", "out_0001.vtu", "out_0002.vtu"]);
 }
 
 #[test]

@@ -222,7 +222,7 @@ fn one_run_at_a_time_writes_to_an_output_and_leftovers_of_killed_ones_go() {
     let others = [".motet-moved_b.pvd-abc123", ".motet-other_0002.vtu-abc123", ".motet-notes"];
     left.iter().chain(&others).for_each(|name| folder.write(&format!("out/{name}"), b"1"));
     let held = motet::io::OutputLock::take(&folder.path("out/moved.pvd")).unwrap();
-    assert!(held.is_some());
+    assert!(held.is_held());
     let call = folder.motet(["run", "job.toml"]).assert().code(1);
     let told = stderr(&call);
     assert!(told.contains("another run") && told.contains(&std::process::id().to_string()), "{told}");

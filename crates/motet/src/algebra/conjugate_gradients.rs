@@ -1,10 +1,12 @@
 //! Conjugate gradients (Hestenes and Stiefel 1952), and to precondition them a symmetric sweep of Gauss and Seidel over blocks.
 
+use serde::Serialize;
+
 use crate::algebra::{Block, SparseMatrix, Vector3};
 use crate::base::{Error, Result, Threads};
 
 /// When an iteration is done.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tolerance {
     /// The residual, in the norm of the preconditioner, as a part of that of the right side.
     pub residual: f64,

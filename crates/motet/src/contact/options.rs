@@ -1,9 +1,11 @@
 //! What is measured, and what counts as a gap.
 
+use serde::Serialize;
+
 use crate::base::{Error, Result};
 
 /// How contact is looked for. Lengths are in units of the points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Options {
     /// Warn of gaps below this; none by default.
     pub warn: Option<f64>,

@@ -14,16 +14,16 @@ const TRIES: usize = 16;
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
-    /// Locked; closing it gives the lock back.
-    _file: File,
+    /// Locked; closing it gives the lock back. `None` on a file system that has no locks.
+    file: Option<File>,
 }
 
 impl OutputLock {
-    /// Takes the lock of an output; `None` on a file system that has no locks.
+    /// Takes the lock of an output; on a file system that has no locks, one that does not hold: see [`Self::is_held`].
     ///
     /// # Errors
     /// When another process has it, or the file beside the output cannot be made.
-    pub fn take(output: &Path) -> Result<Option<Self>> {
+    pub fn take(output: &Path) -> Result<Self> {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
         let failed = |e: &std::io::Error| Error::output(&path, e);
@@ -33,13 +33,15 @@ impl OutputLock {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(busy(output, &mut file)),
-                Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => return Ok(None),
+                Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => {
+                    return Ok(Self { path, file: None });
+                }
                 Err(TryLockError::Error(e)) => return Err(failed(&e)),
             }
             if is_at(&file, &path) {
                 file.set_len(0).map_err(|e| failed(&e))?;
                 writeln!(file, "{}", std::process::id()).map_err(|e| failed(&e))?;
-                return Ok(Some(Self { path, _file: file }));
+                return Ok(Self { path, file: Some(file) });
             }
         }
         Err(Error::new(
@@ -47,6 +49,11 @@ impl OutputLock {
             "other processes take and leave its lock all the time",
         )
         .in_file(path))
+    }
+
+    /// Whether it keeps other processes away: not on a file system that has no locks.
+    pub fn is_held(&self) -> bool {
+        self.file.is_some()
     }
 }
 
@@ -92,7 +99,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let output = folder.path().join("run.pvd");
         let held = OutputLock::take(&output).unwrap();
-        assert!(held.is_some());
+        assert!(held.is_held());
         let told = OutputLock::take(&output).unwrap_err().to_string();
         assert!(told.contains("run.pvd") && told.contains(&std::process::id().to_string()), "{told}");
         assert!(OutputLock::take(&folder.path().join("other.pvd")).is_ok());
@@ -100,6 +107,6 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         // What a process that was killed has left is no lock.
         std::fs::write(folder.path().join(".motet-run.pvd.lock"), "4000000000\n").unwrap();
-        assert!(OutputLock::take(&output).unwrap().is_some());
+        assert!(OutputLock::take(&output).unwrap().is_held());
     }
 }

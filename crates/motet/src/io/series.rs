@@ -8,6 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use crate::base::{Error, Result};
 use crate::io::format::WriteOptions;
+use crate::io::lock::OutputLock;
 use crate::io::{replace, replace_all, vtkhdf, write};
 use crate::mesh::Mesh;
 
@@ -147,18 +148,32 @@ pub fn write_series(
 }
 
 /// A series that grows frame by frame. The PVD file is replaced after each frame, so
-/// that a run that is stopped leaves a whole, shorter series.
+/// that a run that is stopped leaves a whole, shorter series. One writer at a time writes a series: the first frame takes its
+/// [`OutputLock`], which is given back when the writer is dropped.
 #[derive(Debug)]
 pub struct SeriesWriter {
     path: PathBuf,
     frames: Vec<(f64, String)>,
     options: WriteOptions,
+    lock: Option<OutputLock>,
 }
 
 impl SeriesWriter {
     /// A series that will lie at `path`, with its frames beside it. Nothing is written yet.
     pub fn new(path: impl Into<PathBuf>, options: WriteOptions) -> Self {
-        Self { path: path.into(), frames: Vec::new(), options }
+        Self { path: path.into(), frames: Vec::new(), options, lock: None }
+    }
+
+    /// Takes the series' lock, unless this writer has it already; false on a file system that has no locks.
+    ///
+    /// # Errors
+    /// When another writer has it: names its process. When the folder cannot be written.
+    pub fn lock(&mut self) -> Result<bool> {
+        let lock = match self.lock.take() {
+            Some(lock) => lock,
+            None => OutputLock::take(&self.path)?,
+        };
+        Ok(self.lock.insert(lock).is_held())
     }
 
     /// Takes over the first `n` frames of the series that lies there: those after them are written anew.
@@ -193,8 +208,9 @@ impl SeriesWriter {
     /// Returns the frame's file, and what the format could not hold.
     ///
     /// # Errors
-    /// As [`write()`].
+    /// As [`write()`]; when another writer writes this series.
     pub fn add(&mut self, time: f64, mesh: &Mesh) -> Result<(PathBuf, Vec<String>)> {
+        self.lock()?;
         let k = self.frames.len();
         let file = self.frame_path(k);
         let mut lost = write(&file, mesh, &self.options)?;

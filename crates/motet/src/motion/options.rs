@@ -1,12 +1,14 @@
 //! What a mover is told beside the mesh: which facets are walls, what stays rigid, what slides.
 
+use serde::Serialize;
+
 use crate::algebra::Tolerance;
 use crate::base::{Csr, Error, Result, VertexId};
 use crate::geometry::vector::LARGEST;
 use crate::mesh::{Boundary, CellKind, Mesh, corners};
 
 /// How the vertices inside follow.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub enum Method {
     /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
     #[default]
@@ -27,7 +29,7 @@ pub enum Method {
 }
 
 /// Linear elasticity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Elastic {
     /// Poisson's ratio, at least 0 and below 0.5. Default: 0.3.
     pub poisson: f64,
@@ -46,7 +48,7 @@ impl Default for Elastic {
 }
 
 /// A Laplace equation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Laplace {
     /// The diffusivity is one over the distance from the wall to this power. Default: 1.
     pub exponent: f64,
@@ -238,7 +240,7 @@ pub struct RigidLayer {
 }
 
 /// How flat a patch that slides has to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SlideTolerance(
     /// The largest distance of a vertex from the plane of the patch, as a part of the radius of the patch. Default: 0.05. Inlets that programs
     /// cut are off by 0.003, caps of rims that were cut by hand by 0.01 (both met); the wall of a vessel by 0.3 and more.
@@ -257,7 +259,7 @@ impl Default for SlideTolerance {
 }
 
 /// How far a rigid layer reaches.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Extent {
     /// Vertices at most this far from the wall, in the unit of the mesh.
     Distance(f64),
@@ -266,7 +268,7 @@ pub enum Extent {
 }
 
 /// When sub-stepping gives up.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Limits {
     /// At most so many sub-steps. Default: 50.
     pub substeps: usize,
@@ -289,7 +291,7 @@ impl Default for Limits {
 }
 
 /// Facets of a mesh, as rings of corners, and all vertices on them.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FacetSet {
     /// What to call it in messages: the name of a patch, say.
     pub name: String,

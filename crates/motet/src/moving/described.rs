@@ -1,57 +1,59 @@
-//! Options as text, by which a state knows that it is gone on with by the options it was saved with.
+//! Options as JSON, by which a state knows that it goes on with the options that it was saved with.
 
 use std::collections::BTreeMap;
 
+use serde_json::Value;
+
+use crate::base::{Error, Result};
 use crate::moving::options::Options;
 
 /// So many differences are named.
 const MOST: usize = 4;
 
 impl Options {
-    /// All that steps depend on, a line an option. How many changes are remembered is left out.
-    pub(super) fn described(&self) -> String {
-        format!("{:#?}", Self { remembered: 0, ..self.clone() })
+    /// All that steps depend on, as JSON. How many changes are remembered is left out.
+    ///
+    /// # Errors
+    /// When they cannot be written as JSON.
+    pub(super) fn described(&self) -> Result<String> {
+        serde_json::to_string(&Self { remembered: 0, ..self.clone() })
+            .map_err(|e| Error::options(format!("the options cannot be written as JSON: {e}")))
     }
 }
 
-/// What differs, each by its name, what it was and what it is; empty where nothing does.
+/// What differs between two [`Options::described`], each by its name, its old and its new value; empty where nothing does.
 pub(super) fn differences(was: &str, is: &str) -> Vec<String> {
     let (was, is) = (values(was), values(is));
     let names = was.keys().chain(is.keys().filter(|name| !was.contains_key(*name)));
     let differ = names.filter(|name| was.get(*name) != is.get(*name));
-    let value =
-        |of: &BTreeMap<String, String>, name: &str| of.get(name).map_or("nothing", String::as_str).to_owned();
-    let told = differ.map(|name| format!("{name} was {} and is {}", value(&was, name), value(&is, name)));
-    let mut told: Vec<String> = told.collect();
-    let n = told.len();
+    let value = |of: &BTreeMap<String, Value>, name: &str| {
+        of.get(name).map_or("nothing".to_owned(), Value::to_string)
+    };
+    let mut named: Vec<String> =
+        differ.map(|name| format!("{name} was {} and is {}", value(&was, name), value(&is, name))).collect();
+    let n = named.len();
     if n > MOST {
-        told.truncate(MOST);
-        told.push(format!("{} more", n - MOST));
+        named.truncate(MOST);
+        named.push(format!("{} more", n - MOST));
     }
-    told
+    named
 }
 
-/// Values by their names, those of structs within structs joined by dots; what has no name by its place.
-fn values(text: &str) -> BTreeMap<String, String> {
-    let (mut values, mut open) = (BTreeMap::new(), Vec::<(String, usize)>::new());
-    for line in text.lines().map(str::trim) {
-        if line.starts_with(['}', ')', ']']) {
-            open.pop();
-            continue;
+/// Values by their names, those of objects within objects joined by dots.
+fn values(text: &str) -> BTreeMap<String, Value> {
+    let mut values = BTreeMap::new();
+    // Text that is no JSON is another state than any: it has one value without a name.
+    let mut open = vec![(String::new(), serde_json::from_str(text).unwrap_or_else(|_| Value::from(text)))];
+    while let Some((name, value)) = open.pop() {
+        match value {
+            Value::Object(of) if !of.is_empty() => open
+                .extend(of.into_iter().map(|(key, value)| {
+                    (if name.is_empty() { key } else { format!("{name}.{key}") }, value)
+                })),
+            value => {
+                values.insert(name, value);
+            }
         }
-        let (name, value) = match line.split_once(": ") {
-            Some((name, value)) => (name.to_owned(), value),
-            None => (String::new(), line),
-        };
-        if value.ends_with(['{', '(', '[']) {
-            open.push((name, 0));
-            continue;
-        }
-        let place = open.last_mut().map_or(0, |(_, n)| std::mem::replace(n, *n + 1));
-        let own = if name.is_empty() { place.to_string() } else { name };
-        let path = open.iter().map(|(name, _)| name.as_str()).filter(|name| !name.is_empty());
-        let path: Vec<&str> = path.chain([own.as_str()]).collect();
-        values.insert(path.join("."), value.trim_end_matches(',').to_owned());
     }
     values
 }
@@ -60,19 +62,23 @@ fn values(text: &str) -> BTreeMap<String, String> {
 mod tests {
     use super::*;
 
+    fn described(options: &Options) -> String {
+        options.described().unwrap()
+    }
+
     #[test]
     fn what_differs_is_named_and_what_is_remembered_does_not_count() {
         let options = Options::default();
         let same = Options { remembered: 3, ..options.clone() };
-        assert!(differences(&options.described(), &same.described()).is_empty());
+        assert!(differences(&described(&options), &described(&same)).is_empty());
         let mut other = Options { floor: 0.1, contents: vec!["dye".into()], ..options.clone() };
         other.motion.smoothing = 7;
-        let told = differences(&options.described(), &other.described()).join("; ");
+        let told = differences(&described(&options), &described(&other)).join("; ");
         assert!(told.contains("motion.smoothing was 0 and is 7"), "{told}");
         assert!(told.contains("floor was 0.05 and is 0.1"), "{told}");
         assert!(told.contains("contents") && told.contains("dye"), "{told}");
         let none = Options { repair: None, ..options.clone() };
-        let told = differences(&options.described(), &none.described()).join("; ");
+        let told = differences(&described(&options), &described(&none)).join("; ");
         assert!(told.contains("repair"), "{told}");
     }
 }

@@ -1,5 +1,7 @@
 //! What a moving mesh is told: patches by label, since ids do not outlast a change.
 
+use serde::Serialize;
+
 use crate::base::{Error, Result, VertexId};
 use crate::contact::{self, Room};
 use crate::geometry::vector::LARGEST;
@@ -9,7 +11,7 @@ use crate::motion::{self, Extent, FacetSet, Limits, Method, RigidLayer, SlideTol
 use crate::remesh;
 
 /// How a mesh is kept good while its walls move.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Options {
     /// How the inside follows the walls.
     pub motion: Motion,
@@ -75,7 +77,7 @@ impl Options {
 pub type Contents = Vec<String>;
 
 /// How the inside follows the walls: as [`motion::Options`], with patches by label.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Motion {
     /// The method. Facets that it names are not looked at: see [`Self::bodies`].
     pub method: Method,
@@ -160,7 +162,7 @@ impl Watching {
 }
 
 /// Which patches are watched, and how.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Watching {
     /// Names or numbers of patches; each is a body. All pairs are measured.
     pub patches: Vec<String>,

@@ -57,7 +57,7 @@ impl MovingMesh {
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
         ]);
         file.field_data.extend([
-            text(OPTIONS, &self.options.described()),
+            text(OPTIONS, &self.options.described()?),
             text(POINT_ARRAYS, &names(&mesh.point_data)),
             text(CELL_ARRAYS, &names(&mesh.cell_data)),
         ]);
@@ -88,7 +88,7 @@ impl MovingMesh {
             let is_ours = |field: &mut Field| field.name.starts_with(PREFIX);
             taken.fields.extend(list.extract_if(.., is_ours));
         }
-        let differ = differences(&taken.text(OPTIONS)?, &options.described());
+        let differ = differences(&taken.text(OPTIONS)?, &options.described()?);
         if !differ.is_empty() {
             return Err(Error::options(format!("was saved with other options: {}", differ.join("; ")))
                 .remedy("give the options that it was saved with, or start anew from its mesh"));

@@ -1,5 +1,7 @@
 //! What stays to the bit: regions and patches that are named, what is marked as required, and facets of the boundary that have a twin.
 
+use serde::Serialize;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::base::{CellId, Error, Point, Result, TetId, VertexId};
@@ -7,7 +9,7 @@ use crate::kernel::{Complex, Hold, WallId};
 use crate::mesh::{CellKind, Labels, Mesh, TetMesh, TetPart, firsts_at_place};
 
 /// What is held by its label: tets of regions and facets of patches stay, with their vertices.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Held {
     /// Regions whose tets stay.
     pub regions: Vec<i32>,

@@ -1,5 +1,7 @@
 //! What a remesher is told beside the mesh.
 
+use serde::Serialize;
+
 use crate::base::{CellId, Error, Result};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::vector::LARGEST;
@@ -7,7 +9,7 @@ use crate::remesh::held::Held;
 use crate::remesh::sizes::Sizes;
 
 /// What is to be repaired, and how.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Options {
     /// A tet below this EAS is bad. Default: 0.2.
     pub min_eas: f64,
@@ -82,7 +84,7 @@ impl Options {
 }
 
 /// What may happen to walls: the boundary, interfaces between regions, labelled facets.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum SurfaceRule {
     /// They stay as they are, to the bit.
     Keep,
@@ -139,7 +141,7 @@ pub const DEFAULT_DISTANCE: f64 = 1e-3;
 const IN_PLANE: f64 = 1e-9;
 
 /// How far to go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Goal {
     /// No bad tet left, as few tets touched as can be.
     Repair,

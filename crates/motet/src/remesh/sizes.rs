@@ -1,5 +1,7 @@
 //! The lengths that edges are asked to have: given, checked, known anywhere.
 
+use serde::Serialize;
+
 use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::tet::{EDGES, volume};
 use crate::geometry::vector::LARGEST;
@@ -22,7 +24,7 @@ const MOST_GROWTH: f64 = 100.0;
 const MOST: f64 = (1u32 << 28) as f64;
 
 /// How long edges are to be. The size of an edge is the mean of the sizes at its two ends.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Sizes {
     /// The same everywhere.
     Uniform(f64),

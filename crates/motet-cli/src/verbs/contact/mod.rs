@@ -45,6 +45,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     let mut report = Report::new(args);
     let mut series =
         io::can_write_series(&args.output).then(|| SeriesWriter::new(&args.output, args.writing.options()));
+    series.as_mut().map_or(Ok(true), SeriesWriter::lock)?;
     let mut handle: Option<(Contact, Frame)> = None;
     let mut next = Some(frames.read(0, console)?);
     for k in 0..n {

@@ -38,7 +38,8 @@ struct Nodal<'a> {
 impl<'a> Sink<'a> {
     pub(super) fn new(args: &'a MoveArgs, reference: &'a Mesh, patches: &Patches<'_>) -> motet::Result<Self> {
         let (path, options) = (args.output.as_path(), args.writing.options());
-        let series = io::can_write_series(path).then(|| SeriesWriter::new(path, options.clone()));
+        let mut series = io::can_write_series(path).then(|| SeriesWriter::new(path, options.clone()));
+        series.as_mut().map_or(Ok(true), SeriesWriter::lock)?;
         let nodal = args.nodal.iter().map(|asked| {
             let vertices = patches.find(&asked.name)?.vertices;
             Ok(Nodal { path: &asked.file, vertices, frames: Vec::new() })

@@ -8,7 +8,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use motet::geometry::quality::eas;
-use motet::io::{OutputLock, SeriesWriter, WriteOptions, remove_drafts, replace, settle, sync};
+use motet::io::{SeriesWriter, WriteOptions, remove_drafts, replace, settle, sync};
 use motet::mesh::Field;
 use motet::moving::{MovingMesh, Step};
 use motet::{Error, Mesh, Result};
@@ -29,7 +29,6 @@ pub(super) struct Output {
     draft: PathBuf,
     /// Which job it is.
     record: PathBuf,
-    _lock: Option<OutputLock>,
 }
 
 impl Output {
@@ -39,16 +38,16 @@ impl Output {
         let series_file = job.path(&job.output);
         let folder = series_file.parent().filter(|folder| !folder.as_os_str().is_empty());
         folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::output(&series_file, &e))?;
-        let lock = OutputLock::take(&series_file)?;
+        let mut series = SeriesWriter::new(&series_file, WriteOptions::default());
+        let is_locked = series.lock()?;
         let name = series_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if lock.is_some() {
+        if is_locked {
             remove_drafts(folder.unwrap_or(Path::new(".")), |of| is_own(&name, of));
         }
         Ok(Self {
-            series: SeriesWriter::new(&series_file, WriteOptions::default()),
+            series,
             draft: series_file.with_file_name(draft_of(&name)),
             record: series_file.with_extension("job.json"),
-            _lock: lock,
             every: job.every,
             log: series_file.with_extension("jsonl"),
             times: series_file.with_extension("times.jsonl"),
