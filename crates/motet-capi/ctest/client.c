@@ -195,6 +195,7 @@ static void motion(void)
     motet_certificate_init(&certificate, sizeof certificate);
     OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, &certificate, &error));
     CHECK(certificate.complete == 1 && certificate.fraction == 1 && certificate.inverted == 0 && certificate.worst_eas > 0.2 && certificate.size == sizeof certificate);
+    CHECK(certificate.worst_curved_cell == -1 && certificate.worst_curved_jacobian != certificate.worst_curved_jacobian && certificate.leaves_plane_vertex == -1);
     OK(motet_mover_advance(mover, displacement, n, 3, points, N_POINTS, 3, NULL, &error));
     /* A program that knows the first members alone gets these alone. */
     memset(&certificate, 0x55, sizeof certificate);
@@ -288,6 +289,14 @@ static void changing(void)
     motet_remesh_options_init(&repair, sizeof repair);
     OK(motet_remesh(mesh, &repair, &outcome, &error));
     CHECK(motet_outcome_complete(outcome) == 1 && strstr(motet_outcome_report(outcome), "\"after\"") != NULL);
+    CHECK(motet_outcome_not_reached(outcome) == NULL && motet_outcome_not_reached(NULL) == NULL);
+    motet_outcome_free(outcome);
+    repair.min_eas = 0.99, repair.rounds = 1;
+    OK(motet_remesh(mesh, &repair, &outcome, &error));
+    CHECK(motet_outcome_complete(outcome) == 0 && strstr(motet_outcome_not_reached(outcome), "bad") != NULL);
+    motet_outcome_free(outcome);
+    motet_remesh_options_init(&repair, sizeof repair);
+    OK(motet_remesh(mesh, &repair, &outcome, &error));
     n = motet_mesh_n_points(motet_outcome_mesh(outcome));
     old = malloc(sizeof(int32_t) * n), x = malloc(sizeof(double) * n);
     CHECK(old && x);

@@ -44,6 +44,10 @@ module motet
     real(c_double) :: fraction = 0
     integer(c_int64_t) :: inverted = 0, inverted_before = 0, bad = 0, worst_cell = -1
     real(c_double) :: worst_eas = 0, worst_place(3) = 0, seconds = 0
+    integer(c_int64_t) :: worst_curved_cell = -1
+    real(c_double) :: worst_curved_jacobian = 0
+    integer(c_int64_t) :: leaves_plane_vertex = -1
+    real(c_double) :: leaves_plane_distance = 0
   end type
 
   type, bind(c), public :: remesh_options

@@ -194,6 +194,10 @@ typedef struct motet_certificate {
     double worst_eas;
     double worst_place[3];
     double seconds;
+    int64_t worst_curved_cell;    /* the quadratic cell with the worst scaled Jacobian, -1 where there is none */
+    double worst_curved_jacobian; /* a lower bound of it, 0 or less where the cell may be folded; NaN where there is none */
+    int64_t leaves_plane_vertex;  /* the vertex of a sliding patch's rim that is moved farthest out of its plane, -1 where none is */
+    double leaves_plane_distance; /* how far, in the unit of the mesh */
 } motet_certificate;
 
 void motet_certificate_init(motet_certificate *certificate, size_t size);
@@ -227,6 +231,8 @@ int32_t motet_outcome_complete(const motet_outcome *outcome);
 const motet_mesh *motet_outcome_mesh(const motet_outcome *outcome);
 /* What was done, as one JSON object. */
 const char *motet_outcome_report(const motet_outcome *outcome);
+/* Why the requested result was not reached; NULL where it was. Belongs to the outcome. */
+const char *motet_outcome_not_reached(const motet_outcome *outcome);
 /* For each new vertex (cell) the old one that it is, to the bit; -1 for those that came. */
 motet_status motet_outcome_to_old(const motet_outcome *outcome, int32_t on, int32_t *old, int64_t n, motet_error **error);
 /* An array of the old mesh on the new one. */

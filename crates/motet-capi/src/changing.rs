@@ -24,7 +24,8 @@ pub(crate) struct MotetOutcome {
     mesh: MotetMesh,
     history: Option<History>,
     report: CString,
-    is_complete: bool,
+    /// Why the requested result was not reached; `None` where it was.
+    not_reached: Option<CString>,
 }
 
 impl MotetOutcome {
@@ -32,9 +33,11 @@ impl MotetOutcome {
         mesh: Mesh,
         history: Option<History>,
         report: &impl serde::Serialize,
-        is_complete: bool,
+        not_reached: Option<String>,
     ) -> Result<Self> {
-        Ok(Self { mesh: MotetMesh(mesh), history, report: json(report)?, is_complete })
+        // A reason is written by this library, so that it holds no zero byte.
+        let not_reached = not_reached.map(|why| CString::new(why).unwrap_or_default());
+        Ok(Self { mesh: MotetMesh(mesh), history, report: json(report)?, not_reached })
     }
 
     fn history(&self) -> Result<&History> {
@@ -44,7 +47,7 @@ impl MotetOutcome {
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_outcome_complete(outcome: *const MotetOutcome) -> i32 {
-    quiet(0, || Some(handle(outcome, "outcome").ok()?.is_complete.into()))
+    quiet(0, || Some(handle(outcome, "outcome").ok()?.not_reached.is_none().into()))
 }
 
 #[unsafe(no_mangle)]
@@ -55,6 +58,12 @@ pub(crate) unsafe extern "C" fn motet_outcome_mesh(outcome: *const MotetOutcome)
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_outcome_report(outcome: *const MotetOutcome) -> *const c_char {
     handle(outcome, "outcome").map_or(std::ptr::null(), |outcome| outcome.report.as_ptr())
+}
+
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn motet_outcome_not_reached(outcome: *const MotetOutcome) -> *const c_char {
+    let reason = handle(outcome, "outcome").ok().and_then(|outcome| outcome.not_reached.as_deref());
+    reason.map_or(std::ptr::null(), std::ffi::CStr::as_ptr)
 }
 
 #[unsafe(no_mangle)]
@@ -181,7 +190,7 @@ pub(crate) unsafe extern "C" fn motet_remesh(
         let asked = sized(options)?;
         let done = remesh_mesh(mesh, &asked.options(mesh)?, &Rules::default(), &threads(asked.threads)?)?;
         let MeshOutcome { mesh, history, report, .. } = done;
-        give(place, MotetOutcome::new(mesh, Some(history), &report, report.is_complete())?);
+        give(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })
 }
@@ -261,7 +270,7 @@ pub(crate) unsafe extern "C" fn motet_implant(
         let devices: Vec<Device> = meshes.iter().zip(names).map(device).collect::<Result<_>>()?;
         let made = implant(host, &devices, &asked.options()?, &Rules::default(), &threads(asked.threads)?)?;
         let Implanted { mesh, history, report } = made;
-        give(place, MotetOutcome::new(mesh, Some(history), &report, report.is_complete())?);
+        give(place, MotetOutcome::new(mesh, Some(history), &report, report.not_reached())?);
         Ok(())
     })
 }
@@ -338,9 +347,9 @@ pub(crate) unsafe extern "C" fn motet_fill(
         let preflight = surfaces.preflight(&threads);
         let options = asked.options()?;
         let filled = fill(&surfaces, &preflight, &options, &threads)?;
-        let is_complete = filled.is_complete(&options);
+        let not_reached = filled.not_reached(&options);
         let report = json!({ "filled": filled.report, "improved": filled.improved, "layers": filled.layers });
-        give(place, MotetOutcome::new(filled.mesh, None, &report, is_complete)?);
+        give(place, MotetOutcome::new(filled.mesh, None, &report, not_reached)?);
         Ok(())
     })
 }

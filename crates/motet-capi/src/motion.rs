@@ -204,12 +204,18 @@ versioned! {
         worst_eas: f64 = f64::NAN,
         worst_place: [f64; 3] = [f64::NAN; 3],
         seconds: f64 = 0.0,
+        worst_curved_cell: i64 = -1,
+        worst_curved_jacobian: f64 = f64::NAN,
+        leaves_plane_vertex: i64 = -1,
+        leaves_plane_distance: f64 = 0.0,
     }
 }
 
 impl MotetCertificate {
     fn of(certificate: &Certificate) -> Self {
         let worst = certificate.quality.worst_eas;
+        let curved = certificate.quality.worst_curved_jacobian;
+        let leaves = certificate.leaves_plane.as_ref().filter(|leaves| leaves.is_significant);
         Self {
             size: size_of::<Self>(),
             complete: certificate.complete.into(),
@@ -222,6 +228,10 @@ impl MotetCertificate {
             worst_eas: worst.map_or(f64::NAN, |worst| worst.value),
             worst_place: worst.map_or([f64::NAN; 3], |worst| worst.place),
             seconds: certificate.seconds.total,
+            worst_curved_cell: curved.map_or(-1, |worst| worst.cell.0.into()),
+            worst_curved_jacobian: curved.map_or(f64::NAN, |worst| worst.value),
+            leaves_plane_vertex: leaves.map_or(-1, |leaves| leaves.vertex.0.into()),
+            leaves_plane_distance: leaves.map_or(0.0, |leaves| leaves.distance),
         }
     }
 }

@@ -405,7 +405,7 @@ pub(crate) unsafe extern "C" fn motet_moving_since(
         let step = count(step, "steps")?;
         if let Some(history) = moving.history_since(step)? {
             let report = json!({ "since": step, "step": moving.step() });
-            give(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, true)?);
+            give(place, MotetOutcome::new(moving.mesh().clone(), Some(history), &report, None)?);
         }
         Ok(())
     })

@@ -70,7 +70,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_generations(
 fn done(
     refinement: &MeshRefinement,
     history: History,
-    is_complete: bool,
+    not_reached: Option<String>,
     outcome: *mut *mut MotetOutcome,
 ) -> Result<()> {
     if outcome.is_null() {
@@ -79,7 +79,7 @@ fn done(
     let place = place(outcome, "outcome")?;
     let mesh = refinement.mesh().clone();
     let report = json!({ "tets": refinement.refinement().summary().n_tets });
-    give(place, MotetOutcome::new(mesh, Some(history), &report, is_complete)?);
+    give(place, MotetOutcome::new(mesh, Some(history), &report, not_reached)?);
     Ok(())
 }
 
@@ -104,7 +104,8 @@ fn change(
         false => refinement.refine(&marked, &rules, threads)?,
         true => refinement.coarsen(&marked, &rules, threads)?,
     };
-    done(refinement, history, summary.n_held == 0, outcome)
+    let held = (summary.n_held > 0).then(|| format!("{} marked tets could not be changed", summary.n_held));
+    done(refinement, history, held, outcome)
 }
 
 #[unsafe(no_mangle)]
@@ -148,7 +149,8 @@ pub(crate) unsafe extern "C" fn motet_refinement_near(
         criterion.check()?;
         let wanted = Wanted { criteria: vec![criterion], keeps_history: true, ..Wanted::default() };
         let reached = refinement.reach(&wanted, &Rules::default(), threads, |_| ())?;
+        let not_reached = reached.not_reached();
         let history = reached.history.ok_or_else(|| Error::input("no history was kept"))?;
-        done(refinement, history, reached.is_reached, outcome)
+        done(refinement, history, not_reached, outcome)
     })
 }
