@@ -12,10 +12,14 @@ use crate::verbs::{
 #[command(name = "motet", version, subcommand_required = true, arg_required_else_help = true)]
 #[command(max_term_width = 100)]
 #[command(after_help = "\
-File formats are told by their endings: .vtu .vtp .pvd .vtk .msh .mesh .inp .cgns .stl .obj .node .xml ...
-Exit status: 0 done; 2 the words of the call are off; 3 an input cannot be read or is not what
-the verb needs; 4 the asked result was not reached (what was reached is written); 1 anything else.
-`motet help VERB` tells all about a verb, with examples.")]
+The ending of a file's name says its format: .vtu .vtp .pvd .vtk .msh .mesh .inp .cgns .stl .obj \
+.node .xml ...
+
+Exit status: 0 done; 2 usage error; 3 an input cannot be read or does not suit the verb; 4 the \
+requested result was not reached (what was reached is written, and the reason is reported); 1 \
+any other error.
+
+`motet help VERB` describes a verb, with examples.")]
 pub(crate) struct Call {
     #[command(subcommand)]
     pub(crate) verb: Verb,

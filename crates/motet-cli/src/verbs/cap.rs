@@ -25,10 +25,11 @@ Examples:
   motet cap ventricle.vtk -o closed.vtp
   motet cap frame_*.vtk -o wall.pvd --period 0.8          frames of one cycle, evenly in time
   motet cap wall.pvd -o closed.pvd
-  motet cap lumen.stl -o closed.vtp --flatten             rims cut by hand, caps that can slide
-  motet mesh closed_0000.vtu -o lumen.vtu --size 2        and then the inside
+  motet cap lumen.stl -o closed.vtp --flatten             uneven rims, caps that can slide
+  motet mesh closed_0000.vtu -o lumen.vtu --size 2        then the inside
 
-Exit status 3: there is no open rim, rims touch, or frames have different numbers of points; nothing is written.")]
+Exit status 3: the surface has no open rim, rims touch, or frames have different numbers of \
+points; nothing is written.")]
 pub(crate) struct CapArgs {
     /// A surface, several that are frames of one, or a series
     #[arg(value_name = "SURFACE", required = true)]

@@ -12,19 +12,20 @@ use crate::exit::Outcome;
 use crate::table::{count, seconds};
 use crate::words::shown;
 
-/// Turn a mesh file into another format, told by the file endings
+/// Convert a mesh file to another format, given by the ending of its name
 ///
 /// Points, cells of every kind and all arrays are kept, bit for bit, where the
-/// format can hold them; what it cannot hold is told, each in a sentence.
+/// format can hold them; what it cannot hold is listed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   motet convert vessel.msh vessel.vtu                     for ParaView
   motet convert mesh-complete/ vessel.vtu                 a SimVascular folder, faces as patches
-  motet convert vessel.msh mesh-complete/                 and the other way
-  motet convert vessel.vtu case/constant/polyMesh         an OpenFOAM case, and the other way: motet convert case vessel.vtu
+  motet convert vessel.msh mesh-complete/                 and back
+  motet convert vessel.vtu case/constant/polyMesh         an OpenFOAM case
+  motet convert case vessel.vtu                           and back
   motet convert vessel.vtu vessel.msh --version 2.2       for old readers
-  motet convert flow.pvd flow.vtkhdf                      a series, and the other way
+  motet convert flow.pvd flow.vtkhdf                      a series, in either direction
   motet convert a.vtu b.vtu --encoding ascii --compression none")]
 pub(crate) struct ConvertArgs {
     /// The file (or folder) to read

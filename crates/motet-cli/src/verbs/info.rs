@@ -16,20 +16,24 @@ use crate::exit::Outcome;
 use crate::table::{Table, count, short, time as time_of};
 use crate::words::{self, shown};
 
-/// Tell what a mesh holds, how good it is, and what is wrong with it
+/// Report what a mesh holds, its quality and its defects
 ///
-/// Volumes, surfaces, curves, whatever the file holds. Defects are told with counts, ids
-/// and places; a mesh that has some is no failure (exit status 0). A .pvd is told as its
-/// list of times and files.
+/// Volumes, surfaces, curves, whatever the file holds. Defects are listed with counts, ids
+/// and places; a mesh that has some is no failure (exit status 0). Of a .pvd, times and files
+/// are listed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Quality of tets: EAS is the equi-angle quality, 1 for a regular tet, 0 for a flat one, negative for
-an inverted one, bad below 0.2. Thin tets of boundary layers are not bad. Tets are oriented by their
-neighbours, whichever way the file numbers them. The mean ratio is 12 (3V)^(2/3) over the sum of the squared edges; of triangles
-4 sqrt(3) A over that sum, 1 for an equilateral one.
-Quadratic cells are inverted where the determinant of their Jacobian is not positive everywhere inside. Their
-scaled Jacobian is that determinant over what it is at the centre of the cell with straight edges: 1 for a
-straight tet, 0 or less where the cell is folded. EAS, volume and boundary take their edges as straight.
+Quality of tets: EAS is the equi-angle quality: 1 for a regular tet, 0 for a flat one, negative \
+for an inverted one, bad below 0.2. Thin tets of boundary layers are not bad. Tets are oriented \
+by their neighbours, whichever way the file numbers them. The mean ratio of a tet is 12 \
+(3V)^(2/3) over the sum of its squared edge lengths; that of a triangle is 4 sqrt(3) A over that \
+sum, 1 for an equilateral one.
+
+A quadratic cell is inverted where the determinant of its Jacobian is not positive everywhere \
+inside. Its scaled Jacobian is that determinant over its value at the centre of the cell with \
+straight edges: 1 for a straight tet, 0 or less where the cell is folded. EAS, volume and \
+boundary are those of the cell with straight edges.
+
 Lengths are in units of the mesh, angles in degrees.
 
 Examples:

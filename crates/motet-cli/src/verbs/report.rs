@@ -14,8 +14,9 @@ use crate::exit::Outcome;
 /// frame. JSON files become charts and tables: what a verb prints with --json, and logs with an object a line (.jsonl), whatever their keys.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Surfaces of meshes come first into the budget, then their insides. Where an inside does not fit, the cells at a number of planes
-are there to be cut; where too many frames do not fit, evenly chosen ones have pictures. The page and the report say what was left out.
+The budget goes to the surfaces of meshes first, then to their insides. Where an inside does not \
+fit, only the cells at a number of planes can be cut; where frames do not fit, evenly chosen \
+ones have pictures. The page and the report say what was left out.
 
 Examples:
   motet report vessel.vtu -o vessel.html

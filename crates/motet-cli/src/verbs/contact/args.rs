@@ -9,10 +9,10 @@ use motet::{Error, Result};
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
-/// Tell how far apart surfaces are, where, and when they will touch
+/// Measure how far apart surfaces are, where, and when they will touch
 ///
-/// For every vertex the exact distance to the nearest other surface, for every pair of surfaces the
-/// nearest places, by edges and faces too. OUT holds all surfaces, with the cell array `body` (1, 2 ..)
+/// Finds for every vertex the exact distance to the nearest other surface, and for every pair of surfaces the
+/// nearest places, on edges and faces too. OUT holds all surfaces, with the cell array `body` (1, 2 ..)
 /// and the point arrays gap, gap_normal, closest_body, closest_cell, warning, time_to_contact.
 /// Where nothing is within reach, gap is NaN and closest_body 0.
 #[derive(Debug, Args)]
@@ -21,16 +21,17 @@ motet contact A B [C ..] -o OUT [--warn D] [OPTIONS]
        motet contact MESH --patches P,Q[,R ..] -o OUT [--warn D] [OPTIONS]
        motet contact A --self -o OUT [--warn D] [OPTIONS]")]
 #[command(after_help = "\
-A, B are surfaces (.vtp .stl .obj .vtu ..), volume meshes (their boundary counts), or series (.pvd: all of
-them go on together, files that are no series stand still, and OUT is a series). Lengths are in units of the
-mesh, times in those of the velocity or of the series.
+A and B are surfaces (.vtp .stl .obj .vtu ..), volume meshes (their boundary counts), or series \
+(.pvd: all series advance together, other files stand still, and OUT is a series). Lengths are \
+in units of the mesh, times in those of the velocity or of the series.
 
-A closed surface has an inside, where gaps are negative. One that encloses most of another surface's area in the first
-frame, such as a vessel closed by caps round a stent, is taken for its room: there gaps are negative outside. The report
-says which; --room names rooms, --no-room says that all closed surfaces are solid.
+A closed surface has an inside, where gaps are negative. A surface that encloses most of another \
+surface's area in the first frame, such as a vessel closed by caps round a stent, is taken as \
+its room: there gaps are negative outside. The report names rooms; --room sets them, --no-room \
+makes all closed surfaces solid.
 
 Examples:
-  A stent in a vessel, warned of where nearer than 0.1:
+  A stent in a vessel, warning where the gap is below 0.1:
     motet contact stent.stl lumen.vtp -o gaps.vtp --warn 0.1
   Leaflets of a valve, patches of one mesh, over a cardiac cycle:
     motet contact valve.pvd --patches LCC,NCC,RCC -o out/gaps.pvd --warn 0.05
@@ -39,7 +40,7 @@ Examples:
   When will it touch, at the velocities of a point array, within 0.1 s:
     motet contact a.vtp b.vtp -o gaps.vtp --velocity v --horizon 0.1
 
-Exit status 0 whether or not something warns; with --fail-on-warning 4 where something does.")]
+Exit status 0 whether or not there are warnings; with --fail-on-warning 4 where there are.")]
 pub(crate) struct ContactArgs {
     /// Surfaces, meshes or series
     #[arg(value_name = "SURFACE", required = true)]

@@ -15,22 +15,26 @@ use crate::words::{named, not_negative, numbers, positive};
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
 ///
 /// Tets of the host that lie in a device or near it are replaced. Every triangle of the device's surface is a facet of the new mesh, so what flows round
-/// it and what is in it share their vertices. Farther away everything stays as it came, to the bit. Regions, patches and every array go along.
+/// it and what is in it share their vertices. Farther away everything stays as it is, to the bit. Regions, patches and all arrays are carried over.
 #[derive(Debug, Args)]
 #[command(override_usage = "motet implant HOST DEVICE... -o OUT [OPTIONS]")]
 #[command(after_help = "\
-A device is a closed surface, or a mesh of tets. It is a region of the new mesh and its surface a patch, both named after its file. One that has tets keeps
-them; a surface is filled. Devices may lie within each other and share triangles, but not touch each other otherwise.
+A device is a closed surface, or a mesh of tets. It becomes a region of the new mesh and its \
+surface a patch, both named after its file. A device of tets keeps them; a closed surface is \
+filled. Devices may be nested and share triangles, but must not touch each other otherwise.
 
-A device may touch walls of the host (its boundary, interfaces of its regions) and go through them: both are divided where they meet. What lies outside is
-cut off or kept (--outside); areas that both have in common are a patch of their own, `NAME-contact`. Interfaces end at the device. A device that keeps its
-tets cannot be divided: fill it.
+A device may touch walls of the host (its boundary, interfaces of its regions) and go through \
+them: both are divided where they meet. What lies outside of the host is cut off or kept \
+(--outside); triangles common to both are a patch of their own, `NAME-contact`. Interfaces end \
+at the device. A device that keeps its tets cannot be divided: use --fill.
 
-New tets have edges as long as those of the device beside it, and grow by --growth of the distance, up to those of the host. Distances of --carve and
---reach are in lengths of the host's edges at the place.
+New tets have edges as long as those of the device beside them, growing by --growth of the \
+distance, up to those of the host. --carve and --reach are in lengths of the host's edges at the \
+place.
 
-Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps on cells; whole numbers, names and directions are
-inherited. What lies in a device comes from the tets of the host that were there.
+Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps \
+on cells; whole numbers, names and directions are inherited. Values in a device come from the \
+tets of the host that were there.
 
 Examples:
   motet implant aneurysm.vtu coil.stl -o coiled.vtu
@@ -38,8 +42,10 @@ Examples:
   motet implant vessel.vtu stent.vtu thrombus.stl -o out.vtu --growth 0.3
   motet implant aneurysm.vtu coil.stl -o coiled.vtu --json | jq .report.devices
 
-Exit status 3: a device is no closed surface without fault, keeps its tets and meets a wall, lies outside of the host or holds it; nothing is written. 4: a triangle of a device is
-there in pieces only, or a bad tet is left that no angle of a surface forces; the mesh is written, and it is told what is left and why.")]
+Exit status 3: a device is not a valid closed surface, keeps its tets and meets a wall, lies \
+outside of the host or encloses it; nothing is written. 4: a triangle of a device is there in \
+pieces only, or a bad tet is left that no angle of a surface forces; the mesh is written, and \
+the report says what is left and why.")]
 pub(crate) struct ImplantArgs {
     /// The mesh file (or folder) of the host, of tets
     #[arg(value_name = "HOST")]

@@ -15,15 +15,15 @@ use crate::words::positive;
 
 /// Fill closed surfaces with tets: every triangle is a facet of the mesh
 ///
-/// Surfaces may be nested, side by side, or share triangles: what each of them encloses is a region of its own. They are looked at first,
-/// exactly: what stops them from being filled is told, all of it, with ids and places.
+/// Surfaces may be nested, side by side, or share triangles: what each of them encloses is a region of its own. They are checked first,
+/// exactly: all that prevents filling is reported, with ids and places.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Triangles keep their patches. Points at one place, within a file or between files, are one.
-Without --size the tets have the vertices of the surfaces, and few others. Sizes that grow are at a place the least of
-`size there + G * distance` over all places of the surface: its edges say the size there, or an array.
-Regions are numbered from the outside in. Where there are several surfaces, a region without a seed is named after the
-smallest that holds it.
+Triangles keep their patches. Points at one place, within a file or between files, are merged. \
+Without --size the tets have the vertices of the surfaces, and few others. A size that grows is, \
+at a place, the least of `size there + G * distance` over all places of the surface; the size at \
+the surface is that of its edges, or of an array. Regions are numbered from the outside in. Of \
+several surfaces, a region without a seed is named after the smallest that encloses it.
 
 Examples:
   A lumen, edges inside about 0.4 long:
@@ -36,20 +36,21 @@ Examples:
     motet mesh lumen.stl outside.stl -o vessel.vtu --seed 0,0,5=blood --seed 1.1,0,5=wall
   A lumen with a dissection flap, a sheet that ends inside it:
     motet mesh lumen.vtp --membrane flap.vtp -o lumen.vtu
-  A surface with small holes and flat triangles, mended first:
+  A surface with small holes and flat triangles, repaired first:
     motet mesh scan.stl -o scan.vtu --repair
-  Five thin layers on all walls but flat ends, the first 0.02 thick, each 1.2 times as thick as the one before:
+  Five thin layers on all walls but flat ends, the first 0.02 thick, growing by 1.2:
     motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers 5,0.02,1.2
-  The same on one patch, more on another:
+  Layers of the wall and thinner ones of the sac:
     motet mesh lumen.vtp -o lumen.vtu --size 0.4 --layers wall=5,0.02,1.2 --layers sac=8,0.01,1.2
   Two bodies that overlap, as three regions; faults that cross each other:
     motet mesh bodies.stl -o bodies.vtu --cut
     motet mesh box.stl --membrane fault1.stl --membrane fault2.stl -o box.vtu --cut
-  What is wrong with a surface, to look at:
+  The defects of a surface, to look at:
     motet mesh scan.stl -o scan.vtu --culprits wrong.vtp
 
-Exit status 3: a surface cannot be filled; nothing is written but the culprits. 4: a triangle is there in pieces only,
-a tet has no volume in the digits of its coordinates, bad tets are left, or no layer found room; the mesh is written.")]
+Exit status 3: a surface cannot be filled; nothing is written but the culprits. 4: a triangle is \
+there in pieces only, a tet has no volume in the digits of its coordinates, bad tets are left, \
+or no layer had room; the mesh is written.")]
 pub(crate) struct MeshArgs {
     /// Surface files: each closed, or together with others that end at the same edges
     #[arg(value_name = "SURFACE", required = true)]

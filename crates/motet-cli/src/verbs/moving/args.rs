@@ -11,7 +11,7 @@ use crate::words::positive;
 
 /// Move the boundary of a mesh, and let the volume follow
 ///
-/// The boundary goes where it is told; every vertex inside follows at the cost of
+/// The boundary takes the prescribed motion; every vertex inside follows at the cost of
 /// a weighted sum (Delaunay graph mapping). Boundary vertices that nothing moves stay.
 /// Where the motion would turn a cell inside out, it is done in smaller parts. The
 /// result is certified step by step: worst quality and where, bad and inverted cells.
@@ -37,7 +37,7 @@ Examples:
   The displacement array of a solid, boundary values only, in 4 steps, last state:
     motet move mesh.vtu -o moved.vtu --displacement u --steps 4
 
-Exit status 4: the motion was not reached; what was reached is written.")]
+Exit status 4: the motion could not be completed; the mesh as far as it went is written.")]
 pub(crate) struct MoveArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]

@@ -11,7 +11,7 @@ use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
-/// Divide tets where it matters, many generations deep, without loss of shape; and take it back
+/// Divide tets where criteria ask for it, many generations deep, without loss of shape; and coarsen again
 ///
 /// Every tet that a criterion marks is divided into eight; tets beside them are divided or cut so that all fit.
 /// Pieces that were cut are never divided themselves, so shapes stay as good as they were, however often.
@@ -25,16 +25,17 @@ use crate::words::positive;
     override_usage = "motet refine MESH -o OUT [--near SURFACE=DISTANCE] [--size H] [--where 'ARRAY>VALUE'] .. [OPTIONS]"
 )]
 #[command(after_help = "\
-Several criteria mark what any of them does. Lengths are in units of the mesh, values in those of the array.
-ARRAY is an array on points (where cells are not named), or a part of one: v:x, v[0] a component, |v| its size.
-Ntets, such as 500000tets, asks for so many tets instead: where they help most.
+Several criteria mark every tet that any of them marks. Lengths are in units of the mesh, values \
+in those of the array. ARRAY is an array on points (where cells are not named), or a part of \
+one: v:x, v[0] a component, |v| its magnitude. Ntets, such as 500000tets, requests so many tets \
+instead, divided where it helps most.
 
 Examples:
   Fine at a stent, growing with the distance from it:
     motet refine lumen.vtu -o fine.vtu --near-size stent.stl=0.05,0.3
   All tets within 0.5 of it, twice:
     motet refine lumen.vtu -o fine.vtu --near stent.stl=0.5 --generations 2
-  Where the mean flow of a first simulation bends, by pressure and velocity; solve again, and repeat:
+  By pressure and velocity of the mean flow of a first simulation; solve again, and repeat:
     motet refine mean.vtu -o next.vtu --hessian pressure,velocity=2% --smallest 0.02
   To half a million tets, by the jumps of a gradient:
     motet refine mean.vtu -o next.vtu --jump pressure=500000tets
@@ -43,9 +44,9 @@ Examples:
   One generation back, everywhere:
     motet refine fine.vtu -o coarse.vtu --coarsen
 
-Exit status 2: no criterion, or one that means nothing. 3: an array, region or patch that is not there, or sizes that
-ids do not suffice for; nothing is written.
-4: a limit or the number of generations was reached before all edges were short enough; the mesh is written.")]
+Exit status 2: no criterion, or one without a meaning. 3: an array, region or patch does not \
+exist, or sizes need more tets than ids can number; nothing is written. 4: a limit or the number \
+of generations was reached before all edges were short enough; the mesh is written.")]
 pub(crate) struct RefineArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]

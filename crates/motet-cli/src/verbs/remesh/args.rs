@@ -16,29 +16,30 @@ use crate::words::positive;
 /// A tet is bad when its equi-angle quality (EAS: 1 regular, 0 flat, negative inverted) is below
 /// --min-eas. Each is repaired where it is: edges and facets swapped, edges split and collapsed,
 /// vertices moved and inserted; a change that does not raise the worst quality of what it touches is
-/// not made. All else stays as it came, to the bit. Regions, patches and every array go along.
+/// not made. All else stays as it is, to the bit. Regions, patches and all arrays are carried over.
 #[derive(Debug, Args)]
 #[command(override_usage = "motet remesh MESH -o OUT [OPTIONS]")]
 #[command(after_help = "\
-Types of bad tets: I two opposite edges cross closely, II a vertex lies close to an edge opposite,
-III a vertex lies over the middle of the facet opposite, IV an edge is short.
+Types of bad tets: I two opposite edges cross closely, II a vertex lies close to an opposite \
+edge, III a vertex lies over the middle of the opposite facet, IV an edge is short.
 
-Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps on
-cells, so that integrals stay; whole numbers, names and directions are inherited. GlobalNodeID and
-GlobalElementID of new points and tets are numbers of their own.
+Arrays of real numbers are interpolated on points and averaged over what each new tet overlaps \
+on cells, so that integrals stay; whole numbers, names and directions are inherited. \
+GlobalNodeID and GlobalElementID of new points and tets are new numbers.
 
-With --sizes edges longer than 1.5 times their size are split in their middles and edges shorter
-than 0.5 times it are collapsed, as far as that makes no tet bad; the bad ones are repaired as ever.
-The size of an edge is the mean of those at its ends. On a surface that is kept edges stay as they are.
+With --sizes, edges longer than 1.5 times their size are split at their middles and edges \
+shorter than 0.5 times their size are collapsed, as far as that makes no tet bad; then bad tets \
+are repaired. The size of an edge is the mean of the sizes at its ends. On a kept surface edges \
+stay as they are.
 
-Line cells are divided and merged with their edges where the surface may change, and keep their arrays.
-What a Medit file marks as required stays to the bit, as with --hold; so do both sides of a slit, or of
-an interface whose points are there twice.
+Line cells are divided and merged with their edges where the surface may change, and keep their \
+arrays. Entities that a Medit file marks as required stay to the bit, as with --hold; so do both \
+sides of a slit, or of an interface with doubled points.
 
 Examples:
   motet remesh moved.vtu -o repaired.vtu
   motet remesh moved.vtu -o repaired.vtu --surface adapt --distance 0.01
-        the wall may give way by a hundredth of a unit where it makes tets bad
+        the wall may move by 0.01 units where it makes tets bad
   motet remesh scan.msh -o better.vtu --goal best        the worst tets as good as they get
   motet remesh coarse.vtu -o fine.vtu --sizes 0.3 --surface adapt      edges of about 0.3 everywhere
   motet remesh scan.vtu -o graded.vtu --sizes h --surface adapt        of about the point array h
@@ -46,8 +47,8 @@ Examples:
   motet remesh moved.vtu -o repaired.vtu --json | jq .left
   motet remesh moved.vtu -o repaired.vtu --carry flags=drop --history repaired.json
 
-Exit status 4: something bad is left, or an edge too long that is not at a surface that is kept; the
-mesh is written, and it is told what is left and why.")]
+Exit status 4: a bad tet is left, or an edge that is too long and not at a kept surface; the \
+mesh is written, and the report says what is left and why.")]
 pub(crate) struct RemeshArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]

@@ -10,12 +10,12 @@ use clap::Args;
 /// whose meshes may differ from step to step; ParaView plays it.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A job, in TOML; names of files are relative to it. All but `mesh` and `output` may be left away:
+A job, in TOML; names of files are relative to it. All but `mesh` and `output` is optional:
 
   mesh = \"vessel.vtu\"
-  output = \"out/vessel.pvd\"       # beside it: vessel.jsonl, a line a step; vessel.state.vtu, to go on from
+  output = \"out/vessel.pvd\"       # also vessel.jsonl, a line a step; vessel.state.vtu
   every = 1                       # steps from frame to frame of the output
-  contents = [\"dye\"]              # densities of what stays in its cell
+  contents = [\"dye\"]              # densities whose integral over a cell stays
 
   [time]
   period = 1.0                    # in the unit of time of the output
@@ -32,14 +32,14 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
   rigid_layer = \"3layers\"         # or a distance
   within_walls = false
   fixed = [\"inlet\"]
-  slide = [\"outlet\"]             # flat patches that follow their rims, and along lines where two of them meet
+  slide = [\"outlet\"]             # flat patches that follow their rims
   slide_tolerance = 0.05          # how far they may be off their planes, as a part of their radius
   inside = [\"flap\"]               # patches inside the volume that are driven
   surfaces = \"wall.pvd\"           # measured walls, over a period
-  match = \"nearest\"               # id (default), position, or nearest: a mesh with triangles of its own
+  match = \"nearest\"               # id (default), position, nearest (another mesh)
   patch = \"wall\"                  # what follows the surfaces, for match = \"nearest\"
 
-  [[motion.move]]                 # or walls that move by rule; a vertex obeys the first that is about it
+  [[motion.move]]                 # or walls that move by rule; the first that names a vertex counts
   patch = \"sac\"
   swell = 0.1                     # along its normals; or one or several of
   # shift = [0.5, 0, 0]   turn = { axis = [0, 0, 1], degrees = 40, centre = [0, 0, 0] }
@@ -51,9 +51,9 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
   min_eas = 0.2
   surface = \"keep\"                # adapt or loose: it may stray by `distance`
   hold = [\"solid\"]                # regions and patches that repairs leave as they are
-  margin = 0.05                   # repaired to so much more
+  margin = 0.05                   # repaired tets reach min_eas + margin
   floor = 0.05                    # no step goes below this before it is repaired
-  keep_tets = 0.9                 # edges get their lengths back where there are fewer tets
+  keep_tets = 0.9                 # below this part of the first count, edges get their lengths back
 
   [[refine]]                      # words as those of `motet refine`
   near_size = [\"coil.stl=0.05,0.3\"]
@@ -69,8 +69,8 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` m
   [carry]
   pressure = \"mean\"               # or inherit, drop
 
-Exit status 3: the job cannot be read, or names what is not there (file, line). 4: a step could not be gone to its end, or
-bad tets are left that walls do not force; what was reached is written.")]
+Exit status 3: the job cannot be read, or names what does not exist (file, line). 4: a step could \
+not be completed, or bad tets are left that walls do not force; what was reached is written.")]
 pub(crate) struct RunArgs {
     /// The job file
     #[arg(value_name = "JOB.toml")]
