@@ -16,7 +16,7 @@ use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
 /// A whole mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
 pub struct MeshOutcome {
-    /// The mesh: cells that stayed in the order that they had, then triangles that came, then tets that came, then lines that came.
+    /// The mesh: cells that stayed in the order that they had, then new triangles, new tets and new lines.
     pub mesh: Mesh,
     /// Where each vertex and cell came from; carries any array of the mesh before, of any time level.
     pub history: History,
@@ -41,10 +41,11 @@ pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Thre
     Ok(outcome)
 }
 
-/// The same for tets that were taken out before, to hold more of their vertices and edges than those of other cells.
+/// Repairs the bad tets of a mesh whose tets were extracted before as `part`, so that more of their vertices and edges can be fixed than those at other cells; otherwise
+/// as [`remesh_mesh`].
 ///
 /// # Errors
-/// As there.
+/// As [`remesh_mesh`].
 pub fn remesh_part(
     mesh: &Mesh,
     part: &TetPart,
@@ -79,16 +80,16 @@ pub fn remesh_part(
 /// The cells of the new mesh, and which of the old ones each was.
 struct Joined {
     cells: Cells,
-    /// [`Id::NONE`] for those that came.
+    /// [`Id::NONE`] for new ones.
     cell_to_old: Vec<CellId>,
     /// The cell that each tet of the new tets is.
     tet_to_cell: Vec<CellId>,
-    /// The new triangles that came: the cell that each is, its place among the triangles.
-    came_triangles: Vec<(CellId, usize)>,
-    /// The new lines that came: the cell that each is, its place among the lines.
-    came_lines: Vec<(CellId, usize)>,
-    /// Old triangles that are no more, by their place.
-    gone_triangles: Vec<usize>,
+    /// New triangles: the cell that each is, its place among the triangles.
+    new_triangles: Vec<(CellId, usize)>,
+    /// New lines: the cell that each is, its place among the lines.
+    new_lines: Vec<(CellId, usize)>,
+    /// Old triangles that were removed, by their place.
+    removed_triangles: Vec<usize>,
 }
 
 impl Joined {
@@ -99,12 +100,12 @@ impl Joined {
             cells: Cells::new(),
             cell_to_old: Vec::with_capacity(n_cells),
             tet_to_cell: Vec::with_capacity(extract.mesh.tets.len()),
-            came_triangles: Vec::new(),
-            came_lines: Vec::new(),
-            gone_triangles: std::mem::take(&mut stay.gone_triangles),
+            new_triangles: Vec::new(),
+            new_lines: Vec::new(),
+            removed_triangles: std::mem::take(&mut stay.removed_triangles),
         };
         let mut faces = old.cells.polyhedron_faces().iter();
-        for (cell, kind, vertices) in old.cells.iter().filter(|(cell, _, _)| !stay.is_gone[cell.index()]) {
+        for (cell, kind, vertices) in old.cells.iter().filter(|(cell, _, _)| !stay.is_removed[cell.index()]) {
             if kind == CellKind::TETRA {
                 joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             }
@@ -118,16 +119,16 @@ impl Joined {
                 joined.cells.push(kind, vertices);
             }
         }
-        for &i in &stay.came_triangles {
-            joined.came_triangles.push((CellId::new(joined.cells.len()), i));
+        for &i in &stay.new_triangles {
+            joined.new_triangles.push((CellId::new(joined.cells.len()), i));
             joined.push_new(CellKind::TRIANGLE, &turned_as_before(i, part, extract));
         }
         for tet in &extract.mesh.tets[extract.mesh.tets.len() - extract.came.len()..] {
             joined.tet_to_cell.push(CellId::new(joined.cells.len()));
             joined.push_new(CellKind::TETRA, tet);
         }
-        for &i in &stay.came_lines {
-            joined.came_lines.push((CellId::new(joined.cells.len()), i));
+        for &i in &stay.new_lines {
+            joined.new_lines.push((CellId::new(joined.cells.len()), i));
             joined.push_new(CellKind::LINE, &line_as_before(i, part, extract));
         }
         joined
@@ -141,60 +142,52 @@ impl Joined {
 
 /// What stayed of the old mesh, and under which number.
 struct Stay {
-    is_gone: Vec<bool>,
+    is_removed: Vec<bool>,
     old_to_vertex: Vec<u32>,
-    gone_triangles: Vec<usize>,
-    came_triangles: Vec<usize>,
-    came_lines: Vec<usize>,
+    removed_triangles: Vec<usize>,
+    new_triangles: Vec<usize>,
+    new_lines: Vec<usize>,
 }
 
 impl Stay {
     fn of(old: &Mesh, part: &TetPart, extract: &Extract) -> Self {
-        let mut is_gone = vec![false; old.cells.len()];
-        extract.gone_tets.iter().for_each(|t| is_gone[part.tet_to_cell[t.index()].index()] = true);
+        let mut is_removed = vec![false; old.cells.len()];
+        extract.gone_tets.iter().for_each(|t| is_removed[part.tet_to_cell[t.index()].index()] = true);
         let mut stay = Self {
-            is_gone,
+            is_removed,
             old_to_vertex: extract.old_to_vertex(old.points.len()),
-            gone_triangles: Vec::new(),
-            came_triangles: Vec::new(),
-            came_lines: Vec::new(),
+            removed_triangles: Vec::new(),
+            new_triangles: Vec::new(),
+            new_lines: Vec::new(),
         };
-        stay.find_triangles(part, extract);
-        stay.find_lines(part, extract);
+        let (before, after) = (&part.mesh, &extract.mesh);
+        (stay.removed_triangles, stay.new_triangles) =
+            stay.compared([&before.triangles, &after.triangles], &extract.triangle_to_old);
+        let removed_lines;
+        (removed_lines, stay.new_lines) = stay.compared([&before.lines, &after.lines], &extract.line_to_old);
+        let triangles = stay.removed_triangles.iter().map(|&t| part.triangle_to_cell[t]);
+        let lines = removed_lines.iter().map(|&line| part.line_to_cell[line]);
+        triangles.chain(lines).for_each(|cell| stay.is_removed[cell.index()] = true);
         stay
     }
 
-    /// Lines that stayed come first, in their order.
-    fn find_lines(&mut self, part: &TetPart, extract: &Extract) {
-        let (before, after) = (&part.mesh.lines, &extract.mesh.lines);
+    /// The old cells of a kind that were removed, and the new ones that were inserted, by their places. Cells that have the vertices that they had stayed; they come first
+    /// among the new ones, in their order.
+    fn compared<const N: usize>(
+        &self,
+        [before, after]: [&[[VertexId; N]]; 2],
+        to_old: &[u32],
+    ) -> (Vec<usize>, Vec<usize>) {
         let mut stays = vec![false; before.len()];
-        for (i, &old) in extract.line_to_old.iter().enumerate() {
+        let mut inserted = Vec::new();
+        for (i, &old) in to_old.iter().enumerate() {
             let is_same = |t: usize| before[t].map(|v| self.vertex(v)) == after[i];
             match old as usize {
-                t if self.came_lines.is_empty() && is_same(t) => stays[t] = true,
-                _ => self.came_lines.push(i),
+                t if inserted.is_empty() && is_same(t) => stays[t] = true,
+                _ => inserted.push(i),
             }
         }
-        for line in (0..before.len()).filter(|&line| !stays[line]) {
-            self.is_gone[part.line_to_cell[line].index()] = true;
-        }
-    }
-
-    /// Triangles with the vertices that they had are those that stayed: they come first, in their order.
-    fn find_triangles(&mut self, part: &TetPart, extract: &Extract) {
-        let (before, after) = (&part.mesh.triangles, &extract.mesh.triangles);
-        let mut stays = vec![false; before.len()];
-        for (i, &old) in extract.triangle_to_old.iter().enumerate() {
-            let is_same = |t: usize| before[t].map(|v| self.vertex(v)) == after[i];
-            match old as usize {
-                t if self.came_triangles.is_empty() && is_same(t) => stays[t] = true,
-                _ => self.came_triangles.push(i),
-            }
-        }
-        self.gone_triangles = (0..before.len()).filter(|&t| !stays[t]).collect();
-        for &t in &self.gone_triangles {
-            self.is_gone[part.triangle_to_cell[t].index()] = true;
-        }
+        ((0..before.len()).filter(|&t| !stays[t]).collect(), inserted)
     }
 
     fn vertex(&self, old: VertexId) -> VertexId {
@@ -208,7 +201,7 @@ impl Stay {
     }
 }
 
-/// The vertices of a triangle that came, so that it faces as the one does that it is a part of.
+/// The vertices of a new triangle, so that it faces as the one does that it is a part of.
 fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3] {
     let [a, b, c] = extract.mesh.triangles[i];
     let before = part.mesh.triangles[extract.triangle_to_old[i] as usize];
@@ -217,7 +210,7 @@ fn turned_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 3
     if dot(is, was) < 0.0 { [a, c, b] } else { [a, b, c] }
 }
 
-/// The vertices of a line that came, so that it runs as the one does that it is a part of.
+/// The vertices of a new line, so that it runs as the one does that it is a part of.
 fn line_as_before(i: usize, part: &TetPart, extract: &Extract) -> [VertexId; 2] {
     let [a, b] = extract.mesh.lines[i];
     let [was_a, was_b] = part.mesh.lines[extract.line_to_old[i] as usize];
@@ -252,15 +245,15 @@ fn history(
             new_points: &after.points,
             removed_tets: &labelled(extract.gone_tets.iter().map(|t| old_tet(t.index()))),
             new_tets: &labelled((n_kept..after.tets.len()).map(new_tet)),
-            removed_triangles: &labelled(joined.gone_triangles.iter().map(old_triangle)),
-            new_triangles: &labelled(joined.came_triangles.iter().map(new_triangle)),
+            removed_triangles: &labelled(joined.removed_triangles.iter().map(old_triangle)),
+            new_triangles: &labelled(joined.new_triangles.iter().map(new_triangle)),
             changed_vertices: &changed_vertices,
         },
         threads,
     )?;
     // Lines are the last cells.
     let mut cells = traced.cells;
-    for &(cell, i) in &joined.came_lines {
+    for &(cell, i) in &joined.new_lines {
         let before = part.line_to_cell[extract.line_to_old[i] as usize];
         cells.push(cell, &[(before, 1.0)], before);
     }
