@@ -9,6 +9,7 @@ use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
 use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
+use crate::kernel::spare::NONE_SPARED;
 use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
@@ -75,7 +76,7 @@ impl Complex {
             fixed_edges,
             lines,
             is_fixed_wall: Vec::new(),
-            spared_below: f64::NEG_INFINITY,
+            spared: NONE_SPARED,
             folded,
             keeps_surface: true,
             mostly_turned: 2 * n_turned > n_tets,

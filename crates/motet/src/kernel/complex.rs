@@ -1,6 +1,7 @@
 //! Tets that can be changed: with what lies behind each facet, and a free list.
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas};
@@ -58,8 +59,8 @@ pub struct Complex {
     pub(super) lines: Lines,
     /// Walls that no change may remove; empty where there is none.
     pub(super) is_fixed_wall: Vec<bool>,
-    /// New tets that walls force count as good below this quality; see [`Complex::spare`].
-    pub(super) spared_below: f64,
+    /// New tets of these qualities count as good where walls force them; see [`Complex::spare`].
+    pub(super) spared: Range<f64>,
     /// Tets of the first mesh that are folded over others, in rising order.
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.

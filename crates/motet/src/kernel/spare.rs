@@ -6,6 +6,7 @@
 //! walls it will have. The value of a quality marks nothing: elsewhere another tet can have the same one, and need repair.
 
 use std::cell::Cell;
+use std::ops::Range;
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::dihedral;
@@ -19,6 +20,9 @@ const SPARED: f64 = f64::INFINITY;
 
 /// A tet below this EAS is next to flat, and never counts as good: two walls of it may come to lie on each other.
 pub const FLATTEST: f64 = 1e-6;
+
+/// The qualities of tets to come that may count as good, where none may.
+pub(super) const NONE_SPARED: Range<f64> = f64::INFINITY..f64::INFINITY;
 
 /// A quality within this of the highest that walls allow is as high as they allow.
 const NEARLY: f64 = 1e-6;
@@ -45,12 +49,13 @@ pub enum Side {
 }
 
 impl Complex {
-    /// Counts `tets` as good from now on, and of the tets that changes bring those whose quality is below `limit` and as high as two walls on both sides of the
-    /// tet, or the angles of a wall that is [`Side::Firm`], allow. All until [`Self::spare_none`].
+    /// Counts `tets` as good from now on, and of the tets that changes insert those whose quality is below `limit`, not below the worst of `tets`, and as high as two
+    /// walls on both sides of the tet, or the angles of a wall that is [`Side::Firm`], allow. All until [`Self::spare_none`].
     ///
     /// Cannot be taken back by [`Self::undo`].
     pub fn spare(&mut self, tets: &[TetId], limit: f64) {
-        self.spared_below = limit;
+        let worst = tets.iter().map(|&tet| self.measure(self.corners(tet))).fold(f64::INFINITY, f64::min);
+        self.spared = worst.max(FLATTEST)..limit;
         tets.iter().for_each(|tet| self.qualities[tet.index()].set(SPARED));
         self.forget();
     }
@@ -59,10 +64,15 @@ impl Complex {
     ///
     /// Cannot be taken back by [`Self::undo`].
     pub fn spare_none(&mut self) {
-        self.spared_below = f64::NEG_INFINITY;
+        self.spared = NONE_SPARED;
         let marked = self.qualities.iter_mut().filter(|quality| quality.get() == SPARED);
         marked.for_each(|quality| *quality = Cell::new(UNMEASURED));
         self.forget();
+    }
+
+    /// How many tets are marked.
+    pub fn n_spared(&self) -> usize {
+        if self.spared == NONE_SPARED { 0 } else { self.tets().filter(|&tet| self.is_spared(tet)).count() }
     }
 
     pub(super) fn is_spared(&self, tet: TetId) -> bool {
@@ -73,7 +83,7 @@ impl Complex {
     #[inline]
     pub fn judge(&self, corners: [Point; 4], sides: impl Fn(usize) -> Side) -> f64 {
         let quality = self.measure(corners);
-        let may_be_spared = (FLATTEST..self.spared_below).contains(&quality);
+        let may_be_spared = self.spared.contains(&quality);
         if may_be_spared && is_forced(corners, quality, sides) { SPARED } else { quality }
     }
 

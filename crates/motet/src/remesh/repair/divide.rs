@@ -20,6 +20,8 @@ impl Repair {
     /// that leaves fewer. What did not lead to fewer is undone. For flat tets between two sheets of the surface, and those on needles
     /// of the surface, which are too long for where they are.
     pub(super) fn divide(&mut self, mut left: Vec<TetId>, rounds: usize) -> Result<Vec<TetId>> {
+        let n_bad = |repair: &Self, left: &[TetId]| left.len() + repair.complex.n_spared();
+        let mut n_least = n_bad(self, &left);
         let mut best = (left.clone(), self.complex.mark(), self.operations);
         let mut n_in_vain = 0;
         let most_tets = MOST_GROWTH * self.complex.n_tets();
@@ -34,16 +36,17 @@ impl Repair {
             bad.extend(left.iter().copied().filter(|&t| self.is_bad(t)));
             left = self.run(bad, rounds)?;
             n_in_vain += 1;
-            if left.len() < best.0.len() {
+            let n = n_bad(self, &left);
+            if n < n_least {
                 if PROGRESS * (best.0.len() as f64) >= left.len() as f64 {
                     n_in_vain = 0;
                 }
+                n_least = n;
                 best = (left.clone(), self.complex.mark(), self.operations);
             }
         }
         self.complex.undo(best.1);
         self.operations = best.2;
-        self.complex.forget();
         Ok(best.0)
     }
 

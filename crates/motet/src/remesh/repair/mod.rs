@@ -151,18 +151,20 @@ impl Repair {
     }
 
     /// Makes a pass over what is left while tets that are as good as the walls at them allow count as good: these can get no better, and
-    /// would hold up what lies beside them. What is left then, these included.
+    /// would hold up what lies beside them. What is left then, these included. Taken back where more bad tets are left than before: walls can force two tets in place of one.
     pub(super) fn beside_forced(
         &mut self,
         left: &[TetId],
         pass: impl Fn(&mut Self, Vec<TetId>) -> Result<Vec<TetId>>,
     ) -> Result<Vec<TetId>> {
         let forced = forced(&self.complex, self.surface.as_ref(), left);
-        if forced.is_empty() {
-            return pass(self, left.to_vec());
-        }
         self.complex.spare(&forced, self.target);
-        pass(self, left.to_vec())?;
+        let (start, operations) = (self.complex.mark(), self.operations);
+        let unforced = pass(self, left.to_vec())?;
+        if unforced.len() + self.complex.n_spared() > left.len() {
+            self.complex.undo(start);
+            self.operations = operations;
+        }
         self.complex.spare_none();
         Ok(self.below(self.target))
     }
