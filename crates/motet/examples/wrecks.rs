@@ -1,6 +1,7 @@
 //! Broken meshes, repaired: what came of each kind of damage, and how long the longest took.
 //!
 //! `wrecks [N] [FIRST]`: the wrecks FIRST to FIRST + N; exit status 1 where one ends neither valid nor told nor refused.
+//! `wrecks N FIRST CELLS`: boxes of so many cells along each axis instead, their inner vertices shaken by up to two edges.
 
 #[path = "../tests/common/mod.rs"]
 #[allow(unreachable_pub, unused_imports, reason = "tests share it, and use other parts of it")]
@@ -17,10 +18,14 @@ use motet::remesh::SurfaceRule;
 fn main() -> ExitCode {
     let mut numbers = std::env::args().skip(1).map_while(|word| word.parse::<u64>().ok());
     let (n, first) = (numbers.next().unwrap_or(1000), numbers.next().unwrap_or(0));
+    let cells = numbers.next().and_then(|n| usize::try_from(n).ok());
     let mut table: BTreeMap<(String, String), usize> = BTreeMap::new();
     let (mut longest, mut n_faults) = ((0.0, first), 0);
     for seed in first..first + n {
-        let wreck = Wreck::new(seed);
+        let wreck = match cells {
+            Some(cells) => Wreck::shaken_box(seed, cells, 0.2 * (1 + seed % 10) as f64),
+            None => Wreck::new(seed),
+        };
         let surface = if seed % 4 == 0 { SurfaceRule::Adapt { distance: None } } else { SurfaceRule::Keep };
         if std::env::var_os("WRECKS_VERBOSE").is_some() {
             eprintln!("{seed} {:?} {} tets", wreck.damage, wreck.mesh.tets.len());

@@ -24,6 +24,15 @@ fn wrecks_end_valid_told_or_refused() {
     assert!(n_valid > 30, "{n_valid} of 100 are meshes again");
 }
 
+/// Most tets are inverted, and hardly any can be mended: repair ends, and counts them.
+#[test]
+fn a_box_shaken_beyond_repair_is_told() {
+    for part in [1.5, 3.0] {
+        let end = Wreck::shaken_box(2, 6, part).end(SurfaceRule::Keep);
+        assert_eq!(end, Ok(End::Told));
+    }
+}
+
 #[test]
 fn two_tets_on_one_side_of_a_facet_become_one() {
     let points = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.3, 0.2, 2.]];

@@ -7,6 +7,7 @@ mod ids;
 
 mod lanewise;
 mod mixed;
+mod percent;
 mod reasons;
 mod sets;
 mod threads;
@@ -18,6 +19,7 @@ pub use ids::{CellId, Id, TetId, VertexId, rising_list};
 pub(crate) use ids::{rising, runs_alike};
 pub(crate) use lanewise::lanewise;
 pub(crate) use mixed::mixed;
+pub use percent::percent;
 pub use reasons::reasons;
 pub(crate) use sets::Sets;
 pub use threads::Threads;

@@ -4,13 +4,16 @@ use std::collections::HashSet;
 
 use super::devices::Devices;
 use super::options::Options;
-use crate::base::{Threads, VertexId, rising};
+use super::place::told;
+use crate::base::{Error, Result, Threads, VertexId, rising};
 use crate::contact::inside;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::{EDGES, FACETS, centroid, volume};
+use crate::geometry::triangle;
 use crate::geometry::vector::distance;
 use crate::mesh::tet_facets::{NO_TET, for_each_tet_facet, tet_neighbors};
-use crate::mesh::{TetMesh, bounds};
+use crate::mesh::{OrientedTets, TetMesh, bounds, firsts_at_place};
+use crate::preflight::own_crossings;
 use crate::spatial::NearestTriangle;
 
 /// What becomes of a tet of the host.
@@ -78,6 +81,32 @@ impl Carved {
         take_teeth(&tet_neighbors(&host.tets), &mut self.fates);
         self.faces = self::faces(host, &self.fates);
         !taken.is_empty()
+    }
+
+    /// Refuses a host whose tets overlap where they were carved: no tets fit facets that cross each other, and long is looked for them in vain.
+    ///
+    /// # Errors
+    /// With a place where two of [`Self::faces`] cross.
+    pub(super) fn check_overlaps(&self, host: &TetMesh, threads: &Threads) -> Result<()> {
+        let tets = OrientedTets::of_tets(host);
+        let n_inverted = (0..host.tets.len()).filter(|&t| tets.is_inverted(t, &host.points)).count();
+        if n_inverted == 0 {
+            return Ok(());
+        }
+        // The two sides of a slit lie on each other, and do not cross.
+        let firsts = firsts_at_place(&host.points);
+        let faces: Vec<[VertexId; 3]> =
+            self.faces.iter().map(|face| face.vertices.map(|v| firsts[v.index()])).collect();
+        let crossings = own_crossings(&host.points, &faces, threads);
+        let Some(&[first, _]) = crossings.first() else { return Ok(()) };
+        let place = told(triangle::centroid(faces[first as usize].map(|v| host.points[v.index()])));
+        Err(Error::input(format!(
+            "tets of the host overlap where devices lie: {} pairs of facets of what stays round them cross each other; {n_inverted} of its {} tets are flat or inverted",
+            crossings.len(),
+            host.tets.len()
+        ))
+        .at(format!("the first facet at {place}"))
+        .remedy("repair the host first (`motet remesh`), or carve farther (--carve, --reach)"))
     }
 
     pub(super) fn gone(&self) -> impl Iterator<Item = usize> + '_ {

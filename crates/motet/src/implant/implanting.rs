@@ -141,6 +141,7 @@ fn room(
     let mut divided = Vec::new();
     for _ in 0..=RETRIES {
         threads.watch().go_on("making room for devices", 0, 0)?;
+        carved.check_overlaps(&part.mesh, threads)?;
         report.seconds.carve += lap();
         let filled = Gap::fill(&part.mesh, devices, &carved, options, threads)?;
         report.seconds.fill += lap();

@@ -3,7 +3,7 @@
 //! A motion that one step from the reference can do is done in one step, and depends on
 //! nothing else. Where that would turn a cell over, the mesh goes on from where the last
 //! call left it: as far as is admissible, found by halving; there the graph is built
-//! anew, every vertex hung into it where it is now, and so on, until the boundary is
+//! anew, every vertex hung into it where it is now (those of sliding patches into that of their plane), and so on, until the boundary is
 //! where it should be or a sub-step gets nowhere. What the boundary does in between is
 //! the straight way; a wall that turns should come in steps of its own.
 
@@ -15,22 +15,15 @@ use crate::motion::certificate::{Certificate, Seconds, measure};
 use crate::motion::check::Check;
 use crate::motion::map::Map;
 use crate::motion::mover::{Mover, Work};
+use crate::motion::nodes::Start;
 use crate::motion::update::{Displacements, Padded};
 
 /// Where a call of [`Mover::advance`] left the mesh.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct State {
     points: Vec<Point>,
     /// Displacements of the driven vertices there.
     driven: Vec<Point>,
-    /// The method set up at that place; `None` until it is needed.
-    map: Option<Map>,
-}
-
-impl State {
-    fn without_map(&self) -> Self {
-        Self { points: self.points.clone(), driven: self.driven.clone(), map: None }
-    }
 }
 
 /// Halvings of the part of the way that is still admissible: 1/4096 of it.
@@ -67,11 +60,11 @@ impl Mover {
             ..Default::default()
         };
         if turned.is_empty() {
-            self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec(), map: None });
+            self.state = Some(State { points: out.to_vec(), driven: displacement.to_vec() });
         } else {
             certificate.blocked_by = turned;
             certificate.blocked_by.truncate(10);
-            let before = self.state.as_ref().map(State::without_map);
+            let before = self.state.clone();
             let gone = self.go_as_far_as_can_be(displacement, out, threads, &mut certificate, &mut seconds);
             if gone.is_err() {
                 self.state = before;
@@ -169,16 +162,12 @@ impl Mover {
         let mut state = self.state.take().unwrap_or_else(|| State {
             points: self.reference.clone(),
             driven: vec![[0.0; 3]; target.len()],
-            map: None,
         });
         let mut left = 1.0;
         certificate.complete = false;
         while certificate.substeps < self.limits.substeps {
             threads.watch().go_on("moving in parts", certificate.substeps, self.limits.substeps)?;
-            if state.map.is_none() {
-                state.map = Some(timed(&mut seconds.graph, || self.rebuild(&state.points, threads))?);
-            }
-            let mut leg = Leg { mover: self, state: &state, target, iterations: 0 };
+            let mut leg = timed(&mut seconds.graph, || Leg::new(self, &state, target, threads))?;
             let mut part = leg.longest(self.limits.keep_volume, out, threads, seconds)?;
             if part * left < self.limits.smallest {
                 part = leg.longest(0.0, out, threads, seconds)?;
@@ -189,7 +178,6 @@ impl Mover {
             left *= 1.0 - part;
             state.driven = leg.driven(part);
             state.points.copy_from_slice(out);
-            state.map = None;
             certificate.complete = left == 0.0;
             if certificate.complete || part * (left / (1.0 - part)) < self.limits.smallest {
                 break;
@@ -211,7 +199,7 @@ impl Mover {
     ) -> Result<Work> {
         let driven: Vec<Point> = target.iter().map(|&d| scale(d, fraction)).collect();
         let work = self.go(&driven, out, threads)?;
-        self.state = Some(State { points: out.to_vec(), driven, map: None });
+        self.state = Some(State { points: out.to_vec(), driven });
         Ok(work)
     }
 }
@@ -221,10 +209,18 @@ struct Leg<'a> {
     mover: &'a Mover,
     state: &'a State,
     target: &'a [Point],
+    map: Map,
+    start: Start,
     iterations: usize,
 }
 
-impl Leg<'_> {
+impl<'a> Leg<'a> {
+    fn new(mover: &'a Mover, state: &'a State, target: &'a [Point], threads: &Threads) -> Result<Self> {
+        let map = mover.rebuild(&state.points, threads)?;
+        let start = mover.nodes.start(&mover.reference, &state.points, &state.driven, threads)?;
+        Ok(Self { mover, state, target, map, start, iterations: 0 })
+    }
+
     /// Displacements of the driven vertices when a part of the way is gone.
     fn driven(&self, part: f64) -> Vec<Point> {
         if part == 1.0 {
@@ -237,14 +233,11 @@ impl Leg<'_> {
     fn place(&mut self, part: f64, out: &mut [Point], threads: &Threads) -> Result<usize> {
         let nodes = &self.mover.nodes;
         let target = self.driven(part);
-        let to = nodes.displacements(&target, threads);
-        let from = nodes.displacements(&self.state.driven, threads);
-        let (to, from) = (to.table(), from.table());
-        let change = to.iter().zip(&*from).map(|(to, from)| Padded::new(sub(to.point(), from.point())));
-        if let Some(map) = &self.state.map {
-            let change = Displacements::All(change.collect());
-            self.iterations += map.apply(&self.state.points, &change, out, threads)?;
-        }
+        let to = nodes.displacements_from(&self.start, &target, threads);
+        let from = self.start.displacement.iter();
+        let change = to.iter().zip(from).map(|(to, from)| Padded::new(sub(to.point(), from.point())));
+        let change = Displacements::All(change.collect());
+        self.iterations += self.map.apply(&self.state.points, &change, out, threads)?;
         nodes.place(&self.mover.reference, &to, out);
         Ok(self.mover.finish(out, threads))
     }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::base::{CellId, Point, Threads, VertexId};
+use crate::base::{CellId, Point, Threads, VertexId, percent};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 use crate::mesh::curved::LeastJacobian;
@@ -99,8 +99,8 @@ impl Certificate {
         let cells: Vec<String> = self.blocked_by.iter().map(ToString::to_string).collect();
         (!self.complete).then(|| {
             format!(
-                "the motion stopped at {:.1} % of its way after {} sub-steps, where cells would turn over (the first: {})",
-                100.0 * self.fraction,
+                "the motion stopped at {} of its way after {} sub-steps, where cells would turn over (the first: {})",
+                percent(self.fraction),
                 self.substeps,
                 cells.join(", ")
             )

@@ -24,9 +24,19 @@ pub(crate) struct Nodes {
     /// For members that slide, the place in `slides`.
     member_slides: Vec<Option<u32>>,
     slides: Vec<Slide>,
+    /// Where the vertices of sliding patches are held.
+    freedom: Freedom,
     /// What is reported of the planes of sliding patches.
     pub(crate) planes: Vec<SlidingPlane>,
     rims: Vec<Rim>,
+}
+
+/// Where a motion in sub-steps has brought the nodes, and what those that slide follow from there on.
+#[derive(Debug)]
+pub(crate) struct Start {
+    /// Displacements of all nodes from the reference, and the node that never moves.
+    pub(crate) displacement: Vec<Padded>,
+    slides: Vec<Slide>,
 }
 
 /// Says that a vertex is no node.
@@ -62,16 +72,46 @@ impl Nodes {
             let wall = rigid.wall.as_ref().or(all.as_ref()).expect("one of the two is there");
             nodes.add_layer(mesh, rigid, wall, is_used, &node_of, &slide_of)?;
         }
-        let mut in_layer = vec![false; mesh.points.len()];
-        nodes.layer.iter().flat_map(|l| &l.members).for_each(|m| in_layer[m.vertex.index()] = true);
+        nodes.planes = freedom.planes();
+        nodes.rims = freedom.rims(&mesh.points, |v| node_of[v.index()]);
+        nodes.slides = nodes.hung(&freedom, &mesh.points, threads)?;
+        nodes.freedom = freedom;
+        Ok(nodes)
+    }
+
+    /// What the vertices that slide follow where `points` has all vertices; those of the layer follow their feet.
+    fn hung(&self, freedom: &Freedom, points: &[Point], threads: &Threads) -> Result<Vec<Slide>> {
+        let mut node_of = vec![NONE; points.len()];
+        (0..).zip(&self.vertices[..self.n_driven]).for_each(|(i, v)| node_of[v.index()] = i);
+        let mut in_layer = vec![false; points.len()];
+        self.layer.iter().flat_map(|l| &l.members).for_each(|m| in_layer[m.vertex.index()] = true);
         let follows = |v: VertexId| !in_layer[v.index()];
         let node = |v: VertexId| node_of[v.index()];
-        for held in &freedom.held {
-            nodes.slides.push(Slide::new(&mesh.points, &freedom.flats, held, follows, node, threads)?);
+        let slide = |held| Slide::new(points, &freedom.flats, held, follows, node, threads);
+        freedom.held.iter().map(slide).collect()
+    }
+
+    /// The start of a sub-step where `points` has the vertices, reached by the displacements `driven` of the driven nodes.
+    ///
+    /// # Errors
+    /// When the vertices of a sliding patch cannot be triangulated there.
+    pub(crate) fn start(
+        &self,
+        reference: &[Point],
+        points: &[Point],
+        driven: &[Point],
+        threads: &Threads,
+    ) -> Result<Start> {
+        let mut displacement = self.displacements(driven, threads).table().into_owned();
+        for &node in self.slides.iter().flat_map(|slide| &slide.sliding) {
+            let v = self.vertices[node as usize].index();
+            displacement[node as usize] = Padded::new(sub(points[v], reference[v]));
         }
-        nodes.planes = freedom.planes();
-        nodes.rims = freedom.rims(&mesh.points, node);
-        Ok(nodes)
+        let slides = match self.slides.is_empty() {
+            true => Vec::new(),
+            false => self.hung(&self.freedom.refitted(points)?, points, threads)?,
+        };
+        Ok(Start { displacement, slides })
     }
 
     /// Makes nodes of the vertices near the wall, as far as they are not driven; those of them
@@ -109,6 +149,26 @@ impl Nodes {
         if self.layer.is_none() && self.slides.is_empty() {
             return Displacements::Driven(driven);
         }
+        let mut all = self.before_sliding(driven, threads);
+        let none = vec![Padded::default(); all.len()];
+        self.slides.iter().for_each(|slide| slide.apply(&none, &mut all));
+        Displacements::All(all)
+    }
+
+    /// Displacements of all nodes from the reference, from those of the driven ones, when the motion goes on from `start`.
+    pub(crate) fn displacements_from(
+        &self,
+        start: &Start,
+        driven: &[Point],
+        threads: &Threads,
+    ) -> Vec<Padded> {
+        let mut all = self.before_sliding(driven, threads);
+        start.slides.iter().for_each(|slide| slide.apply(&start.displacement, &mut all));
+        all
+    }
+
+    /// Displacements of driven nodes as they are given, and of those of the layer.
+    fn before_sliding(&self, driven: &[Point], threads: &Threads) -> Vec<Padded> {
         let mut all = vec![Padded::default(); self.vertices.len() + 1];
         all.iter_mut().zip(driven).for_each(|(all, &d)| *all = Padded::new(d));
         if let Some(layer) = &self.layer {
@@ -120,8 +180,7 @@ impl Nodes {
                 });
             }
         }
-        self.slides.iter().for_each(|slide| slide.apply(&mut all));
-        Displacements::All(all)
+        all
     }
 
     /// Where a rim of a sliding patch leaves its plane farthest, when the driven nodes have these displacements.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::base::{CellId, Id, Point};
+use crate::base::{CellId, Id, Point, percent};
 use crate::mesh::history::History;
 use crate::moving::shapes::Shape;
 use crate::remesh::Counts;
@@ -46,10 +46,7 @@ impl Step {
     /// Why the walls are not where they were requested to be; `None` where they are.
     pub fn not_reached(&self) -> Option<String> {
         (!self.complete).then(|| {
-            format!(
-                "the step stopped at {:.1} % of its way, where tets would turn over",
-                100.0 * self.fraction
-            )
+            format!("the step stopped at {} of its way, where tets would turn over", percent(self.fraction))
         })
     }
 }

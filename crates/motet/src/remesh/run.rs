@@ -77,7 +77,7 @@ pub(super) fn remesh_but(
         _ => repair.run(bad, options.rounds)?,
     };
     for pass in passes(options.surface) {
-        if !left.is_empty() {
+        if !left.is_empty() && !repair.is_hopeless() {
             left = repair.beside_forced(&left, |repair, left| repair.pass(*pass, left, options.rounds))?;
         }
     }
@@ -85,7 +85,7 @@ pub(super) fn remesh_but(
     if repair.sizing.is_none() && repair.thin()? {
         left = repair.below(min_eas);
     }
-    if options.goal == Goal::Best {
+    if options.goal == Goal::Best && !repair.is_hopeless() {
         repair.best(options.rounds)?;
         left = repair.below(min_eas);
     }

@@ -66,6 +66,17 @@ impl Wreck {
         Self { damage, sound, mesh }
     }
 
+    /// A box of `n` cells along each axis, all of whose inner vertices are moved by up to `part` of an edge along each axis.
+    pub(crate) fn shaken_box(seed: u64, n: usize, part: f64) -> Self {
+        let sound = TetPart::of(&box_grid([n; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
+        let (mut mesh, mut numbers) = (sound.clone(), Numbers(seed));
+        let is_inner = |p: &Point| p.iter().all(|x| *x > 0.0 && *x < 1.0);
+        for p in mesh.points.iter_mut().filter(|p| is_inner(p)) {
+            p.iter_mut().for_each(|x| *x += (2.0 * numbers.unit() - 1.0) * part / n as f64);
+        }
+        Self { damage: Damage::Shaken, sound, mesh }
+    }
+
     /// Repairs it by a rule for the surface, and says what came of it; in words what must not be.
     pub(crate) fn end(&self, surface: SurfaceRule) -> Result<End, String> {
         let options = Options { surface, ..Options::default() };

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use motet::base::reasons;
+use motet::base::{percent, reasons};
 use motet::motion::LeavesPlane;
 use motet::moving::{MovingMesh, Script, Seconds, Step, Why, WorstTet};
 use serde::Serialize;
@@ -87,7 +87,7 @@ pub(super) fn line(step: &Step, console: &Console) {
         text += &format!("  [{:?}: {} bad, {part:.2} % new]", change.why, change.bad_before);
     }
     if !step.complete {
-        text += &format!("  gone {:.1} % of the way", 100.0 * step.fraction);
+        text += &format!("  gone {} of the way", percent(step.fraction));
     }
     console.say(text);
 }

@@ -115,6 +115,26 @@ impl Freedom {
         Ok(Self { flats, held: sorted })
     }
 
+    /// The same vertices on the same planes and lines, these fitted to where `points` has the vertices: a patch may have been turned as a whole.
+    ///
+    /// # Errors
+    /// When the facets of a plane have no area there.
+    pub(crate) fn refitted(&self, points: &[Point]) -> Result<Self> {
+        let refit = |flat: &Flat| {
+            let plane = Plane::new(points, &flat.set, f64::INFINITY);
+            Ok(Flat {
+                set: flat.set.clone(),
+                plane: plane.map_err(|e: Error| e.at(format!("sliding patch {}", flat.set.name)))?,
+            })
+        };
+        let flats = self.flats.iter().map(refit).collect::<Result<Vec<_>>>()?;
+        let held = self.held.iter().map(|held| Held {
+            along: held.along.map(|before| line(&flats, &held.planes).unwrap_or(before)),
+            ..held.clone()
+        });
+        Ok(Self { held: held.collect(), flats })
+    }
+
     /// The line or the plane that holds each vertex, as a place in [`Self::held`].
     pub(crate) fn held_of(&self, n_points: usize) -> Vec<Option<u32>> {
         let mut of = vec![None; n_points];

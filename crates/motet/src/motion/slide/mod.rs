@@ -11,6 +11,9 @@
 //! two anchors between which it lies. So an affine motion of what is driven is an affine
 //! motion of what slides. Displacements are followed as a whole: what a vertex is off its
 //! plane it stays, and where all of a rim leaves the plane, the patch goes along.
+//!
+//! A rim that becomes straight flattens the triangles between its own vertices, and what hangs in them. A motion
+//! in sub-steps therefore triangulates the planes anew at each, as it does the graph in space.
 
 mod freedom;
 mod plane;
@@ -95,13 +98,15 @@ impl Slide {
         }
     }
 
-    /// Gives the sliding nodes their displacement.
-    pub(crate) fn apply(&self, displacement: &mut [Padded]) {
+    /// Gives the sliding nodes their displacement; `start` has the displacements of all nodes where the weights were computed.
+    pub(crate) fn apply(&self, start: &[Padded], displacement: &mut [Padded]) {
         for (&sliding, (nodes, weights)) in self.sliding.iter().zip(&self.follows) {
-            let sum = nodes.iter().zip(weights).fold([0.0; 3], |sum, (&node, &weight)| {
-                add(sum, scale(displacement[node as usize].point(), weight))
-            });
-            displacement[sliding as usize] = Padded::new(sum);
+            let change = |node: u32| sub(displacement[node as usize].point(), start[node as usize].point());
+            let sum = nodes
+                .iter()
+                .zip(weights)
+                .fold([0.0; 3], |sum, (&node, &weight)| add(sum, scale(change(node), weight)));
+            displacement[sliding as usize] = Padded::new(add(start[sliding as usize].point(), sum));
         }
     }
 }
