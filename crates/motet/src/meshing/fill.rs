@@ -118,7 +118,9 @@ impl Filled {
     pub fn not_reached(&self, options: &Options) -> Option<String> {
         let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
             self.report;
-        let in_pieces = (options.edge_points != EdgePoints::Stay && points_on_edges > 0).then(|| {
+        // A surface that was divided has no triangles to keep.
+        let is_kept = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
+        let in_pieces = (is_kept && points_on_edges > 0).then(|| {
             format!(
                 "{} triangles of the surfaces are divided: {points_on_edges} points on them found no room inside",
                 triangles.saturating_sub(triangles_kept + triangles_outside)
