@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use motet::base::Point;
 use motet::meshing::layers::{Layers, Stack};
-use motet::meshing::{self, Options, Seed, Sizes, Surfaces, fill, sizes_by};
+use motet::meshing::{self, Dividing, Options, Seed, Sizes, Surfaces, fill, sizes_by};
 use motet::preflight::{Repair, Repairs, Role};
 use motet::{Mesh, remesh};
 use pyo3::prelude::*;
@@ -20,6 +20,7 @@ use crate::watch::watched;
 #[derive(FromPyObject)]
 pub(crate) struct Asked {
     size: Option<f64>,
+    surface: String,
     is_graded: bool,
     growth: Option<f64>,
     size_array: Option<String>,
@@ -111,6 +112,7 @@ impl Asked {
         let sizes = Sizes::of(self.size, self.is_graded, self.growth, at_points);
         let seed = |(place, name): &(Point, String)| Seed { place: *place, name: name.clone() };
         Ok(Options {
+            dividing: Dividing::of_name(&self.surface)?,
             seeds: self.seeds.iter().map(seed).collect(),
             holes: self.holes.clone(),
             voids: self.voids,

@@ -43,6 +43,7 @@ fn told(filled: &Filled) -> Vec<(f64, bool)> {
 const VOIDS: Options = Options {
     edge_points: motet::delaunay::EdgePoints::MoveInside,
     sizes: None,
+    dividing: motet::meshing::Dividing::Coarse,
     seeds: Vec::new(),
     holes: Vec::new(),
     voids: true,
@@ -96,7 +97,7 @@ fn a_surface_far_coarser_than_the_size_is_named_with_its_edges() {
     let surfaces = joined(&[cube(1, 1.0, false)]);
     let coarse = Sizes::Uniform(0.2).coarse(&surfaces).expect("edges of length 1 are far longer");
     assert_eq!(coarse.edges, [1.0, 1.0, 2f64.sqrt()]);
-    assert!(coarse.to_string().contains("remesh"), "{coarse}");
+    assert!(coarse.to_string().contains("coarser than the size 0.2"), "{coarse}");
     assert_eq!(
         filled(&surfaces, &Options::with_sizes(Some(Sizes::Uniform(0.2)), None)).report.coarse,
         Some(coarse)

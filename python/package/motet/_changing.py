@@ -243,6 +243,7 @@ Layers = tuple[int, float, float]
 @dataclass
 class _Filling:
     size: float | None
+    surface: str
     is_graded: bool
     growth: float | None
     size_array: str | None
@@ -265,6 +266,7 @@ def mesh(
     *,
     membranes: Sequence[MeshLike] = (),
     size: float | Literal["auto"] | None = None,
+    surface: Literal["auto", "divide", "keep"] = "auto",
     growth: float | None = None,
     size_array: str | None = None,
     seeds: Mapping[str, ArrayLike] | None = None,
@@ -280,7 +282,7 @@ def mesh(
     threads: int = 0,
     progress: Progress | None = None,
 ) -> Changed:
-    """Fills closed surfaces with tets: every triangle is a facet of the mesh.
+    """Fills closed surfaces with tets: every triangle is a facet of the mesh, or divided where it is far coarser than ``size``.
 
     Parameters
     ----------
@@ -290,6 +292,8 @@ def mesh(
         Surfaces that may end inside the others, such as a flap.
     size : float or "auto"
         How long edges inside are; ``auto``: as those of the surface, growing inwards. None: no points inside but those that are needed.
+    surface : "auto", "divide" or "keep"
+        Whether triangles of the surfaces are divided to ``size`` in their own planes, creases kept: where most are far coarser or narrow, all, or none.
     growth : float
         How much sizes grow from the surface per unit of distance, up to ``size``.
     size_array : str
@@ -329,7 +333,7 @@ def mesh(
     given = [(as_mesh(one), name, False) for name, one in named(surfaces, "surface").items()]
     given += [(as_mesh(one), name, True) for name, one in named(list(membranes), "membrane").items()]
     asked = _Filling(
-        size=None if size == "auto" else size, is_graded=size == "auto", growth=growth, size_array=size_array,
+        size=None if size == "auto" else size, surface=surface, is_graded=size == "auto", growth=growth, size_array=size_array,
         seeds=[(point(place), name) for name, place in (seeds or {}).items()], holes=[point(place) for place in holes], min_eas=min_eas,
         layers=None if isinstance(layers, Mapping) else layers, layers_on=dict(layers) if isinstance(layers, Mapping) else {},
         keep_prisms=keep_prisms, repair=repair, cut=cut, voids=voids, merge=merge, hole_edges=hole_edges,

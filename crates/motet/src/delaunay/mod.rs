@@ -45,5 +45,6 @@ mod store;
 mod triangulation;
 mod walk;
 
+pub(crate) use constrain::flat_facets;
 pub use constrain::{Constrained, EdgePoints, PointInTriangle, PointOnEdge, constrain};
 pub use triangulation::{HullFacet, Triangulation};

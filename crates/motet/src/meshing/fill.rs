@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::bodies::{self, Arranged, Body, Seed};
 use super::compact::{compact, named};
+use super::divide::{Divided, divide};
 use super::graded;
 use super::interior;
 use super::layers::{self, Grown, Layers};
@@ -20,7 +21,36 @@ use crate::geometry::tet::volume;
 use crate::mesh::history::Rules;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::preflight::Preflight;
-use crate::remesh::{self, remesh_mesh};
+use crate::remesh::{self, SurfaceRule, remesh_mesh};
+
+/// Whether the triangles of surfaces are divided, each place of the surfaces kept to rounding: flat parts get new triangles in their own planes, creases and borders of patches are
+/// divided into parts of about the size.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dividing {
+    /// Those of surfaces that are far coarser than the size; see [`Sizes::coarse`].
+    #[default]
+    Coarse,
+    /// All.
+    Always,
+    /// None: every triangle is a facet of tets.
+    Never,
+}
+
+impl Dividing {
+    /// The rule of a name: `auto`, `divide` or `keep`, as the command line has them.
+    ///
+    /// # Errors
+    /// When none is called that.
+    pub fn of_name(name: &str) -> Result<Self> {
+        match name {
+            "auto" => Ok(Self::Coarse),
+            "divide" => Ok(Self::Always),
+            "keep" => Ok(Self::Never),
+            _ => Err(Error::options(format!("there is no rule `{name}` for the surface"))
+                .remedy("give one of auto, divide, keep")),
+        }
+    }
+}
 
 /// How surfaces are filled.
 #[derive(Clone, Debug, Default)]
@@ -29,6 +59,8 @@ pub struct Options {
     pub edge_points: EdgePoints,
     /// How long edges inside are to be; `None`: no points inside. Default: `None`.
     pub sizes: Option<Sizes>,
+    /// Whether the triangles of the surfaces are divided to a size that is the same everywhere. Default: [`Dividing::Coarse`].
+    pub dividing: Dividing,
     /// Names of regions. Default: none.
     pub seeds: Vec<Seed>,
     /// Places in bodies that are left out. Default: none.
@@ -47,6 +79,19 @@ impl Options {
         let min_eas = min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
         let improve = min_eas.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() });
         Self { sizes, improve, ..Self::default() }
+    }
+
+    /// The size to which surfaces are divided, of which `coarse` tells whether they are far coarser.
+    fn divided_to(&self, coarse: Option<Coarse>) -> Result<Option<f64>> {
+        match (self.dividing, &self.sizes) {
+            (Dividing::Never, _) => Ok(None),
+            (Dividing::Coarse, _) => Ok(coarse.map(|coarse| coarse.size)),
+            (Dividing::Always, Some(Sizes::Uniform(size))) => Ok(Some(*size)),
+            (Dividing::Always, _) => {
+                Err(Error::options("a surface to be divided, and no size that is the same everywhere")
+                    .remedy("give --size H alone, or leave the surface as it is"))
+            }
+        }
     }
 }
 
@@ -73,7 +118,9 @@ impl Filled {
     pub fn not_reached(&self, options: &Options) -> Option<String> {
         let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
             self.report;
-        let in_pieces = (options.edge_points != EdgePoints::Stay && points_on_edges > 0).then(|| {
+        // A surface that was divided has no triangles to keep.
+        let is_kept = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
+        let in_pieces = (is_kept && points_on_edges > 0).then(|| {
             format!(
                 "{} triangles of the surfaces are divided: {points_on_edges} points on them found no room inside",
                 triangles.saturating_sub(triangles_kept + triangles_outside)
@@ -107,8 +154,10 @@ pub struct Report {
     pub triangles_kept: usize,
     /// Triangles with nothing enclosed on either side, which are left out.
     pub triangles_outside: usize,
-    /// The lengths of edges of a surface that is far coarser than the size of edges inside: tets on it are bad.
+    /// The lengths of edges of a surface that is far coarser than the size of edges inside.
     pub coarse: Option<Coarse>,
+    /// How many triangles such a surface was divided into.
+    pub divided: Option<Divided>,
     /// Bodies that were left out, since closed surfaces turned inward enclose them.
     pub voids: usize,
     /// The worst EAS, before tets were improved.
@@ -137,6 +186,11 @@ pub fn fill(
     options.sizes.as_ref().map_or(Ok(()), |sizes| sizes.check(surfaces))?;
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(surfaces));
+    let divided = options.divided_to(coarse)?.map(|size| divide(surfaces, size, threads)).transpose()?;
+    let (surfaces, divided) = match &divided {
+        Some((surfaces, divided)) => (surfaces, Some(*divided)),
+        None => (surfaces, None),
+    };
     let joined = surfaces.without_shared();
     let triangles = joined.triangles.clone();
     let at_corners = options.sizes.as_ref().map_or_else(Vec::new, |sizes| sizes.at_corners(&joined));
@@ -151,7 +205,7 @@ pub fn fill(
         let arranged = bodies::arrange(&mut whole, surfaces, &triangles, options)?;
         let grown = Grown::new(&joined, layers, whole.triangle_to_bodies, threads)?;
         let mut filled = fill_with_layers(grown, &at_corners, arranged, layers, options, threads)?;
-        filled.report.coarse = coarse;
+        (filled.report.coarse, filled.report.divided) = (coarse, divided);
         return Ok(filled);
     }
     let points = inside(&joined, options.sizes.as_ref(), at_corners, threads)?;
@@ -163,8 +217,8 @@ pub fn fill(
     let (mut mesh, _) = mesh(&joined, &tets);
     mesh.label_names.regions = region_names(&arranged);
     drop(tets);
-    let (mesh, improved) = improve(mesh, options, coarse.is_some(), threads)?;
-    report.coarse = coarse;
+    let (mesh, improved) = improve(mesh, options, [coarse.is_some(), divided.is_some()], threads)?;
+    (report.coarse, report.divided) = (coarse, divided);
     (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh));
     report.voids = arranged.n_left_out;
     Ok(Filled { report, mesh, improved, layers: None })
@@ -189,7 +243,7 @@ fn fill_with_layers(
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
     let mut glued = grown.glue(&core, &core_to_mesh);
     glued.label_names.regions = region_names(&arranged);
-    let (mut mesh, improved) = improve(glued, options, false, threads)?;
+    let (mut mesh, improved) = improve(glued, options, [false; 2], threads)?;
     let split = layers::split(mesh.clone());
     (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split));
     report.voids = arranged.n_left_out;
@@ -220,16 +274,18 @@ fn filled(
     Ok(tets)
 }
 
-/// Repairs bad tets; where the surface is far coarser than the sizes in one round, since most of those on it stay bad however long they are tried.
+/// Repairs bad tets. A surface that `is_divided` may be divided in another way, each place of it where it is; where one that is far coarser than the sizes is kept, one round
+/// is made, since most tets on it stay bad however long they are tried.
 fn improve(
     mesh: Mesh,
     options: &Options,
-    is_coarse: bool,
+    [is_coarse, is_divided]: [bool; 2],
     threads: &Threads,
 ) -> Result<(Mesh, Option<remesh::Report>)> {
     let Some(improve) = &options.improve else { return Ok((mesh, None)) };
-    let rounds = if is_coarse { improve.rounds.min(1) } else { improve.rounds };
-    let improve = remesh::Options { rounds, ..improve.clone() };
+    let rounds = if is_coarse && !is_divided { improve.rounds.min(1) } else { improve.rounds };
+    let surface = if is_divided { SurfaceRule::Flat } else { improve.surface };
+    let improve = remesh::Options { rounds, surface, ..improve.clone() };
     let outcome = remesh_mesh(&mesh, &improve, &Rules::default(), threads)?;
     Ok((outcome.mesh, Some(outcome.report)))
 }
@@ -291,6 +347,7 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
         triangles_kept: filled.triangle_to_facets.iter().filter(|list| is_kept(list)).count(),
         triangles_outside: filled.triangle_to_bodies.iter().filter(|b| **b == [None; 2]).count(),
         coarse: None,
+        divided: None,
         voids: 0,
         worst_eas: filled.tets.iter().map(|t| eas(corners(t))).fold(f64::INFINITY, f64::min),
         not_positive: 0,

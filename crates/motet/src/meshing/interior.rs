@@ -17,6 +17,22 @@ pub(super) const AWAY: f64 = 0.6;
 /// More points than this are refused.
 const MOST: f64 = 2e8;
 
+/// Refuses sizes that ask for too many points.
+///
+/// # Errors
+/// Tells how many.
+pub(super) fn check(points: &[Point], size: f64) -> Result<()> {
+    let [low, high] = bounds(points).unwrap_or_default();
+    let expected = (0..3).map(|i| (high[i] - low[i]) / (size / EDGE_OVER_SIDE) + 1.0).product::<f64>() * 2.0;
+    if expected > MOST {
+        let what = format!(
+            "a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}"
+        );
+        return Err(Error::options(what).remedy("give a larger size"));
+    }
+    Ok(())
+}
+
 /// Lattice points with edges of about `size` between the surfaces, in the order of the lattice.
 ///
 /// # Errors
@@ -27,16 +43,10 @@ pub(super) fn lattice(
     size: f64,
     threads: &Threads,
 ) -> Result<Vec<Point>> {
+    check(points, size)?;
     let side = size / EDGE_OVER_SIDE;
     let [low, high] = bounds(points).unwrap_or_default();
     let sides = [0, 1, 2].map(|i| high[i] - low[i]);
-    let expected = sides.iter().map(|s| s / side + 1.0).product::<f64>() * 2.0;
-    if expected > MOST {
-        let what = format!(
-            "a size of {size} asks for some {expected:.1e} points inside, expected at most {MOST:.0e}"
-        );
-        return Err(Error::options(what).remedy("give a larger size"));
-    }
     let along = (0..3).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
     let tree = NearestTriangle::new(points, triangles, threads);
     let mut found = Vec::new();

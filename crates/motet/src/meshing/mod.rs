@@ -5,6 +5,7 @@
 //! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one, meshes that end at a common edge are one surface |
 //! | caps | `caps` | open rims closed, frame by frame of a wall that moves |
 //! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
+//! | divide | `divide` | a surface that is far coarser than the size inside is divided in its own planes |
 //! | layers | [`layers`] | thin prisms on walls, where they are asked for; what follows fills the room that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
 //! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, a little away from the surface; one of cubes within cubes |
@@ -16,6 +17,7 @@
 mod bodies;
 mod caps;
 mod compact;
+mod divide;
 mod fill;
 mod graded;
 mod interior;
@@ -30,7 +32,8 @@ pub(crate) use bodies::told;
 pub use bodies::{Body, Seed};
 pub use caps::{Caps, RimPlane};
 pub(crate) use compact::{compact, named};
-pub use fill::{Filled, Options, Report, fill};
+pub use divide::Divided;
+pub use fill::{Dividing, Filled, Options, Report, fill};
 pub(crate) use graded::points_between;
 pub(crate) use interior::EDGE_OVER_SIDE;
 pub use sizes::{Coarse, Grading, MOST_GROWTH, Sizes, sizes_by};

@@ -16,8 +16,10 @@ pub const MOST_GROWTH: f64 = 0.7;
 
 /// Edges of the surface that are so many times as long as edges inside are to be leave bad tets.
 const COARSE: f64 = 3.0;
+/// So do triangles with edges longer than the size whose longest edge is so many times as long as the height over it: they have an angle below 10 degrees.
+const NARROW: f64 = 6.0;
 
-/// A surface that is far coarser than the size of edges inside.
+/// A surface of which most is far coarser than the size of edges inside, or narrow triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Coarse {
     /// The size of edges inside.
@@ -31,9 +33,7 @@ impl fmt::Display for Coarse {
         let Self { size, edges: [least, median, largest] } = self;
         write!(
             f,
-            "the surface is far coarser than the size {size}: its edges are {least:.4} to {largest:.4} long, the median is {median:.4}. It is kept as it is, so \
-             tets on its long edges are bad, and one round of repair is made. Give a larger --size, or fill without one and divide the surface, too: `motet mesh ... -o \
-             coarse.vtu`, `motet remesh coarse.vtu -o even.vtu --surface adapt`, `motet remesh even.vtu -o fine.vtu --sizes {size} --surface adapt`"
+            "most triangles of the surface are narrow or far coarser than the size {size}: edges are {least:.4} to {largest:.4} long, the median is {median:.4}"
         )
     }
 }
@@ -91,7 +91,7 @@ impl Sizes {
         }
     }
 
-    /// Whether most of the surface has edges far longer than the size that is the same everywhere: no good tets stand on these. `None` where it has not.
+    /// Whether most of the surface has edges far longer than the size that is the same everywhere, or is narrow triangles: no good tets stand on these. `None` where it has not.
     pub fn coarse(&self, surfaces: &Surfaces) -> Option<Coarse> {
         let Self::Uniform(size) = *self else { return None };
         let (mut all, mut coarse) = (0.0, 0.0);
@@ -99,7 +99,8 @@ impl Sizes {
             let corners @ [a, b, c] = triangle.map(|v| surfaces.points[v.index()]);
             let longest = distance(a, b).max(distance(b, c)).max(distance(c, a));
             all += area(corners);
-            coarse += if longest > COARSE * size { area(corners) } else { 0.0 };
+            let is_narrow = longest > size && longest * longest > NARROW * 2.0 * area(corners);
+            coarse += if longest > COARSE * size || is_narrow { area(corners) } else { 0.0 };
         }
         let edges = edge_lengths(&surfaces.points, surfaces.triangles.iter().copied())?;
         (2.0 * coarse > all).then_some(Coarse { size, edges })

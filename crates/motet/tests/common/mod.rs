@@ -9,6 +9,7 @@ pub(crate) mod devices;
 pub(crate) mod filled;
 pub(crate) mod hard;
 pub(crate) mod kept;
+pub(crate) mod prism;
 pub(crate) mod refined;
 pub(crate) mod solid_angle;
 pub(crate) mod wreck;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use motet::base::Point;
 use motet::delaunay::EdgePoints;
-use motet::meshing::{Options, Seed, Sizes, Surfaces};
+use motet::meshing::{Dividing, Options, Seed, Sizes, Surfaces};
 use motet::preflight::Repairs;
 
 use super::layer_words::{LayersWord, layers, stacks};
@@ -62,6 +62,10 @@ pub(crate) struct MeshArgs {
     /// auto: as long as those of the surface, and growing inwards
     #[arg(long, value_name = "H|auto", value_parser = words::size)]
     pub(crate) size: Option<Size>,
+    /// Whether the triangles of the surface are divided to --size H in their own planes, creases kept. auto: where most of them are
+    /// far coarser, or narrow. divide: all of them. keep: none, so that every triangle is a facet of the mesh
+    #[arg(long, value_name = "RULE", default_value = "auto", value_parser = ["auto", "divide", "keep"])]
+    pub(crate) surface: String,
     /// Sizes grow from the surface inwards, by G per unit of distance, up to --size; at most 0.7 [default: 0.3
     /// with --size auto or --size-array]
     #[arg(long, value_name = "G", value_parser = positive)]
@@ -132,6 +136,7 @@ impl MeshArgs {
         let sizes = Sizes::of(largest, self.size == Some(Size::Auto), self.growth, at_points);
         Ok(Options {
             edge_points: if self.delaunay { EdgePoints::Stay } else { EdgePoints::MoveInside },
+            dividing: Dividing::of_name(&self.surface)?,
             seeds: self.seed.clone(),
             holes: self.hole.clone(),
             voids: self.voids,

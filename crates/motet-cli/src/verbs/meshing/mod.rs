@@ -8,7 +8,7 @@ mod words;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use motet::meshing::{Surfaces, fill, sizes_by};
+use motet::meshing::{Dividing, Surfaces, fill, sizes_by};
 use motet::preflight::{Preflight, Role, culprits};
 use motet::{Mesh, io};
 
@@ -58,7 +58,10 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     let filling = Instant::now();
     let options = args.options(sizes, &surfaces)?;
     if let Some(coarse) = options.sizes.as_ref().and_then(|sizes| sizes.coarse(&surfaces)) {
-        console.warn(coarse);
+        console.warn(match options.dividing {
+            Dividing::Never => format!("{coarse}. They are kept, so tets on them are bad, and one round of repair is made; give a larger --size, or leave out --surface keep"),
+            _ => format!("{coarse}. They are divided in their own planes; --surface keep keeps them"),
+        });
     }
     let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();

@@ -133,6 +133,13 @@ impl<'a> Report<'a> {
             filled.bodies.len(),
             short(filled.worst_eas)
         ));
+        if let Some(divided) = filled.divided {
+            console.say(format_args!(
+                "the surface was divided: {} triangles in place of {}",
+                count(divided.after),
+                count(divided.before)
+            ));
+        }
         console.say(format_args!(
             "{} of {} triangles are facets as they came; {} points came inside, {} on edges",
             count(filled.triangles_kept),

@@ -66,7 +66,7 @@ use crate::mesh::bounds;
 use bodies::Bodies;
 use edges::Edges;
 use flat_tets::is_flat;
-use flats::Flats;
+use flats::{Flats, Grown};
 use keep::Keep;
 use segments::Segments;
 use sites::Sites;
@@ -161,6 +161,12 @@ pub fn constrain(
         Order::retried(0, threads.watch(), |order| fill(&flats, order)).map_err(|unmade| unmade.error)?
     };
     Ok(filled.finish(points, triangles, back))
+}
+
+/// The flat facet of each triangle: triangles that hang together and lie in one plane, exactly or but for a `rounding` of each coordinate, have the same number.
+/// Points must be finite and triangles name three different ones.
+pub(crate) fn flat_facets(points: &[Point], triangles: &[[VertexId; 3]], rounding: f64) -> Vec<u32> {
+    Grown::find(&Sites::new(points.to_vec(), &[]), triangles, [rounding; 3]).number
 }
 
 fn check_ids(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<()> {

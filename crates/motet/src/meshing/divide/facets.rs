@@ -1,0 +1,100 @@
+//! Flat facets of surfaces: triangles in one plane, exactly or but for rounding, that are the same patches of the same surfaces.
+
+use super::net::Plane;
+use crate::base::{Point, Sets, VertexId, rising, runs_alike};
+use crate::delaunay::flat_facets;
+use crate::geometry::rounding;
+use crate::geometry::triangle::area;
+use crate::meshing::surfaces::Surfaces;
+
+/// What a triangle is for a surface that has it: the surface, its patch, and whether it faces as the first of those at its place.
+pub(super) type Label = (u32, i32, bool);
+
+/// The triangles of surfaces, each place once.
+pub(super) struct Sheet {
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    /// What each is for the surfaces that have it.
+    labels: Vec<Vec<Label>>,
+}
+
+impl Sheet {
+    pub(super) fn of(surfaces: &Surfaces) -> Self {
+        let mut order: Vec<usize> = (0..surfaces.triangles.len()).collect();
+        let key = |t: usize| rising(surfaces.triangles[t]);
+        order.sort_by_key(|&t| (key(t), t));
+        let mut groups: Vec<&[usize]> = order.chunk_by(|&s, &t| key(s) == key(t)).collect();
+        groups.sort_by_key(|group| group[0]);
+        let label = |first: usize, t: usize| {
+            let is_alike = runs_alike(surfaces.triangles[first], surfaces.triangles[t]);
+            (surfaces.surface_of[t], surfaces.patches[t], is_alike)
+        };
+        Self {
+            triangles: groups.iter().map(|group| surfaces.triangles[group[0]]).collect(),
+            labels: groups.iter().map(|group| group.iter().map(|&t| label(group[0], t)).collect()).collect(),
+        }
+    }
+}
+
+/// Flat facets.
+pub(super) struct Facets {
+    /// The facet of each triangle.
+    pub(super) facet_of: Vec<u32>,
+    /// The plane of each facet, as which its triangles turn.
+    pub(super) planes: Vec<Plane>,
+    /// What the triangles of each facet are for the surfaces that have them.
+    pub(super) labels: Vec<Vec<Label>>,
+}
+
+impl Facets {
+    /// The facets of a sheet; `None` where a triangle has no plane in the digits of its coordinates.
+    pub(super) fn find(points: &[Point], sheet: &Sheet) -> Option<Self> {
+        let corners = |i: usize| sheet.triangles[i].map(|v| points[v.index()]);
+        let roots = roots(points, sheet);
+        // The plane of a facet is that of its largest triangle.
+        let mut largest: Vec<usize> = (0..roots.len()).collect();
+        for (i, &root) in roots.iter().enumerate() {
+            if area(corners(i)) > area(corners(largest[root])) {
+                largest[root] = i;
+            }
+        }
+        let plane_of = |i: usize| Plane::of(corners(largest[i]));
+        let mut is_whole = vec![true; roots.len()];
+        for (i, &root) in roots.iter().enumerate() {
+            is_whole[root] = is_whole[root] && plane_of(root)?.turn(corners(i)) > 0;
+        }
+        let mut number = vec![None; roots.len()];
+        let mut facets = Self { facet_of: Vec::new(), planes: Vec::new(), labels: Vec::new() };
+        for (i, &root) in roots.iter().enumerate() {
+            let (of, plane) =
+                if is_whole[root] { (root, plane_of(root)?) } else { (i, Plane::of(corners(i))?) };
+            let of = *number[of].get_or_insert_with(|| {
+                facets.planes.push(plane);
+                facets.labels.push(sheet.labels[i].clone());
+                (facets.planes.len() - 1) as u32
+            });
+            facets.facet_of.push(of);
+        }
+        Some(facets)
+    }
+}
+
+/// A triangle that stands for the facet of each triangle.
+fn roots(points: &[Point], sheet: &Sheet) -> Vec<usize> {
+    let Sheet { triangles, labels } = sheet;
+    let flat = flat_facets(points, triangles, rounding::of(points));
+    let mut edges: Vec<([VertexId; 2], bool, u32)> = Vec::with_capacity(3 * triangles.len());
+    for (i, &[a, b, c]) in (0..).zip(triangles) {
+        edges.extend([[a, b], [b, c], [c, a]].map(|[p, q]| (rising([p, q]), p < q, i)));
+    }
+    edges.sort_unstable();
+    let mut sets = Sets::new(triangles.len());
+    for run in edges.chunk_by(|x, y| x.0 == y.0) {
+        let &[(_, one, i), (_, other, j)] = run else { continue };
+        let [s, t] = [i, j].map(|t| t as usize);
+        // Triangles of a facet face the same side.
+        if one != other && flat[s] == flat[t] && labels[s] == labels[t] {
+            sets.join(i, j);
+        }
+    }
+    (0..triangles.len() as u32).map(|i| sets.root(i) as usize).collect()
+}

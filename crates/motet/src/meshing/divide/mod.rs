@@ -1,0 +1,93 @@
+//! Surfaces that are coarser than the sizes inside, divided: their flat facets keep their planes, their creases are edges, and triangles become as even as both allow.
+//!
+//! | step | file | how |
+//! |---|---|---|
+//! | facets | `facets` | triangles of one patch in one plane, exactly or but for rounding |
+//! | creases | `refine` | divided into parts of about the size |
+//! | facets | `refine`, `net` | Delaunay refinement in the plane |
+
+mod facets;
+mod net;
+mod refine;
+
+use serde::Serialize;
+
+use self::facets::{Facets, Sheet};
+use self::net::Net;
+use super::interior;
+use super::surfaces::Surfaces;
+use crate::base::{Error, Result, Threads, VertexId};
+use crate::geometry::triangle::area;
+use crate::geometry::vector::distance;
+
+/// More triangles than this are refused.
+const MOST: f64 = 2e7;
+
+/// So many times as many points as triangles are expected are inserted at most: where facets are far narrower than the size, more than are expected.
+const MOST_POINTS: usize = 16;
+
+/// Surfaces divided, and how many triangles there were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Divided {
+    /// Triangles of the surfaces before, those that two surfaces share counted once.
+    pub before: usize,
+    /// The same afterwards.
+    pub after: usize,
+}
+
+/// Divides the triangles of surfaces so that edges are about as long as `size`. Each place of the surfaces stays where it is to rounding.
+///
+/// # Errors
+/// When there would be far too many triangles.
+pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Result<(Surfaces, Divided)> {
+    let watch = threads.watch();
+    watch.go_on("dividing the surface", 0, 0)?;
+    interior::check(&surfaces.points, size)?;
+    let expected = expected(surfaces, size);
+    if expected > MOST {
+        let what =
+            format!("a size of {size} asks for some {expected:.1e} triangles, expected at most {MOST:.0e}");
+        return Err(Error::options(what).remedy("give a larger size"));
+    }
+    let sheet = Sheet::of(surfaces);
+    let before = sheet.triangles.len();
+    let Some(Facets { facet_of, planes, labels }) = Facets::find(&surfaces.points, &sheet) else {
+        return Ok((surfaces.clone(), Divided { before, after: before }));
+    };
+    let mut net = Net::new(surfaces.points.clone(), sheet.triangles, facet_of, planes);
+    net.make_delaunay();
+    refine::divide_creases(&mut net, size, watch)?;
+    refine::refine(&mut net, size, MOST_POINTS * expected as usize, watch)?;
+    let after = net.triangles.len();
+    Ok((joined(surfaces, net, &labels), Divided { before, after }))
+}
+
+/// The surfaces with the triangles of `net`, each with the labels of its facet.
+fn joined(surfaces: &Surfaces, net: Net, labels: &[Vec<facets::Label>]) -> Surfaces {
+    let mut divided = Surfaces {
+        points: net.points,
+        triangles: Vec::with_capacity(net.triangles.len()),
+        surface_of: Vec::with_capacity(net.triangles.len()),
+        patches: Vec::with_capacity(net.triangles.len()),
+        ..surfaces.clone()
+    };
+    for (&[a, b, c], &facet) in net.triangles.iter().zip(&net.facet_of) {
+        for &(surface, patch, is_alike) in &labels[facet as usize] {
+            divided.triangles.push(if is_alike { [a, b, c] } else { [a, c, b] });
+            divided.surface_of.push(surface);
+            divided.patches.push(patch);
+        }
+    }
+    divided
+}
+
+/// About how many triangles there will be: even ones on the area, and those at divided creases.
+fn expected(surfaces: &Surfaces, size: f64) -> f64 {
+    let even = 0.25 * 3f64.sqrt() * size * size;
+    let of = |t: &[VertexId; 3]| {
+        let [a, b, c] = t.map(|v| surfaces.points[v.index()]);
+        let around = distance(a, b) + distance(b, c) + distance(c, a);
+        1.0 + area([a, b, c]) / even + around / size
+    };
+    surfaces.triangles.iter().map(of).sum()
+}

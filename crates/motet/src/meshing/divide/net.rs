@@ -1,0 +1,284 @@
+//! Triangles of flat facets, and what inserts points between them: constrained Delaunay triangulations that share their creases.
+//!
+//! A point takes the place of all triangles that hold it in their circles and that can be reached without crossing a crease (Bowyer 1981, Watson 1981; with creases Lee
+//! and Lin 1986). Circles in a plane are spheres through a point beside it, so signs are exact.
+
+use hashbrown::HashMap;
+
+use crate::base::{Point, VertexId, rising};
+use crate::geometry::predicates::{insphere, orient3d};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{distance, dot, sub, unit};
+
+/// The plane of a flat facet.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// A point beside the plane, on the side that its triangles face away from.
+    beside: Point,
+    /// A point of the plane, and its unit normal.
+    pub(super) at: (Point, Point),
+}
+
+impl Plane {
+    /// The plane of a triangle; `None` where its corners are in line.
+    pub(super) fn of([a, b, c]: [Point; 3]) -> Option<Self> {
+        let normal = unit(area_vector([a, b, c]))?;
+        let reach = distance(a, b) + distance(b, c);
+        let beside = |sign: f64| -> Point { std::array::from_fn(|i| a[i] + sign * reach * normal[i]) };
+        let beside = [beside(1.0), beside(-1.0)].into_iter().find(|&p| orient3d(a, b, c, p) > 0)?;
+        Some(Self { beside, at: (a, normal) })
+    }
+
+    /// 1 where three points turn as the triangles of the facet do.
+    pub(super) fn turn(&self, [a, b, c]: [Point; 3]) -> i8 {
+        orient3d(a, b, c, self.beside)
+    }
+
+    fn is_in_circle(&self, [a, b, c]: [Point; 3], p: Point) -> bool {
+        insphere(a, b, c, self.beside, p) > 0
+    }
+}
+
+/// A triangle, by its place in the list.
+pub(super) type TriangleId = u32;
+
+/// Why a point cannot be inserted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Blocked {
+    /// A crease hides it, or is seen from it at more than a right angle.
+    By([VertexId; 2]),
+    /// Triangles there have no room for it.
+    NoRoom,
+}
+
+/// Triangles to go, and the directed edges round them.
+struct Cavity {
+    triangles: Vec<TriangleId>,
+    rim: Vec<[VertexId; 2]>,
+}
+
+/// Triangles of flat facets.
+pub(super) struct Net {
+    pub(super) points: Vec<Point>,
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    pub(super) facet_of: Vec<u32>,
+    pub(super) planes: Vec<Plane>,
+    /// The triangle to the left of a directed edge in a facet.
+    left: HashMap<(u32, VertexId, VertexId), TriangleId>,
+    /// Edges that stay edges, and the facets at each.
+    creases: HashMap<[VertexId; 2], Vec<u32>>,
+}
+
+impl Net {
+    /// Triangles with the facet of each, which all turn as the plane of their facet does. An edge is a crease unless the triangles at it are two, of one facet.
+    pub(super) fn new(
+        points: Vec<Point>,
+        triangles: Vec<[VertexId; 3]>,
+        facet_of: Vec<u32>,
+        planes: Vec<Plane>,
+    ) -> Self {
+        let mut net = Self {
+            points,
+            triangles: Vec::new(),
+            facet_of,
+            planes,
+            left: HashMap::new(),
+            creases: HashMap::new(),
+        };
+        let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
+        for (i, &[a, b, c]) in triangles.iter().enumerate() {
+            edges.extend([[a, b], [b, c], [c, a]].map(|edge| (rising(edge), net.facet_of[i])));
+        }
+        edges.sort_unstable();
+        for run in edges.chunk_by(|x, y| x.0 == y.0) {
+            if !matches!(run, [x, y] if x.1 == y.1) {
+                let mut facets: Vec<u32> = run.iter().map(|edge| edge.1).collect();
+                facets.dedup();
+                net.creases.insert(run[0].0, facets);
+            }
+        }
+        net.triangles = triangles;
+        (0..net.triangles.len()).for_each(|i| net.note(i as TriangleId));
+        net
+    }
+
+    pub(super) fn corners(&self, triangle: TriangleId) -> [Point; 3] {
+        self.triangles[triangle as usize].map(|v| self.point(v))
+    }
+
+    pub(super) fn point(&self, v: VertexId) -> Point {
+        self.points[v.index()]
+    }
+
+    pub(super) fn is_crease(&self, edge: [VertexId; 2]) -> bool {
+        self.creases.contains_key(&rising(edge))
+    }
+
+    /// All creases, in rising order.
+    pub(super) fn creases(&self) -> Vec<[VertexId; 2]> {
+        let mut creases: Vec<[VertexId; 2]> = self.creases.keys().copied().collect();
+        creases.sort_unstable();
+        creases
+    }
+
+    fn note(&mut self, id: TriangleId) {
+        let facet = self.facet_of[id as usize];
+        let [a, b, c] = self.triangles[id as usize];
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            self.left.insert((facet, from, to), id);
+        }
+    }
+
+    fn forget(&mut self, id: TriangleId) {
+        let facet = self.facet_of[id as usize];
+        let [a, b, c] = self.triangles[id as usize];
+        for (from, to) in [(a, b), (b, c), (c, a)] {
+            self.left.remove(&(facet, from, to));
+        }
+    }
+
+    /// Flips edges within facets until no vertex lies in the circle of a neighbour (Lawson 1977).
+    pub(super) fn make_delaunay(&mut self) {
+        let mut todo: Vec<(u32, [VertexId; 2])> = Vec::new();
+        for (&facet, &[a, b, c]) in self.facet_of.iter().zip(&self.triangles) {
+            todo.extend([[a, b], [b, c], [c, a]].map(|edge| (facet, edge)));
+        }
+        while let Some((facet, [a, b])) = todo.pop() {
+            if self.is_crease([a, b]) {
+                continue;
+            }
+            let sides = [self.left.get(&(facet, a, b)), self.left.get(&(facet, b, a))];
+            let [Some(&s), Some(&t)] = sides else { continue };
+            let third = |of: TriangleId| self.triangles[of as usize].into_iter().find(|&v| v != a && v != b);
+            let (Some(p), Some(q)) = (third(s), third(t)) else { continue };
+            let plane = self.planes[facet as usize];
+            let at = |v: [VertexId; 3]| v.map(|v| self.point(v));
+            if plane.turn(at([p, a, q])) > 0
+                && plane.turn(at([q, b, p])) > 0
+                && plane.is_in_circle(at([a, b, p]), self.point(q))
+            {
+                for old in [s, t] {
+                    self.forget(old);
+                }
+                self.triangles[s as usize] = [p, a, q];
+                self.triangles[t as usize] = [q, b, p];
+                for new in [s, t] {
+                    self.note(new);
+                }
+                todo.extend([[a, q], [q, b], [b, p], [p, a]].map(|edge| (facet, edge)));
+            }
+        }
+    }
+
+    /// Puts a point between the triangles of a facet, near one of them; the triangles that came.
+    pub(super) fn insert(&mut self, near: TriangleId, point: Point) -> Result<Vec<TriangleId>, Blocked> {
+        let cavity = self.cavity(near, None, point)?;
+        for &[a, b] in cavity.rim.iter().filter(|edge| self.is_crease(**edge)) {
+            let [p, q] = [a, b].map(|v| sub(self.point(v), point));
+            if dot(p, q) < 0.0 {
+                return Err(Blocked::By(rising([a, b])));
+            }
+        }
+        let facet = self.facet_of[near as usize];
+        let new = self.push(point);
+        Ok(self.fill(facet, &cavity, new))
+    }
+
+    /// Divides a crease at a point, in all facets that meet there; the new vertex and the triangles that came.
+    pub(super) fn divide(
+        &mut self,
+        edge: [VertexId; 2],
+        point: Point,
+    ) -> Option<(VertexId, Vec<TriangleId>)> {
+        let [a, b] = rising(edge);
+        let facets = self.creases.get(&[a, b])?.clone();
+        let mut cavities = Vec::new();
+        for &facet in &facets {
+            for [from, to] in [[a, b], [b, a]] {
+                if let Some(&side) = self.left.get(&(facet, from, to)) {
+                    cavities.push((facet, self.cavity(side, Some([from, to]), point).ok()?));
+                }
+            }
+        }
+        let new = self.push(point);
+        self.creases.remove(&[a, b]);
+        for end in [a, b] {
+            self.creases.insert(rising([end, new]), facets.clone());
+        }
+        let mut came = Vec::new();
+        for (facet, cavity) in cavities {
+            came.extend(self.fill(facet, &cavity, new));
+        }
+        Some((new, came))
+    }
+
+    fn push(&mut self, point: Point) -> VertexId {
+        self.points.push(point);
+        VertexId::new(self.points.len() - 1)
+    }
+
+    /// The triangles that a point takes the place of: those that have it in their circles, as far as it sees all edges round them. A point on an edge does not see that edge.
+    fn cavity(&self, first: TriangleId, on: Option<[VertexId; 2]>, point: Point) -> Result<Cavity, Blocked> {
+        let facet = self.facet_of[first as usize];
+        let plane = self.planes[facet as usize];
+        let mut refused: Vec<TriangleId> = Vec::new();
+        loop {
+            let mut triangles = vec![first];
+            let (mut rim, mut next) = (Vec::new(), 0);
+            while let Some(&triangle) = triangles.get(next) {
+                next += 1;
+                let [a, b, c] = self.triangles[triangle as usize];
+                for edge in [[a, b], [b, c], [c, a]] {
+                    if on == Some(edge) {
+                        continue;
+                    }
+                    let behind = self.left.get(&(facet, edge[1], edge[0])).filter(|_| !self.is_crease(edge));
+                    match behind {
+                        Some(behind) if triangles.contains(behind) => {}
+                        Some(&behind)
+                            if !refused.contains(&behind)
+                                && plane.is_in_circle(self.corners(behind), point) =>
+                        {
+                            triangles.push(behind)
+                        }
+                        _ => rim.push((edge, triangle)),
+                    }
+                }
+            }
+            // Of a pair of triangles the second may have been taken in after the first had met their edge.
+            rim.retain(|(edge, _)| {
+                let behind = self.left.get(&(facet, edge[1], edge[0])).filter(|_| !self.is_crease(*edge));
+                behind.is_none_or(|behind| !triangles.contains(behind))
+            });
+            let hidden =
+                rim.iter().find(|([a, b], _)| plane.turn([self.point(*a), self.point(*b), point]) <= 0);
+            match hidden {
+                None => {
+                    return Ok(Cavity { triangles, rim: rim.into_iter().map(|(edge, _)| edge).collect() });
+                }
+                Some((edge, _)) if on.is_none() && self.is_crease(*edge) => {
+                    return Err(Blocked::By(rising(*edge)));
+                }
+                Some((_, triangle)) if *triangle != first => refused.push(*triangle),
+                Some(_) => return Err(Blocked::NoRoom),
+            }
+        }
+    }
+
+    fn fill(&mut self, facet: u32, cavity: &Cavity, apex: VertexId) -> Vec<TriangleId> {
+        cavity.triangles.iter().for_each(|&old| self.forget(old));
+        let mut places = cavity.triangles.iter().copied();
+        let mut came = Vec::with_capacity(cavity.rim.len());
+        for &[a, b] in &cavity.rim {
+            let id = places.next().unwrap_or_else(|| {
+                self.triangles.push([a, b, apex]);
+                self.facet_of.push(facet);
+                (self.triangles.len() - 1) as TriangleId
+            });
+            self.triangles[id as usize] = [a, b, apex];
+            came.push(id);
+        }
+        came.iter().for_each(|&id| self.note(id));
+        came
+    }
+}

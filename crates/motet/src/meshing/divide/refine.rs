@@ -1,0 +1,127 @@
+//! Triangles of flat facets made small and even: Delaunay refinement (Ruppert 1995, *A Delaunay refinement algorithm for quality 2-dimensional mesh generation*).
+//!
+//! The centre of the circle of a triangle that is too large or too narrow is inserted; where a crease is in the way, the crease is divided instead.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::net::{Blocked, Net, TriangleId};
+use crate::base::{Point, Result, VertexId, Watch};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
+
+/// A triangle is too large if the radius of its circle is longer than this part of the size. Edges are then about as long as the size on average.
+const LARGE: f64 = 0.75;
+/// A triangle is too narrow if the radius of its circle is so many times as long as its shortest edge: an angle of less than 25 degrees.
+const NARROW: f64 = 1.183;
+/// No edge is divided, and no triangle counts as narrow, below this part of the size: creases that are nearer to each other leave narrow triangles.
+const LEAST: f64 = 0.062_5;
+
+/// A triangle to be divided, worst first.
+#[derive(PartialEq)]
+struct Wanted {
+    radius: f64,
+    triangle: TriangleId,
+    vertices: [VertexId; 3],
+}
+
+impl Eq for Wanted {}
+
+impl PartialOrd for Wanted {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Wanted {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.radius.total_cmp(&other.radius).then(other.triangle.cmp(&self.triangle))
+    }
+}
+
+/// Divides creases into parts of about `size`.
+pub(super) fn divide_creases(net: &mut Net, size: f64, watch: &Watch) -> Result<()> {
+    let creases = net.creases();
+    for (i, &[a, b]) in creases.iter().enumerate() {
+        watch.go_on("dividing the surface", i, creases.len())?;
+        let [p, q] = [net.point(a), net.point(b)];
+        let n = (distance(p, q) / size).round() as usize;
+        // By halves, so that few triangles see each point.
+        let mut todo = vec![([a, b], [0, n.max(1)])];
+        while let Some(([from, to], [low, high])) = todo.pop() {
+            let middle = (low + high) / 2;
+            if middle == low {
+                continue;
+            }
+            let share = middle as f64 / n as f64;
+            let point = std::array::from_fn(|k| {
+                if share == 0.5 { 0.5 * (p[k] + q[k]) } else { p[k] + share * (q[k] - p[k]) }
+            });
+            let Some((new, _)) = net.divide([from, to], point) else { continue };
+            todo.extend([([from, new], [low, middle]), ([new, to], [middle, high])]);
+        }
+    }
+    Ok(())
+}
+
+/// Divides triangles until none is too large, or too narrow but for the angle between two creases; no more than `most` points are inserted.
+pub(super) fn refine(net: &mut Net, size: f64, most: usize, watch: &Watch) -> Result<()> {
+    let mut heap: BinaryHeap<Wanted> =
+        (0..net.triangles.len() as TriangleId).filter_map(|t| wanted(net, t, size)).collect();
+    let (mut n_made, mut n_tried) = (0, 0);
+    while let Some(Wanted { triangle, vertices, .. }) = heap.pop() {
+        if net.triangles[triangle as usize] != vertices {
+            continue;
+        }
+        n_tried += 1;
+        watch.go_on("dividing the surface", n_tried, n_tried + heap.len())?;
+        if n_made >= most {
+            break;
+        }
+        let corners = net.corners(triangle);
+        let came = match net.insert(
+            triangle,
+            centre_of_circle(corners, net.planes[net.facet_of[triangle as usize] as usize].at),
+        ) {
+            Ok(came) => came,
+            Err(Blocked::NoRoom) => continue,
+            Err(Blocked::By([a, b])) => {
+                let [p, q] = [net.point(a), net.point(b)];
+                if distance(p, q) < 2.0 * LEAST * size {
+                    continue;
+                }
+                let Some((_, came)) = net.divide([a, b], scale(add(p, q), 0.5)) else { continue };
+                // What was hidden may be seen now.
+                heap.extend(wanted(net, triangle, size).filter(|w| w.vertices == vertices));
+                came
+            }
+        };
+        n_made += 1;
+        heap.extend(came.into_iter().filter_map(|t| wanted(net, t, size)));
+    }
+    Ok(())
+}
+
+/// Whether a triangle is to be divided.
+fn wanted(net: &Net, triangle: TriangleId, size: f64) -> Option<Wanted> {
+    let vertices = net.triangles[triangle as usize];
+    let corners = net.corners(triangle);
+    let lengths: [f64; 3] = std::array::from_fn(|i| distance(corners[i], corners[(i + 1) % 3]));
+    let shortest = (0..3).min_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
+    let area = norm(area_vector(corners));
+    let radius = lengths[0] * lengths[1] * lengths[2] / (4.0 * area);
+    let is_crease = |i: usize| net.is_crease([vertices[i], vertices[(i + 1) % 3]]);
+    // The angle between two creases stays what it is.
+    let is_given = || (0..3).filter(|&i| i != shortest).all(is_crease);
+    let is_narrow = || radius > NARROW * lengths[shortest] && lengths[shortest] > LEAST * size && !is_given();
+    (radius > LARGE * size || is_narrow()).then_some(Wanted { radius, triangle, vertices })
+}
+
+/// The centre of the circle through the corners of a triangle, in the plane of its facet.
+fn centre_of_circle([a, b, c]: [Point; 3], (at, normal): (Point, Point)) -> Point {
+    let [u, v] = [sub(b, a), sub(c, a)];
+    let w = cross(u, v);
+    let to = add(scale(cross(w, u), dot(v, v)), scale(cross(v, w), dot(u, u)));
+    let centre = add(a, scale(to, 0.5 / dot(w, w)));
+    sub(centre, scale(normal, dot(sub(centre, at), normal)))
+}
