@@ -45,12 +45,14 @@ pub struct Step {
 impl Step {
     /// Why the walls are not where they were requested to be; `None` where they are.
     pub fn not_reached(&self) -> Option<String> {
-        (!self.complete).then(|| {
-            format!(
+        if !self.complete {
+            return Some(format!(
                 "the step stopped at {:.1} % of its way, where tets would turn over",
                 100.0 * self.fraction
-            )
-        })
+            ));
+        }
+        let patch = self.gaps.as_ref()?.cramped.as_ref()?;
+        Some(format!("the patch {patch} has no room to keep its distance (hold) from the patches after it"))
     }
 }
 
@@ -142,8 +144,23 @@ pub struct Gaps {
     pub warned: usize,
     /// Nodes of the first mesh that were stopped in front of another patch: see [`Watching::hold`](super::Watching::hold).
     pub held: usize,
+    /// Of these the one that is farthest from where it was requested to be.
+    pub farthest_held: Option<Stopped>,
+    /// A patch that is nearer to another one than it is to be held: there is no room for it to give way.
+    pub cramped: Option<String>,
     /// Nothing touches earlier, at the velocities of this step; `None`: not within the horizon.
     pub touch_not_before: Option<f64>,
+}
+
+/// A node of a wall that was stopped in front of another one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stopped {
+    /// Its patch.
+    pub patch: String,
+    /// How far it is from its requested place.
+    pub short: f64,
+    /// Where it is.
+    pub place: Point,
 }
 
 /// The nearest places of two patches.
