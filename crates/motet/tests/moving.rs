@@ -462,7 +462,9 @@ fn what_is_requested_to_be_beyond_a_wall_stops_in_front_of_it() {
         );
         if let Some(held) = gaps.farthest_held {
             assert_eq!(held.patch, "sphere");
-            assert!((held.short - (by.abs() - 3.5)).abs() < 1e-3, "{by}: {held:?}");
+            // Pushes go back by a quarter of the distance at most.
+            let beyond = held.short - (by.abs() - 3.5);
+            assert!((-1e-9..0.125).contains(&beyond), "{by}: {held:?}");
         }
     }
 }

@@ -215,6 +215,7 @@ impl MovingMesh {
         self.check(time, displacement)?;
         let start = self.clock.time;
         let held = self.hold.as_mut().map(|hold| hold.stop(&self.wall.places, displacement, threads));
+        let holding = begin.elapsed().as_secs_f64();
         let displacement = held.as_ref().map_or(displacement, |held| &held.displacement);
         let mut way = self.way(displacement, time, threads);
         let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
@@ -237,7 +238,7 @@ impl MovingMesh {
             self.held = held;
         }
         let gaps = self.measure_gaps(threads)?;
-        seconds.contact = begin_contact.elapsed().as_secs_f64();
+        seconds.contact = holding + begin_contact.elapsed().as_secs_f64();
         seconds.total = begin.elapsed().as_secs_f64();
         Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })
     }

@@ -142,7 +142,7 @@ pub struct Gaps {
     pub pairs: Vec<Closest>,
     /// Vertices that warn.
     pub warned: usize,
-    /// Nodes of the first mesh that were stopped in front of another patch: see [`Watching::hold`](super::Watching::hold).
+    /// Nodes of the first mesh that are not where they were requested to be, since they were stopped in front of another patch, or held back by one that was: see [`Watching::hold`](super::Watching::hold).
     pub held: usize,
     /// Of these the one that is farthest from where it was requested to be.
     pub farthest_held: Option<Stopped>,
@@ -187,7 +187,7 @@ pub struct Seconds {
     pub repair: f64,
     /// Setting the motion up again after a change.
     pub setup: f64,
-    /// Measuring gaps.
+    /// Keeping walls apart, and measuring gaps.
     pub contact: f64,
     /// All of it.
     pub total: f64,

@@ -42,9 +42,6 @@ use crate::moving::wall::Wall;
 /// In how many parts a step is gone, and by which part of an edge's length the corrections at its ends may differ: one after the other, until the wall is sound.
 const TRIES: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
 
-/// Straight ways in a part: up to what stops it, and along that. What stops it then is another thing.
-const PASSES: usize = 3;
-
 /// Rounds of stopping, pushing back and holding back at most. Two or three are the rule.
 const ROUNDS: usize = 8;
 
@@ -216,15 +213,9 @@ impl Yielding {
         threads: &Threads,
     ) -> Option<Vec<Point>> {
         let start = self.carried(here, wanted, threads);
-        let mut at = self.pass(&start, wanted, slope, threads)?;
+        let at = self.pass(&start, wanted, slope, threads)?;
         if self.nodes.iter().all(|v| at[v.index()] == wanted[v.index()]) {
             return Some(at);
-        }
-        for _ in 1..PASSES {
-            match self.pass(&at, wanted, slope, threads).filter(|next| *next != at) {
-                Some(next) => at = next,
-                None => break,
-            }
         }
         Some(self.closed_up(at, wanted, threads))
     }
