@@ -400,7 +400,7 @@ typedef struct motet_moving_options {
     double warn;               /* gaps below are warned of; default 0: none */
     double within;             /* how far is looked; default 0: no limit */
     double horizon;            /* how far ahead, in units of time; default 0: as long as the last step took */
-    double hold;               /* walls stop at this distance, whatever they are told, each patch before those after it; default 0: they do not */
+    double hold;               /* walls stop at this distance, wherever they are requested to go, each patch before those after it; default 0: they do not */
     int32_t remembered;        /* so many changes are remembered for motet_moving_since; default 64 */
     int32_t threads;           /* default 0 */
     const char *const *hold_names; /* regions and patches that repair leaves as they are: as hold of motet_remesh_options; default none */

@@ -446,6 +446,30 @@ fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
 }
 
 #[test]
+fn what_is_requested_to_be_beyond_a_wall_stops_in_front_of_it() {
+    let mut moving = MovingMesh::new(&box_mesh(), kept_apart(0.5), &threads()).unwrap();
+    // From one side of the box to beyond the other one in a step, and back.
+    for (k, by) in [2.0, 3.0, 5.0, 40.0, 5.0, -7.0, 0.0].into_iter().enumerate() {
+        let displacement = sphere_goes(&moving, shift([by, 0.0, 0.0]));
+        let step = moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
+        let gaps = step.gaps.unwrap();
+        assert!(step.complete && step.inverted == 0, "{by}: {}", step.fraction);
+        let (gap, expected) = (gaps.least.unwrap(), (4.0 - by.abs()).max(0.5));
+        assert!(gap > expected * (1.0 - 1e-9) && gap < expected * (1.0 + 1e-4), "{by}: {gap}");
+        assert_eq!(
+            (gaps.held > 0, gaps.farthest_held.is_some(), gaps.cramped),
+            (by.abs() > 3.5, by.abs() > 3.5, None)
+        );
+        if let Some(held) = gaps.farthest_held {
+            assert_eq!(held.patch, "sphere");
+            // Pushes go back by a quarter of the distance at most.
+            let beyond = held.short - (by.abs() - 3.5);
+            assert!((-1e-9..0.125).contains(&beyond), "{by}: {held:?}");
+        }
+    }
+}
+
+#[test]
 fn walls_that_cannot_be_kept_apart_are_told() {
     let mesh = box_mesh();
     for hold in [0.0, -1.0, f64::NAN, f64::INFINITY] {

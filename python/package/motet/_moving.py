@@ -90,7 +90,7 @@ class MovingMesh(NotPickled):
         What becomes of arrays where the mesh changes.
     watch : sequence of patches
         Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time; ``hold``: walls stop
-        at this distance, whatever they are told, each patch before those after it.
+        at this distance, wherever they are requested to go: each patch gives way to those after it.
     remembered : int
         So many changes are remembered for :meth:`history_since`.
     threads : int

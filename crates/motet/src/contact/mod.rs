@@ -56,4 +56,4 @@ pub use inside::{inside, is_closed};
 pub use options::Options;
 pub use room::{Room, Within};
 pub use side::Side;
-pub use sweep::{Sweep, Touch, sweep, sweep_own};
+pub use sweep::{SLACK, Sweep, Touch, sweep, sweep_apart, sweep_own};

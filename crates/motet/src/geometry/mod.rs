@@ -8,6 +8,7 @@ mod needle;
 pub mod overlap;
 pub mod predicates;
 pub mod quality;
+pub mod rigid;
 pub(crate) mod rounding;
 pub mod segment;
 pub mod symmetric;

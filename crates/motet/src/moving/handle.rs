@@ -11,7 +11,7 @@ use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{LeavesPlane, Mover, mesh_velocity};
 use crate::moving::contents::go_to;
-use crate::moving::hold::Hold;
+use crate::moving::hold::{self, Held, Hold};
 use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{Known, Now};
 use crate::moving::options::Options;
@@ -35,9 +35,9 @@ pub struct MovingMesh {
     /// Changes of steps up to this one are no longer known.
     pub(super) forgotten: Option<usize>,
     watch: Option<Watch>,
-    hold: Option<Hold>,
-    /// How many nodes the last step stopped.
-    held: usize,
+    pub(super) hold: Option<Hold>,
+    /// What the last step stopped.
+    held: Held,
 }
 
 /// Where in time a mesh is.
@@ -87,7 +87,7 @@ impl MovingMesh {
             forgotten: None,
             watch,
             hold,
-            held: 0,
+            held: Held::default(),
         })
     }
 
@@ -214,10 +214,10 @@ impl MovingMesh {
         let begin = Instant::now();
         self.check(time, displacement)?;
         let start = self.clock.time;
-        let mut displacement = displacement.to_vec();
-        let hold = self.hold.as_mut();
-        let held = hold.map_or(0, |hold| hold.stop(&self.wall.places, &mut displacement, threads));
-        let mut way = self.way(&displacement, time, threads);
+        let held = self.hold.as_mut().map(|hold| hold.stop(&self.wall.places, displacement, threads));
+        let holding = begin.elapsed().as_secs_f64();
+        let displacement = held.as_ref().map_or(displacement, |held| &held.displacement);
+        let mut way = self.way(displacement, time, threads);
         let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
         let Way { points, mut seconds, changes, legs, .. } = way;
         match changed {
@@ -233,9 +233,12 @@ impl MovingMesh {
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, ..self.clock };
         self.remember(&changes);
         let begin_contact = Instant::now();
-        self.held = held;
+        if let (Some(hold), Some(held)) = (&mut self.hold, held) {
+            hold.gone(&held.displacement, fraction);
+            self.held = held;
+        }
         let gaps = self.measure_gaps(threads)?;
-        seconds.contact = begin_contact.elapsed().as_secs_f64();
+        seconds.contact = holding + begin_contact.elapsed().as_secs_f64();
         seconds.total = begin.elapsed().as_secs_f64();
         Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })
     }
@@ -403,7 +406,20 @@ impl MovingMesh {
         let ahead = velocity.as_ref().map(|velocity| (velocity.as_slice(), self.clock.dt));
         let gaps = watch.measure(&self.now.mesh, ahead, threads);
         self.watch = Some(watch);
-        gaps.map(|gaps| Some(super::Gaps { held: self.held, ..gaps }))
+        gaps.map(|gaps| Some(self.with_held(gaps)))
+    }
+
+    fn with_held(&self, gaps: super::Gaps) -> super::Gaps {
+        let name = |wall: usize| self.options.watch.as_ref()?.patches.get(wall).cloned();
+        let stopped = |at: &hold::Stopped| {
+            Some(super::Stopped { patch: name(at.wall)?, short: at.short, place: at.place })
+        };
+        super::Gaps {
+            held: self.held.n_nodes,
+            farthest_held: self.held.farthest.as_ref().and_then(stopped),
+            cramped: self.held.cramped.and_then(name),
+            ..gaps
+        }
     }
 
     fn certified(&self, shape: &Shape) -> Step {

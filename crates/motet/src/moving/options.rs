@@ -170,8 +170,8 @@ pub struct Watching {
     pub options: contact::Options,
     /// How far ahead is looked at the present velocity, in units of time; `None`: as long as the last step took.
     pub horizon: Option<f64>,
-    /// Walls stop at this distance, whatever they are told: each of the patches gives way to those after it, and slides along them. No node is kept farther away than it was
-    /// at first. Default: none, and walls that meet end a step.
+    /// Walls stop at this distance, wherever they are requested to go: each of the patches gives way to all after it, and slides along them. In a step they go straight, from where the
+    /// last one left them. No triangle is kept farther away than it was at first. Default: none, and walls that meet end a step.
     pub hold: Option<f64>,
 }
 

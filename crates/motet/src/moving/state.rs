@@ -20,6 +20,7 @@ const NODE: &str = "moving:node";
 const PLACES: &str = "moving:wall_places";
 const TRIANGLES: &str = "moving:wall_triangles";
 const BODY: &str = "moving:wall_body";
+const HELD: &str = "moving:wall_held";
 const LEFT: &str = "moving:left";
 const LEFT_EAS: &str = "moving:left_eas";
 const LEFT_FORCED: &str = "moving:left_forced";
@@ -63,6 +64,9 @@ impl MovingMesh {
         ]);
         if !self.wall.body.is_empty() {
             file.field_data.push(Field::scalars(BODY, self.wall.body.clone()));
+        }
+        if let Some(hold) = &self.hold {
+            file.field_data.push(Field::vectors(HELD, &hold.last));
         }
         // Written after every step, read once: not worth packing.
         let options = WriteOptions { compression: Compression::None, ..WriteOptions::default() };
@@ -123,6 +127,12 @@ impl MovingMesh {
         let forgotten = Some(clock.step);
         let mut moving = Self::of(options, wall, now, clock, threads)?;
         moving.forgotten = forgotten;
+        if let Some(hold) = &mut moving.hold {
+            hold.last = taken.vectors(HELD)?;
+            if hold.last.len() != moving.wall.places.len() {
+                return Err(no_state(HELD));
+            }
+        }
         Ok(moving)
     }
 }

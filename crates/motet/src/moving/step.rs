@@ -45,9 +45,12 @@ pub struct Step {
 impl Step {
     /// Why the walls are not where they were requested to be; `None` where they are.
     pub fn not_reached(&self) -> Option<String> {
-        (!self.complete).then(|| {
-            format!("the step stopped at {} of its way, where tets would turn over", percent(self.fraction))
-        })
+        if !self.complete {
+            let way = percent(self.fraction);
+            return Some(format!("the step stopped at {way} of its way, where tets would turn over"));
+        }
+        let patch = self.gaps.as_ref()?.cramped.as_ref()?;
+        Some(format!("the patch {patch} has no room to keep its distance (hold) from the patches after it"))
     }
 }
 
@@ -137,10 +140,25 @@ pub struct Gaps {
     pub pairs: Vec<Closest>,
     /// Vertices that warn.
     pub warned: usize,
-    /// Nodes of the first mesh that were stopped in front of another patch: see [`Watching::hold`](super::Watching::hold).
+    /// Nodes of the first mesh that are not where they were requested to be, since they were stopped in front of another patch, or held back by one that was: see [`Watching::hold`](super::Watching::hold).
     pub held: usize,
+    /// Of these the one that is farthest from where it was requested to be.
+    pub farthest_held: Option<Stopped>,
+    /// A patch that is nearer to another one than it is to be held: there is no room for it to give way.
+    pub cramped: Option<String>,
     /// Nothing touches earlier, at the velocities of this step; `None`: not within the horizon.
     pub touch_not_before: Option<f64>,
+}
+
+/// A node of a wall that was stopped in front of another one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stopped {
+    /// Its patch.
+    pub patch: String,
+    /// How far it is from its requested place.
+    pub short: f64,
+    /// Where it is.
+    pub place: Point,
 }
 
 /// The nearest places of two patches.
@@ -167,7 +185,7 @@ pub struct Seconds {
     pub repair: f64,
     /// Setting the motion up again after a change.
     pub setup: f64,
-    /// Measuring gaps.
+    /// Keeping walls apart, and measuring gaps.
     pub contact: f64,
     /// All of it.
     pub total: f64,

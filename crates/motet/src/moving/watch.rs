@@ -94,6 +94,8 @@ fn told(contact: &Contact, gaps: &contact::Gaps, first: Option<FirstContact>) ->
         least: Some(gaps.least()).filter(|least| least.is_finite()),
         pairs: pairs.collect(),
         held: 0,
+        farthest_held: None,
+        cramped: None,
         warned: gaps.bodies.iter().map(|body| body.warning.iter().filter(|w| **w).count()).sum(),
         touch_not_before: first.map(|first| first.time),
     }

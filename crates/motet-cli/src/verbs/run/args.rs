@@ -64,7 +64,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   [contact]
   patches = [\"flap\", \"wall\"]
   warn = 0.1
-  # hold = 0.02   walls stop at this distance, each patch before those after it
+  # hold = 0.02   walls stop at this distance, wherever they are requested to go: each patch gives way to those after it
 
   [carry]
   pressure = \"mean\"               # or inherit, drop

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use motet::base::{percent, reasons};
 use motet::motion::LeavesPlane;
-use motet::moving::{MovingMesh, Script, Seconds, Step, Why, WorstTet};
+use motet::moving::{MovingMesh, Script, Seconds, Step, Stopped, Why, WorstTet};
 use serde::Serialize;
 
 use super::job::Job;
@@ -48,6 +48,10 @@ pub(crate) struct Report {
     pub(crate) tets: [usize; 2],
     /// Steps in which walls stopped in front of others.
     held_steps: usize,
+    /// Of all steps the vertex that was farthest from its requested place.
+    farthest_held: Option<Stopped>,
+    /// The first patch that had no room to keep its distance.
+    cramped: Option<String>,
     pub(crate) least_gap: Option<f64>,
     least_gap_at: Option<f64>,
     first_warned_at: Option<f64>,
@@ -80,6 +84,9 @@ pub(super) fn line(step: &Step, console: &Console) {
         }
         if gaps.held > 0 {
             text += &format!("  {} held", gaps.held);
+        }
+        if let Some(held) = &gaps.farthest_held {
+            text += &format!(", by up to {}", short(held.short));
         }
     }
     for change in &step.changes {
@@ -129,6 +136,12 @@ impl Report {
                 self.first_warned_at = self.first_warned_at.or(Some(step.time));
             }
             self.held_steps += usize::from(gaps.held > 0);
+            self.cramped = self.cramped.take().or_else(|| gaps.cramped.clone());
+            if let Some(held) = &gaps.farthest_held
+                && self.farthest_held.as_ref().is_none_or(|known| held.short > known.short)
+            {
+                self.farthest_held = Some(held.clone());
+            }
         }
         self.seconds += step.seconds;
     }
@@ -168,6 +181,9 @@ impl Report {
         Outcome::of(reasons([
             (!self.complete).then(|| format!("step {} stopped before its end", self.steps)),
             (inverted > 0).then(|| format!("up to {inverted} tets are inverted or flat in a step")),
+            self.cramped.as_ref().map(|patch| {
+                format!("the patch {patch} has no room to keep its distance (hold) from the patches after it")
+            }),
             (bad > 0).then(|| format!("up to {bad} bad tets are left in a step that no wall forces")),
         ]))
     }
@@ -198,7 +214,11 @@ impl Report {
                 0 => String::new(),
                 n => format!("; walls stopped in {n} steps"),
             };
-            console.say(format_args!("least gap {} at time {at}; {warned}{held}", short(gap)));
+            let farthest = self.farthest_held.as_ref().map_or_else(String::new, |held| {
+                let [x, y, z] = held.place.map(short);
+                format!(", {} by up to {}, at ({x}, {y}, {z})", held.patch, short(held.short))
+            });
+            console.say(format_args!("least gap {} at time {at}; {warned}{held}{farthest}", short(gap)));
         }
         let mut table = Table::new(["stage", "seconds", "a step"]);
         let all = &self.seconds;

@@ -17,6 +17,8 @@ use pair::Pair;
 use queue::{Item, Queue};
 use tree::{MovingBox, MovingTree};
 
+pub use pair::SLACK;
+
 /// The first contact of two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
@@ -67,12 +69,44 @@ pub fn sweep(
         velocity,
         surfaces: [a, b],
         times: [&times[0], &times[1]],
+        apart: &[],
         is_own: false,
         horizon,
         admit,
     };
     let first = all.run(threads);
     Sweep { first, times: times.map(plain) }
+}
+
+/// For each triangle of `a` a time before which it comes no nearer to surface `b` than `apart` of that triangle, if every point moves with its velocity from time 0 to
+/// `horizon`; infinite where it does not up to the horizon. Triangles that are nearer at first are to keep [`SLACK`] of that distance; so those that go away from each other are free to.
+///
+/// Times are safe and near the truth as those of [`sweep`], with the same pairs left out.
+///
+/// Panics when a triangle names a point beyond `points` or `velocity`, or `apart` has not one length for each triangle of `a`.
+pub fn sweep_apart(
+    points: &[Point],
+    velocity: &[Point],
+    [a, b]: [&[[VertexId; 3]]; 2],
+    apart: &[f64],
+    horizon: f64,
+    threads: &Threads,
+) -> Vec<f64> {
+    assert_eq!(a.len(), apart.len(), "a length for each triangle");
+    let times = [infinite(a.len()), infinite(b.len())];
+    let all = All {
+        points,
+        velocity,
+        surfaces: [a, b],
+        times: [&times[0], &times[1]],
+        apart,
+        is_own: false,
+        horizon,
+        admit: |_, _| true,
+    };
+    all.search(0, &all.tree(1, |_| true), threads);
+    let [times, _] = times;
+    plain(times)
 }
 
 /// [`sweep`] for one surface with itself. `admit` is asked with the smaller id first; both lists of times are the same.
@@ -88,7 +122,8 @@ pub fn sweep_own(
 ) -> Sweep {
     let times = infinite(triangles.len());
     let surfaces = [triangles; 2];
-    let all = All { points, velocity, surfaces, times: [&times, &times], is_own: true, horizon, admit };
+    let times_of = [times.as_slice(); 2];
+    let all = All { points, velocity, surfaces, times: times_of, apart: &[], is_own: true, horizon, admit };
     let first = all.run(threads);
     let times = plain(times);
     Sweep { first, times: [times.clone(), times] }
@@ -116,6 +151,8 @@ struct All<'a, F> {
     /// Twice the same one for a surface with itself, and so its times.
     surfaces: [&'a [[VertexId; 3]]; 2],
     times: [&'a Times; 2],
+    /// How far apart triangles of the first surface have to stay; empty: they may come as near as they do not touch.
+    apart: &'a [f64],
     is_own: bool,
     horizon: f64,
     admit: F,
@@ -155,7 +192,8 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
     /// Finds the time of triangle `own` of one surface: looks at what comes first, and stops where all that is left comes later.
     fn follow(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
         let known = &self.times[side][own as usize];
-        let asked = self.box_of(self.surfaces[side][own as usize]);
+        let apart = if side == 0 { self.apart_of(own) } else { 0.0 };
+        let asked = self.box_of(self.surfaces[side][own as usize]).map(|b| b.widened(apart));
         other.begin(&asked, queue);
         while let Some((time, item)) = queue.pop() {
             let bound = read(known);
@@ -225,7 +263,11 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
 
     fn pair(&self, [i, j]: [u32; 2]) -> Pair {
         let of = |t: [VertexId; 3]| t.map(|v| (self.points[v.index()], self.velocity[v.index()]));
-        Pair::new(of(self.surfaces[0][i as usize]), of(self.surfaces[1][j as usize]))
+        Pair::new(of(self.surfaces[0][i as usize]), of(self.surfaces[1][j as usize]), self.apart_of(i))
+    }
+
+    fn apart_of(&self, i: u32) -> f64 {
+        self.apart.get(i as usize).copied().unwrap_or(0.0)
     }
 
     /// `None` where a corner or velocity is not finite.

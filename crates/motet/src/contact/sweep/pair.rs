@@ -27,6 +27,12 @@ const ENOUGH: f64 = 1e-6;
 /// were too few for 2 of 13,000 random pairs (27 of 100 too early at the worst), 1000 for none (4e-5 too early).
 const MOST_STEPS: usize = 1000;
 
+/// Triangles that are to stay apart, but are nearer at the start than they may come, keep this part of their distance then.
+pub const SLACK: f64 = 0.75;
+
+/// Triangles that are to stay apart are in contact no farther than this part of that length before.
+const FAR: f64 = 0.01;
+
 /// Squares above it have all their digits.
 const SMALLEST_SQUARE: f64 = 1e-290;
 
@@ -40,18 +46,33 @@ pub(super) struct Pair {
     speed: f64,
     /// The larger size of one triangle alone.
     width: f64,
+    /// They are in contact where they are as near as this.
+    apart: f64,
 }
 
 impl Pair {
-    /// Of corners with their velocities.
-    pub(super) fn new(a: [(Point, Point); 3], b: [(Point, Point); 3]) -> Self {
+    /// Of corners with their velocities; they are in contact where they are no farther `apart` than that, but see [`SLACK`].
+    pub(super) fn new(a: [(Point, Point); 3], b: [(Point, Point); 3], apart: f64) -> Self {
         let origin = a[0];
         let places = [a, b].map(|t| t.map(|x| sub(x.0, origin.0)));
         let velocities = [a, b].map(|t| t.map(|x| sub(x.1, origin.1)));
         let size = largest(places.as_flattened());
         let speed = largest(velocities.as_flattened());
         let width = places.iter().map(|t| largest(&[sub(t[1], t[0]), sub(t[2], t[0])])).fold(0.0, f64::max);
-        Self { origin, places, velocities, size, speed, width }
+        Self { origin, places, velocities, size, speed, width, apart }.within_slack()
+    }
+
+    fn within_slack(self) -> Self {
+        if self.apart == 0.0 {
+            return self;
+        }
+        let near = self.closest_within(0.0, self.apart);
+        Self { apart: near.map_or(self.apart, |near| SLACK * near.distance()), ..self }
+    }
+
+    /// What is to stay apart by little may not come to stop far from there.
+    fn tolerance(&self) -> f64 {
+        if self.apart > 0.0 { FAR * self.apart } else { f64::INFINITY }
     }
 
     /// The largest relative speed of two vertices: no two points of the triangles have a larger one.
@@ -80,11 +101,11 @@ impl Pair {
                 return None;
             }
             let rounding = ROUNDING * (self.size + time * self.speed);
-            let touching = rounding + ENOUGH * self.width.min(time * fastest);
+            let touching = rounding + (ENOUGH * self.width.min(time * fastest)).min(self.tolerance());
             // From beyond this the next step goes beyond `last`, with something to spare for rounding.
             let reach = (last - time) * fastest * (1.0 + 4.0 * ROUNDING) + 2.0 * rounding;
-            let near = self.closest_within(time, reach.max(2.0 * touching))?;
-            let distance = near.distance();
+            let near = self.closest_within(time, self.apart + reach.max(2.0 * touching))?;
+            let distance = near.distance() - self.apart;
             if distance <= touching {
                 break;
             }
@@ -132,7 +153,7 @@ impl Pair {
         let along = direction.map(|x| x / largest);
         let at = self.at(time).map(|t| t.map(|p| dot(p, along)));
         let speeds = self.velocities.map(|t| t.map(|v| dot(v, along)));
-        let rounding = ROUNDING * (self.size + time * self.speed);
+        let rounding = ROUNDING * (self.size + time * self.speed) + self.apart * norm(along);
         let mut left = f64::INFINITY;
         for (p, u) in at[0].iter().zip(speeds[0]) {
             for (q, v) in at[1].iter().zip(speeds[1]) {

@@ -27,6 +27,12 @@ impl MovingBox {
         Self { place: around(points), velocity: around(velocities) }
     }
 
+    /// By so much on all sides.
+    pub(super) fn widened(self, by: f64) -> Self {
+        let [low, high] = self.place;
+        Self { place: [low.map(|x| x - by), high.map(|x| x + by)], ..self }
+    }
+
     fn joined(self, other: Self) -> Self {
         let join = |[a, b]: Bounds, [c, d]: Bounds| around([a, b, c, d]);
         Self { place: join(self.place, other.place), velocity: join(self.velocity, other.velocity) }

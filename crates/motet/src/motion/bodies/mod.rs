@@ -96,7 +96,7 @@ impl Bodies {
                     let x = from[self.vertices[n as usize].index()];
                     (x, add(x, table[n as usize].point()))
                 });
-                Rigid::fit(pairs.collect())
+                Rigid::fit(&pairs.collect::<Vec<_>>())
             })
             .collect();
         let chunks = out.chunks_mut(CHUNK).enumerate().collect();

@@ -2,8 +2,8 @@
 
 use crate::base::Point;
 use crate::base::four::{Four, Vectors, cross, sub as sub4};
-use crate::geometry::symmetric::largest_eigenvector;
-use crate::geometry::vector::{add, norm, scale, sub};
+use crate::geometry;
+use crate::geometry::vector::sub;
 
 /// A turn about a centre and a shift.
 #[derive(Clone, Debug)]
@@ -22,28 +22,9 @@ pub(super) struct Rigid {
 const PARTS: usize = 512;
 
 impl Rigid {
-    /// The motion for which the squared distances to the second points are smallest in sum (Horn 1987: the turn is the quaternion that is the eigenvector
-    /// to the largest eigenvalue of a symmetric matrix). Where all points stay, it is none, to the bit.
-    pub(super) fn fit(pairs: Vec<(Point, Point)>) -> Self {
-        let share = 1.0 / pairs.len().max(1) as f64;
-        let mean = |of: fn(&(Point, Point)) -> Point| scale(pairs.iter().map(of).fold([0.0; 3], add), share);
-        let centres = [mean(|p| p.0), mean(|p| p.1)];
-        let mut s = [[0.0; 3]; 3];
-        for (from, to) in &pairs {
-            let (a, b) = (sub(*from, centres[0]), sub(*to, centres[1]));
-            (0..3).for_each(|i| (0..3).for_each(|j| s[i][j] += a[i] * b[j]));
-        }
-        let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = s;
-        let q = largest_eigenvector([
-            [xx + yy + zz, yz - zy, zx - xz, xy - yx],
-            [yz - zy, xx - yy - zz, xy + yx, zx + xz],
-            [zx - xz, xy + yx, yy - xx - zz, yz + zy],
-            [xy - yx, zx + xz, yz + zy, zz - xx - yy],
-        ]);
-        let [w, x, y, z] = if q[0] < 0.0 { q.map(|c| -c) } else { q };
-        let sine = norm([x, y, z]);
-        let axis = if sine > 0.0 { [x, y, z].map(|c| c / sine) } else { [0.0, 0.0, 1.0] };
-        let half_angle = sine.atan2(w);
+    /// The motion that [fits best](geometry::rigid::Rigid::fit). Where all points stay, it is none, to the bit.
+    pub(super) fn fit(pairs: &[(Point, Point)]) -> Self {
+        let geometry::rigid::Rigid { centres, axis, half_angle } = geometry::rigid::Rigid::fit(pairs);
         let part = |k: usize| {
             let (sine, cosine) = (half_angle * k as f64 / PARTS as f64).sin_cos();
             [sine, cosine]
@@ -97,7 +78,7 @@ impl Rigid {
 mod tests {
     use super::*;
     use crate::base::four::Plain;
-    use crate::geometry::vector::distance;
+    use crate::geometry::vector::{add, distance};
     use crate::motion::Prescribed;
 
     fn points() -> Vec<Point> {
@@ -110,7 +91,7 @@ mod tests {
     }
 
     fn fitted(turn: &Prescribed, shift: Point) -> Rigid {
-        Rigid::fit(points().into_iter().map(|p| (p, add(turn.apply(p, 1.0), shift))).collect())
+        Rigid::fit(&points().into_iter().map(|p| (p, add(turn.apply(p, 1.0), shift))).collect::<Vec<_>>())
     }
 
     #[test]
@@ -138,7 +119,7 @@ mod tests {
 
     #[test]
     fn what_stays_stays_to_the_bit() {
-        let rigid = Rigid::fit(points().into_iter().map(|p| (p, p)).collect());
+        let rigid = Rigid::fit(&points().into_iter().map(|p| (p, p)).collect::<Vec<_>>());
         assert!(points().into_iter().all(|p| change(&rigid, p, [0.4, 0.7]) == [0.0; 3]));
         assert!(rigid.parts.is_empty());
     }

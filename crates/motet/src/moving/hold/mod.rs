@@ -1,0 +1,293 @@
+//! Walls that are kept apart: what would come too near to another wall, or go through it, stops in front of it.
+//!
+//! ```text
+//!      requested                       held
+//!      o                   o           o                   o
+//!         o             o                 o             o
+//!    --------o-------o--------             o--o--o--o--o     at the distance
+//!    ============o============         =========================  the other wall
+//! ```
+//!
+//! | room | what it does |
+//! |---|---|
+//! | `obstacle` | the walls that another one gives way to, and where it is when it goes along with them |
+//! | `elements` | triangles and nodes of a wall, and how near each may come |
+//! | `round` | how far they get without coming too near, and how they are pushed back to the distance |
+//! | `spread` | nodes beside one that was stopped are held back with it, so that no edge between them is lost |
+//!
+//! In a step, every node of a wall is requested to go straight from where the last step left it to a new place. Of two walls the first gives way: it is carried along by
+//! the second, then goes straight on to its requested place. Each of its triangles goes as far as it comes no nearer to the other wall than a part
+//! ([`SLACK`](crate::contact::SLACK)) of the distance, which [`sweep_apart`](crate::contact::sweep_apart) finds by conservative advancement. So nothing passes through, however far it
+//! is requested to go. From there it is pushed back to the distance, away from what is nearest. A node that stands at the distance slides along as far as it is requested to go farther along than
+//! into what it stands on (friction, Coulomb 1785, of a coefficient of 1): pressed on hard it stops, on whatever slope it is.
+//! A round that neither stops nor pushes anything is the proof of what it leaves.
+
+mod elements;
+mod obstacle;
+mod round;
+mod spread;
+#[cfg(test)]
+mod tests;
+
+use self::elements::Elements;
+use self::obstacle::Obstacle;
+use self::round::{Pushed, Round};
+use self::spread::Slopes;
+use crate::base::{Error, Point, Result, Threads, VertexId};
+use crate::geometry::triangle::area_vector;
+use crate::geometry::vector::{add, distance, dot, scale, sub};
+use crate::moving::options::Watching;
+use crate::moving::wall::Wall;
+
+/// In how many parts a step is gone, and by which part of an edge's length the corrections at its ends may differ: one after the other, until the wall is sound.
+const TRIES: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
+
+/// Rounds of stopping, pushing back and holding back at most. Two or three are the rule.
+const ROUNDS: usize = 8;
+
+/// A distance is above this part of the coordinates: theirs are rounded to 1e-16.
+const TOLD: f64 = 1e-12;
+
+/// A triangle that is held keeps this part of its area, seen along the normal that it would have where it is requested to be.
+const UPRIGHT: f64 = 0.01;
+
+/// Walls of which each is kept away from all that follow it.
+#[derive(Clone, Debug)]
+pub(super) struct Hold {
+    /// The last of the walls that give way first, and so on.
+    walls: Vec<Yielding>,
+    /// Where each node was left by the last step, from its first place.
+    pub(super) last: Vec<Point>,
+}
+
+/// A wall that gives way to others.
+#[derive(Clone, Debug)]
+struct Yielding {
+    /// Its number among the walls.
+    wall: usize,
+    triangles: Vec<[VertexId; 3]>,
+    /// The nodes of these that the others do not share.
+    nodes: Vec<VertexId>,
+    obstacle: Obstacle,
+    elements: Elements,
+    slopes: Slopes,
+}
+
+/// Where walls are after a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Held {
+    /// The displacement of each node from its first place.
+    pub(super) displacement: Vec<Point>,
+    /// How many nodes are not where they were requested to be.
+    pub(super) n_nodes: usize,
+    /// The one that is farthest from there.
+    pub(super) farthest: Option<Stopped>,
+    /// The first wall that has no room to keep its distance.
+    pub(super) cramped: Option<usize>,
+}
+
+/// A node that is not where it was requested to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stopped {
+    /// Its wall.
+    pub(super) wall: usize,
+    /// How far it is from its requested place.
+    pub(super) short: f64,
+    /// Where it is.
+    pub(super) place: Point,
+}
+
+impl Hold {
+    /// Of patches that are watched and to be kept apart. A node that two of them share is kept from neither.
+    ///
+    /// # Errors
+    /// When the distance is not above 0, or is less than coordinates can tell.
+    pub(super) fn of(watch: &Watching, wall: &Wall, threads: &Threads) -> Result<Option<Self>> {
+        let Some(distance) = watch.hold else { return Ok(None) };
+        let bodies: Vec<_> = (0..watch.patches.len() as u32).map(|k| wall.body(k)).collect();
+        Self::between(distance, &wall.places, &bodies, threads).map(Some)
+    }
+
+    /// Of walls by their triangles between nodes at these first places.
+    fn between(
+        distance: f64,
+        places: &[Point],
+        bodies: &[Vec<[VertexId; 3]>],
+        threads: &Threads,
+    ) -> Result<Self> {
+        let least = TOLD * largest(places);
+        if !(distance > least && distance.is_finite()) {
+            return Err(Error::options(format!("walls are to be kept {distance} apart"))
+                .remedy(format!("give a distance above {least:e}: coordinates do not tell less")));
+        }
+        let walls = (1..bodies.len()).rev().map(|k| Yielding::new(distance, places, k - 1, bodies, threads));
+        Ok(Self { walls: walls.collect(), last: vec![[0.0; 3]; places.len()] })
+    }
+
+    /// Stops what goes too far on its way from where the last step left it. [`Self::gone`] tells how much of that was done.
+    pub(super) fn stop(&mut self, places: &[Point], requested: &[Point], threads: &Threads) -> Held {
+        let displaced =
+            |by: &[Point]| -> Vec<Point> { places.iter().zip(by).map(|(&p, &d)| add(p, d)).collect() };
+        let (from, wanted) = (displaced(&self.last), displaced(requested));
+        let mut held = Held { displacement: requested.to_vec(), ..Held::default() };
+        let mut at = wanted.clone();
+        for wall in &mut self.walls {
+            if !wall.give_way(&from, &mut at, threads) {
+                held.cramped = Some(wall.wall);
+            }
+            for v in wall.nodes.iter().map(|v| v.index()).filter(|&v| at[v] != wanted[v]) {
+                held.displacement[v] = sub(at[v], places[v]);
+                let stopped = Stopped { wall: wall.wall, short: distance(at[v], wanted[v]), place: at[v] };
+                held.n_nodes += 1;
+                held.farthest = held.farthest.filter(|known| known.short >= stopped.short).or(Some(stopped));
+            }
+        }
+        held
+    }
+
+    /// Takes over that walls have gone this part of the way to these displacements.
+    pub(super) fn gone(&mut self, displacement: &[Point], part: f64) {
+        for (last, &to) in self.last.iter_mut().zip(displacement) {
+            *last = if part == 1.0 { to } else { lerp(*last, to, part) };
+        }
+    }
+}
+
+impl Yielding {
+    /// The wall of this number gives way to all after it.
+    fn new(
+        distance: f64,
+        places: &[Point],
+        wall: usize,
+        bodies: &[Vec<[VertexId; 3]>],
+        threads: &Threads,
+    ) -> Self {
+        let mut obstacle = Obstacle::new(places, &bodies[wall + 1..], threads);
+        let triangles = bodies[wall].clone();
+        let mut nodes = nodes_of(&triangles);
+        nodes.retain(|v| !obstacle.has_node(*v));
+        let elements = Elements::new(&triangles, &nodes, distance, places, &mut obstacle, threads);
+        let slopes = Slopes::new(&triangles, &nodes, places, threads);
+        Self { wall, triangles, nodes, obstacle, elements, slopes }
+    }
+
+    /// Puts the nodes to where they may be on their way to where they are in `at`. Whether they keep their distance: it may be that there is no room to.
+    fn give_way(&mut self, from: &[Point], at: &mut [Point], threads: &Threads) -> bool {
+        let is_still = self.obstacle.is_still(from, at);
+        if is_still && self.nodes.iter().all(|v| from[v.index()] == at[v.index()]) {
+            return true;
+        }
+        let found = TRIES.iter().find_map(|&(n, slope)| self.gone(from, at, n, slope, threads));
+        let is_found = found.is_some();
+        let end = found.unwrap_or_else(|| self.carried(from, at, threads));
+        self.nodes.iter().for_each(|v| at[v.index()] = end[v.index()]);
+        // Where nothing pushes, what stays where it was is as far away as it was.
+        is_found || is_still
+    }
+
+    /// Goes in `n` parts.
+    fn gone(
+        &mut self,
+        from: &[Point],
+        to: &[Point],
+        n: usize,
+        slope: f64,
+        threads: &Threads,
+    ) -> Option<Vec<Point>> {
+        (1..=n).try_fold(from.to_vec(), |here, k| {
+            let part = k as f64 / n as f64;
+            let wanted: Vec<Point> = match k == n {
+                true => to.to_vec(),
+                false => from.iter().zip(to).map(|(&a, &b)| lerp(a, b, part)).collect(),
+            };
+            self.part(&here, &wanted, slope, threads)
+        })
+    }
+
+    /// Goes one part: straight on, then along what stopped it. `None` where the wall would not be sound.
+    fn part(
+        &mut self,
+        here: &[Point],
+        wanted: &[Point],
+        slope: f64,
+        threads: &Threads,
+    ) -> Option<Vec<Point>> {
+        let start = self.carried(here, wanted, threads);
+        let at = self.pass(&start, wanted, slope, threads)?;
+        if self.nodes.iter().all(|v| at[v.index()] == wanted[v.index()]) {
+            return Some(at);
+        }
+        Some(self.closed_up(at, wanted, threads))
+    }
+
+    /// What was pushed farther away than need be goes on, where it is sound.
+    fn closed_up(&mut self, at: Vec<Point>, wanted: &[Point], threads: &Threads) -> Vec<Point> {
+        let closer = Round::new(&self.elements, &self.nodes, &at, wanted, &mut self.obstacle, threads)
+            .close_up(wanted);
+        if self.is_upright(&closer, wanted) { closer } else { at }
+    }
+
+    /// Goes straight on from where nothing is too near.
+    fn pass(
+        &mut self,
+        start: &[Point],
+        wanted: &[Point],
+        slope: f64,
+        threads: &Threads,
+    ) -> Option<Vec<Point>> {
+        let round = Round::new(&self.elements, &self.nodes, start, wanted, &mut self.obstacle, threads);
+        let mut at = round.aims(wanted);
+        let mut n_near = 0;
+        for _ in 0..ROUNDS {
+            self.slopes.limit(&mut at, wanted, slope);
+            let is_stopped = round.stop(&mut at);
+            let pushed = round.push(&mut at);
+            n_near += usize::from(pushed == Pushed::NotFarEnough);
+            // Holding back may help once.
+            if n_near > 1 {
+                return None;
+            }
+            if !is_stopped && pushed == Pushed::Nothing {
+                return (round.has_seen(&at) && self.is_upright(&at, wanted)).then_some(at);
+            }
+        }
+        None
+    }
+
+    /// Where all are when the nodes are carried along by the walls that they give way to.
+    fn carried(&mut self, here: &[Point], wanted: &[Point], threads: &Threads) -> Vec<Point> {
+        let mut start = wanted.to_vec();
+        self.nodes.iter().for_each(|v| start[v.index()] = here[v.index()]);
+        if !self.obstacle.is_still(here, wanted) {
+            let carried = self.obstacle.carry(&self.nodes, here, wanted, threads);
+            self.nodes.iter().zip(carried).for_each(|(v, p)| start[v.index()] = p);
+        }
+        start
+    }
+
+    /// Whether no triangle is turned over, or lost, that is not as it was requested.
+    fn is_upright(&self, at: &[Point], wanted: &[Point]) -> bool {
+        self.triangles.iter().filter(|t| t.iter().any(|v| at[v.index()] != wanted[v.index()])).all(|t| {
+            let [is, asked] = [at, wanted].map(|at| area_vector(t.map(|v| at[v.index()])));
+            dot(is, asked) >= UPRIGHT * dot(asked, asked)
+        })
+    }
+}
+
+/// The nodes of triangles, rising.
+fn nodes_of(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
+    let mut nodes = triangles.as_flattened().to_vec();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// After this part of the way from one place to another.
+fn lerp(from: Point, to: Point, part: f64) -> Point {
+    add(from, scale(sub(to, from), part))
+}
+
+/// The largest coordinate.
+fn largest(points: &[Point]) -> f64 {
+    points.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+}
