@@ -1,17 +1,20 @@
 //! Fills generated bodies that are flat but for rounding, and counts by kind what came of them.
 //!
-//! `cargo run --release -p motet --example cad_bodies -- [COUNT] [SEED]`
+//! `cargo run --release -p motet --example cad_bodies -- [COUNT] [SEED] [FOLDER]`; with a folder each body is written there as `SEED.off`, for other programs.
 
 #[path = "../tests/common/cad.rs"]
 mod cad_bodies;
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use cad_bodies::cad;
 use motet::base::Threads;
 use motet::delaunay::{EdgePoints, constrain};
 use motet::geometry::predicates::orient3d;
 use motet::geometry::tet::volume;
+use motet::io::{WriteOptions, write};
+use motet::mesh::{CellKind, Cells, Mesh};
 
 #[derive(Default)]
 struct Count {
@@ -23,13 +26,22 @@ struct Count {
 }
 
 fn main() {
-    let mut numbers = std::env::args().skip(1).filter_map(|word| word.parse::<usize>().ok());
-    let (count, first) = (numbers.next().unwrap_or(700), numbers.next().unwrap_or(0));
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let number = |i: usize, default| words.get(i).map_or(default, |word| word.parse().expect("a number"));
+    let (count, first): (usize, usize) = (number(0, 700), number(1, 0));
+    let folder = words.get(2).map(Path::new);
     let mut counts: BTreeMap<&str, Count> = BTreeMap::new();
     for seed in first..first + count {
         let body = cad(seed);
         let of_kind = counts.entry(body.kind).or_default();
         of_kind.bodies += 1;
+        if let Some(folder) = folder {
+            let ids = body.triangles.as_flattened().to_vec();
+            let cells = Cells::uniform(CellKind::TRIANGLE, ids).expect("three corners each");
+            let mesh = Mesh::new(body.points.clone(), cells);
+            write(folder.join(format!("{seed}.off")), &mesh, &WriteOptions::default())
+                .expect("a folder to write to");
+        }
         let made = constrain(&body.points, &body.triangles, EdgePoints::MoveInside, &Threads::single());
         let Ok(made) = made else {
             of_kind.refused += 1;

@@ -2,6 +2,7 @@
 
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::contact;
+use motet::geometry::predicates::orient3d;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{add, norm, sub};
 use motet::mesh::shapes::{TubeOptions, WallCells, sphere_in_box, tube};
@@ -161,6 +162,33 @@ fn histories_lead_from_any_step_to_the_present_one() {
     assert!(told.to_string().contains("since step 0 are not known"), "{told}");
     let told = short.history_since(13).unwrap_err().to_string();
     assert!(told.contains("step 13") && told.contains("the last one is 12"), "{told}");
+}
+
+#[test]
+fn tets_that_are_inverted_where_the_step_began_are_reported() {
+    let mut moving = MovingMesh::new(&box_mesh(), options(), &threads()).unwrap();
+    let mut n_reported = 0;
+    for k in 1..=12 {
+        let start = Field::vectors("start", &moving.mesh().points);
+        let displacement = sphere_goes(&moving, along(cycle(k)));
+        let step = moving.advance(k as f64, &displacement, &threads()).unwrap();
+        let Some(history) = moving.history_since(k - 1).unwrap() else {
+            assert!(step.inverted_at_start.is_none());
+            continue;
+        };
+        let start = history.transfer_points(&start).unwrap().to_vectors().unwrap();
+        let is_off = |tet: [VertexId; 4]| {
+            let [a, b, c, d] = tet.map(|v| start[v.index()]);
+            orient3d(a, b, c, d) <= 0
+        };
+        let off: Vec<_> = moving.mesh().cells.tets().filter(|(_, tet)| is_off(*tet)).map(|tet| tet.0).collect();
+        assert_eq!(step.inverted_at_start.map_or(0, |found| found.tets), off.len(), "step {k}");
+        if let Some(found) = step.inverted_at_start {
+            assert!(off.contains(&found.worst.cell) && found.worst.eas <= 0.0);
+            n_reported += 1;
+        }
+    }
+    assert!(n_reported > 0, "steps are large enough for some");
 }
 
 #[test]

@@ -239,8 +239,10 @@ impl MovingMesh {
         }
         let gaps = self.measure_gaps(threads)?;
         seconds.contact = holding + begin_contact.elapsed().as_secs_f64();
+        let inverted_at_start = if changes.is_empty() { None } else { self.now.inverted_at_start(threads) };
         seconds.total = begin.elapsed().as_secs_f64();
-        Ok(Step { complete: is_complete, fraction, legs, changes, gaps, seconds, ..self.certified(&shape) })
+        let certified = self.certified(&shape);
+        Ok(Step { complete: is_complete, fraction, legs, changes, inverted_at_start, gaps, seconds, ..certified })
     }
 
     /// How good the mesh is as it is, without a step.

@@ -73,5 +73,5 @@ mod watch;
 pub use handle::{GAP, MovingMesh};
 pub use options::{Contents, Motion, Options, Watching};
 pub use script::{InTime, Script, normals};
-pub use step::{Change, Closest, Gaps, Seconds, Step, Stopped, Why, WorstTet};
+pub use step::{Change, Closest, Gaps, InvertedAtStart, Seconds, Step, Stopped, Why, WorstTet};
 pub use swept::{SweptVolumes, swept_volumes};

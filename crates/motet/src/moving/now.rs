@@ -8,6 +8,7 @@ use crate::motion::Mover;
 use crate::moving::contents::{go_to, hand_over};
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
+use crate::moving::step::{InvertedAtStart, WorstTet};
 use crate::moving::wall::{Drive, NO_NODE, Wall};
 
 /// A bad tet that repair has left: worth another try only once it is this much worse.
@@ -119,6 +120,13 @@ impl Now {
         hand_over(given, &mut mesh, history, &options.contents);
         let known = self.known_of(&mut mesh, history)?;
         Self::new(mesh, known, left, wall, options, threads)
+    }
+
+    /// Tets that are flat or inverted where their vertices were as the last step began.
+    pub(super) fn inverted_at_start(&self, threads: &Threads) -> Option<InvertedAtStart> {
+        let shape = self.tets.shape(&self.known.before, 0.0, threads);
+        let worst = shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place });
+        worst.filter(|_| shape.inverted > 0).map(|worst| InvertedAtStart { tets: shape.inverted, worst })
     }
 
     /// Where the mover is to take the driven vertices, for displacements of the nodes of the wall.

@@ -36,6 +36,8 @@ pub struct Step {
     pub inverted: usize,
     /// The worst tet.
     pub worst: Option<WorstTet>,
+    /// Where the step changed the mesh: tets that are flat or inverted where their vertices were as the step began. `None` where there is none.
+    pub inverted_at_start: Option<InvertedAtStart>,
     /// How near the watched patches are.
     pub gaps: Option<Gaps>,
     /// Where the time went.
@@ -63,6 +65,16 @@ pub struct WorstTet {
     pub cell: CellId,
     /// The mean of its corners.
     pub place: Point,
+}
+
+/// Tets of a changed mesh that are flat or inverted at the places that their vertices had as the step began; for new vertices these places are carried across the change as
+/// any array of points. Schemes that integrate over the mesh of an earlier time level (BDF2, a discrete geometric conservation law) find no positive volume there.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct InvertedAtStart {
+    /// How many.
+    pub tets: usize,
+    /// The worst of them, with its EAS and place as the step began.
+    pub worst: WorstTet,
 }
 
 /// Why a mesh changed.

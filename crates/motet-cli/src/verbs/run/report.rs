@@ -39,6 +39,8 @@ pub(crate) struct Report {
     pub(crate) most_bad: usize,
     most_bad_not_forced: usize,
     pub(crate) most_inverted: usize,
+    /// The most tets of a changed mesh in a step that are flat or inverted where their vertices were as the step began.
+    most_inverted_at_start: usize,
     /// As it came or went on, and of all steps.
     pub(crate) worst_at_first: Option<WorstTet>,
     pub(crate) worst: Option<WorstTet>,
@@ -123,6 +125,8 @@ impl Report {
         self.most_bad = self.most_bad.max(step.bad);
         self.most_bad_not_forced = self.most_bad_not_forced.max(step.bad - step.forced);
         self.most_inverted = self.most_inverted.max(step.inverted);
+        let at_start = step.inverted_at_start.map_or(0, |found| found.tets);
+        self.most_inverted_at_start = self.most_inverted_at_start.max(at_start);
         if let Some(worst) = step.worst.filter(|worst| self.worst.is_none_or(|w| worst.eas < w.eas)) {
             (self.worst, self.worst_at_step) = (Some(worst), step.step);
         }
@@ -202,6 +206,13 @@ impl Report {
             console.say(format_args!(
                 "worst EAS of all steps {:.4}, in step {}; at most {} bad tets in a step, {} of them not forced by walls; {} inverted",
                 worst.eas, self.worst_at_step, self.most_bad, self.most_bad_not_forced, self.most_inverted
+            ));
+        }
+        if self.most_inverted_at_start > 0 {
+            console.say(format_args!(
+                "up to {} tets of a changed mesh are inverted where their vertices were as the step began (inverted_at_start in the log): \
+                 no volume for schemes of earlier time levels",
+                self.most_inverted_at_start
             ));
         }
         if let Some(gap) = self.least_gap {
