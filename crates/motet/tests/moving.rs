@@ -181,7 +181,8 @@ fn tets_that_are_inverted_where_the_step_began_are_reported() {
             let [a, b, c, d] = tet.map(|v| start[v.index()]);
             orient3d(a, b, c, d) <= 0
         };
-        let off: Vec<_> = moving.mesh().cells.tets().filter(|(_, tet)| is_off(*tet)).map(|tet| tet.0).collect();
+        let off: Vec<_> =
+            moving.mesh().cells.tets().filter(|(_, tet)| is_off(*tet)).map(|tet| tet.0).collect();
         assert_eq!(step.inverted_at_start.map_or(0, |found| found.tets), off.len(), "step {k}");
         if let Some(found) = step.inverted_at_start {
             assert!(off.contains(&found.worst.cell) && found.worst.eas <= 0.0);

@@ -234,7 +234,7 @@ impl MovingMesh {
         self.remember(&changes);
         let begin_contact = Instant::now();
         if let (Some(hold), Some(held)) = (&mut self.hold, held) {
-            hold.gone(&held.displacement, fraction);
+            hold.advance(&held.displacement, fraction);
             self.held = held;
         }
         let gaps = self.measure_gaps(threads)?;
@@ -242,7 +242,16 @@ impl MovingMesh {
         let inverted_at_start = if changes.is_empty() { None } else { self.now.inverted_at_start(threads) };
         seconds.total = begin.elapsed().as_secs_f64();
         let certified = self.certified(&shape);
-        Ok(Step { complete: is_complete, fraction, legs, changes, inverted_at_start, gaps, seconds, ..certified })
+        Ok(Step {
+            complete: is_complete,
+            fraction,
+            legs,
+            changes,
+            inverted_at_start,
+            gaps,
+            seconds,
+            ..certified
+        })
     }
 
     /// How good the mesh is as it is, without a step.

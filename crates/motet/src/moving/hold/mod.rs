@@ -46,7 +46,7 @@ const TRIES: [(usize, f64); 3] = [(1, 0.5), (4, 0.25), (8, 0.0)];
 const ROUNDS: usize = 8;
 
 /// A distance is above this part of the coordinates: theirs are rounded to 1e-16.
-const TOLD: f64 = 1e-12;
+const RESOLUTION: f64 = 1e-12;
 
 /// A triangle that is held keeps this part of its area, seen along the normal that it would have where it is requested to be.
 const UPRIGHT: f64 = 0.01;
@@ -101,7 +101,7 @@ impl Hold {
     /// Of patches that are watched and to be kept apart. A node that two of them share is kept from neither.
     ///
     /// # Errors
-    /// When the distance is not above 0, or is less than coordinates can tell.
+    /// When the distance is not above 0, or is less than coordinates resolve.
     pub(super) fn of(watch: &Watching, wall: &Wall, threads: &Threads) -> Result<Option<Self>> {
         let Some(distance) = watch.hold else { return Ok(None) };
         let bodies: Vec<_> = (0..watch.patches.len() as u32).map(|k| wall.body(k)).collect();
@@ -115,16 +115,16 @@ impl Hold {
         bodies: &[Vec<[VertexId; 3]>],
         threads: &Threads,
     ) -> Result<Self> {
-        let least = TOLD * largest(places);
+        let least = RESOLUTION * largest(places);
         if !(distance > least && distance.is_finite()) {
             return Err(Error::options(format!("walls are to be kept {distance} apart"))
-                .remedy(format!("give a distance above {least:e}: coordinates do not tell less")));
+                .remedy(format!("give a distance above {least:e}: coordinates resolve no less")));
         }
         let walls = (1..bodies.len()).rev().map(|k| Yielding::new(distance, places, k - 1, bodies, threads));
         Ok(Self { walls: walls.collect(), last: vec![[0.0; 3]; places.len()] })
     }
 
-    /// Stops what goes too far on its way from where the last step left it. [`Self::gone`] tells how much of that was done.
+    /// Stops what goes too far on its way from where the last step left it. [`Self::advance`] takes over how much of that was done.
     pub(super) fn stop(&mut self, places: &[Point], requested: &[Point], threads: &Threads) -> Held {
         let displaced =
             |by: &[Point]| -> Vec<Point> { places.iter().zip(by).map(|(&p, &d)| add(p, d)).collect() };
@@ -146,7 +146,7 @@ impl Hold {
     }
 
     /// Takes over that walls have gone this part of the way to these displacements.
-    pub(super) fn gone(&mut self, displacement: &[Point], part: f64) {
+    pub(super) fn advance(&mut self, displacement: &[Point], part: f64) {
         for (last, &to) in self.last.iter_mut().zip(displacement) {
             *last = if part == 1.0 { to } else { lerp(*last, to, part) };
         }
@@ -177,7 +177,7 @@ impl Yielding {
         if is_still && self.nodes.iter().all(|v| from[v.index()] == at[v.index()]) {
             return true;
         }
-        let found = TRIES.iter().find_map(|&(n, slope)| self.gone(from, at, n, slope, threads));
+        let found = TRIES.iter().find_map(|&(n, slope)| self.advance(from, at, n, slope, threads));
         let is_found = found.is_some();
         let end = found.unwrap_or_else(|| self.carried(from, at, threads));
         self.nodes.iter().for_each(|v| at[v.index()] = end[v.index()]);
@@ -186,7 +186,7 @@ impl Yielding {
     }
 
     /// Goes in `n` parts.
-    fn gone(
+    fn advance(
         &mut self,
         from: &[Point],
         to: &[Point],
@@ -268,8 +268,8 @@ impl Yielding {
     /// Whether no triangle is turned over, or lost, that is not as it was requested.
     fn is_upright(&self, at: &[Point], wanted: &[Point]) -> bool {
         self.triangles.iter().filter(|t| t.iter().any(|v| at[v.index()] != wanted[v.index()])).all(|t| {
-            let [is, asked] = [at, wanted].map(|at| area_vector(t.map(|v| at[v.index()])));
-            dot(is, asked) >= UPRIGHT * dot(asked, asked)
+            let [is, requested] = [at, wanted].map(|at| area_vector(t.map(|v| at[v.index()])));
+            dot(is, requested) >= UPRIGHT * dot(requested, requested)
         })
     }
 }

@@ -98,7 +98,7 @@ impl Scene {
             let of = |(&p, &k): (&Point, &usize)| sub(motion(step, k, p), p);
             let displacement: Vec<Point> = self.places.iter().zip(&self.of).map(of).collect();
             let held = hold.stop(&self.places, &displacement, &threads);
-            hold.gone(&held.displacement, 1.0);
+            hold.advance(&held.displacement, 1.0);
             self.places.iter().zip(held.displacement).map(|(&p, d)| add(p, d)).collect()
         };
         (1..=n).map(step).collect()
