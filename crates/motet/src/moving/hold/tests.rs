@@ -142,6 +142,9 @@ impl Scene {
     }
 }
 
+/// Where a point of a scene is put.
+type Placing = fn(Point) -> Point;
+
 /// Turned about an axis, shifted and in another unit of length.
 fn elsewhere(p: Point) -> Point {
     let axis = unit([1.0, -0.4, 0.7]).unwrap();
@@ -157,7 +160,7 @@ fn small_and_far(p: Point) -> Point {
 /// The first wall is above the second by 0.8, and requested to go down by a part of that; 0.2 is held.
 fn pressed(name: &str, surfaces: impl Fn() -> Vec<(Vec<Point>, Triangles)>) {
     for part in [0.5, 0.75, 0.9, 1.0, 1.25, 1.5, 3.0, 5.0] {
-        let placed: [(fn(Point) -> Point, f64); 3] = [(|p| p, 1.0), (elsewhere, 7.0), (small_and_far, 1e-3)];
+        let placed: [(Placing, f64); 3] = [(|p| p, 1.0), (elsewhere, 7.0), (small_and_far, 1e-3)];
         for (place, unit) in placed {
             let scene = Scene::of(surfaces()).placed(place);
             let down = sub(place([0.0, -0.8 * part, 0.0]), place([0.0; 3]));
