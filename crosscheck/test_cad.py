@@ -58,7 +58,9 @@ def fill_by_tetgen(folder, count):
     """Writes SEED.npz for each body that TetGen fills."""
     seed = 0
     while seed < count:
-        done = subprocess.run([sys.executable, "-c", TETGEN, folder, str(seed), str(count)], capture_output=True, text=True)
+        # TetGen writes what it skips where it runs.
+        words = [sys.executable, "-c", TETGEN, folder, str(seed), str(count)]
+        done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
         begun = [int(line) for line in done.stdout.split("\n") if line.isdigit()]
         assert begun, done.stderr
         seed = begun[-1] + 1
