@@ -382,8 +382,8 @@ fn a_series_that_another_process_writes_is_left_alone() {
     folder.mesh("box.vtu", &box_grid([2; 3], [[0.0; 3], [1.0; 3]]));
     let held = motet::io::OutputLock::take(&folder.path("out.pvd")).unwrap();
     let words = ["move", "box.vtu", "-o", "out.pvd", "--translate", "zmax=0,0,0.1", "--steps", "2"];
-    let told = stderr(&folder.motet(words).assert().code(1));
-    assert!(told.contains("out.pvd") && told.contains(&std::process::id().to_string()), "{told}");
+    let message = stderr(&folder.motet(words).assert().code(1));
+    assert!(message.contains("out.pvd") && message.contains(&std::process::id().to_string()), "{message}");
     assert!(!folder.path("out_0000.vtu").exists() && !folder.path("out.pvd").exists());
     drop(held);
     folder.motet(words).assert().code(0);

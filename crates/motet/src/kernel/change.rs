@@ -10,7 +10,7 @@ use crate::kernel::spare::{Side, sorted};
 pub struct Fill {
     /// Its vertices; it must be positive.
     pub vertices: [VertexId; 4],
-    /// Its region.
+    /// The region of the tet.
     pub region: i32,
     /// The quality of the tet, as [`Change::judge`] gives it.
     pub quality: f64,
@@ -21,7 +21,7 @@ pub struct Fill {
 pub struct NewWall {
     /// The three vertices of the facet, in any order.
     pub vertices: [VertexId; 3],
-    /// Its patch.
+    /// The label of the wall.
     pub patch: i32,
     /// The triangle of the first mesh that it inherits from.
     pub triangle: u32,

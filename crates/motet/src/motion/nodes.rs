@@ -150,8 +150,7 @@ impl Nodes {
             return Displacements::Driven(driven);
         }
         let mut all = self.before_sliding(driven, threads);
-        let none = vec![Padded::default(); all.len()];
-        self.slides.iter().for_each(|slide| slide.apply(&none, &mut all));
+        self.slides.iter().for_each(|slide| slide.apply(|_| [0.0; 3], &mut all));
         Displacements::All(all)
     }
 
@@ -163,7 +162,10 @@ impl Nodes {
         threads: &Threads,
     ) -> Vec<Padded> {
         let mut all = self.before_sliding(driven, threads);
-        start.slides.iter().for_each(|slide| slide.apply(&start.displacement, &mut all));
+        start
+            .slides
+            .iter()
+            .for_each(|slide| slide.apply(|node| start.displacement[node as usize].point(), &mut all));
         all
     }
 

@@ -73,12 +73,12 @@ mod tests {
         assert!(differences(&described(&options), &described(&same)).is_empty());
         let mut other = Options { floor: 0.1, contents: vec!["dye".into()], ..options.clone() };
         other.motion.smoothing = 7;
-        let told = differences(&described(&options), &described(&other)).join("; ");
-        assert!(told.contains("motion.smoothing was 0 and is 7"), "{told}");
-        assert!(told.contains("floor was 0.05 and is 0.1"), "{told}");
-        assert!(told.contains("contents") && told.contains("dye"), "{told}");
+        let message = differences(&described(&options), &described(&other)).join("; ");
+        assert!(message.contains("motion.smoothing was 0 and is 7"), "{message}");
+        assert!(message.contains("floor was 0.05 and is 0.1"), "{message}");
+        assert!(message.contains("contents") && message.contains("dye"), "{message}");
         let none = Options { repair: None, ..options.clone() };
-        let told = differences(&described(&options), &described(&none)).join("; ");
-        assert!(told.contains("repair"), "{told}");
+        let message = differences(&described(&options), &described(&none)).join("; ");
+        assert!(message.contains("repair"), "{message}");
     }
 }

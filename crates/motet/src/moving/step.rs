@@ -165,7 +165,7 @@ pub struct Gaps {
 /// A node of a wall that was stopped in front of another one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stopped {
-    /// Its patch.
+    /// The name of the patch that was stopped.
     pub patch: String,
     /// How far it is from its requested place.
     pub short: f64,

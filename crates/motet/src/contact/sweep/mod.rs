@@ -64,16 +64,7 @@ pub fn sweep(
     threads: &Threads,
 ) -> Sweep {
     let times = [infinite(a.len()), infinite(b.len())];
-    let all = All {
-        points,
-        velocity,
-        surfaces: [a, b],
-        times: [&times[0], &times[1]],
-        apart: &[],
-        is_own: false,
-        horizon,
-        admit,
-    };
+    let all = All::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, admit);
     let first = all.run(threads);
     Sweep { first, times: times.map(plain) }
 }
@@ -94,22 +85,14 @@ pub fn sweep_apart(
 ) -> Vec<f64> {
     assert_eq!(a.len(), apart.len(), "a length for each triangle");
     let times = [infinite(a.len()), infinite(b.len())];
-    let all = All {
-        points,
-        velocity,
-        surfaces: [a, b],
-        times: [&times[0], &times[1]],
-        apart,
-        is_own: false,
-        horizon,
-        admit: |_, _| true,
-    };
+    let every = |_, _| true;
+    let all = All { apart, ..All::between(points, velocity, [a, b], [&times[0], &times[1]], horizon, every) };
     all.search(0, &all.tree(1, |_| true), threads);
     let [times, _] = times;
     plain(times)
 }
 
-/// [`sweep`] for one surface with itself. `admit` is asked with the smaller id first; both lists of times are the same.
+/// [`sweep`] for one surface with itself. `admit` is called with the smaller id first; both lists of times are the same.
 ///
 /// Panics when a triangle names a point beyond `points` or `velocity`.
 pub fn sweep_own(
@@ -121,9 +104,8 @@ pub fn sweep_own(
     threads: &Threads,
 ) -> Sweep {
     let times = infinite(triangles.len());
-    let surfaces = [triangles; 2];
-    let times_of = [times.as_slice(); 2];
-    let all = All { points, velocity, surfaces, times: times_of, apart: &[], is_own: true, horizon, admit };
+    let between = All::between(points, velocity, [triangles; 2], [times.as_slice(); 2], horizon, admit);
+    let all = All { is_own: true, ..between };
     let first = all.run(threads);
     let times = plain(times);
     Sweep { first, times: [times.clone(), times] }
@@ -158,7 +140,19 @@ struct All<'a, F> {
     admit: F,
 }
 
-impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
+impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
+    /// A sweep of two surfaces that may come as near as they do not touch.
+    fn between(
+        points: &'a [Point],
+        velocity: &'a [Point],
+        surfaces: [&'a [[VertexId; 3]]; 2],
+        times: [&'a Times; 2],
+        horizon: f64,
+        admit: F,
+    ) -> Self {
+        Self { points, velocity, surfaces, times, apart: &[], is_own: false, horizon, admit }
+    }
+
     /// Finds all times, and says which pair was first.
     ///
     /// Each triangle of one surface looks for the first one of the other that it meets, and then the other way round: a search goes
@@ -193,15 +187,15 @@ impl<F: Fn(u32, u32) -> bool + Sync> All<'_, F> {
     fn follow(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
         let known = &self.times[side][own as usize];
         let apart = if side == 0 { self.apart_of(own) } else { 0.0 };
-        let asked = self.box_of(self.surfaces[side][own as usize]).map(|b| b.widened(apart));
-        other.begin(&asked, queue);
+        let searched = self.box_of(self.surfaces[side][own as usize]).map(|b| b.widened(apart));
+        other.begin(&searched, queue);
         while let Some((time, item)) = queue.pop() {
             let bound = read(known);
             if time >= bound {
                 break;
             }
             match item {
-                Item::Node(node) => other.open(node, &asked, bound, queue),
+                Item::Node(node) => other.open(node, &searched, bound, queue),
                 Item::Box(id) => {
                     let pair = self.ids(side, own, id);
                     if self.is_joined(pair) {

@@ -31,7 +31,7 @@ const MOST_POINTS: usize = 16;
 pub struct Divided {
     /// Triangles of the surfaces before, those that two surfaces share counted once.
     pub before: usize,
-    /// The same afterwards.
+    /// Triangles of the surfaces after they were divided, those that two surfaces share counted once.
     pub after: usize,
 }
 

@@ -170,7 +170,7 @@ impl Net {
         }
     }
 
-    /// Puts a point between the triangles of a facet, near one of them; the triangles that came.
+    /// Puts a point between the triangles of a facet, near one of them; the new triangles.
     pub(super) fn insert(&mut self, near: TriangleId, point: Point) -> Result<Vec<TriangleId>, Blocked> {
         let cavity = self.cavity(near, None, point)?;
         for &[a, b] in cavity.rim.iter().filter(|edge| self.is_crease(**edge)) {
@@ -184,7 +184,7 @@ impl Net {
         Ok(self.fill(facet, &cavity, new))
     }
 
-    /// Divides a crease at a point, in all facets that meet there; the new vertex and the triangles that came.
+    /// Divides a crease at a point, in all facets that meet there; the new vertex and the new triangles.
     pub(super) fn divide(
         &mut self,
         edge: [VertexId; 2],
@@ -205,11 +205,11 @@ impl Net {
         for end in [a, b] {
             self.creases.insert(rising([end, new]), facets.clone());
         }
-        let mut came = Vec::new();
+        let mut inserted = Vec::new();
         for (facet, cavity) in cavities {
-            came.extend(self.fill(facet, &cavity, new));
+            inserted.extend(self.fill(facet, &cavity, new));
         }
-        Some((new, came))
+        Some((new, inserted))
     }
 
     fn push(&mut self, point: Point) -> VertexId {
@@ -268,7 +268,7 @@ impl Net {
     fn fill(&mut self, facet: u32, cavity: &Cavity, apex: VertexId) -> Vec<TriangleId> {
         cavity.triangles.iter().for_each(|&old| self.forget(old));
         let mut places = cavity.triangles.iter().copied();
-        let mut came = Vec::with_capacity(cavity.rim.len());
+        let mut inserted = Vec::with_capacity(cavity.rim.len());
         for &[a, b] in &cavity.rim {
             let id = places.next().unwrap_or_else(|| {
                 self.triangles.push([a, b, apex]);
@@ -276,9 +276,9 @@ impl Net {
                 (self.triangles.len() - 1) as TriangleId
             });
             self.triangles[id as usize] = [a, b, apex];
-            came.push(id);
+            inserted.push(id);
         }
-        came.iter().for_each(|&id| self.note(id));
-        came
+        inserted.iter().for_each(|&id| self.note(id));
+        inserted
     }
 }

@@ -1,6 +1,6 @@
 //! Triangles of flat facets made small and even: Delaunay refinement (Ruppert 1995, *A Delaunay refinement algorithm for quality 2-dimensional mesh generation*).
 //!
-//! The centre of the circle of a triangle that is too large or too narrow is inserted; where a crease is in the way, the crease is divided instead.
+//! The circumcentre of a triangle that is too large or too narrow is inserted; where a crease is in the way, the crease is divided instead.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -10,9 +10,9 @@ use crate::base::{Point, Result, VertexId, Watch};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 
-/// A triangle is too large if the radius of its circle is longer than this part of the size. Edges are then about as long as the size on average.
+/// A triangle is too large if its circumradius is longer than this part of the size. Edges are then about as long as the size on average.
 const LARGE: f64 = 0.75;
-/// A triangle is too narrow if the radius of its circle is so many times as long as its shortest edge: an angle of less than 25 degrees.
+/// A triangle is too narrow if its circumradius is so many times as long as its shortest edge: an angle of less than 25 degrees.
 const NARROW: f64 = 1.183;
 /// No edge is divided, and no triangle counts as narrow, below this part of the size: creases that are nearer to each other leave narrow triangles.
 const LEAST: f64 = 0.062_5;
@@ -79,25 +79,24 @@ pub(super) fn refine(net: &mut Net, size: f64, most: usize, watch: &Watch) -> Re
             break;
         }
         let corners = net.corners(triangle);
-        let came = match net.insert(
-            triangle,
-            centre_of_circle(corners, net.planes[net.facet_of[triangle as usize] as usize].at),
-        ) {
-            Ok(came) => came,
+        let inserted = match net
+            .insert(triangle, circumcentre(corners, net.planes[net.facet_of[triangle as usize] as usize].at))
+        {
+            Ok(inserted) => inserted,
             Err(Blocked::NoRoom) => continue,
             Err(Blocked::By([a, b])) => {
                 let [p, q] = [net.point(a), net.point(b)];
                 if distance(p, q) < 2.0 * LEAST * size {
                     continue;
                 }
-                let Some((_, came)) = net.divide([a, b], scale(add(p, q), 0.5)) else { continue };
+                let Some((_, inserted)) = net.divide([a, b], scale(add(p, q), 0.5)) else { continue };
                 // What was hidden may be seen now.
                 heap.extend(wanted(net, triangle, size).filter(|w| w.vertices == vertices));
-                came
+                inserted
             }
         };
         n_made += 1;
-        heap.extend(came.into_iter().filter_map(|t| wanted(net, t, size)));
+        heap.extend(inserted.into_iter().filter_map(|t| wanted(net, t, size)));
     }
     Ok(())
 }
@@ -117,8 +116,8 @@ fn wanted(net: &Net, triangle: TriangleId, size: f64) -> Option<Wanted> {
     (radius > LARGE * size || is_narrow()).then_some(Wanted { radius, triangle, vertices })
 }
 
-/// The centre of the circle through the corners of a triangle, in the plane of its facet.
-fn centre_of_circle([a, b, c]: [Point; 3], (at, normal): (Point, Point)) -> Point {
+/// The circumcentre of a triangle, in the plane of its facet.
+fn circumcentre([a, b, c]: [Point; 3], (at, normal): (Point, Point)) -> Point {
     let [u, v] = [sub(b, a), sub(c, a)];
     let w = cross(u, v);
     let to = add(scale(cross(w, u), dot(v, v)), scale(cross(v, w), dot(u, u)));

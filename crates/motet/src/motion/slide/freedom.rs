@@ -115,7 +115,7 @@ impl Freedom {
         Ok(Self { flats, held: sorted })
     }
 
-    /// The same vertices on the same planes and lines, these fitted to where `points` has the vertices: a patch may have been turned as a whole.
+    /// Which vertex slides on which plane or line, with planes and lines fitted to the places of the vertices in `points`: a patch may have been turned as a whole.
     ///
     /// # Errors
     /// When the facets of a plane have no area there.

@@ -98,15 +98,15 @@ impl Slide {
         }
     }
 
-    /// Gives the sliding nodes their displacement; `start` has the displacements of all nodes where the weights were computed.
-    pub(crate) fn apply(&self, start: &[Padded], displacement: &mut [Padded]) {
+    /// Gives the sliding nodes their displacement; `start` is the displacement of a node where the weights were computed.
+    pub(crate) fn apply(&self, start: impl Fn(u32) -> Point, displacement: &mut [Padded]) {
         for (&sliding, (nodes, weights)) in self.sliding.iter().zip(&self.follows) {
-            let change = |node: u32| sub(displacement[node as usize].point(), start[node as usize].point());
+            let change = |node: u32| sub(displacement[node as usize].point(), start(node));
             let sum = nodes
                 .iter()
                 .zip(weights)
                 .fold([0.0; 3], |sum, (&node, &weight)| add(sum, scale(change(node), weight)));
-            displacement[sliding as usize] = Padded::new(add(start[sliding as usize].point(), sum));
+            displacement[sliding as usize] = Padded::new(add(start(sliding), sum));
         }
     }
 }

@@ -63,7 +63,7 @@ pub(super) struct Hold {
 /// A wall that gives way to others.
 #[derive(Clone, Debug)]
 struct Yielding {
-    /// Its number among the walls.
+    /// The place of this wall among the watched patches.
     wall: usize,
     triangles: Vec<[VertexId; 3]>,
     /// The nodes of these that the others do not share.
@@ -89,7 +89,7 @@ pub(super) struct Held {
 /// A node that is not where it was requested to be.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stopped {
-    /// Its wall.
+    /// The place of its wall among the watched patches.
     pub(super) wall: usize,
     /// How far it is from its requested place.
     pub(super) short: f64,

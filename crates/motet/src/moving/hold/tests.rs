@@ -73,7 +73,7 @@ impl Scene {
         scene
     }
 
-    /// The same somewhere else.
+    /// The scene with each point put where `place` says.
     fn placed(mut self, place: impl Fn(Point) -> Point) -> Self {
         self.places.iter_mut().for_each(|p| *p = place(*p));
         self
