@@ -47,6 +47,11 @@ pub fn in_range(a: Point) -> bool {
     (a[0].abs() <= LARGEST) & (a[1].abs() <= LARGEST) & (a[2].abs() <= LARGEST)
 }
 
+/// The largest absolute value of a coordinate; 0 without points.
+pub fn largest_coordinate(points: &[Point]) -> f64 {
+    points.as_flattened().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()))
+}
+
 /// `|a|`
 #[inline(always)]
 pub fn norm(a: Point) -> f64 {

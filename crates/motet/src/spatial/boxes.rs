@@ -205,7 +205,13 @@ pub(crate) fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
     })
 }
 
-fn touch([a, b]: Bounds, [c, d]: Bounds) -> bool {
+/// A box that reaches farther by a length on every side.
+pub(crate) fn widened([low, high]: Bounds, by: f64) -> Bounds {
+    [low.map(|x| x - by), high.map(|x| x + by)]
+}
+
+/// Whether two boxes have a place in common.
+pub(crate) fn touch([a, b]: Bounds, [c, d]: Bounds) -> bool {
     (0..3).all(|k| a[k] <= d[k] && c[k] <= b[k])
 }
 

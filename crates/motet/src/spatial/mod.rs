@@ -8,8 +8,8 @@ pub(crate) mod runs;
 pub mod trace;
 mod winding;
 
-pub(crate) use boxes::around;
 pub use boxes::{Bounds, BoxTree};
+pub(crate) use boxes::{around, touch, widened};
 pub use locate::{Located, Locator, OUTSIDE};
 pub use nearest::{Closest, NearestTriangle};
 pub use winding::WindingNumber;

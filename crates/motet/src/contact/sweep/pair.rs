@@ -13,7 +13,7 @@
 use crate::base::Point;
 use crate::geometry::distance::Closest;
 use crate::geometry::distance::triangle_triangle::{closest, closest_below};
-use crate::geometry::vector::{add, dot, norm, scale, sub};
+use crate::geometry::vector::{add, dot, largest_coordinate, norm, scale, sub};
 
 /// Error of a distance at a time, as a part of the extent then: 4e-15 of the distance and 2e-15 of the positions, and something to spare.
 const ROUNDING: f64 = 1e-14;
@@ -56,9 +56,12 @@ impl Pair {
         let origin = a[0];
         let places = [a, b].map(|t| t.map(|x| sub(x.0, origin.0)));
         let velocities = [a, b].map(|t| t.map(|x| sub(x.1, origin.1)));
-        let size = largest(places.as_flattened());
-        let speed = largest(velocities.as_flattened());
-        let width = places.iter().map(|t| largest(&[sub(t[1], t[0]), sub(t[2], t[0])])).fold(0.0, f64::max);
+        let size = largest_coordinate(places.as_flattened());
+        let speed = largest_coordinate(velocities.as_flattened());
+        let width = places
+            .iter()
+            .map(|t| largest_coordinate(&[sub(t[1], t[0]), sub(t[2], t[0])]))
+            .fold(0.0, f64::max);
         Self { origin, places, velocities, size, speed, width, apart }.within_slack()
     }
 
@@ -170,8 +173,4 @@ impl Pair {
         }
         (time + left) * (1.0 - ROUNDING)
     }
-}
-
-fn largest(of: &[Point]) -> f64 {
-    of.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }

@@ -1,10 +1,10 @@
 //! Triangles and nodes of a wall that gives way, and how near each may come.
 
-use super::largest;
 use super::obstacle::Obstacle;
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle::closest_below;
-use crate::spatial::{BoxTree, around};
+use crate::geometry::vector::largest_coordinate;
+use crate::spatial::{BoxTree, around, widened};
 
 /// What is nearer than this part of the coordinates touches.
 const TOUCHES: f64 = 1e-13;
@@ -36,7 +36,7 @@ impl Elements {
         let of_node = obstacle.distances(nodes, places, threads);
         let boxes: Vec<_> = obstacle.triangles.iter().map(|t| around(t.map(|v| places[v.index()]))).collect();
         let tree = BoxTree::new(&boxes);
-        let touches = TOUCHES * largest(places);
+        let touches = TOUCHES * largest_coordinate(places);
         let place = |v: &VertexId| nodes.binary_search(v).ok();
         let free: Vec<[VertexId; 3]> =
             triangles.iter().copied().filter(|t| t.iter().all(|v| place(v).is_some())).collect();
@@ -44,8 +44,7 @@ impl Elements {
             let corners = free[i].map(|v| places[v.index()]);
             let known = free[i].iter().filter_map(place).map(|k| of_node[k]).fold(distance, f64::min);
             let mut found = Vec::new();
-            let [low, high] = around(corners);
-            tree.touching([low.map(|x| x - known), high.map(|x| x + known)], &mut found);
+            tree.touching(widened(around(corners), known), &mut found);
             found.iter().fold(known, |least, &t| {
                 let other = obstacle.triangles[t as usize].map(|v| places[v.index()]);
                 closest_below(corners, other, least * least).map_or(least, |closest| closest.distance())

@@ -35,7 +35,7 @@ use self::round::{Pushed, Round};
 use self::spread::Slopes;
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
-use crate::geometry::vector::{add, distance, dot, scale, sub};
+use crate::geometry::vector::{add, distance, dot, largest_coordinate, scale, sub};
 use crate::moving::options::Watching;
 use crate::moving::wall::Wall;
 
@@ -115,7 +115,7 @@ impl Hold {
         bodies: &[Vec<[VertexId; 3]>],
         threads: &Threads,
     ) -> Result<Self> {
-        let least = RESOLUTION * largest(places);
+        let least = RESOLUTION * largest_coordinate(places);
         if !(distance > least && distance.is_finite()) {
             return Err(Error::options(format!("walls are to be kept {distance} apart"))
                 .remedy(format!("give a distance above {least:e}: coordinates resolve no less")));
@@ -285,9 +285,4 @@ fn nodes_of(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
 /// After this part of the way from one place to another.
 fn lerp(from: Point, to: Point, part: f64) -> Point {
     add(from, scale(sub(to, from), part))
-}
-
-/// The largest coordinate.
-fn largest(points: &[Point]) -> f64 {
-    points.as_flattened().iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }

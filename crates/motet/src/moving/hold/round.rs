@@ -1,13 +1,13 @@
 //! How far elements get without coming too near to what they give way to, and how they are pushed back to the distance.
 
 use super::elements::{Element, Elements};
+use super::lerp;
 use super::obstacle::Obstacle;
-use super::{largest, lerp};
 use crate::base::{Point, Threads, VertexId};
 use crate::contact::{SLACK, sweep_apart};
 use crate::geometry::distance::triangle_triangle::closest_below;
-use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
-use crate::spatial::{Bounds, BoxTree, around};
+use crate::geometry::vector::{add, distance, dot, largest_coordinate, norm, scale, sub};
+use crate::spatial::{BoxTree, around, touch, widened};
 
 /// What is nearer than it may be by this part of its distance is pushed back.
 const TOO_NEAR: f64 = 1e-13;
@@ -91,7 +91,7 @@ impl<'a> Round<'a> {
         let corners = |t: &[VertexId; 3]| around(t.map(|v| start[v.index()]));
         let others: Vec<_> = obstacle.triangles.iter().filter(|t| touch(corners(t), near)).copied().collect();
         let tree = BoxTree::new(&others.iter().map(corners).collect::<Vec<_>>());
-        let rounding = ROUNDING * largest(start).max(largest(wanted));
+        let rounding = ROUNDING * largest_coordinate(start).max(largest_coordinate(wanted));
         Self { start, elements, others, tree, nodes, farthest, rounding, threads }
     }
 
@@ -285,12 +285,4 @@ fn shares(corners: [VertexId; 3], weights: [f64; 3]) -> impl Iterator<Item = (Ve
     let weights = if is_node { [1.0, 0.0, 0.0] } else { weights };
     let sum: f64 = weights.iter().map(|w| w * w).sum();
     corners.into_iter().zip(weights.map(|w| w / sum)).filter(|(_, share)| *share != 0.0)
-}
-
-fn widened([low, high]: Bounds, by: f64) -> Bounds {
-    [low.map(|x| x - by), high.map(|x| x + by)]
-}
-
-fn touch([a, b]: Bounds, [c, d]: Bounds) -> bool {
-    (0..3).all(|k| a[k] <= d[k] && c[k] <= b[k])
 }

@@ -21,8 +21,8 @@ use crate::base::{Csr, Point, Threads, VertexId, rising};
 use crate::geometry::vector::distance;
 use crate::preflight::crossing::crossings_of;
 use crate::preflight::renamed;
-use crate::spatial::BoxTree;
 use crate::spatial::runs::{around, corners, in_runs};
+use crate::spatial::{BoxTree, widened};
 use common::{Common, Side};
 pub(crate) use met::{Met, MetKind};
 use points::Points;
@@ -199,8 +199,4 @@ fn joined(points: &[Point], pieces: &[([VertexId; 3], u32)], rule: &Rule) -> Vec
         names[v] = nearest.map_or(names[v], |w| names[w]);
     }
     names
-}
-
-fn widened([low, high]: [Point; 2], by: f64) -> [Point; 2] {
-    [low.map(|x| x - by), high.map(|x| x + by)]
 }
