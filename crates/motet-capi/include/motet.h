@@ -406,6 +406,7 @@ typedef struct motet_moving_options {
     const char *const *hold_names; /* regions and patches that repair leaves as they are: as hold of motet_remesh_options; default none */
     int64_t n_hold_names;
     double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
+    int32_t valid_at_start;    /* 1: a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held; default 0 */
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

@@ -61,6 +61,7 @@ versioned! {
         hold_names: *const *const c_char = ptr::null(),
         n_hold_names: i64 = 0,
         slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
+        valid_at_start: i32 = 0,
     }
 }
 
@@ -75,6 +76,7 @@ impl MotetMovingOptions {
             margin: self.margin,
             floor: self.floor,
             keep_tets: self.keep_tets,
+            valid_at_start: self.valid_at_start != 0,
             contents: owned(self.contents, self.n_contents, "contents")?,
             watch: self.watching()?,
             remembered: count(self.remembered.into(), "changes to be remembered")?,

@@ -164,14 +164,16 @@ fn histories_lead_from_any_step_to_the_present_one() {
     assert!(told.contains("step 13") && told.contains("the last one is 12"), "{told}");
 }
 
-#[test]
-fn tets_that_are_inverted_where_the_step_began_are_reported() {
-    let mut moving = MovingMesh::new(&box_mesh(), options(), &threads()).unwrap();
-    let mut n_reported = 0;
+/// The steps of [`cycle`] that end with tets that have no volume where their vertices were as the step began, counted again from the history; with the worst EAS of all steps.
+fn steps_off_at_start(options: Options) -> (usize, f64) {
+    let mut moving = MovingMesh::new(&box_mesh(), options, &threads()).unwrap();
+    let (mut n_off, mut worst) = (0, f64::INFINITY);
     for k in 1..=12 {
         let start = Field::vectors("start", &moving.mesh().points);
         let displacement = sphere_goes(&moving, along(cycle(k)));
         let step = moving.advance(k as f64, &displacement, &threads()).unwrap();
+        assert!(step.complete, "step {k}");
+        worst = step.worst.map_or(worst, |tet| worst.min(tet.eas));
         let Some(history) = moving.history_since(k - 1).unwrap() else {
             assert!(step.inverted_at_start.is_none());
             continue;
@@ -186,10 +188,19 @@ fn tets_that_are_inverted_where_the_step_began_are_reported() {
         assert_eq!(step.inverted_at_start.map_or(0, |found| found.tets), off.len(), "step {k}");
         if let Some(found) = step.inverted_at_start {
             assert!(off.contains(&found.worst.cell) && found.worst.eas <= 0.0);
-            n_reported += 1;
+            n_off += 1;
         }
     }
-    assert!(n_reported > 0, "steps are large enough for some");
+    (n_off, worst)
+}
+
+#[test]
+fn tets_that_are_inverted_where_the_step_began_are_reported_and_avoided_on_request() {
+    let (n_off, _) = steps_off_at_start(options());
+    assert!(n_off > 0, "steps are large enough for some");
+    let (n_off, worst) = steps_off_at_start(Options { valid_at_start: true, ..options() });
+    assert_eq!(n_off, 0);
+    assert!(worst > 0.05, "{worst}");
 }
 
 #[test]

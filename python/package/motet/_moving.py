@@ -40,6 +40,7 @@ class _Asked:
     margin: float
     floor: float
     keep_tets: float
+    valid_at_start: bool
     contents: Sequence[str]
     carry: Mapping[str, Carry] | None
     watch: Sequence[str | int]
@@ -84,6 +85,9 @@ class MovingMesh(NotPickled):
         Repaired are tets to ``min_eas + margin``; no step takes one that can be repaired below ``floor``.
     keep_tets : float
         Where there are fewer tets than this part of those at first, a repair also brings edges back to the lengths that they had.
+    valid_at_start : bool
+        Whether a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held. See
+        ``inverted_at_start`` of a step.
     contents : sequence of names
         Cell arrays that are densities of something that stays in its cell: their integrals are kept while cells move.
     carry : mapping from names to "mean", "inherit" or "drop"
@@ -123,6 +127,7 @@ class MovingMesh(NotPickled):
         margin: float = 0.05,
         floor: float = 0.05,
         keep_tets: float = 0.9,
+        valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,
         watch: Sequence[str | int] = (),
@@ -160,6 +165,7 @@ class MovingMesh(NotPickled):
         margin: float = 0.05,
         floor: float = 0.05,
         keep_tets: float = 0.9,
+        valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,
         watch: Sequence[str | int] = (),

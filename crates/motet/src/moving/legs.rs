@@ -3,19 +3,25 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::base::{CellId, Point, Result, Threads};
+use crate::base::{CellId, Point, Result, Threads, VertexId};
+use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, scale, sub};
-use crate::moving::now::{Known, LeftBad, Now};
+use crate::mesh::Field;
+use crate::mesh::history::Origin;
+use crate::moving::now::{BEFORE, Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Why};
 use crate::moving::wall::Wall;
-use crate::remesh::{self, Goal, Sizes, remesh_mesh};
+use crate::remesh::{self, Goal, MeshOutcome, Sizes, remesh_mesh};
 
 /// Parts are halved down to this where tets would become flat: repairing more often than so is no way to go on.
 const SMALLEST: f64 = 1.0 / 32.0;
 /// And down to this where they would be inverted.
 const LEAST: f64 = 1.0 / 4096.0;
+
+/// So often a repair is made once more with tets held that it is not to replace.
+const MOST_HELD: usize = 8;
 
 /// So many tets away from a bad one tets are near it.
 const RINGS: usize = 2;
@@ -200,7 +206,7 @@ impl Way<'_> {
             return Ok(Repaired::Left(Vec::new()));
         };
         let is_thinned = (now.tets.len() as f64) < options.keep_tets * self.n_first as f64;
-        let asked = remesh::Options {
+        let mut asked = remesh::Options {
             sizes: if is_thinned {
                 Some(Sizes::Vertices(now.known.size.clone()))
             } else {
@@ -213,7 +219,15 @@ impl Way<'_> {
         };
         let mut given = now.moved(&self.points, &options.contents);
         let rules = now.put_known(&mut given, before, &options.rules);
-        let outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
+        let mut outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
+        for _ in 0..if options.valid_at_start { MOST_HELD } else { 0 } {
+            let replaced = replaced_by_inverted(&outcome)?;
+            if replaced.is_empty() {
+                break;
+            }
+            asked.held.cells.extend(replaced);
+            outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
+        }
         let (report, history) = (outcome.report, Arc::new(outcome.history));
         let left = left_of(&report);
         self.seconds.repair += begin.elapsed().as_secs_f64();
@@ -262,6 +276,26 @@ enum Repaired {
     Changed(Box<Now>),
     /// Nothing could be done about these.
     Left(Vec<LeftBad>),
+}
+
+/// The tets of the mesh before that a repair has replaced by such that have no volume where their vertices were as the step began.
+fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
+    let start = outcome.mesh.point_field(BEFORE).map_or_else(|| Ok(Vec::new()), Field::to_vectors)?;
+    let side = |tet: [VertexId; 4], points: &[Point]| {
+        let [a, b, c, d] = tet.map(|v| points[v.index()]);
+        orient3d(a, b, c, d)
+    };
+    let mut replaced = Vec::new();
+    for (cell, tet) in outcome.mesh.cells.tets() {
+        if let Origin::Changed(row) = outcome.history.cells.of(cell)
+            && side(tet, &start) * side(tet, &outcome.mesh.points) <= 0
+        {
+            replaced.extend_from_slice(row.from);
+        }
+    }
+    replaced.sort_unstable();
+    replaced.dedup();
+    Ok(replaced)
 }
 
 fn left_of(report: &remesh::Report) -> Vec<LeftBad> {

@@ -25,6 +25,10 @@ pub struct Options {
     /// Where repairs have left fewer tets than this part of those at first, the next one also brings edges back to the lengths that they had at
     /// first. Default: 0.9; 0: never.
     pub keep_tets: f64,
+    /// Whether a repair that brings tets without volume where their vertices were as the step began is made once more with the tets that they replace held, and so on: schemes that
+    /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step. What is left after some tries is reported as
+    /// [`Step::inverted_at_start`](super::Step::inverted_at_start). Default: no.
+    pub valid_at_start: bool,
     /// What becomes of arrays where the mesh changes.
     pub rules: Rules,
     /// Cell arrays whose integral over each cell stays while the cell moves: a density goes down where its cell grows. All others keep their values.
@@ -43,6 +47,7 @@ impl Default for Options {
             margin: 0.05,
             floor: 0.05,
             keep_tets: 0.9,
+            valid_at_start: false,
             rules: Rules::default(),
             contents: Contents::default(),
             watch: None,

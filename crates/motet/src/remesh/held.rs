@@ -8,13 +8,15 @@ use crate::base::{CellId, Error, Point, Result, TetId, VertexId};
 use crate::kernel::{Complex, Hold, WallId};
 use crate::mesh::{CellKind, Labels, Mesh, TetMesh, TetPart, firsts_at_place};
 
-/// What is held by its label: tets of regions and facets of patches stay, with their vertices.
+/// What is held: tets of regions, tets one by one, and facets of patches stay, with their vertices.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Held {
     /// Regions whose tets stay.
     pub regions: Vec<i32>,
     /// Patches whose triangles stay; the tets beside them may change.
     pub patches: Vec<i32>,
+    /// Tets that stay, by the ids of their cells; those of other cells mean nothing.
+    pub cells: Vec<CellId>,
 }
 
 impl Held {
@@ -78,7 +80,9 @@ pub(super) fn hold(complex: &mut Complex, mesh: &TetMesh, held: &Held, required:
     let regions: BTreeSet<i32> = held.regions.iter().copied().collect();
     let of_regions = (0..mesh.tets.len()).filter(|&t| regions.contains(&mesh.regions[t])).map(TetId::new);
     let tets: Vec<TetId> = if regions.is_empty() { Vec::new() } else { of_regions.collect() };
-    for &tet in tets.iter().chain(&required.tets) {
+    let one_by_one =
+        held.cells.iter().filter(|cell| cell.index() < mesh.tets.len()).map(|cell| TetId(cell.0));
+    for tet in tets.into_iter().chain(one_by_one).chain(required.tets.iter().copied()) {
         complex.lock(tet);
         complex.vertices(tet).into_iter().for_each(|v| complex.set_hold(v, Hold::Fixed));
     }

@@ -8,7 +8,7 @@ use crate::geometry::vector::{dot, sub};
 use crate::kernel::Extract;
 use crate::mesh::history::{History, Origins, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
-use crate::remesh::held::Required;
+use crate::remesh::held::{Held, Required};
 use crate::remesh::run::remesh_but;
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
@@ -55,7 +55,8 @@ pub fn remesh_part(
 ) -> Result<MeshOutcome> {
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
-    let options = Options { only, ..options.clone() };
+    let held = Held { cells: options.held.cells.iter().filter_map(tet_of).collect(), ..options.held.clone() };
+    let options = Options { only, held, ..options.clone() };
     let required = Required::of(mesh, part);
     let outcome =
         remesh_but(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;

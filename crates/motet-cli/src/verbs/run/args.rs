@@ -54,6 +54,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   margin = 0.05                   # repaired tets reach min_eas + margin
   floor = 0.05                    # no step goes below this before it is repaired
   keep_tets = 0.9                 # below this part of the first count, edges get their lengths back
+  valid_at_start = false          # true: repairs bring no tet that has no volume where the step began
 
   [[refine]]                      # words as those of `motet refine`
   near_size = [\"coil.stl=0.05,0.3\"]

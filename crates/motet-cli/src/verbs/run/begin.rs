@@ -92,6 +92,7 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
         margin: repair.margin,
         floor: repair.floor,
         keep_tets: repair.keep_tets,
+        valid_at_start: repair.valid_at_start,
         rules,
         contents: job.contents.clone(),
         watch: watching(job, mesh)?,

@@ -163,6 +163,7 @@ pub(super) struct Repair {
     pub(super) margin: f64,
     pub(super) floor: f64,
     pub(super) keep_tets: f64,
+    pub(super) valid_at_start: bool,
 }
 
 impl Default for Repair {
@@ -177,6 +178,7 @@ impl Default for Repair {
             margin: usual.margin,
             floor: usual.floor,
             keep_tets: usual.keep_tets,
+            valid_at_start: usual.valid_at_start,
         }
     }
 }

@@ -211,7 +211,7 @@ impl Report {
         if self.most_inverted_at_start > 0 {
             console.say(format_args!(
                 "up to {} tets of a changed mesh are inverted where their vertices were as the step began (inverted_at_start in the log): \
-                 no volume for schemes of earlier time levels",
+                 no volume for schemes of earlier time levels (`valid_at_start` of the repair avoids them)",
                 self.most_inverted_at_start
             ));
         }
