@@ -4,6 +4,7 @@ mod common;
 #[allow(dead_code, unreachable_pub, reason = "other tests use other parts of it")]
 mod moving_cases;
 
+use common::prism::{prism, turned};
 use common::{data_meshes, random_mesh};
 use motet::ErrorKind;
 use motet::base::{Point, Threads, VertexId};
@@ -12,6 +13,8 @@ use motet::geometry::vector::distance;
 use motet::kernel::Complex;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{TetMesh, TetPart};
+use motet::meshing::{self, Surfaces, fill};
+use motet::preflight::Role;
 use motet::remesh::{LONG, Lengths, Options, Outcome, SHORT, Sizes, SurfaceRule, remesh};
 use moving_cases::measure::{assert_valid, boundary, features, labelled, length, patches, quality, volumes};
 use moving_cases::membrane::membrane_mesh;
@@ -216,5 +219,29 @@ fn real_meshes_come_to_their_sizes() {
             assert_valid(&outcome.extract.mesh);
             assert_eq!(after.too_long, after.too_long_held);
         }
+    }
+}
+
+/// Filled without sizes, such a body has no vertex inside and nearly all of its tets are flat.
+#[test]
+fn prisms_of_long_flat_tets_come_to_their_sizes() {
+    let threads = Threads::single();
+    for (sides, lies) in [(24, false), (40, false), (40, true), (56, false)] {
+        let given = prism(sides, 1.0, 3.0);
+        let given = if lies { turned(&given) } else { given };
+        let surfaces = Surfaces::new(&[(&given, Role::Boundary, "")]).unwrap();
+        let preflight = surfaces.preflight(&threads);
+        let coarse = fill(&surfaces, &preflight, &meshing::Options::default(), &threads).unwrap().mesh;
+        let part = TetPart::of(&coarse).unwrap();
+        let rule = SurfaceRule::Adapt { distance: Some(0.01) };
+        let outcome = remesh(&part.mesh, &asked(Sizes::Uniform(0.3), rule), &threads).unwrap();
+        let what = format!("prism of {sides} sides, turned: {lies}");
+        let after = tell(&what, &outcome);
+        assert_valid(&outcome.extract.mesh);
+        assert!(outcome.report.before.bad > 9 * part.mesh.tets.len() / 10, "{what}");
+        assert_eq!((outcome.report.after.bad, after.too_long), (0, 0), "{what}");
+        let volume = |mesh: &TetMesh| volumes(mesh).values().sum::<f64>();
+        let [before, after] = [&part.mesh, &outcome.extract.mesh].map(volume);
+        assert!((after / before - 1.0).abs() < 0.01, "{what}: volume {before}, then {after}");
     }
 }

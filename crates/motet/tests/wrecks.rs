@@ -24,6 +24,15 @@ fn wrecks_end_valid_told_or_refused() {
     assert!(n_valid > 30, "{n_valid} of 100 are meshes again");
 }
 
+/// Its facets have no tet behind them any more, and others lie on it: edges and facets that a change brings can be there already, though every tet has a volume.
+#[test]
+fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
+    for seed in [6206, 9573] {
+        let end = Wreck::new(seed).end(SurfaceRule::Keep);
+        assert!(end.is_ok(), "wreck {seed}: {}", end.unwrap_err());
+    }
+}
+
 /// Most tets are inverted, and hardly any can be mended: repair ends, and counts them.
 #[test]
 fn a_box_shaken_beyond_repair_is_told() {

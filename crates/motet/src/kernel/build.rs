@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use crate::base::{Error, Result, TetId, VertexId};
+use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::{ROUGH_EAS_ERROR, rough_eas};
 use crate::geometry::tet::FACETS;
 use crate::kernel::complex::{Complex, Hold, NO_TET, UNMEASURED};
@@ -10,6 +11,7 @@ use crate::kernel::journal::Journal;
 use crate::kernel::lines::Lines;
 use crate::kernel::link::{Behind, HalfFacet, Link, MAX_TETS, NO_TRIANGLE, Wall, WallId};
 use crate::kernel::spare::NONE_SPARED;
+use crate::kernel::star::Star;
 use crate::mesh::TetMesh;
 use crate::mesh::orientation::{self, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
@@ -66,7 +68,7 @@ impl Complex {
             links: joined.links,
             regions: regions.clone(),
             qualities: vec![Cell::new(UNMEASURED); n_tets],
-            is_tangled: rough.iter().any(|&q| f64::from(q) <= ROUGH_EAS_ERROR),
+            is_tangled: false,
             rough,
             walls: joined.walls,
             free_vertices: Vec::new(),
@@ -85,6 +87,7 @@ impl Complex {
         };
         complex.hold_walls(&mesh.fixed_vertices);
         complex.hold_lines(&loose);
+        complex.is_tangled = complex.has_flat_or_inverted() || complex.has_parted_star();
         Ok(complex)
     }
 
@@ -104,6 +107,21 @@ impl Complex {
         for v in fixed_vertices.iter().chain(self.fixed_edges.as_flattened()) {
             self.holds[v.index()] = Hold::Fixed;
         }
+    }
+
+    fn has_flat_or_inverted(&self) -> bool {
+        let near_flat = (0..self.tets.len()).filter(|&t| f64::from(self.rough[t]) <= ROUGH_EAS_ERROR);
+        near_flat.map(|t| self.tets[t].map(|v| self.point(v))).any(|[a, b, c, d]| orient3d(a, b, c, d) <= 0)
+    }
+
+    /// Whether the tets of a vertex at a wall hang together by it, or by an edge, alone. So they do where parts of a mesh touch, and where a tet has a wrong vertex: it may be
+    /// positive then, and overlap others.
+    fn has_parted_star(&self) -> bool {
+        let mut star = Star::default();
+        let mut vertices = (0..self.points.len()).map(VertexId::new);
+        vertices.any(|v| {
+            self.holds[v.index()] != Hold::Free && self.is_used(v) && !self.is_one_star(v, &mut star)
+        })
     }
 
     /// Makes the hold of a vertex stronger or weaker than it was found to be.

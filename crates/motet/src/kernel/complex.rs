@@ -65,7 +65,7 @@ pub struct Complex {
     pub(super) folded: Vec<TetId>,
     /// Whether walls stay as they are, and the vertices on them.
     pub(super) keeps_surface: bool,
-    /// Whether a tet of the first mesh was flat or inverted: then tets may overlap.
+    /// Whether a tet of the first mesh was flat or inverted, or the tets of a vertex did not all hang together by facets: then tets may overlap.
     pub(super) is_tangled: bool,
     /// Whether most tets of the first mesh are numbered the other way round.
     pub(super) mostly_turned: bool,

@@ -136,6 +136,14 @@ pub struct Star {
     marks: Marks,
 }
 
+impl Complex {
+    /// Whether all tets of a vertex hang together by facets at it: `star` gathers them.
+    pub fn is_one_star(&self, vertex: VertexId, star: &mut Star) -> bool {
+        star.gather(self, vertex);
+        star.tets.len() == self.vertex_to_n_tets[vertex.index()] as usize
+    }
+}
+
 impl Star {
     /// Gathers the tets of `vertex`.
     pub fn gather(&mut self, complex: &Complex, vertex: VertexId) {

@@ -102,6 +102,8 @@ pub(super) struct SizeField {
     known: Vec<(Point, f64)>,
     /// No collapse brings an edge longer than this part of its size.
     longest: f64,
+    /// Edges longer than this part of their size are too long now: [`LONG`] in the end, more while a coarse mesh is made finer.
+    pub(super) long: f64,
     /// Whether a change may leave an edge too short.
     pub(super) may_shorten: bool,
 }
@@ -127,7 +129,7 @@ impl SizeField {
                 (Source::Tets { tree: BoxTree::new(&boxes), corners }, known)
             }
         };
-        Self { source, known, longest, may_shorten: false }
+        Self { source, known, longest, long: LONG, may_shorten: false }
     }
 
     /// The size at a vertex that is, or is to be, at a point.
@@ -160,7 +162,7 @@ impl SizeField {
     /// Whether a change brings no edge that is too long or too short, and makes none that is so already more so.
     pub(super) fn accepts(&mut self, complex: &Complex, change: &Change) -> bool {
         let low = if self.may_shorten { 0.0 } else { SHORT };
-        self.keeps_within([low, LONG], complex, change)
+        self.keeps_within([low, self.long], complex, change)
     }
 
     /// Whether a collapse brings no edge that is too long.

@@ -8,9 +8,12 @@ use std::collections::BTreeMap;
 
 use crate::base::{Point, TetId, Threads, VertexId};
 use crate::geometry::segment;
+use crate::geometry::tet::FACETS;
 use crate::geometry::triangle::{area_vector, closest};
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
-use crate::kernel::{Behind, Change, Complex, FLATTEST, HalfFacet, Hold, Shell, VertexChange, Wall};
+use crate::kernel::{
+    Behind, Change, Complex, FLATTEST, HalfFacet, Hold, NewWall, Shell, Star, VertexChange, Wall,
+};
 use crate::ops::Track;
 use crate::remesh::lines::FirstLines;
 use crate::spatial::NearestTriangle;
@@ -45,19 +48,25 @@ pub(super) struct Surface {
 
 struct Patch {
     tree: NearestTriangle,
+    /// Of a patch with tets on one side they point away from these.
     normals: Vec<Point>,
+    /// Whether all walls have tets on one side alone.
+    is_boundary: bool,
 }
 
 impl Surface {
     /// The surface of a complex that nothing has changed yet; walls may stray from it by `distance`.
     pub(super) fn of(complex: &Complex, distance: f64) -> Self {
-        let mut triangles: BTreeMap<i32, Vec<[VertexId; 3]>> = BTreeMap::new();
+        let mut triangles: BTreeMap<i32, (Vec<[VertexId; 3]>, bool)> = BTreeMap::new();
         for (_, wall) in complex.walls() {
-            triangles.entry(wall.patch).or_default().push(complex.facet(wall.sides[0]));
+            let (triangles, is_boundary) = triangles.entry(wall.patch).or_insert_with(|| (Vec::new(), true));
+            triangles.push(complex.facet(wall.sides[0]));
+            *is_boundary &= wall.sides[1].is_none();
         }
         let points: Vec<Point> =
             (0..complex.n_vertex_slots()).map(|v| complex.point(VertexId::new(v))).collect();
-        let patch = |triangles: Vec<[VertexId; 3]>| Patch {
+        let patch = |(triangles, is_boundary): (Vec<[VertexId; 3]>, bool)| Patch {
+            is_boundary,
             normals: triangles.iter().map(|t| area_vector(t.map(|v| points[v.index()]))).collect(),
             tree: NearestTriangle::new(&points, &triangles, &Threads::single()),
         };
@@ -79,8 +88,9 @@ impl Surface {
         if change.worst() < FLATTEST {
             return false;
         }
+        let corners = |wall: &NewWall| change.corners(complex, facing_out(complex, change, wall.vertices));
         let mut walls: Vec<(i32, [Point; 3])> =
-            change.walls.iter().map(|wall| (wall.patch, change.corners(complex, wall.vertices))).collect();
+            change.walls.iter().map(|wall| (wall.patch, corners(wall))).collect();
         if let Some(moved) = moved {
             let of_moved = walls_of(complex, &change.cavity).into_iter();
             let of_moved = of_moved.map(|(wall, vertices)| (wall.patch, vertices));
@@ -92,6 +102,17 @@ impl Surface {
             && self.lines.accepts(complex, change, self.distance)
     }
 
+    /// Whether an edge may be divided in its middle: walls stay where they are, and only flat tets are refused. Halves of walls that lie as far off as they may would fail
+    /// [`Self::accepts`], since other places of them are looked at; then that edge would stay as long as it is.
+    pub(super) fn accepts_in_place(&self, change: &Change) -> bool {
+        change.walls.is_empty() || change.worst() >= FLATTEST
+    }
+
+    /// Where a point is on a patch as it was first.
+    pub(super) fn on_patch(&self, patch: i32, point: Point) -> Option<Point> {
+        self.patches.get(&patch)?.tree.closest(point).map(|found| found.point)
+    }
+
     fn lies_on(&self, patch: i32, triangle: [Point; 3]) -> bool {
         let Some(patch) = self.patches.get(&patch) else { return false };
         let normal = area_vector(triangle);
@@ -101,8 +122,9 @@ impl Surface {
         let near = |p: Point| patch.tree.closest_within(p, self.distance);
         let Some(below) = near(centre) else { return false };
         let facing = patch.normals[below.triangle];
-        // Walls have no side of their own: either way round will do.
-        let cosine = dot(normal, facing).abs() / (norm(normal) * norm(facing));
+        let cosine = dot(normal, facing) / (norm(normal) * norm(facing));
+        // Walls between tets have no side of their own: either way round will do. Of the boundary one that faces the other way is folded over others.
+        let cosine = if patch.is_boundary { cosine } else { cosine.abs() };
         (cosine > TURNED || self.crease == Crease::NONE)
             && [a, b, c, middle(a, b), middle(b, c), middle(c, a)].into_iter().all(|p| near(p).is_some())
     }
@@ -118,6 +140,18 @@ impl Surface {
             norm(sub(foot, left)) <= self.distance
         })
     }
+}
+
+/// The vertices of a wall to come, so that it faces away from the tet that it gets: one of the fill, or the one behind the cavity that it lays bare. Of a wall that gets two it faces away
+/// from one of them.
+fn facing_out(complex: &Complex, change: &Change, wall: [VertexId; 3]) -> [VertexId; 3] {
+    let facet_of = |tet: [VertexId; 4]| {
+        let apex = (0..4).find(|&i| !wall.contains(&tet[i]))?;
+        wall.iter().all(|v| tet.contains(v)).then(|| FACETS[apex].map(|i| tet[i]))
+    };
+    let in_fill = change.fill.iter().find_map(|tet| facet_of(tet.vertices));
+    let laid_bare = || change.cavity.iter().find_map(|&tet| facet_of(complex.vertices(tet)));
+    in_fill.or_else(|| laid_bare().map(|[a, b, c]| [a, c, b])).unwrap_or(wall)
 }
 
 /// The walls at some tets, each once, with their vertices.
@@ -294,15 +328,10 @@ impl Surface {
 
 /// Vertices at which parts of the mesh touch without sharing a facet stay.
 fn hold_touching(complex: &mut Complex) {
-    let mut counts = vec![0u32; complex.n_vertex_slots()];
-    complex.tets().flat_map(|t| complex.vertices(t)).for_each(|v| counts[v.index()] += 1);
-    let mut star = crate::kernel::Star::default();
-    for v in (0..counts.len()).map(VertexId::new) {
-        if matches!(complex.hold(v), Hold::Surface | Hold::Edge) {
-            star.gather(complex, v);
-            if star.tets.len() != counts[v.index()] as usize {
-                complex.set_hold(v, Hold::Fixed);
-            }
+    let mut star = Star::default();
+    for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
+        if matches!(complex.hold(v), Hold::Surface | Hold::Edge) && !complex.is_one_star(v, &mut star) {
+            complex.set_hold(v, Hold::Fixed);
         }
     }
 }

@@ -87,9 +87,8 @@ impl Repair {
         let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let mut came = Vec::new();
         let proposal = &mut self.candidate.proposal;
-        // Of a wall as near as it may be, some places were looked at: its halves have others.
         let is_fit = split_edge(&self.complex, shell, edge, (middle, hold), 0.0, proposal)
-            && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, proposal));
+            && self.surface.as_ref().is_none_or(|s| s.accepts_in_place(proposal));
         if let Some(checked) = self.complex.check_against(proposal, 0.0).ok().filter(|_| is_fit) {
             self.complex.commit(checked, &mut came);
             self.operations.add(Operation::SplitEdge);

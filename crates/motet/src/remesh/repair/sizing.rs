@@ -3,13 +3,14 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{Result, TetId, VertexId};
+use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
 use crate::ops::{collapse, split_edge};
 use crate::remesh::lengths::locked_edges;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
+use crate::remesh::repair::tried::Tried;
 use crate::remesh::repair::{Repair, WIDER};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
@@ -71,13 +72,11 @@ impl Repair {
             return self.run(self.below(self.target), rounds);
         }
         let (mut asked, mut before) = (WIDER.iter(), usize::MAX);
+        self.tried = Tried::of(self.target);
+        self.split_by_levels()?;
         for _ in 0..rounds {
             let n_made = self.with_sizing(Self::split_long)? + self.with_sizing(Self::collapse_short)?;
-            let mut bad = self.below(self.target);
-            for n_stages in [FIRST_STAGES, STAGES.len()] {
-                self.n_stages = n_stages;
-                self.round(&mut bad)?;
-            }
+            self.repair_once()?;
             let short = self.with_sizing(|repair, sizing| Ok(repair.short_edges(&mut sizing.field)))?;
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
@@ -98,6 +97,33 @@ impl Repair {
         Ok(left)
     }
 
+    /// Where edges are several times too long: splits the longest alone, repairs, and halves the length above which edges are split, again and again, down to twice the one in the end. Halves of
+    /// flat tets are flat: a coarse mesh that is split to the end at once has bad tets nearly everywhere.
+    fn split_by_levels(&mut self) -> Result<()> {
+        let longest = self.with_sizing(|repair, sizing| {
+            let long = repair.edges(&mut sizing.field, |ratio| ratio > LONG);
+            Ok(long.iter().map(|edge| edge.ratio).fold(LONG, f64::max))
+        })?;
+        let n_levels = (longest / LONG).log2().ceil() as i32;
+        for level in (1..n_levels).rev() {
+            self.sizing.iter_mut().for_each(|sizing| sizing.field.long = LONG * 2f64.powi(level));
+            self.with_sizing(Self::split_long)?;
+            self.repair_once()?;
+        }
+        self.sizing.iter_mut().for_each(|sizing| sizing.field.long = LONG);
+        Ok(())
+    }
+
+    /// Repairs each bad tet once with the first stages, and what is left once with all.
+    fn repair_once(&mut self) -> Result<()> {
+        let mut bad = self.below(self.target);
+        for n_stages in [FIRST_STAGES, STAGES.len()] {
+            self.n_stages = n_stages;
+            self.round(&mut bad)?;
+        }
+        Ok(())
+    }
+
     fn with_sizing<T: Default>(
         &mut self,
         work: impl FnOnce(&mut Self, &mut Sizing) -> Result<T>,
@@ -110,7 +136,8 @@ impl Repair {
 
     /// Splits edges that are too long in their middles, the longest first, until none is left that may be; how many there were.
     fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
-        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio| ratio > LONG));
+        let too_long = sizing.field.long;
+        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio| ratio > too_long));
         let (mut n_split, mut change, mut came) = (0, Change::default(), Vec::new());
         while let Some(edge) = long.pop() {
             if self.complex.n_tets() > sizing.most_tets {
@@ -127,7 +154,7 @@ impl Repair {
                 for other in self.complex.vertices(tet).into_iter().filter(|&v| v != middle) {
                     let ends = [middle.min(other), middle.max(other)];
                     let ratio = sizing.field.of_edge(&self.complex, ends);
-                    if ratio > LONG {
+                    if ratio > too_long {
                         long.push(Edge { ratio, ends, tet });
                     }
                 }
@@ -136,7 +163,7 @@ impl Repair {
         Ok(n_split)
     }
 
-    /// Splits an edge in its middle if the tets that come are good enough; the new vertex.
+    /// Splits an edge if the tets that come are good enough: an edge of a smooth surface where its middle lies on the first surface or, where that may not be, in its middle as all others; the new vertex.
     fn split(
         &mut self,
         tet: TetId,
@@ -152,14 +179,29 @@ impl Repair {
         }
         let hold: Hold = self.hold_on(ends);
         let point = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
-        let middle = self.complex.next_vertex();
+        let vertex = self.complex.next_vertex();
         let bar = self.bar_of_split(ends, field);
-        let is_above = split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change);
-        let is_near = self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, change));
-        let checked = self.complex.check_against(change, bar).ok().filter(|_| is_above && is_near)?;
+        let on_surface = self.on_surface(point, hold).is_some_and(|point| {
+            split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
+                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, change))
+                && self.complex.check_against(change, bar).is_ok()
+        });
+        let is_good = on_surface
+            || split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
+                && self.surface.as_ref().is_none_or(|s| s.accepts_in_place(change));
+        let checked = self.complex.check_against(change, bar).ok().filter(|_| is_good)?;
         self.complex.commit(checked, came);
         self.operations.add(Operation::SplitEdge);
-        Some(middle)
+        self.tried.came(&self.complex, came);
+        Some(vertex)
+    }
+
+    /// Where the middle of an edge of a smooth surface lies on the first surface, if it was moved since; its shell was walked last.
+    fn on_surface(&self, middle: Point, hold: Hold) -> Option<Point> {
+        let (surface, shell) = (self.surface.as_ref()?, &self.shells[0]);
+        let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
+        let patch = self.complex.wall(shell.wall_at(&self.complex, *place)).patch;
+        surface.on_patch(patch, middle).filter(|point| *point != middle)
     }
 
     /// What the tets have to beat that come of a split of the edge whose shell was walked last.
@@ -253,6 +295,7 @@ impl Repair {
         let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
         self.complex.commit(checked, came);
         self.operations.add(Operation::Collapse);
+        self.tried.came(&self.complex, came);
         true
     }
 
