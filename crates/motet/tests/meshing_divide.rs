@@ -112,6 +112,10 @@ fn coarse_prisms_are_divided_in_their_planes_however_they_lie() {
     let given = turned(&prism(21, 1.0, 3.0));
     assert_divided("far", &moved(&given, |p| p.map(|x| x + 1e3)), 0.4, 1e-9);
     assert_divided("small", &moved(&given, |p| p.map(|x| 1e-3 * x)), 0.4e-3, 1e-9);
+    for shift in [0.0, 100.0, 1e3] {
+        let single = moved(&given, |p| p.map(|x| f64::from((x + shift) as f32)));
+        assert_divided(&format!("f32, shifted by {shift}"), &single, 0.4, 1e-3);
+    }
 }
 
 #[test]

@@ -17,11 +17,15 @@ use crate::base::{Error, Point, Result, Threads, VertexId, reasons};
 use crate::delaunay::{Constrained, EdgePoints, constrain};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
+use crate::geometry::rounding;
 use crate::geometry::tet::volume;
 use crate::mesh::history::Rules;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::preflight::Preflight;
 use crate::remesh::{self, SurfaceRule, remesh_mesh};
+
+/// Vertices of a flat facet are off a plane through three of them by up to so many times what rounding has moved each coordinate.
+const OFF_PLANE: f64 = 4.0;
 
 /// Whether the triangles of surfaces are divided, each place of the surfaces kept to rounding: flat parts get new triangles in their own planes, creases and borders of patches are
 /// divided into parts of about the size.
@@ -187,6 +191,7 @@ pub fn fill(
     options.improve.as_ref().map_or(Ok(()), remesh::Options::check)?;
     let coarse = options.sizes.as_ref().and_then(|sizes| sizes.coarse(surfaces));
     let divided = options.divided_to(coarse)?.map(|size| divide(surfaces, size, threads)).transpose()?;
+    let off_plane = divided.is_some().then(|| OFF_PLANE * rounding::of(&surfaces.points));
     let (surfaces, divided) = match &divided {
         Some((surfaces, divided)) => (surfaces, Some(*divided)),
         None => (surfaces, None),
@@ -217,7 +222,7 @@ pub fn fill(
     let (mut mesh, _) = mesh(&joined, &tets);
     mesh.label_names.regions = region_names(&arranged);
     drop(tets);
-    let (mesh, improved) = improve(mesh, options, [coarse.is_some(), divided.is_some()], threads)?;
+    let (mesh, improved) = improve(mesh, options, (coarse.is_some(), off_plane), threads)?;
     (report.coarse, report.divided) = (coarse, divided);
     (report.bodies, report.not_positive) = (bodies_of(&mesh, &arranged), not_positive(&mesh));
     report.voids = arranged.n_left_out;
@@ -243,7 +248,7 @@ fn fill_with_layers(
     let (core, core_to_mesh) = mesh(grown.core(), &tets);
     let mut glued = grown.glue(&core, &core_to_mesh);
     glued.label_names.regions = region_names(&arranged);
-    let (mut mesh, improved) = improve(glued, options, [false; 2], threads)?;
+    let (mut mesh, improved) = improve(glued, options, (false, None), threads)?;
     let split = layers::split(mesh.clone());
     (report.bodies, report.not_positive) = (bodies_of(&split, &arranged), not_positive(&split));
     report.voids = arranged.n_left_out;
@@ -274,17 +279,20 @@ fn filled(
     Ok(tets)
 }
 
-/// Repairs bad tets. A surface that `is_divided` may be divided in another way, each place of it where it is; where one that is far coarser than the sizes is kept, one round
-/// is made, since most tets on it stay bad however long they are tried.
+/// Repairs bad tets. A surface that was divided, and whose vertices are `off_plane` by so much, may be divided in another way, each place of it where it is; where one that is far coarser than the sizes
+/// is kept, one round is made, since most tets on it stay bad however long they are tried.
 fn improve(
     mesh: Mesh,
     options: &Options,
-    [is_coarse, is_divided]: [bool; 2],
+    (is_coarse, off_plane): (bool, Option<f64>),
     threads: &Threads,
 ) -> Result<(Mesh, Option<remesh::Report>)> {
     let Some(improve) = &options.improve else { return Ok((mesh, None)) };
-    let rounds = if is_coarse && !is_divided { improve.rounds.min(1) } else { improve.rounds };
-    let surface = if is_divided { SurfaceRule::Flat } else { improve.surface };
+    let rounds = if is_coarse && off_plane.is_none() { improve.rounds.min(1) } else { improve.rounds };
+    let surface = match off_plane {
+        Some(_) => SurfaceRule::Flat { distance: off_plane },
+        None => improve.surface,
+    };
     let improve = remesh::Options { rounds, surface, ..improve.clone() };
     let outcome = remesh_mesh(&mesh, &improve, &Rules::default(), threads)?;
     Ok((outcome.mesh, Some(outcome.report)))

@@ -51,7 +51,7 @@ impl MovingMesh {
         let asked = remesh::Options {
             goal: Goal::Coarsen,
             sizes: Some(Sizes::Vertices(sizes)),
-            surface: SurfaceRule::Flat,
+            surface: SurfaceRule::Flat { distance: None },
             min_eas: (repair.min_eas + options.margin).min(1.0),
             // What is bad for the division of a wall alone is repaired here, where that may go.
             only: Some(shape.bad.iter().map(|(cell, _)| *cell).collect()),

@@ -100,7 +100,10 @@ pub enum SurfaceRule {
         distance: Option<f64>,
     },
     /// They keep their place to rounding, but triangles in one plane may become others: a vertex within a flat part can go.
-    Flat,
+    Flat {
+        /// How far walls were off their planes before, in the unit of the mesh; `None`: rounding of `f64`.
+        distance: Option<f64>,
+    },
 }
 
 impl SurfaceRule {
@@ -129,7 +132,7 @@ impl SurfaceRule {
             Self::Adapt { distance } | Self::Loose { distance } => {
                 Some(distance.unwrap_or_else(|| DEFAULT_DISTANCE * extent()))
             }
-            Self::Flat => Some(IN_PLANE * extent()),
+            Self::Flat { distance } => Some((IN_PLANE * extent()).max(distance.unwrap_or(0.0))),
         }
     }
 }

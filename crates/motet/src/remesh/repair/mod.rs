@@ -48,7 +48,7 @@ pub(super) fn passes(surface: SurfaceRule) -> &'static [Pass] {
     const ALL: [Pass; 5] =
         [Pass::Again, Pass::Divide, Pass::Soften(Crease::BLUNT), Pass::Divide, Pass::Soften(Crease::NONE)];
     match surface {
-        SurfaceRule::Keep | SurfaceRule::Flat => &ALL[..1],
+        SurfaceRule::Keep | SurfaceRule::Flat { .. } => &ALL[..1],
         SurfaceRule::Adapt { .. } => &ALL[..4],
         SurfaceRule::Loose { .. } => &ALL,
     }
