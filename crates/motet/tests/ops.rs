@@ -385,9 +385,8 @@ fn splits_of_an_edge_make_two_tets_of_each() {
     }
 }
 
-#[test]
-fn crossed_edges_are_split_where_they_pass_each_other() {
-    // Two edges that cross at right angles, one over the other, in a ring of tets each; they share the tet between them.
+/// Two edges that cross at right angles, 01 over 23, with the tet between them; round the first, and with `both` round the second, the tets that close the ring.
+fn crossing(both: bool) -> TetMesh {
     let points = vec![
         [-1.0, 0.0, -0.1],
         [1.0, 0.0, -0.1],
@@ -397,36 +396,40 @@ fn crossed_edges_are_split_where_they_pass_each_other() {
         [0.0, 0.0, 1.0],
     ];
     let tets = [[0, 1, 2, 3], [0, 1, 3, 4], [0, 1, 4, 2], [2, 3, 0, 5], [2, 3, 5, 1]];
-    let complex = Complex::new(&mesh(points, tets)).unwrap();
-    let (mut first, mut second, mut change) = (Shell::default(), Shell::default(), Change::default());
-    first.walk(&complex, TetId(0), VertexId(0), VertexId(1));
-    second.walk(&complex, TetId(0), VertexId(2), VertexId(3));
-    assert!(split_crossed(&complex, [&first, &second], [0.0; 3], 0.0, &mut change));
-    assert_sound(&complex, &change);
-    assert_eq!((change.cavity.len(), change.fill.len()), (5, 8));
-    // Where one of them is at a wall, it may not be split.
-    let mut walled = Complex::new(&mesh_with_wall()).unwrap();
-    first.walk(&walled, TetId(0), VertexId(0), VertexId(1));
-    second.walk(&walled, TetId(0), VertexId(2), VertexId(3));
-    assert!(!split_crossed(&walled, [&first, &second], [0.0; 3], 0.0, &mut change));
-    walled.adapt_surface();
-    assert!(!split_crossed(&walled, [&first, &second], [0.0; 3], 0.0, &mut change));
+    mesh(points[..if both { 6 } else { 5 }].to_vec(), tets.into_iter().take(if both { 5 } else { 3 }))
 }
 
-fn mesh_with_wall() -> TetMesh {
-    let points = vec![
-        [-1.0, 0.0, -0.1],
-        [1.0, 0.0, -0.1],
-        [0.0, -1.0, 0.1],
-        [0.0, 1.0, 0.1],
-        [0.0, 0.0, -1.0],
-        [0.0, 0.0, 1.0],
-    ];
-    let tets = [[0, 1, 2, 3], [0, 1, 3, 4], [0, 1, 4, 2], [2, 3, 0, 5], [2, 3, 5, 1]];
-    let mut mesh = mesh(points, tets);
-    mesh.triangles = vec![[2, 3, 5].map(VertexId)];
-    mesh.patches = vec![1];
-    mesh
+#[test]
+fn crossed_edges_are_split_where_they_pass_each_other() {
+    let split = |mesh: &TetMesh, adapts: bool, change: &mut Change| {
+        let mut complex = Complex::new(mesh).unwrap();
+        if adapts {
+            complex.adapt_surface();
+        }
+        let (mut first, mut second) = (Shell::default(), Shell::default());
+        first.walk(&complex, TetId(0), VertexId(0), VertexId(1));
+        second.walk(&complex, TetId(0), VertexId(2), VertexId(3));
+        let is_split = split_crossed(&complex, [&first, &second], [0.0; 3], 0.0, change);
+        assert_eq!(
+            is_split,
+            split_crossed(&complex, [&second, &first], [0.0; 3], 0.0, &mut Change::default())
+        );
+        (complex, is_split)
+    };
+    let mut change = Change::default();
+    let (complex, is_split) = split(&crossing(true), false, &mut change);
+    assert!(is_split);
+    assert_sound(&complex, &change);
+    assert_eq!((change.cavity.len(), change.fill.len()), (5, 8));
+    // Where one of them is at a wall or on the boundary, it may not be split.
+    let mut walled = crossing(true);
+    walled.triangles = vec![[2, 3, 5].map(VertexId)];
+    walled.patches = vec![1];
+    for mesh in [walled, crossing(false)] {
+        for adapts in [false, true] {
+            assert!(!split(&mesh, adapts, &mut change).1);
+        }
+    }
 }
 
 #[test]
