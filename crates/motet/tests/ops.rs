@@ -7,7 +7,7 @@ use motet::base::{Point, TetId, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{distance, norm};
-use motet::kernel::{Change, Complex, HalfFacet, Hold, Shell, Star, VertexChange};
+use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewWall, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
 use motet::ops::{
     Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, Track, collapse, split_crossed, split_edge,
@@ -77,6 +77,14 @@ fn corners(complex: &Complex, change: &Change, tet: [VertexId; 4]) -> [Point; 4]
     tet.map(|v| change.point(complex, v))
 }
 
+/// A proposal that is full of what an earlier one left.
+fn dirty() -> Change {
+    let fill = Fill { vertices: [7; 4].map(VertexId), region: 3, quality: 0.5 };
+    let wall = NewWall { vertices: [7; 3].map(VertexId), patch: 1, triangle: 0 };
+    let vertex = VertexChange::Remove(VertexId(1));
+    Change { cavity: vec![TetId(0)], fill: vec![fill], vertex, walls: vec![wall], lines: Vec::new() }
+}
+
 /// Every tet of the fill is measured where it will be, and all together fill the cavity; the kernel takes it.
 fn assert_sound(complex: &Complex, change: &Change) {
     for tet in &change.fill {
@@ -91,6 +99,8 @@ fn assert_sound(complex: &Complex, change: &Change) {
 
 #[test]
 fn edge_removal_finds_the_best_of_all_triangulations() {
+    // Room for tables and lists is used again and again: what was there before must not matter.
+    let (mut removal, mut change) = (EdgeRemoval::default(), dirty());
     let mut numbers = Numbers(1);
     let mut n_removed = 0;
     for n in (3..=7).cycle().take(200) {
@@ -98,7 +108,6 @@ fn edge_removal_finds_the_best_of_all_triangulations() {
         let complex = Complex::new(&round_edge(points.clone(), true)).unwrap();
         let best =
             triangulations(0, n - 1).iter().map(|t| worst_on(&points, t)).fold(f64::NEG_INFINITY, f64::max);
-        let (mut removal, mut change) = (EdgeRemoval::default(), Change::default());
         for start in (0..n).map(TetId::new) {
             let is_proposed = removal.propose(&complex, start, [A, B], 0.0, &mut change);
             assert_eq!(is_proposed, best > 0.0, "{best}");
@@ -203,6 +212,7 @@ fn walls_within_a_ring_are_swapped_if_they_are_of_one_patch() {
 
 #[test]
 fn face_removal_finds_the_best_of_all_connected_facets() {
+    let (mut removal, mut change) = (FaceRemoval::default(), dirty());
     let mut numbers = Numbers(4);
     let mut sizes = [0; 5];
     for n in (3..=6).cycle().take(300) {
@@ -233,7 +243,6 @@ fn face_removal_finds_the_best_of_all_connected_facets() {
             best = worst.max(best);
         }
         let opposite = complex.place(TetId::new(first), A);
-        let (mut removal, mut change) = (FaceRemoval::default(), Change::default());
         let is_proposed = removal.propose(&complex, TetId::new(first), opposite, 0.0, &mut change);
         assert_eq!(is_proposed, best > 0.0, "{best}");
         if is_proposed {
@@ -298,8 +307,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
     for _ in 0..50 {
         let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
         let complex = Complex::new(&ball_round(start)).unwrap();
-        let (mut star, mut smoothing, mut change) =
-            (Star::default(), Smoothing::default(), Change::default());
+        let (mut star, mut smoothing, mut change) = (Star::default(), Smoothing::default(), dirty());
         star.gather(&complex, vertex);
         let before = complex.worst_of(&star.tets);
         assert!(smoothing.propose(&complex, &star.tets, vertex, [before, 1.0], &Anywhere, &mut change));
@@ -341,7 +349,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
 fn a_collapse_draws_every_other_tet_to_the_vertex_that_stays() {
     let (gone, kept) = (VertexId(18), VertexId(7));
     let complex = Complex::new(&ball_round([0.0; 3])).unwrap();
-    let (mut star, mut change) = (Star::default(), Change::default());
+    let (mut star, mut change) = (Star::default(), dirty());
     star.gather(&complex, gone);
     assert!(collapse(&complex, &star.tets, gone, kept, 0.0, &mut change));
     assert_sound(&complex, &change);
@@ -363,7 +371,7 @@ fn splits_of_an_edge_make_two_tets_of_each() {
     for n in 3..8 {
         let points = ring(n, std::f64::consts::TAU, &mut numbers);
         let complex = Complex::new(&round_edge(points, true)).unwrap();
-        let (mut shell, mut change) = (Shell::default(), Change::default());
+        let (mut shell, mut change) = (Shell::default(), dirty());
         shell.walk(&complex, TetId(0), A, B);
         let middle = ([0.0, 0.0, 0.1], Hold::Free);
         assert!(split_edge(&complex, &shell, [A, B], middle, 0.0, &mut change));
@@ -416,7 +424,7 @@ fn crossed_edges_are_split_where_they_pass_each_other() {
         );
         (complex, is_split)
     };
-    let mut change = Change::default();
+    let mut change = dirty();
     let (complex, is_split) = split(&crossing(true), false, &mut change);
     assert!(is_split);
     assert_sound(&complex, &change);
@@ -441,7 +449,7 @@ fn an_insertion_joins_a_vertex_to_all_that_it_sees_well() {
         let complex = Complex::new(&mesh).unwrap();
         let tet = TetId::new(numbers.below(complex.n_tets()));
         let middle = motet::geometry::tet::centroid(complex.corners(tet));
-        let (mut insertion, mut change) = (Insertion::default(), Change::default());
+        let (mut insertion, mut change) = (Insertion::default(), dirty());
         for bar in [0.0, 0.05, 0.1, 0.2] {
             if !insertion.propose(&complex, &[tet], middle, [bar, 0.6], &mut change) {
                 continue;
