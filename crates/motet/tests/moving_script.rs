@@ -36,6 +36,10 @@ fn frames_are_spread_over_a_period_or_from_begin_to_end() {
             assert!((at(&again, phase + periods) - x).abs() < 1e-12, "{phase} in period {periods}");
         }
     }
+    assert!(
+        again.go(&DRIVEN, vec![[0.0; 3]; 2], InTime::Table(Vec::new())).is_err(),
+        "a course that is none"
+    );
     // One frame is where they are all the time.
     for is_periodic in [true, false] {
         let mut one = still([0.0; 3]);
@@ -57,6 +61,13 @@ fn parts_contradict_each_other_where_they_differ_by_more_than_rounding() {
             let expected: &[VertexId] = if is_other { &DRIVEN[..1] } else { &[] };
             assert_eq!(script.contradicted(), expected, "{off} of {size}");
         }
+    }
+    // Where a course is at rest at the begin and the end of a period, in between.
+    for in_time in [InTime::Beat, InTime::Swing] {
+        let mut script = still([1.0; 3]);
+        script.follow(&DRIVEN, Prescribed::Shift([1.0, 0.0, 0.0]), in_time.clone()).unwrap();
+        script.follow(&DRIVEN, Prescribed::Shift([2.0, 0.0, 0.0]), in_time).unwrap();
+        assert_eq!(script.contradicted(), DRIVEN);
     }
     // What stays is contradicted by nothing; nor is what has one part.
     let mut script = still([1.0; 3]);

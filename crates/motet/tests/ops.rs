@@ -7,7 +7,7 @@ use motet::base::{Point, TetId, VertexId};
 use motet::geometry::quality::eas;
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{distance, norm};
-use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewWall, Shell, Star, VertexChange};
+use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewLine, NewWall, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
 use motet::ops::{
     Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, Track, collapse, split_crossed, split_edge,
@@ -81,8 +81,9 @@ fn corners(complex: &Complex, change: &Change, tet: [VertexId; 4]) -> [Point; 4]
 fn dirty() -> Change {
     let fill = Fill { vertices: [7; 4].map(VertexId), region: 3, quality: 0.5 };
     let wall = NewWall { vertices: [7; 3].map(VertexId), patch: 1, triangle: 0 };
+    let line = NewLine { vertices: [7; 2].map(VertexId), source: 0 };
     let vertex = VertexChange::Remove(VertexId(1));
-    Change { cavity: vec![TetId(0)], fill: vec![fill], vertex, walls: vec![wall], lines: Vec::new() }
+    Change { cavity: vec![TetId(0)], fill: vec![fill], vertex, walls: vec![wall], lines: vec![line] }
 }
 
 /// Every tet of the fill is measured where it will be, and all together fill the cavity; the kernel takes it.
@@ -90,6 +91,7 @@ fn assert_sound(complex: &Complex, change: &Change) {
     for tet in &change.fill {
         assert_eq!(tet.quality, eas(corners(complex, change, tet.vertices)));
     }
+    assert!(change.lines.is_empty() && (change.walls.is_empty() || !complex.keeps_surface()));
     let before: f64 = change.cavity.iter().map(|&t| volume(complex.corners(t))).sum();
     let after: f64 = change.fill.iter().map(|t| volume(corners(complex, change, t.vertices))).sum();
     assert!((after - before).abs() < 1e-12 * before, "{after} in place of {before}");
@@ -367,8 +369,8 @@ fn a_collapse_draws_every_other_tet_to_the_vertex_that_stays() {
 
 #[test]
 fn splits_of_an_edge_make_two_tets_of_each() {
-    let mut numbers = Numbers(6);
-    for n in 3..8 {
+    let (mut numbers, mut n_onto) = (Numbers(6), 0);
+    for n in (3..8).cycle().take(50) {
         let points = ring(n, std::f64::consts::TAU, &mut numbers);
         let complex = Complex::new(&round_edge(points, true)).unwrap();
         let (mut shell, mut change) = (Shell::default(), dirty());
@@ -386,11 +388,13 @@ fn splits_of_an_edge_make_two_tets_of_each() {
         // A vertex of the ring in place of the middle: the triangulation that fans out from it.
         let onto = VertexId(2);
         if split_onto(&complex, &shell, onto, 0.0, &mut change) {
+            n_onto += 1;
             assert_sound(&complex, &change);
             assert_eq!(change.fill.len(), 2 * (n - 2));
             assert!(change.fill.iter().all(|tet| tet.vertices.contains(&onto)));
         }
     }
+    assert!(n_onto > 10, "{n_onto}");
 }
 
 /// Two edges that cross at right angles, 01 over 23, with the tet between them; round the first, and with `both` round the second, the tets that close the ring.

@@ -8,11 +8,12 @@ use common::Numbers;
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::quality::{dihedral, eas};
 use motet::geometry::triangle::{angle_at, area_vector};
-use motet::geometry::vector::norm;
+use motet::geometry::vector::{distance, norm};
 use motet::kernel::{Complex, NEW};
-use motet::mesh::shapes::box_grid;
+use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{TetMesh, TetPart};
-use motet::remesh::{Goal, Held, Options, Outcome, Reason, SurfaceRule, remesh};
+use motet::remesh::{Goal, Held, Options, Outcome, Reason, Sizes, SurfaceRule, remesh};
+use motet::spatial::NearestTriangle;
 
 const N: usize = 5;
 
@@ -180,6 +181,7 @@ fn walls_that_meet_at_an_angle_or_have_one_are_told_as_the_cause() {
             .collect();
         let angles = facets.iter().flat_map(|f| (0..3).map(|k| angle_at(*f, k).to_degrees()));
         let narrowest = angles.fold(f64::INFINITY, f64::min);
+        assert_eq!(left.reason.to_string().contains("degrees"), left.reason.is_forced());
         match left.reason {
             Reason::WallAngle { degrees: at, best_eas } => {
                 n_angles += 1;
@@ -203,4 +205,45 @@ fn walls_that_meet_at_an_angle_or_have_one_are_told_as_the_cause() {
     assert!(n_angles > 0 && n_meets >= n - 2, "{n_angles} {n_meets}");
     // Where they meet at a wide angle nothing is forced.
     assert!(remeshed(&wedge(60.0, 3), Options::default()).report.left.is_empty());
+}
+
+#[test]
+fn a_surface_that_gives_way_stays_within_the_distance() {
+    // A ball, its vertices on the surface drawn along it; coarser sizes, so that walls are merged.
+    let mut mesh = TetPart::of(&sphere_in_box(4, 3)).unwrap().mesh;
+    let mut numbers = Numbers(5);
+    for p in &mut mesh.points {
+        let radius = norm(*p);
+        if (radius - 1.0).abs() < 1e-9 {
+            let q = p.map(|x| x + 0.1 * (2.0 * numbers.unit() - 1.0));
+            *p = q.map(|x| x * radius / norm(q));
+        }
+    }
+    let walls = |mesh: &TetMesh| {
+        let complex = Complex::new(mesh).unwrap();
+        complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect::<Vec<_>>()
+    };
+    let first = NearestTriangle::new(&mesh.points, &walls(&mesh), &Threads::single());
+    let mut n_walls = Vec::new();
+    for allowed in [0.01, 0.1, 0.3] {
+        let surface = SurfaceRule::Adapt { distance: Some(allowed) };
+        let outcome =
+            remeshed(&mesh, Options { sizes: Some(Sizes::Uniform(3.0)), surface, ..Options::default() });
+        let new = &outcome.extract.mesh;
+        let after = walls(new);
+        for corners in after.iter().map(|wall| wall.map(|v| new.points[v.index()])) {
+            let centre = [0, 1, 2].map(|k| corners.iter().map(|p| p[k]).sum::<f64>() / 3.0);
+            for p in corners.into_iter().chain([centre]) {
+                let stray = distance(p, first.closest(p).unwrap().point);
+                assert!(stray <= allowed + 1e-9, "{stray} of {allowed}");
+            }
+        }
+        // And what is no more lies near to what is.
+        let now = NearestTriangle::new(&new.points, &after, &Threads::single());
+        let left =
+            mesh.points.iter().map(|&p| (p, now.closest(p).unwrap().point)).filter(|(p, _)| norm(*p) < 1.1);
+        assert!(left.map(|(p, q)| distance(p, q)).fold(0.0, f64::max) <= 2.0 * allowed);
+        n_walls.push(after.len());
+    }
+    assert!(n_walls[0] <= walls(&mesh).len() && n_walls[2] < n_walls[0], "{n_walls:?}");
 }
