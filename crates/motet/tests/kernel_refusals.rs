@@ -185,3 +185,108 @@ fn new_walls_are_facets_of_the_fill() {
     elsewhere.walls.push(NewWall { vertices: [gone, kept, far], ..change.walls[0] });
     assert!(matches!(complex.check_against(&elsewhere, 0.0), Err(Reject::Wall(_))));
 }
+
+/// Lines along x through the middle of a cube, with their labels; and their vertices.
+fn along_x(labels: &[&[i32]]) -> (TetMesh, Vec<VertexId>) {
+    let mut mesh = cube(4);
+    let vertices: Vec<VertexId> = (0..=4).map(|i| vertex_at(&mesh, [f64::from(i) / 4.0, 0.5, 0.5])).collect();
+    for (i, of_edge) in labels.iter().enumerate() {
+        for (k, &label) in of_edge.iter().enumerate() {
+            let edge = [vertices[i + 1], vertices[i + 2]];
+            mesh.lines.push(if k == 0 { edge } else { [edge[1], edge[0]] });
+            mesh.line_labels.push(label);
+        }
+    }
+    (mesh, vertices)
+}
+
+#[test]
+fn lines_are_merged_if_their_labels_are_the_same() {
+    for (labels, is_merged) in [
+        ([&[1][..], &[1]], true),
+        ([&[1], &[2]], false),
+        ([&[1, 2], &[2, 1]], true),
+        ([&[1, 2], &[1]], false),
+        ([&[3, 3], &[3]], false),
+    ] {
+        let (mesh, v) = along_x(&labels);
+        let complex = complex(&mesh, true);
+        let sources = [[v[1], v[2]], [v[2], v[3]]].map(|[a, b]| complex.line(a, b).unwrap().source);
+        let [x, y] = sources.map(|source| complex.line_label(source));
+        assert_eq!(x == y, is_merged, "{labels:?}");
+        let refused = drawn(&complex, v[2], v[1]);
+        assert_eq!(refused.is_ok(), is_merged, "{labels:?}: {refused:?}");
+        assert!(is_merged || matches!(refused, Err(Reject::Vertex(_))), "{refused:?}");
+    }
+}
+
+#[test]
+fn lines_that_are_no_edges_stay_with_their_vertices() {
+    let (mut mesh, v) = along_x(&[&[1]]);
+    mesh.lines.push([v[3], v[0]]);
+    mesh.line_labels.push(2);
+    let complex = complex(&mesh, true);
+    assert_eq!(
+        [v[0], v[1], v[2], v[3]].map(|v| complex.hold(v)),
+        [Hold::Fixed, Hold::Edge, Hold::Edge, Hold::Fixed]
+    );
+    assert_eq!(complex.lines().len(), 1);
+}
+
+#[test]
+fn edges_are_fixed_in_any_order() {
+    let mesh = cube(4);
+    let mut complex = complex(&mesh, false);
+    let edges: Vec<[VertexId; 2]> = mesh.tets.iter().step_by(5).map(|&[a, _, _, b]| [b, a]).collect();
+    complex.fix_edges(edges.iter().rev().copied());
+    assert!(edges.iter().all(|&[a, b]| complex.is_fixed_edge(a, b) && complex.hold(a) == Hold::Fixed));
+    let others = mesh.tets.iter().flat_map(|&[a, b, c, _]| [[a, b], [b, c]]);
+    let is_one = |e: &[VertexId; 2]| edges.contains(e) || edges.contains(&[e[1], e[0]]);
+    assert!(others.into_iter().all(|e| complex.is_fixed_edge(e[0], e[1]) == is_one(&e)));
+}
+
+#[test]
+fn arrays_that_do_not_fit_make_no_complex_and_refusals_say_what_they_are_about() {
+    let mut mesh = cube(2);
+    mesh.regions.pop();
+    assert!(Complex::new(&mesh).is_err());
+    let v = VertexId(7);
+    for (reject, word) in [
+        (Reject::Quality { before: 0.25, after: 0.5 }, "0.25"),
+        (Reject::Held(v), "7"),
+        (Reject::Vertex(v), "7"),
+        (Reject::Edge([v, v]), "7"),
+        (Reject::Locked(TetId(9)), "9"),
+    ] {
+        assert!(reject.to_string().contains(word), "{reject}");
+    }
+}
+
+/// A flat tet `abpq` on the boundary, its edge `ab` outside, with a tet behind `apq`; behind `bpq` one below or, where `b` lies within `apq`, above.
+fn flat_on_the_boundary(is_within: bool) -> TetMesh {
+    let (a, c) = ([0.0, 0.05, -1.0], [0.0, -1.0, 0.2]);
+    let (b, d) =
+        if is_within { ([0.0, 0.05, 0.5], [0.0, 1.0, 0.9]) } else { ([0.0, 0.05, 3.0], [0.0, -1.0, 1.8]) };
+    let points = vec![a, b, [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], c, d];
+    let turned = |mut tet: [usize; 4]| {
+        if motet::geometry::tet::volume(tet.map(|v| points[v])) < 0.0 {
+            tet.swap(0, 1);
+        }
+        tet.map(VertexId::new)
+    };
+    let tets = [[0, 1, 2, 3], [0, 2, 3, 4], [1, 2, 3, 5]].map(turned).to_vec();
+    TetMesh::new(points, tets)
+}
+
+#[test]
+fn walls_of_a_flat_tet_are_swapped_unless_they_would_fold() {
+    for is_within in [false, true] {
+        let complex = complex(&flat_on_the_boundary(is_within), true);
+        let (mut removal, mut change) = (motet::ops::EdgeRemoval::default(), Change::default());
+        let is_proposed = removal.propose(&complex, TetId(0), [VertexId(0), VertexId(1)], 0.0, &mut change);
+        assert_eq!(is_proposed, !is_within);
+        if is_proposed {
+            assert_eq!((change.cavity.len(), change.fill.len(), change.walls.len()), (1, 0, 2));
+        }
+    }
+}

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use common::{Numbers, random_mesh};
 use motet::base::{TetId, VertexId};
 use motet::geometry::tet::{EDGES, centroid};
-use motet::kernel::{Change, Complex, Hold, Shell, Star};
+use motet::kernel::{Change, Complex, Hold, NEW, Shell, Star};
 use motet::mesh::TetMesh;
 use motet::ops::{Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_edge};
 use proptest::prelude::*;
@@ -67,10 +67,13 @@ fn with_lines(mut mesh: TetMesh) -> TetMesh {
 }
 
 /// The vertices that lines of a label meet an odd number of times: where the label begins and ends.
-fn ends(complex: &Complex) -> Vec<(u32, VertexId)> {
-    let mut times: BTreeMap<(u32, VertexId), u32> = BTreeMap::new();
+fn ends(complex: &Complex, mesh: &TetMesh) -> Vec<(i32, VertexId)> {
+    let mut times: BTreeMap<(i32, VertexId), u32> = BTreeMap::new();
     for (edge, line) in complex.lines() {
-        edge.iter().for_each(|&v| *times.entry((complex.line_label(line.source), v)).or_default() += 1);
+        for &old in complex.lines_of_first(line) {
+            let label = mesh.line_labels[old as usize];
+            edge.iter().for_each(|&v| *times.entry((label, v)).or_default() += 1);
+        }
     }
     times.into_iter().filter(|(_, n)| n % 2 == 1).map(|(end, _)| end).collect()
 }
@@ -98,7 +101,7 @@ proptest! {
         complex.adapt_surface();
         // Measures every tet: what is known of qualities is a part of the state.
         complex.verify().map_err(TestCaseError::fail)?;
-        let ends_at_first = ends(&complex);
+        let ends_at_first = ends(&complex, &mesh);
         let (mut numbers, mut editor) = (Numbers(seed ^ 0x5eed), Editor::default());
         let (mark, first) = (complex.mark(), state(&complex, &mesh));
         let (mut n_made, mut halfway) = (0, None);
@@ -106,7 +109,7 @@ proptest! {
             n_made += usize::from(editor.edit(&mut complex, &mut numbers));
             if i % 100 == 0 {
                 complex.verify().map_err(TestCaseError::fail)?;
-                prop_assert_eq!(&ends(&complex), &ends_at_first);
+                prop_assert_eq!(&ends(&complex, &mesh), &ends_at_first);
             }
             if i == 300 {
                 halfway = Some((complex.mark(), state(&complex, &mesh)));
@@ -121,6 +124,11 @@ proptest! {
         prop_assert_eq!(again.n_tets(), complex.n_tets());
         prop_assert_eq!(again.walls().count(), complex.walls().count());
         prop_assert_eq!(again.lines().len(), complex.lines().len());
+        for (new, &old) in extract.vertex_to_old.iter().enumerate() {
+            let is_changed = extract.changed_vertices.binary_search(&VertexId::new(new)).is_ok();
+            prop_assert!(old == NEW || (old as usize) < mesh.points.len());
+            prop_assert!(is_changed || extract.mesh.points[new] == mesh.points[old as usize]);
+        }
         let label_of = |old: u32| mesh.line_labels[old as usize];
         let labels: Vec<i32> = extract.line_to_old.iter().map(|&old| label_of(old)).collect();
         prop_assert_eq!(&extract.mesh.line_labels, &labels);
