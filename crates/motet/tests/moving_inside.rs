@@ -59,7 +59,7 @@ fn what_is_driven_is_the_boundary_and_the_patches_inside() {
 }
 
 #[test]
-fn a_sheet_inside_goes_where_it_is_told_also_where_it_was_divided() {
+fn a_sheet_inside_goes_where_it_is_requested_also_where_it_was_divided() {
     let mut moving = MovingMesh::new(&with_sheet(), inside(), &threads()).unwrap();
     let shear = |p: &Point| [0.2 * p[1] + 0.1 * p[2], 0.0, 0.15 * p[0]];
     let near = Criterion::Ball { centre: [0.5; 3], radius: 0.3 };

@@ -113,8 +113,10 @@ fn arrays_of_another_length_are_refused() {
     for (n, is_right) in [(n_cells - 1, false), (n_cells, true), (n_cells + 1, false)] {
         assert_eq!(moving.set_cell_field(Field::scalars("c", vec![1.0; n])).is_ok(), is_right);
     }
-    let ragged = Field { components: 2, ..Field::scalars("p", vec![1.0; 2 * n_points - 1]) };
-    assert!(moving.set_point_field(ragged).is_err());
+    for (n, is_right) in [(2 * n_points - 1, false), (2 * n_points, true), (2 * n_points + 1, false)] {
+        let pairs = Field { components: 2, ..Field::scalars("pairs", vec![1.0; n]) };
+        assert_eq!(moving.set_point_field(pairs).is_ok(), is_right, "{n}");
+    }
 }
 
 #[test]

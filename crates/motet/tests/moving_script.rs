@@ -36,6 +36,8 @@ fn frames_are_spread_over_a_period_or_from_begin_to_end() {
             assert!((at(&again, phase + periods) - x).abs() < 1e-12, "{phase} in period {periods}");
         }
     }
+    let shift = Prescribed::Shift([1.0; 3]);
+    assert!(again.follow(&DRIVEN, shift, InTime::Table(Vec::new())).is_err(), "a course of nothing");
     assert!(
         again.go(&DRIVEN, vec![[0.0; 3]; 2], InTime::Table(Vec::new())).is_err(),
         "a course that is none"
@@ -51,7 +53,7 @@ fn frames_are_spread_over_a_period_or_from_begin_to_end() {
 
 #[test]
 fn parts_contradict_each_other_where_they_differ_by_more_than_rounding() {
-    // The same shift told twice, the second time off by a part of the largest coordinate.
+    // The same shift twice, the second time off by a part of the largest coordinate.
     for size in [1e-6, 1.0, 1e6] {
         for (off, is_other) in [(0.0, false), (1e-13, false), (1e-11, true), (1e-3, true)] {
             let mut script = still([size, 0.0, 0.0]);
@@ -69,6 +71,11 @@ fn parts_contradict_each_other_where_they_differ_by_more_than_rounding() {
         script.follow(&DRIVEN, Prescribed::Shift([2.0, 0.0, 0.0]), in_time).unwrap();
         assert_eq!(script.contradicted(), DRIVEN);
     }
+    // At the origin it is the displacements that say what rounding is.
+    let mut script = still([0.0; 3]);
+    script.follow(&DRIVEN, Prescribed::Shift([1.0, 0.0, 0.0]), InTime::Ramp).unwrap();
+    script.go(&DRIVEN, vec![[1.0, 1e-13, 0.0], [1.0, 1e-11, 0.0]], InTime::Ramp).unwrap();
+    assert_eq!(script.contradicted(), DRIVEN[1..]);
     // What stays is contradicted by nothing; nor is what has one part.
     let mut script = still([1.0; 3]);
     assert!(script.contradicted().is_empty());

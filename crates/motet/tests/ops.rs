@@ -399,7 +399,7 @@ fn splits_of_an_edge_make_two_tets_of_each() {
 
 /// Two edges that cross at right angles, 01 over 23, with the tet between them; round the first, and with `both` round the second, the tets that close the ring.
 fn crossing(both: bool) -> TetMesh {
-    let points = vec![
+    let points = [
         [-1.0, 0.0, -0.1],
         [1.0, 0.0, -0.1],
         [0.0, -1.0, 0.1],

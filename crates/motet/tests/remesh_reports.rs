@@ -1,4 +1,4 @@
-//! What a remeshing says of itself: in cells of the mesh whatever their order, in seconds that add up, in shares of what came.
+//! What a remeshing says of itself: in cells of the mesh whatever their order, in seconds that add up, in shares of the mesh before.
 
 use std::time::Instant;
 
@@ -49,12 +49,12 @@ fn assert_places(old: &Mesh, new: &Mesh, report: &Report) {
 }
 
 #[test]
-fn tets_are_told_by_their_cells_also_where_triangles_come_first() {
+fn tets_are_numbered_by_their_cells_also_where_triangles_come_first() {
     let old = triangles_first([6; 3], [1.0; 3]);
     let MeshOutcome { mesh, report, .. } = remeshed(&old);
     assert!(report.before.bad > 10 && report.after.bad == 0, "{:?}", report.before);
     assert_places(&old, &mesh, &report);
-    // Between two plates nothing helps: what is left is told by its cells, too.
+    // Between two plates nothing helps: what is left is numbered by its cells, too.
     let old = triangles_first([4, 4, 1], [2.0, 2.0, 0.01]);
     let MeshOutcome { mesh, report, .. } = remeshed(&old);
     assert!(report.left.len() > 10);

@@ -166,7 +166,7 @@ fn wedge(degrees: f64, n: usize) -> TetMesh {
 }
 
 #[test]
-fn walls_that_meet_at_an_angle_or_have_one_are_told_as_the_cause() {
+fn walls_that_meet_at_an_angle_or_have_one_are_named_as_the_cause() {
     let (degrees, n) = (9.0, 6);
     let mesh = wedge(degrees, n);
     let outcome = remeshed(&mesh, Options::default());
