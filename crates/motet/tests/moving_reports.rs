@@ -109,9 +109,15 @@ fn arrays_of_another_length_are_refused() {
     let (n_points, n_cells) = (moving.mesh().points.len(), moving.mesh().cells.len());
     for (n, is_right) in [(n_points - 1, false), (n_points, true), (n_points + 1, false)] {
         assert_eq!(moving.set_point_field(Field::scalars("p", vec![1.0; n])).is_ok(), is_right);
+        assert_eq!(
+            moving.mesh().point_field("p").is_some(),
+            n >= n_points,
+            "what is refused is not taken over"
+        );
     }
     for (n, is_right) in [(n_cells - 1, false), (n_cells, true), (n_cells + 1, false)] {
         assert_eq!(moving.set_cell_field(Field::scalars("c", vec![1.0; n])).is_ok(), is_right);
+        assert_eq!(moving.mesh().cell_field("c").is_some(), n >= n_cells);
     }
     for (n, is_right) in [(2 * n_points - 1, false), (2 * n_points, true), (2 * n_points + 1, false)] {
         let pairs = Field { components: 2, ..Field::scalars("pairs", vec![1.0; n]) };

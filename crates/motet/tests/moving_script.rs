@@ -37,6 +37,7 @@ fn frames_are_spread_over_a_period_or_from_begin_to_end() {
         }
     }
     let shift = Prescribed::Shift([1.0; 3]);
+    assert!(again.follow(&DRIVEN, Prescribed::Shift([f64::NAN; 3]), InTime::Ramp).is_err());
     assert!(again.follow(&DRIVEN, shift, InTime::Table(Vec::new())).is_err(), "a course of nothing");
     assert!(
         again.go(&DRIVEN, vec![[0.0; 3]; 2], InTime::Table(Vec::new())).is_err(),

@@ -103,3 +103,19 @@ fn lines_are_merged_wherever_they_lie() {
         );
     }
 }
+
+#[test]
+fn a_line_that_bends_a_little_is_not_cut_short() {
+    // In a side of the cube: the middle of the line is drawn aside, too little for a corner and farther than the distance allowed.
+    let mut mesh = lined(&along(2, 0), &[]);
+    let middle = mesh.lines[2][0];
+    mesh.points[middle.index()][1] += 0.08;
+    let before = length(&mesh);
+    for sizes in [None, Some(Sizes::Uniform(0.6))] {
+        let surface = SurfaceRule::Adapt { distance: Some(0.01) };
+        let new =
+            remesh(&mesh, &Options { sizes, surface, ..Options::default() }, &Threads::single()).unwrap();
+        let after = length(&new.extract.mesh);
+        assert!((after - before).abs() < 0.01 * before, "{before} became {after}");
+    }
+}

@@ -8,7 +8,7 @@ use motet::geometry::tet::centroid;
 use motet::mesh::history::Rules;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Cells, Mesh};
-use motet::remesh::{MeshOutcome, Options, Report, Seconds, remesh_mesh};
+use motet::remesh::{MeshOutcome, Options, Report, Seconds, Sizes, SurfaceRule, remesh_mesh};
 
 /// A box whose triangles come before its tets, some vertices inside drawn near others.
 fn triangles_first(n: [usize; 3], size: Point) -> Mesh {
@@ -90,4 +90,27 @@ fn stages_take_no_longer_than_the_whole() {
     let all = begin.elapsed().as_secs_f64();
     let stages = [join, repair, extract, history];
     assert!(stages.iter().all(|s| *s > 0.0) && stages.iter().sum::<f64>() <= all, "{stages:?} of {all}");
+}
+
+#[test]
+fn parts_of_a_line_run_as_the_line_does() {
+    for is_turned in [false, true] {
+        let mut mesh = box_grid([1; 3], [[0.0; 3], [1.0; 3]]);
+        let at = |p: Point| VertexId::new(mesh.points.iter().position(|&q| q == p).unwrap());
+        let mut ends = [at([0.0; 3]), at([1.0, 0.0, 0.0])];
+        if is_turned {
+            ends.swap(0, 1);
+        }
+        mesh.cell_data.clear();
+        mesh.cells.push(CellKind::LINE, ends);
+        let surface = SurfaceRule::Adapt { distance: None };
+        let options = Options { sizes: Some(Sizes::Uniform(0.3)), surface, ..Options::default() };
+        let new = remesh_mesh(&mesh, &options, &Rules::default(), &Threads::single()).unwrap().mesh;
+        let lines: Vec<_> = new.cells.iter().filter(|(_, kind, _)| *kind == CellKind::LINE).collect();
+        assert!(lines.len() > 2);
+        for (_, _, v) in lines {
+            let way = new.points[v[1].index()][0] - new.points[v[0].index()][0];
+            assert_eq!(way < 0.0, is_turned, "{way}");
+        }
+    }
 }
