@@ -127,3 +127,97 @@ impl Complex {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::link::{Link, Wall, WallId};
+    use crate::mesh::shapes::box_grid;
+    use crate::mesh::{TetMesh, TetPart};
+
+    /// A box of two regions with a line inside.
+    fn sound() -> Complex {
+        let mut mesh: TetMesh = TetPart::of(&box_grid([2; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
+        let is_left = |t: &[VertexId; 4]| t.iter().map(|v| mesh.points[v.index()][0]).sum::<f64>() < 2.0;
+        mesh.regions = mesh.tets.iter().map(|t| i32::from(is_left(t))).collect();
+        mesh.lines = vec![[mesh.tets[0][0], mesh.tets[0][1]]];
+        mesh.line_labels = vec![1];
+        let complex = Complex::new(&mesh).unwrap();
+        complex.verify().unwrap();
+        complex
+    }
+
+    /// A facet of a tet with a plain one behind it, or with a wall.
+    fn facet(c: &Complex, is_wall: bool) -> (TetId, usize) {
+        let all = c.tets().flat_map(|t| (0..4).map(move |i| (t, i)));
+        all.into_iter().find(|&(t, i)| c.is_wall(t, i) == is_wall).unwrap()
+    }
+
+    #[test]
+    fn every_fault_is_found_and_named() {
+        type Fault = (&'static str, fn(&mut Complex));
+        let faults: [Fault; 16] = [
+            ("on the free list", |c| c.free_tets.push(TetId(0))),
+            ("on the free list", |c| c.tets[5] = FREE),
+            ("has the vertices", |c| c.tets[0][1] = c.tets[0][0]),
+            ("has the vertices", |c| c.tets[0][1] = VertexId::new(c.points.len())),
+            ("has the quality", |c| c.qualities[3].set(0.25)),
+            ("has nothing behind it", |c| {
+                let (t, i) = facet(c, false);
+                c.links[t.index()][i] = Link::tet(HalfFacet::NONE);
+            }),
+            ("lies between regions", |c| {
+                let (t, _) = facet(c, false);
+                c.regions[t.index()] += 7;
+            }),
+            ("does not know it", |c| {
+                let (t, i) = facet(c, true);
+                c.links[t.index()][i] = Link::wall(WallId(c.walls.len() as u32 - 1));
+                let (u, k) = facet(c, false);
+                c.links[u.index()][k] = Link::wall(WallId(0));
+            }),
+            ("does not lead back", |c| {
+                let (t, i) = facet(c, false);
+                let k = (0..4).find(|&k| k != i && !c.is_wall(t, k)).unwrap();
+                c.links[t.index()].swap(i, k);
+            }),
+            ("from two sides", |c| {
+                c.points.push([0.3; 3]);
+                let (t, i) = facet(c, false);
+                let k = (0..4).find(|&k| k != i).unwrap();
+                c.tets[t.index()][k] = VertexId::new(c.points.len() - 1);
+                c.qualities[t.index()].set(c.measure(c.corners(t)));
+            }),
+            ("a side that is not at it", |c| {
+                let (t, i) = facet(c, false);
+                c.walls.push(Wall {
+                    sides: [HalfFacet::new(t, i), HalfFacet::NONE],
+                    patch: 0,
+                    triangle: 0,
+                    is_new: true,
+                });
+            }),
+            ("is no edge of a tet", |c| {
+                let line = c.lines()[0].1;
+                let far = |p: &[f64; 3]| c.points.iter().position(|q| q == p).map(VertexId::new).unwrap();
+                let edge = rising([far(&[0.0; 3]), far(&[1.0; 3])]);
+                c.lines.set(edge, Some(line));
+                let edge = rising([far(&[0.0, 0.0, 1.0]), far(&[1.0, 1.0, 0.0])]);
+                c.lines.set(edge, Some(line));
+            }),
+            ("counted", |c| c.vertex_to_n_tets[4] += 1),
+            ("counted", |c| c.vertex_to_tet[4] = NO_TET),
+            ("is not in its tet", |c| {
+                let other = c.tets().find(|&t| !c.vertices(t).contains(&VertexId(4))).unwrap();
+                c.vertex_to_tet[4] = other;
+            }),
+            ("on the free list and used", |c| c.free_vertices.push(VertexId(4))),
+        ];
+        for (i, (name, make)) in faults.into_iter().enumerate() {
+            let mut complex = sound();
+            make(&mut complex);
+            let fault = complex.verify().expect_err(name);
+            assert!(fault.contains(name), "fault {i}: {fault}, and not: {name}");
+        }
+    }
+}

@@ -119,7 +119,7 @@ impl Complex {
         let mut others: Vec<VertexId> = star.iter().flat_map(|&t| self.vertices(t)).collect();
         others.sort_unstable();
         others.dedup();
-        others.retain(|&other| other != vertex && self.line(vertex, other).is_some());
+        others.retain(|&other| self.line(vertex, other).is_some());
         others
     }
 

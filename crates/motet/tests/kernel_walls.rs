@@ -1,0 +1,144 @@
+//! The kernel where walls and lines may change: whatever is done, every invariant holds, every line runs from where it began to where it
+//! ended, and undoing it gives back every bit.
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::{Numbers, random_mesh};
+use motet::base::{TetId, VertexId};
+use motet::geometry::tet::{EDGES, centroid};
+use motet::kernel::{Change, Complex, Hold, NEW, Shell, Star};
+use motet::mesh::TetMesh;
+use motet::ops::{Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_edge};
+use proptest::prelude::*;
+
+/// Proposals of changes of a surface that adapts.
+#[derive(Default)]
+struct Editor {
+    change: Change,
+    edge_removal: EdgeRemoval,
+    face_removal: FaceRemoval,
+    smoothing: Smoothing,
+    insertion: Insertion,
+    star: Star,
+    shell: Shell,
+    inserted: Vec<TetId>,
+}
+
+impl Editor {
+    /// Makes a random change somewhere, whether it does good or not, if the kernel lets it; whether it did.
+    fn edit(&mut self, complex: &mut Complex, numbers: &mut Numbers) -> bool {
+        let alive: Vec<TetId> = complex.tets().collect();
+        let tet = alive[numbers.below(alive.len())];
+        let vertices = complex.vertices(tet);
+        let edge @ [a, b] = EDGES[numbers.below(6)].map(|i| vertices[i]);
+        self.shell.walk(complex, tet, a, b);
+        self.star.gather(complex, a);
+        let hold = match complex.line(a, b) {
+            Some(_) => Hold::Edge,
+            None if self.shell.walls.is_empty() => Hold::Free,
+            None => Hold::Surface,
+        };
+        let [p, q] = edge.map(|v| complex.point(v));
+        let middle = [0, 1, 2].map(|i| 0.5 * (p[i] + q[i]));
+        let (change, star) = (&mut self.change, &self.star.tets);
+        let is_positive = match numbers.below(6) {
+            0 => self.edge_removal.propose(complex, tet, edge, 0.0, change),
+            1 => self.face_removal.propose(complex, tet, numbers.below(4), 0.0, change),
+            2 => collapse(complex, star, a, b, 0.0, change),
+            3 => split_edge(complex, &self.shell, edge, (middle, hold), 0.0, change),
+            4 => self.smoothing.propose(complex, star, a, [0.0, 0.5], &Anywhere, change),
+            _ => self.insertion.propose(complex, &[tet], centroid(complex.corners(tet)), [0.0, 0.5], change),
+        };
+        let Some(checked) = complex.check_against(&self.change, 0.0).ok().filter(|_| is_positive) else {
+            return false;
+        };
+        complex.commit(checked, &mut self.inserted);
+        true
+    }
+}
+
+/// Some edges made lines of three labels.
+fn with_lines(mut mesh: TetMesh) -> TetMesh {
+    mesh.lines = mesh.tets.iter().step_by(7).flat_map(|&[a, b, c, _]| [[a, b], [c, b]]).collect();
+    mesh.line_labels = (0..mesh.lines.len() as i32).map(|i| i % 3).collect();
+    mesh
+}
+
+/// The vertices that lines of a label meet an odd number of times: where the label begins and ends.
+fn ends(complex: &Complex, mesh: &TetMesh) -> Vec<(i32, VertexId)> {
+    let mut times: BTreeMap<(i32, VertexId), u32> = BTreeMap::new();
+    for (edge, line) in complex.lines() {
+        for &old in complex.lines_of_first(line) {
+            let label = mesh.line_labels[old as usize];
+            edge.iter().for_each(|&v| *times.entry((label, v)).or_default() += 1);
+        }
+    }
+    times.into_iter().filter(|(_, n)| n % 2 == 1).map(|(end, _)| end).collect()
+}
+
+/// All that there is to tell; lines by their edges, since a map has no order.
+fn state(complex: &Complex, mesh: &TetMesh) -> String {
+    match complex.has_lines() {
+        true => format!("{:?} {:?}", complex.extract(mesh), complex.lines()),
+        false => format!("{complex:?}"),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn changes_of_walls_and_lines_keep_every_invariant_and_are_undone_to_the_bit(
+        seed in any::<u64>(),
+        n in 8usize..40,
+        has_lines in any::<bool>(),
+    ) {
+        let plain = random_mesh(n, seed);
+        let mesh = if has_lines { with_lines(plain) } else { plain };
+        let mut complex = Complex::new(&mesh).unwrap();
+        complex.adapt_surface();
+        // Measures every tet: what is known of qualities is a part of the state.
+        complex.verify().map_err(TestCaseError::fail)?;
+        let ends_at_first = ends(&complex, &mesh);
+        let (mut numbers, mut editor) = (Numbers(seed ^ 0x5eed), Editor::default());
+        let (mark, first) = (complex.mark(), state(&complex, &mesh));
+        let (mut n_made, mut halfway) = (0, None);
+        for i in 0..600 {
+            n_made += usize::from(editor.edit(&mut complex, &mut numbers));
+            if i % 100 == 0 {
+                complex.verify().map_err(TestCaseError::fail)?;
+                prop_assert_eq!(&ends(&complex, &mesh), &ends_at_first);
+            }
+            if i == 300 {
+                halfway = Some((complex.mark(), state(&complex, &mesh)));
+            }
+        }
+        prop_assert!(n_made > 50, "only {} edits", n_made);
+        complex.verify().map_err(TestCaseError::fail)?;
+
+        let extract = complex.extract(&mesh);
+        let again = Complex::new(&extract.mesh).unwrap();
+        again.verify().map_err(TestCaseError::fail)?;
+        prop_assert_eq!(again.n_tets(), complex.n_tets());
+        prop_assert_eq!(again.walls().count(), complex.walls().count());
+        prop_assert_eq!(again.lines().len(), complex.lines().len());
+        for (new, &old) in extract.vertex_to_old.iter().enumerate() {
+            let is_changed = extract.changed_vertices.binary_search(&VertexId::new(new)).is_ok();
+            prop_assert!(old == NEW || (old as usize) < mesh.points.len());
+            prop_assert!(is_changed || extract.mesh.points[new] == mesh.points[old as usize]);
+        }
+        let label_of = |old: u32| mesh.line_labels[old as usize];
+        let labels: Vec<i32> = extract.line_to_old.iter().map(|&old| label_of(old)).collect();
+        prop_assert_eq!(&extract.mesh.line_labels, &labels);
+
+        let (mark_halfway, at_halfway) = halfway.unwrap();
+        complex.undo(mark_halfway);
+        complex.verify().map_err(TestCaseError::fail)?;
+        prop_assert!(state(&complex, &mesh) == at_halfway, "not what it was halfway");
+        complex.undo(mark);
+        complex.verify().map_err(TestCaseError::fail)?;
+        prop_assert!(state(&complex, &mesh) == first, "not what it was at first");
+    }
+}

@@ -1,0 +1,474 @@
+//! The operations propose what they promise: the best of all ways where that can be counted out, the right tets, and nothing at or below the bar.
+
+mod common;
+
+use common::Numbers;
+use motet::base::{Point, TetId, VertexId};
+use motet::geometry::quality::eas;
+use motet::geometry::tet::volume;
+use motet::geometry::vector::{distance, norm};
+use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewLine, NewWall, Shell, Star, VertexChange};
+use motet::mesh::TetMesh;
+use motet::ops::{
+    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, Track, collapse, split_crossed, split_edge,
+    split_onto,
+};
+
+/// The ends of the edge that rings lie round.
+const A: VertexId = VertexId(0);
+const B: VertexId = VertexId(1);
+
+/// The ends of an edge along z, and points in a ring round it, over a part of a turn.
+fn ring(n: usize, turn: f64, numbers: &mut Numbers) -> Vec<Point> {
+    let mut points = vec![[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
+    for i in 0..n {
+        let angle = turn * (i as f64 + 0.6 * numbers.unit()) / n as f64;
+        let (radius, height) = (0.7 + 0.6 * numbers.unit(), 0.6 * numbers.unit() - 0.3);
+        points.push([radius * angle.cos(), radius * angle.sin(), height]);
+    }
+    points
+}
+
+/// A mesh of tets that are turned to be positive.
+fn mesh(points: Vec<Point>, tets: impl IntoIterator<Item = [usize; 4]>) -> TetMesh {
+    let turned = |mut tet: [usize; 4]| {
+        if volume(tet.map(|v| points[v])) < 0.0 {
+            tet.swap(2, 3);
+        }
+        tet.map(VertexId::new)
+    };
+    let tets = tets.into_iter().map(turned).collect();
+    TetMesh::new(points, tets)
+}
+
+/// The tets between an edge and each two neighbours in its ring; closed, or from the first to the last.
+fn round_edge(points: Vec<Point>, is_closed: bool) -> TetMesh {
+    let n = points.len() - 2;
+    let last = if is_closed { n } else { n - 1 };
+    mesh(points, (0..last).map(|i| [0, 1, 2 + i, 2 + (i + 1) % n]))
+}
+
+/// All ways to cut the polygon of places `i` to `j` into triangles.
+fn triangulations(i: usize, j: usize) -> Vec<Vec<[usize; 3]>> {
+    if j < i + 2 {
+        return vec![Vec::new()];
+    }
+    let mut all = Vec::new();
+    for k in i + 1..j {
+        for left in triangulations(i, k) {
+            all.extend(
+                triangulations(k, j).into_iter().map(|right| [&left[..], &right, &[[i, k, j]]].concat()),
+            );
+        }
+    }
+    all
+}
+
+/// The worst quality of the tets from triangles of a ring to both ends of the edge. The ring runs counter-clockwise round it.
+fn worst_on(points: &[Point], triangles: &[[usize; 3]]) -> f64 {
+    let of = |t: &[usize; 3]| {
+        let [p, q, r] = t.map(|place| points[place + 2]);
+        eas([p, q, r, points[1]]).min(eas([p, r, q, points[0]]))
+    };
+    triangles.iter().map(of).fold(f64::INFINITY, f64::min)
+}
+
+fn corners(complex: &Complex, change: &Change, tet: [VertexId; 4]) -> [Point; 4] {
+    tet.map(|v| change.point(complex, v))
+}
+
+/// A proposal that is full of what an earlier one left.
+fn dirty() -> Change {
+    let fill = Fill { vertices: [7; 4].map(VertexId), region: 3, quality: 0.5 };
+    let wall = NewWall { vertices: [7; 3].map(VertexId), patch: 1, triangle: 0 };
+    let line = NewLine { vertices: [7; 2].map(VertexId), source: 0 };
+    let vertex = VertexChange::Remove(VertexId(1));
+    Change { cavity: vec![TetId(0)], fill: vec![fill], vertex, walls: vec![wall], lines: vec![line] }
+}
+
+/// Every tet of the fill is measured where it will be, and all together fill the cavity; the kernel takes it.
+fn assert_sound(complex: &Complex, change: &Change) {
+    for tet in &change.fill {
+        assert_eq!(tet.quality, eas(corners(complex, change, tet.vertices)));
+    }
+    assert!(change.lines.is_empty() && (change.walls.is_empty() || !complex.keeps_surface()));
+    let before: f64 = change.cavity.iter().map(|&t| volume(complex.corners(t))).sum();
+    let after: f64 = change.fill.iter().map(|t| volume(corners(complex, change, t.vertices))).sum();
+    assert!((after - before).abs() < 1e-12 * before, "{after} in place of {before}");
+    let checked = complex.check_against(change, 0.0);
+    assert!(checked.is_ok(), "{:?}", checked.err());
+}
+
+#[test]
+fn edge_removal_finds_the_best_of_all_triangulations() {
+    // Room for tables and lists is used again and again: what was there before must not matter.
+    let (mut removal, mut change) = (EdgeRemoval::default(), dirty());
+    let mut numbers = Numbers(1);
+    let mut n_removed = 0;
+    for n in (3..=7).cycle().take(200) {
+        let points = ring(n, std::f64::consts::TAU, &mut numbers);
+        let complex = Complex::new(&round_edge(points.clone(), true)).unwrap();
+        let best =
+            triangulations(0, n - 1).iter().map(|t| worst_on(&points, t)).fold(f64::NEG_INFINITY, f64::max);
+        for start in (0..n).map(TetId::new) {
+            let is_proposed = removal.propose(&complex, start, [A, B], 0.0, &mut change);
+            assert_eq!(is_proposed, best > 0.0, "{best}");
+            if is_proposed {
+                n_removed += 1;
+                assert_eq!((change.cavity.len(), change.fill.len()), (n, 2 * (n - 2)));
+                assert!((change.worst() - best).abs() < 1e-14, "{} and not {best}", change.worst());
+                assert_sound(&complex, &change);
+            }
+        }
+        // In place of the worst that goes nothing at or below the bar comes.
+        let first = TetId(0);
+        assert!(!removal.propose(&complex, first, [A, B], best.max(0.0) + 1e-12, &mut change));
+        assert_eq!(removal.propose(&complex, first, [A, B], best - 1e-12, &mut change), best - 1e-12 > -1.0);
+    }
+    assert!(n_removed > 200, "{n_removed}");
+}
+
+#[test]
+fn rings_of_more_than_ten_are_left_alone() {
+    for (n, is_tried) in [(10, true), (11, false)] {
+        // Flat, so that all triangulations are positive.
+        let on_circle = |i: usize| {
+            let angle = std::f64::consts::TAU * i as f64 / n as f64;
+            [angle.cos(), angle.sin(), 0.0]
+        };
+        let points = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]].into_iter().chain((0..n).map(on_circle)).collect();
+        let complex = Complex::new(&round_edge(points, true)).unwrap();
+        let mut change = Change::default();
+        assert_eq!(EdgeRemoval::default().propose(&complex, TetId(0), [A, B], 0.0, &mut change), is_tried);
+    }
+}
+
+#[test]
+fn an_edge_of_the_boundary_is_swapped_between_its_walls() {
+    let mut numbers = Numbers(2);
+    let mut n_swapped = 0;
+    for n in (3..=6).cycle().take(200) {
+        // The first and the last of the ring lie in one plane with the edge.
+        let mut points = ring(n, std::f64::consts::PI, &mut numbers);
+        let (radius, height) = (0.7 + 0.6 * numbers.unit(), 0.6 * numbers.unit() - 0.3);
+        points[2] = [radius, 0.0, height];
+        points[n + 1] = [-radius, 0.0, -height];
+        let mut complex = Complex::new(&round_edge(points.clone(), false)).unwrap();
+        let (mut removal, mut change) = (EdgeRemoval::default(), Change::default());
+        assert!(!removal.propose(&complex, TetId(0), [A, B], 0.0, &mut change), "the surface is kept");
+        complex.adapt_surface();
+        let best =
+            triangulations(0, n - 1).iter().map(|t| worst_on(&points, t)).fold(f64::NEG_INFINITY, f64::max);
+        let is_proposed = removal.propose(&complex, TetId(0), [A, B], 0.0, &mut change);
+        assert_eq!(is_proposed, best > 0.0, "{best}");
+        if !is_proposed {
+            continue;
+        }
+        n_swapped += 1;
+        assert!((change.worst() - best).abs() < 1e-14, "{} and not {best}", change.worst());
+        assert_sound(&complex, &change);
+        let ends = [VertexId(2), VertexId::new(n + 1)];
+        let walls: Vec<_> = change.walls.iter().map(|wall| wall.vertices).collect();
+        assert_eq!(walls, [[A, ends[0], ends[1]], [B, ends[0], ends[1]]]);
+    }
+    assert!(n_swapped > 50, "{n_swapped}");
+}
+
+#[test]
+fn walls_within_a_ring_are_swapped_if_they_are_of_one_patch() {
+    let mut numbers = Numbers(3);
+    let mut n_swapped = 0;
+    for k in 0..100 {
+        // Four quarters of a turn with more of the ring between; the walls go to the first and the third.
+        let n = 6;
+        let mut points = ring(n, std::f64::consts::TAU, &mut numbers);
+        let half = 2 + n / 2;
+        points[half] = points[2].map(|x| -x);
+        let mut mesh = round_edge(points.clone(), true);
+        mesh.triangles = vec![[A, B, VertexId(2)], [B, A, VertexId::new(half)]];
+        mesh.patches = vec![4, if k % 2 == 0 { 4 } else { 5 }];
+        let mut complex = Complex::new(&mesh).unwrap();
+        complex.adapt_surface();
+        let sides = [triangulations(0, n / 2), {
+            let other = triangulations(n / 2, n);
+            other.into_iter().map(|all| all.into_iter().map(|t| t.map(|i| i % n)).collect()).collect()
+        }];
+        let best = |all: &[Vec<[usize; 3]>]| {
+            all.iter().map(|t| worst_on(&points, t)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let best = best(&sides[0]).min(best(&sides[1]));
+        let mut change = Change::default();
+        for start in (0..n).map(TetId::new) {
+            let is_proposed = EdgeRemoval::default().propose(&complex, start, [A, B], 0.0, &mut change);
+            assert_eq!(is_proposed, best > 0.0 && k % 2 == 0, "{best}");
+            if is_proposed {
+                n_swapped += 1;
+                assert!((change.worst() - best).abs() < 1e-14, "{} and not {best}", change.worst());
+                assert!(change.walls.iter().all(|wall| wall.patch == 4));
+                assert_sound(&complex, &change);
+            }
+        }
+    }
+    assert!(n_swapped > 100, "{n_swapped}");
+}
+
+#[test]
+fn face_removal_finds_the_best_of_all_connected_facets() {
+    let (mut removal, mut change) = (FaceRemoval::default(), dirty());
+    let mut numbers = Numbers(4);
+    let mut sizes = [0; 5];
+    for n in (3..=6).cycle().take(300) {
+        let points = ring(n, std::f64::consts::TAU, &mut numbers);
+        let all = triangulations(0, n - 1);
+        let triangles = &all[numbers.below(all.len())];
+        if worst_on(&points, triangles) <= 0.0 {
+            continue;
+        }
+        let at = |t: [usize; 3], end: usize| [end, t[0] + 2, t[1] + 2, t[2] + 2];
+        let tets = triangles.iter().flat_map(|&t| [at(t, 0), at(t, 1)]);
+        let complex = Complex::new(&mesh(points.clone(), tets)).unwrap();
+        let first = 2 * numbers.below(triangles.len());
+        // Each set of facets that hang together, by bits: its outer edges get a tet each.
+        let mut best = 0.0;
+        for set in (0u32..1 << triangles.len()).filter(|set| set >> (first / 2) & 1 == 1) {
+            let taken: Vec<[usize; 3]> =
+                (0..triangles.len()).filter(|i| set >> i & 1 == 1).map(|i| triangles[i]).collect();
+            let edges: Vec<[usize; 2]> =
+                taken.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]]).collect();
+            let outer: Vec<_> = edges.iter().filter(|[p, q]| !edges.contains(&[*q, *p])).collect();
+            // A polygon of so many triangles has two edges more: fewer facets hang together by vertices alone.
+            if outer.len() != taken.len() + 2 {
+                continue;
+            }
+            let of = |&&[p, q]: &&[usize; 2]| eas([points[0], points[1], points[p + 2], points[q + 2]]);
+            let worst = outer.iter().map(of).fold(f64::INFINITY, f64::min);
+            best = worst.max(best);
+        }
+        let opposite = complex.place(TetId::new(first), A);
+        let is_proposed = removal.propose(&complex, TetId::new(first), opposite, 0.0, &mut change);
+        assert_eq!(is_proposed, best > 0.0, "{best}");
+        if is_proposed {
+            let n = change.cavity.len() / 2;
+            sizes[n] += 1;
+            assert!((change.worst() - best).abs() < 1e-14, "{} and not {best}", change.worst());
+            assert_eq!((change.cavity.len(), change.fill.len()), (2 * n, n + 2));
+            assert_sound(&complex, &change);
+            let above = best + 1e-12;
+            assert!(!removal.propose(&complex, TetId::new(first), opposite, above, &mut change));
+        }
+    }
+    assert!(sizes[1..].iter().all(|&n| n > 5), "{sizes:?}");
+}
+
+/// A ball of tets round a vertex, which is the last one: triangles of an octahedron, divided once, joined to it.
+fn ball_round(centre: Point) -> TetMesh {
+    let axes: Vec<Point> = (0..6)
+        .map(|i| [0, 1, 2].map(|k| if k == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }))
+        .collect();
+    let mut points = axes;
+    let mut tets = Vec::new();
+    for (x, y, z) in (0..8).map(|i| (i & 1, 2 + (i >> 1 & 1), 4 + (i >> 2))) {
+        let mut middle = |a: usize, b: usize| {
+            let sum = [0, 1, 2].map(|k| points[a][k] + points[b][k]);
+            let place = sum.map(|s| s / norm(sum));
+            let known = points.iter().position(|&p| distance(p, place) < 1e-12);
+            known.unwrap_or_else(|| {
+                points.push(place);
+                points.len() - 1
+            })
+        };
+        let [xy, yz, zx] = [middle(x, y), middle(y, z), middle(z, x)];
+        tets.extend([[x, xy, zx], [y, yz, xy], [z, zx, yz], [xy, yz, zx]]);
+    }
+    points.push(centre);
+    let apex = points.len() - 1;
+    mesh(points, tets.into_iter().map(|[a, b, c]| [a, b, c, apex]))
+}
+
+/// Only in a plane of one z.
+struct InPlane(f64);
+
+impl Track for InPlane {
+    fn draw(&self, [x, y, _]: Point) -> Option<Point> {
+        Some([x, y, self.0])
+    }
+
+    fn along(&self, [x, y, _]: Point) -> Point {
+        [x, y, 0.0]
+    }
+}
+
+#[test]
+fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
+    let vertex = VertexId(18);
+    let worst = |centre: Point| {
+        let complex = Complex::new(&ball_round(centre)).unwrap();
+        complex.tets().map(|t| complex.quality(t)).fold(f64::INFINITY, f64::min)
+    };
+    let (best, mut numbers, mut n_on_the_way) = (worst([0.0; 3]), Numbers(5), 0);
+    for _ in 0..50 {
+        let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
+        let complex = Complex::new(&ball_round(start)).unwrap();
+        let (mut star, mut smoothing, mut change) = (Star::default(), Smoothing::default(), dirty());
+        star.gather(&complex, vertex);
+        let before = complex.worst_of(&star.tets);
+        assert!(smoothing.propose(&complex, &star.tets, vertex, [before, 1.0], &Anywhere, &mut change));
+        assert_sound(&complex, &change);
+        let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
+        assert!(change.worst() > before && change.worst() > 0.9 * best, "{} of {best}", change.worst());
+        assert!((change.worst() - worst(place)).abs() < 1e-14);
+        // What is best already is not proposed again.
+        let at_best = change.worst();
+        assert!(!smoothing.propose(
+            &complex,
+            &star.tets,
+            vertex,
+            [at_best + 0.05, 1.0],
+            &Anywhere,
+            &mut change
+        ));
+
+        // Where a little more is enough, it stops on the way.
+        let enough = before + 0.1 * (at_best - before);
+        assert!(smoothing.propose(&complex, &star.tets, vertex, [before, enough], &Anywhere, &mut change));
+        let VertexChange::Move(_, near) = change.vertex else { panic!("{:?}", change.vertex) };
+        assert!(change.worst() >= enough && near != start);
+        n_on_the_way += usize::from(change.worst() < at_best - 0.05);
+        assert!(!smoothing.propose(&complex, &star.tets, vertex, [before, before], &Anywhere, &mut change));
+
+        let track = InPlane(start[2]);
+        if smoothing.propose(&complex, &star.tets, vertex, [before, 1.0], &track, &mut change) {
+            let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
+            assert_eq!(place[2], start[2]);
+            let of_centre = worst([0.0, 0.0, start[2]]);
+            assert!(change.worst() > 0.9 * of_centre, "{} of {of_centre}", change.worst());
+        }
+    }
+    assert!(n_on_the_way > 25, "{n_on_the_way}");
+}
+
+#[test]
+fn a_collapse_draws_every_other_tet_to_the_vertex_that_stays() {
+    let (gone, kept) = (VertexId(18), VertexId(7));
+    let complex = Complex::new(&ball_round([0.0; 3])).unwrap();
+    let (mut star, mut change) = (Star::default(), dirty());
+    star.gather(&complex, gone);
+    assert!(collapse(&complex, &star.tets, gone, kept, 0.0, &mut change));
+    assert_sound(&complex, &change);
+    assert_eq!(change.vertex, VertexChange::Remove(gone));
+    let others: Vec<_> =
+        star.tets.iter().copied().filter(|&t| !complex.vertices(t).contains(&kept)).collect();
+    assert_eq!(change.fill.len(), others.len());
+    for (tet, fill) in others.iter().zip(&change.fill) {
+        assert_eq!(fill.vertices, complex.vertices(*tet).map(|v| if v == gone { kept } else { v }));
+    }
+    let worst = change.worst();
+    assert!(!collapse(&complex, &star.tets, gone, kept, worst, &mut change));
+    assert!(collapse(&complex, &star.tets, gone, kept, worst.next_down(), &mut change));
+}
+
+#[test]
+fn splits_of_an_edge_make_two_tets_of_each() {
+    let (mut numbers, mut n_onto) = (Numbers(6), 0);
+    for n in (3..8).cycle().take(50) {
+        let points = ring(n, std::f64::consts::TAU, &mut numbers);
+        let complex = Complex::new(&round_edge(points, true)).unwrap();
+        let (mut shell, mut change) = (Shell::default(), dirty());
+        shell.walk(&complex, TetId(0), A, B);
+        let middle = ([0.0, 0.0, 0.1], Hold::Free);
+        assert!(split_edge(&complex, &shell, [A, B], middle, 0.0, &mut change));
+        assert_sound(&complex, &change);
+        assert_eq!(change.fill.len(), 2 * n);
+        assert!(change.fill.iter().all(|tet| tet.vertices.contains(&complex.next_vertex())));
+        assert!(change.fill.iter().all(|tet| tet.vertices.contains(&A) != tet.vertices.contains(&B)));
+        let worst = change.worst();
+        assert!(!split_edge(&complex, &shell, [A, B], middle, worst, &mut change));
+        assert!(split_edge(&complex, &shell, [A, B], middle, worst.next_down(), &mut change));
+
+        // A vertex of the ring in place of the middle: the triangulation that fans out from it.
+        let onto = VertexId(2);
+        if split_onto(&complex, &shell, onto, 0.0, &mut change) {
+            n_onto += 1;
+            assert_sound(&complex, &change);
+            assert_eq!(change.fill.len(), 2 * (n - 2));
+            assert!(change.fill.iter().all(|tet| tet.vertices.contains(&onto)));
+        }
+    }
+    assert!(n_onto > 10, "{n_onto}");
+}
+
+/// Two edges that cross at right angles, 01 over 23, with the tet between them; round the first, and with `both` round the second, the tets that close the ring.
+fn crossing(both: bool) -> TetMesh {
+    let points = [
+        [-1.0, 0.0, -0.1],
+        [1.0, 0.0, -0.1],
+        [0.0, -1.0, 0.1],
+        [0.0, 1.0, 0.1],
+        [0.0, 0.0, -1.0],
+        [0.0, 0.0, 1.0],
+    ];
+    let tets = [[0, 1, 2, 3], [0, 1, 3, 4], [0, 1, 4, 2], [2, 3, 0, 5], [2, 3, 5, 1]];
+    mesh(points[..if both { 6 } else { 5 }].to_vec(), tets.into_iter().take(if both { 5 } else { 3 }))
+}
+
+#[test]
+fn crossed_edges_are_split_where_they_pass_each_other() {
+    let split = |mesh: &TetMesh, adapts: bool, change: &mut Change| {
+        let mut complex = Complex::new(mesh).unwrap();
+        if adapts {
+            complex.adapt_surface();
+        }
+        let (mut first, mut second) = (Shell::default(), Shell::default());
+        first.walk(&complex, TetId(0), VertexId(0), VertexId(1));
+        second.walk(&complex, TetId(0), VertexId(2), VertexId(3));
+        let is_split = split_crossed(&complex, [&first, &second], [0.0; 3], 0.0, change);
+        assert_eq!(
+            is_split,
+            split_crossed(&complex, [&second, &first], [0.0; 3], 0.0, &mut Change::default())
+        );
+        (complex, is_split)
+    };
+    let mut change = dirty();
+    let (complex, is_split) = split(&crossing(true), false, &mut change);
+    assert!(is_split);
+    assert_sound(&complex, &change);
+    assert_eq!((change.cavity.len(), change.fill.len()), (5, 8));
+    // Where one of them is at a wall or on the boundary, it may not be split.
+    let mut walled = crossing(true);
+    walled.triangles = vec![[2, 3, 5].map(VertexId)];
+    walled.patches = vec![1];
+    for mesh in [walled, crossing(false)] {
+        for adapts in [false, true] {
+            assert!(!split(&mesh, adapts, &mut change).1);
+        }
+    }
+}
+
+#[test]
+fn an_insertion_joins_a_vertex_to_all_that_it_sees_well() {
+    let mut numbers = Numbers(7);
+    let mut sizes = Vec::new();
+    for seed in 0..60 {
+        let mesh = common::random_mesh(30, seed);
+        let complex = Complex::new(&mesh).unwrap();
+        let tet = TetId::new(numbers.below(complex.n_tets()));
+        let middle = motet::geometry::tet::centroid(complex.corners(tet));
+        let (mut insertion, mut change) = (Insertion::default(), dirty());
+        for bar in [0.0, 0.05, 0.1, 0.2] {
+            if !insertion.propose(&complex, &[tet], middle, [bar, 0.6], &mut change) {
+                continue;
+            }
+            assert_sound(&complex, &change);
+            assert!(change.worst() > bar && change.cavity.contains(&tet) && change.cavity.len() <= 40);
+            assert!(change.fill.iter().all(|t| t.vertices[3] == complex.next_vertex()));
+            let is_wall = |half: HalfFacet| complex.is_wall(half.tet(), half.facet());
+            for (t, i) in change.cavity.iter().flat_map(|&t| (0..4).map(move |i| (t, i))) {
+                let behind = complex.across(t, i);
+                let is_within = !behind.is_none() && change.cavity.contains(&behind.tet());
+                assert!(!(is_within && is_wall(HalfFacet::new(t, i))), "a wall would go");
+            }
+            sizes.push(change.cavity.len());
+        }
+    }
+    assert!(sizes.len() > 60 && sizes.contains(&1) && sizes.iter().any(|&n| n > 5), "{sizes:?}");
+}
