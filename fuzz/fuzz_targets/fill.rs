@@ -33,6 +33,6 @@ fuzz_target!(|bytes: &[u8]| {
     let total: f64 = solids::volumes(&filled.mesh).values().sum();
     if filled.report.triangles_kept == filled.report.triangles {
         let off = (total - enclosed).abs();
-        assert!(off <= solids::tolerance(&filled.mesh), "{total} filled, {enclosed} enclosed");
+        assert!(off <= solids::tolerance(&filled.mesh, &skin), "{total} filled, {enclosed} enclosed");
     }
 });

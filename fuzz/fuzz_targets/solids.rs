@@ -75,7 +75,7 @@ fn placed(mesh: &mut Mesh, numbers: &mut Numbers) {
     let how = numbers.below(8);
     let turn = |p: Point| {
         // A rotation with rational entries, which few floats are.
-        let rows = [[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [2.0, 1.0, -2.0]];
+        let rows = [[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]];
         rows.map(|r: [f64; 3]| (r[0] * p[0] + r[1] * p[1] + r[2] * p[2]) / 3.0)
     };
     for p in &mut mesh.points {
@@ -121,11 +121,14 @@ pub fn volumes(mesh: &Mesh) -> HashMap<i64, f64> {
     volumes
 }
 
-/// How far volumes may be off: the area of all facets times the rounding of coordinates.
-pub fn tolerance(mesh: &Mesh) -> f64 {
-    let largest = mesh.points.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+/// How far the volumes of a mesh that was made of `given` may be off: the area of all facets times the rounding of given coordinates. Facets that are flat but for the rounding of `f32` may be
+/// divided in another way.
+pub fn tolerance(mesh: &Mesh, given: &Mesh) -> f64 {
+    let coordinates = || given.points.iter().flatten();
+    let largest = coordinates().fold(0.0f64, |m, x| m.max(x.abs()));
+    let is_single = coordinates().all(|x| f64::from(*x as f32) == *x);
     let facets: f64 = tets(mesh).iter().flat_map(|t| FACETS.map(|f| area(f.map(|k| t[k])))).sum();
-    1e-12 * largest * facets
+    if is_single { 2.0 * f64::from(f32::EPSILON) * largest * facets } else { 1e-12 * largest * facets }
 }
 
 /// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets, and no facet of two from the same side.
