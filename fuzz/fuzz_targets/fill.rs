@@ -24,7 +24,8 @@ fuzz_target!(|bytes: &[u8]| {
     let threads = Threads::single();
     let Ok(surfaces) = Surfaces::new(&[(&skin, Role::Boundary, "skin")]) else { return };
     let preflight = surfaces.preflight(&threads);
-    let Ok(filled) = fill(&surfaces, &preflight, &Options::with_sizes(sizes, min_eas), &threads) else { return };
+    let options = Options { voids: true, ..Options::with_sizes(sizes, min_eas) };
+    let Ok(filled) = fill(&surfaces, &preflight, &options, &threads) else { return };
     solids::check(&filled.mesh);
     assert_eq!(solids::n_not_positive(&filled.mesh) > 0, filled.report.not_positive > 0, "as reported");
     let surface = Surface::of(&skin);

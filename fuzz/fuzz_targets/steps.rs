@@ -74,7 +74,11 @@ fn refine(moving: &mut MovingMesh, numbers: &mut Numbers, threads: &Threads) {
     let ball = Criterion::Ball { centre: numbers.vector(), radius: 0.3 };
     let coarsen = numbers.below(2) == 1;
     let wanted = Wanted { criteria: vec![ball], coarsen, generations: Some(1), ..Wanted::default() };
-    moving.refine(&wanted, threads).expect("a mesh is refined");
+    // The ball may hold no tet: then nothing changes.
+    let before = moving.mesh().clone();
+    if moving.refine(&wanted, threads).is_err() {
+        assert_eq!(*moving.mesh(), before);
+    }
 }
 
 /// The integral of `dye` over all tets.
