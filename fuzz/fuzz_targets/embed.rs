@@ -12,7 +12,7 @@ use solids::Numbers;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
-    let interface = [Interface::Match, Interface::Match, Interface::Conform { tolerance: None }][numbers.below(3)];
+    let interface = [Interface::Match, Interface::Match, Interface::Conform { tolerance: Some(0.1) }][numbers.below(3)];
     let outside = [Outside::Cut, Outside::Keep][numbers.below(2)];
     let is_hollow = numbers.below(2) == 1;
     let brings_tets = numbers.below(3) == 2;

@@ -131,9 +131,10 @@ pub fn tolerance(mesh: &Mesh, given: &Mesh) -> f64 {
     if is_single { 2.0 * f64::from(f32::EPSILON) * largest * facets } else { 1e-12 * largest * facets }
 }
 
-/// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets, and no facet of two from the same side.
+/// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets and, where all are positive, no facet of two from the same side.
 pub fn check(mesh: &Mesh) {
     mesh.validate().expect("the mesh holds together");
+    let are_positive = n_not_positive(mesh) == 0;
     let mut uses: HashMap<[VertexId; 3], Vec<bool>> = HashMap::new();
     for (cell, tet) in mesh.cells.tets() {
         let mut corners = tet;
@@ -145,7 +146,7 @@ pub fn check(mesh: &Mesh) {
         }
     }
     for (facet, sides) in uses {
-        let is_sound = sides.len() == 1 || sides.len() == 2 && sides[0] != sides[1];
+        let is_sound = sides.len() == 1 || sides.len() == 2 && (sides[0] != sides[1] || !are_positive);
         assert!(is_sound, "facet {facet:?} of {} tets, seen from {sides:?}", sides.len());
     }
 }
