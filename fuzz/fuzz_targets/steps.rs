@@ -37,7 +37,7 @@ fuzz_target!(|bytes: &[u8]| {
             1 => drop(moving.coarsen(0.05, &threads).expect("a mesh is coarsened")),
             2 => refine(&mut moving, &mut numbers, &threads),
             3 => {
-                let state = folder.path().join("state");
+                let state = folder.path().join("state.vtu");
                 moving.save(&state).expect("a state is saved");
                 moving = MovingMesh::load(&state, options.clone(), &threads).expect("what is saved is loaded");
             }
