@@ -33,6 +33,10 @@ const ROUNDS: usize = 8;
 /// So many pairs of triangles are not divided: they take too much memory.
 const MOST_PAIRS: usize = 2_000_000;
 
+/// Pieces whose boxes touch more often than so many times a piece, and this number in all, are not looked at: those of a soup of triangles that nearly all go through each other. Of a
+/// surface a box touches some twenty others.
+const MOST_TOUCHING: (usize, usize) = (100, 200_000);
+
 /// Which triangles are divided where they meet.
 pub(crate) struct Rule<'a> {
     /// The group of each triangle.
@@ -81,6 +85,9 @@ impl Cut {
             cut.join_vertices(rule);
             let pairs = cut.pairs(rule, threads)?;
             cut.round(&pairs, rule.near)?;
+            if !pairs.is_empty() && cut.is_too_dense(threads) {
+                break;
+            }
             if cut.is_sound(rule, threads) {
                 met::sort(&mut cut.met);
                 return Some(cut);
@@ -156,6 +163,25 @@ impl Cut {
             found
         });
         (n_found.into_inner() <= MOST_PAIRS).then_some(found)
+    }
+
+    /// Whether pieces lie so close together that to look at all that touch would take for ever.
+    fn is_too_dense(&self, threads: &Threads) -> bool {
+        let corners = |i: usize| corners(&self.points, self.pieces[i].0);
+        let boxes: Vec<_> = (0..self.pieces.len()).map(|i| around(&corners(i))).collect();
+        let (tree, n_touching) = (BoxTree::new(&boxes), AtomicUsize::new(0));
+        let most = MOST_TOUCHING.1.max(MOST_TOUCHING.0 * self.pieces.len());
+        in_runs(self.pieces.len(), threads, |touching, run| -> Vec<()> {
+            for i in run {
+                if n_touching.load(Ordering::Relaxed) > most {
+                    break;
+                }
+                tree.touching(boxes[i], touching);
+                n_touching.fetch_add(touching.len(), Ordering::Relaxed);
+            }
+            Vec::new()
+        });
+        n_touching.into_inner() > most
     }
 
     /// Whether the pieces that are looked at meet in what they share alone, or are the same triangle.
