@@ -127,8 +127,7 @@ impl Tree {
             text += &source[at..];
             put(&self.folder.join(file), text.as_bytes())?;
         }
-        let allowed =
-            "#![allow(warnings, arithmetic_overflow, unconditional_panic, unconditional_recursion)]";
+        let allowed = "#![allow(warnings, arithmetic_overflow, unconditional_panic, unconditional_recursion, reason = \"a mutant is wrong on purpose\")]";
         let library = format!("{allowed}\n{}\n#[doc(hidden)]\npub mod mutants;\n", self.library);
         put(&self.folder.join(CRATE).join("src/lib.rs"), library.as_bytes())?;
         let n_mutants = format!("N_MUTANTS: usize = {}", self.mutants.len() + 1);

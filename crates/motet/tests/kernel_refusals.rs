@@ -1,4 +1,4 @@
-//! What the kernel refuses, by name, whether the surface is kept or adapts; and what it looks like when folded tets are gone.
+//! What the kernel refuses, by name, whether the surface is kept or adapts; and what a mesh is once folded tets are removed.
 
 use motet::base::{TetId, VertexId};
 use motet::kernel::{Change, Complex, Hold, NewLine, NewWall, Reject, Star, VertexChange};
@@ -23,10 +23,10 @@ fn complex(mesh: &TetMesh, adapts: bool) -> Complex {
 }
 
 /// What the kernel says to one vertex drawn into another.
-fn drawn(complex: &Complex, gone: VertexId, kept: VertexId) -> Result<(), Reject> {
+fn drawn(complex: &Complex, removed: VertexId, kept: VertexId) -> Result<(), Reject> {
     let (mut star, mut change) = (Star::default(), Change::default());
-    star.gather(complex, gone);
-    collapse(complex, &star.tets, gone, kept, -2.0, &mut change);
+    star.gather(complex, removed);
+    collapse(complex, &star.tets, removed, kept, -2.0, &mut change);
     complex.check_against(&change, 0.0).map(|_| ())
 }
 
@@ -169,10 +169,10 @@ fn what_is_folded_over_a_mesh_is_peeled_off_and_nothing_of_it_is_left() {
 fn new_walls_are_facets_of_the_fill() {
     let mesh = cube(4);
     let complex = complex(&mesh, true);
-    let (gone, kept) = (vertex_at(&mesh, [0.0, 0.5, 0.5]), vertex_at(&mesh, [0.0, 0.5, 0.25]));
+    let (removed, kept) = (vertex_at(&mesh, [0.0, 0.5, 0.5]), vertex_at(&mesh, [0.0, 0.5, 0.25]));
     let (mut star, mut change) = (Star::default(), Change::default());
-    star.gather(&complex, gone);
-    collapse(&complex, &star.tets, gone, kept, -2.0, &mut change);
+    star.gather(&complex, removed);
+    collapse(&complex, &star.tets, removed, kept, -2.0, &mut change);
     assert_eq!(complex.check_against(&change, 0.0).map(|_| ()), Ok(()));
     let mut open = change.clone();
     open.walls.pop();
@@ -182,7 +182,7 @@ fn new_walls_are_facets_of_the_fill() {
     assert!(matches!(complex.check_against(&twice, 0.0), Err(Reject::Wall(_))));
     let mut elsewhere = change.clone();
     let far = vertex_at(&mesh, [1.0; 3]);
-    elsewhere.walls.push(NewWall { vertices: [gone, kept, far], ..change.walls[0] });
+    elsewhere.walls.push(NewWall { vertices: [removed, kept, far], ..change.walls[0] });
     assert!(matches!(complex.check_against(&elsewhere, 0.0), Err(Reject::Wall(_))));
 }
 

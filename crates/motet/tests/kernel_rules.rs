@@ -64,27 +64,29 @@ fn vertices_are_used_as_long_as_a_tet_has_them() {
     assert_eq!((complex.n_used_vertices(), complex.n_vertex_slots()), (n, n + 1));
     assert!(!complex.is_used(VertexId::new(n)) && complex.hold(VertexId::new(n)) == Hold::Fixed);
     // One inside is drawn into a neighbour: its slot is the next to be taken.
-    let gone = (0..n).map(VertexId::new).find(|&v| complex.hold(v) == Hold::Free).unwrap();
+    let removed = (0..n).map(VertexId::new).find(|&v| complex.hold(v) == Hold::Free).unwrap();
     let (mut star, mut change) = (Star::default(), Change::default());
-    star.gather(&complex, gone);
+    star.gather(&complex, removed);
     let mut ends: Vec<VertexId> =
-        star.tets.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != gone).collect();
+        star.tets.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != removed).collect();
     ends.sort_unstable();
     ends.dedup();
-    let kept =
-        ends.into_iter().find(|&kept| collapse(&complex, &star.tets, gone, kept, 0.0, &mut change)).unwrap();
-    assert!(collapse(&complex, &star.tets, gone, kept, 0.0, &mut change));
+    let kept = ends
+        .into_iter()
+        .find(|&kept| collapse(&complex, &star.tets, removed, kept, 0.0, &mut change))
+        .unwrap();
+    assert!(collapse(&complex, &star.tets, removed, kept, 0.0, &mut change));
     assert_eq!(complex.next_vertex(), VertexId::new(n + 1));
     let checked = complex.check_against(&change, 0.0).unwrap();
     let mut inserted = Vec::new();
     complex.commit(checked, &mut inserted);
-    assert_eq!((complex.n_used_vertices(), complex.next_vertex()), (n - 1, gone));
-    assert!(!complex.is_used(gone) && inserted.iter().all(|&t| !complex.is_original(t)));
+    assert_eq!((complex.n_used_vertices(), complex.next_vertex()), (n - 1, removed));
+    assert!(!complex.is_used(removed) && inserted.iter().all(|&t| !complex.is_original(t)));
 
     let extract = complex.extract(&mesh);
     let old_to_vertex = extract.old_to_vertex(n + 1);
-    assert_eq!(old_to_vertex[gone.index()], NEW);
-    for (old, &new) in old_to_vertex.iter().enumerate().filter(|(old, _)| *old != gone.index()) {
+    assert_eq!(old_to_vertex[removed.index()], NEW);
+    for (old, &new) in old_to_vertex.iter().enumerate().filter(|(old, _)| *old != removed.index()) {
         assert_eq!(extract.mesh.points[new as usize], mesh.points[old]);
     }
     for tet in complex.tets() {
@@ -94,10 +96,10 @@ fn vertices_are_used_as_long_as_a_tet_has_them() {
 }
 
 /// Draws a vertex of a wall into one beside it, walls and all.
-fn drawn(complex: &Complex, gone: VertexId, kept: VertexId) -> Result<(), Reject> {
+fn drawn(complex: &Complex, removed: VertexId, kept: VertexId) -> Result<(), Reject> {
     let (mut star, mut change) = (Star::default(), Change::default());
-    star.gather(complex, gone);
-    collapse(complex, &star.tets, gone, kept, -2.0, &mut change);
+    star.gather(complex, removed);
+    collapse(complex, &star.tets, removed, kept, -2.0, &mut change);
     complex.check_against(&change, 0.0).map(|_| ())
 }
 
@@ -106,31 +108,31 @@ fn what_is_held_neither_moves_nor_goes() {
     let mesh = cube(4);
     let at = |p: Point| VertexId::new(mesh.points.iter().position(|&q| q == p).unwrap());
     // Two vertices inside a side of the cube.
-    let (gone, kept) = (at([0.0, 0.5, 0.5]), at([0.0, 0.5, 0.25]));
+    let (removed, kept) = (at([0.0, 0.5, 0.5]), at([0.0, 0.5, 0.25]));
     let fresh = || Complex::new(&mesh).unwrap();
-    assert_eq!(drawn(&fresh(), gone, kept), Err(Reject::Held(gone)), "the surface is kept");
+    assert_eq!(drawn(&fresh(), removed, kept), Err(Reject::Held(removed)), "the surface is kept");
     let adapting = || {
         let mut complex = fresh();
         complex.adapt_surface();
         complex
     };
     assert!(!adapting().keeps_surface() && fresh().keeps_surface());
-    assert_eq!(drawn(&adapting(), gone, kept), Ok(()));
+    assert_eq!(drawn(&adapting(), removed, kept), Ok(()));
 
     let mut fixed = adapting();
-    fixed.set_hold(gone, Hold::Fixed);
-    assert_eq!(drawn(&fixed, gone, kept), Err(Reject::Held(gone)));
+    fixed.set_hold(removed, Hold::Fixed);
+    assert_eq!(drawn(&fixed, removed, kept), Err(Reject::Held(removed)));
 
     let mut locked = adapting();
-    let tet = locked.tet_of(gone);
+    let tet = locked.tet_of(removed);
     locked.lock(tet);
     assert!(locked.is_locked(tet) && locked.tets().filter(|&t| locked.is_locked(t)).count() == 1);
-    assert_eq!(drawn(&locked, gone, kept), Err(Reject::Locked(tet)));
+    assert_eq!(drawn(&locked, removed, kept), Err(Reject::Locked(tet)));
 
     // A wall that is fixed holds its vertices; one of the others may still go if that leaves the wall.
     let mut walled = adapting();
     let of_both = |complex: &Complex| {
-        let has_both = |v: [VertexId; 3]| v.contains(&gone) && v.contains(&kept);
+        let has_both = |v: [VertexId; 3]| v.contains(&removed) && v.contains(&kept);
         complex.walls().find(|(_, wall)| has_both(complex.facet(wall.sides[0]))).unwrap().0
     };
     let wall = of_both(&walled);
@@ -138,9 +140,9 @@ fn what_is_held_neither_moves_nor_goes() {
     assert!(
         walled.is_fixed_wall(wall) && walled.walls().filter(|(id, _)| walled.is_fixed_wall(*id)).count() == 1
     );
-    assert_eq!(walled.hold(gone), Hold::Fixed);
-    walled.set_hold(gone, Hold::Surface);
-    assert!(matches!(drawn(&walled, gone, kept), Err(Reject::Wall(_))));
+    assert_eq!(walled.hold(removed), Hold::Fixed);
+    walled.set_hold(removed, Hold::Surface);
+    assert!(matches!(drawn(&walled, removed, kept), Err(Reject::Wall(_))));
 
     // An edge that is fixed stays although its ends may move.
     let inner = (0..mesh.points.len()).map(VertexId::new).find(|&v| fresh().hold(v) == Hold::Free).unwrap();

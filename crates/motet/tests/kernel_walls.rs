@@ -5,59 +5,12 @@ mod common;
 
 use std::collections::BTreeMap;
 
+use common::editor::Editor;
 use common::{Numbers, random_mesh};
-use motet::base::{TetId, VertexId};
-use motet::geometry::tet::{EDGES, centroid};
-use motet::kernel::{Change, Complex, Hold, NEW, Shell, Star};
+use motet::base::VertexId;
+use motet::kernel::{Complex, NEW};
 use motet::mesh::TetMesh;
-use motet::ops::{Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, collapse, split_edge};
 use proptest::prelude::*;
-
-/// Proposals of changes of a surface that adapts.
-#[derive(Default)]
-struct Editor {
-    change: Change,
-    edge_removal: EdgeRemoval,
-    face_removal: FaceRemoval,
-    smoothing: Smoothing,
-    insertion: Insertion,
-    star: Star,
-    shell: Shell,
-    inserted: Vec<TetId>,
-}
-
-impl Editor {
-    /// Makes a random change somewhere, whether it does good or not, if the kernel lets it; whether it did.
-    fn edit(&mut self, complex: &mut Complex, numbers: &mut Numbers) -> bool {
-        let alive: Vec<TetId> = complex.tets().collect();
-        let tet = alive[numbers.below(alive.len())];
-        let vertices = complex.vertices(tet);
-        let edge @ [a, b] = EDGES[numbers.below(6)].map(|i| vertices[i]);
-        self.shell.walk(complex, tet, a, b);
-        self.star.gather(complex, a);
-        let hold = match complex.line(a, b) {
-            Some(_) => Hold::Edge,
-            None if self.shell.walls.is_empty() => Hold::Free,
-            None => Hold::Surface,
-        };
-        let [p, q] = edge.map(|v| complex.point(v));
-        let middle = [0, 1, 2].map(|i| 0.5 * (p[i] + q[i]));
-        let (change, star) = (&mut self.change, &self.star.tets);
-        let is_positive = match numbers.below(6) {
-            0 => self.edge_removal.propose(complex, tet, edge, 0.0, change),
-            1 => self.face_removal.propose(complex, tet, numbers.below(4), 0.0, change),
-            2 => collapse(complex, star, a, b, 0.0, change),
-            3 => split_edge(complex, &self.shell, edge, (middle, hold), 0.0, change),
-            4 => self.smoothing.propose(complex, star, a, [0.0, 0.5], &Anywhere, change),
-            _ => self.insertion.propose(complex, &[tet], centroid(complex.corners(tet)), [0.0, 0.5], change),
-        };
-        let Some(checked) = complex.check_against(&self.change, 0.0).ok().filter(|_| is_positive) else {
-            return false;
-        };
-        complex.commit(checked, &mut self.inserted);
-        true
-    }
-}
 
 /// Some edges made lines of three labels.
 fn with_lines(mut mesh: TetMesh) -> TetMesh {
@@ -106,7 +59,7 @@ proptest! {
         let (mark, first) = (complex.mark(), state(&complex, &mesh));
         let (mut n_made, mut halfway) = (0, None);
         for i in 0..600 {
-            n_made += usize::from(editor.edit(&mut complex, &mut numbers));
+            n_made += usize::from(editor.propose(&complex, &mut numbers) && editor.make(&mut complex));
             if i % 100 == 0 {
                 complex.verify().map_err(TestCaseError::fail)?;
                 prop_assert_eq!(&ends(&complex, &mesh), &ends_at_first);

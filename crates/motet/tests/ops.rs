@@ -349,22 +349,22 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
 
 #[test]
 fn a_collapse_draws_every_other_tet_to_the_vertex_that_stays() {
-    let (gone, kept) = (VertexId(18), VertexId(7));
+    let (removed, kept) = (VertexId(18), VertexId(7));
     let complex = Complex::new(&ball_round([0.0; 3])).unwrap();
     let (mut star, mut change) = (Star::default(), dirty());
-    star.gather(&complex, gone);
-    assert!(collapse(&complex, &star.tets, gone, kept, 0.0, &mut change));
+    star.gather(&complex, removed);
+    assert!(collapse(&complex, &star.tets, removed, kept, 0.0, &mut change));
     assert_sound(&complex, &change);
-    assert_eq!(change.vertex, VertexChange::Remove(gone));
+    assert_eq!(change.vertex, VertexChange::Remove(removed));
     let others: Vec<_> =
         star.tets.iter().copied().filter(|&t| !complex.vertices(t).contains(&kept)).collect();
     assert_eq!(change.fill.len(), others.len());
     for (tet, fill) in others.iter().zip(&change.fill) {
-        assert_eq!(fill.vertices, complex.vertices(*tet).map(|v| if v == gone { kept } else { v }));
+        assert_eq!(fill.vertices, complex.vertices(*tet).map(|v| if v == removed { kept } else { v }));
     }
     let worst = change.worst();
-    assert!(!collapse(&complex, &star.tets, gone, kept, worst, &mut change));
-    assert!(collapse(&complex, &star.tets, gone, kept, worst.next_down(), &mut change));
+    assert!(!collapse(&complex, &star.tets, removed, kept, worst, &mut change));
+    assert!(collapse(&complex, &star.tets, removed, kept, worst.next_down(), &mut change));
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn wrecks_end_valid_told_or_refused() {
     assert!(n_valid > 30, "{n_valid} of 100 are meshes again");
 }
 
-/// Its facets have no tet behind them any more, and others lie on it: edges and facets that a change brings can be there already, though every tet has a volume.
+/// Where a tet has a wrong vertex and is positive, it overlaps others: a change can insert edges and facets that exist elsewhere already, though every tet has a volume.
 #[test]
 fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
     for seed in [6206, 9573] {

@@ -6,7 +6,6 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, scale, sub};
-use crate::mesh::Field;
 use crate::mesh::history::Origin;
 use crate::moving::now::{BEFORE, Known, LeftBad, Now};
 use crate::moving::options::Options;
@@ -201,33 +200,34 @@ impl Way<'_> {
     ) -> Result<Repaired> {
         let begin = Instant::now();
         let options = self.options;
-        let is_asked = !shape.bad.is_empty() || effort == Effort::All;
-        let Some(asked) = options.repair.as_ref().filter(|_| is_asked) else {
+        let is_needed = !shape.bad.is_empty() || effort == Effort::All;
+        let Some(usual) = options.repair.as_ref().filter(|_| is_needed) else {
             return Ok(Repaired::Left(Vec::new()));
         };
         let is_thinned = (now.tets.len() as f64) < options.keep_tets * self.n_first as f64;
-        let mut asked = remesh::Options {
+        let mut repair = remesh::Options {
             sizes: if is_thinned {
                 Some(Sizes::Vertices(now.known.size.clone()))
             } else {
-                asked.sizes.clone()
+                usual.sizes.clone()
             },
-            min_eas: (asked.min_eas + options.margin).min(1.0),
+            min_eas: (usual.min_eas + options.margin).min(1.0),
             only: self.worth_repair(now, shape, effort),
-            goal: if matches!(effort, Effort::Usual | Effort::Margin) { asked.goal } else { Goal::Best },
-            ..asked.clone()
+            goal: if matches!(effort, Effort::Usual | Effort::Margin) { usual.goal } else { Goal::Best },
+            ..usual.clone()
         };
         let mut given = now.moved(&self.points, &options.contents);
         let rules = now.put_known(&mut given, before, &options.rules);
-        let mut outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
-        for _ in 0..if options.valid_at_start { MOST_HELD } else { 0 } {
-            let replaced = replaced_by_inverted(&outcome)?;
+        let mut tries_left = if options.valid_at_start { MOST_HELD } else { 0 };
+        let outcome = loop {
+            let outcome = remesh_mesh(&given, &repair, &rules, self.threads)?;
+            let replaced = if tries_left > 0 { replaced_by_inverted(&outcome)? } else { Vec::new() };
             if replaced.is_empty() {
-                break;
+                break outcome;
             }
-            asked.held.cells.extend(replaced);
-            outcome = remesh_mesh(&given, &asked, &rules, self.threads)?;
-        }
+            repair.held.cells.extend(replaced);
+            tries_left -= 1;
+        };
         let (report, history) = (outcome.report, Arc::new(outcome.history));
         let left = left_of(&report);
         self.seconds.repair += begin.elapsed().as_secs_f64();
@@ -280,7 +280,8 @@ enum Repaired {
 
 /// The tets of the mesh before that a repair has replaced by such that have no volume where their vertices were as the step began.
 fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
-    let start = outcome.mesh.point_field(BEFORE).map_or_else(|| Ok(Vec::new()), Field::to_vectors)?;
+    let Some(start) = outcome.mesh.point_field(BEFORE) else { return Ok(Vec::new()) };
+    let start = start.to_vectors()?;
     let side = |tet: [VertexId; 4], points: &[Point]| {
         let [a, b, c, d] = tet.map(|v| points[v.index()]);
         orient3d(a, b, c, d)

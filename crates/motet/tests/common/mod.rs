@@ -6,6 +6,7 @@ pub(crate) mod adapting;
 pub(crate) mod chance;
 pub(crate) mod criteria;
 pub(crate) mod devices;
+pub(crate) mod editor;
 pub(crate) mod filled;
 pub(crate) mod hard;
 pub(crate) mod kept;

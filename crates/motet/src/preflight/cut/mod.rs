@@ -33,8 +33,8 @@ const ROUNDS: usize = 8;
 /// So many pairs of triangles are not divided: they take too much memory.
 const MOST_PAIRS: usize = 2_000_000;
 
-/// Pieces whose boxes touch more often than so many times a piece, and this number in all, are not looked at: those of a soup of triangles that nearly all go through each other. Of a
-/// surface a box touches some twenty others.
+/// Pieces of divided triangles are given up where the boxes of more pairs touch than so many a piece, and than this number: so they do in a soup of triangles that nearly all go through each other, and exact
+/// signs of all these pairs take minutes.
 const MOST_TOUCHING: (usize, usize) = (100, 200_000);
 
 /// Which triangles are divided where they meet.
@@ -85,10 +85,8 @@ impl Cut {
             cut.join_vertices(rule);
             let pairs = cut.pairs(rule, threads)?;
             cut.round(&pairs, rule.near)?;
-            if !pairs.is_empty() && cut.is_too_dense(threads) {
-                break;
-            }
-            if cut.is_sound(rule, threads) {
+            let most = if pairs.is_empty() { usize::MAX } else { cut.most_looked_at() };
+            if cut.is_sound(rule, most, threads)? {
                 met::sort(&mut cut.met);
                 return Some(cut);
             }
@@ -165,33 +163,24 @@ impl Cut {
         (n_found.into_inner() <= MOST_PAIRS).then_some(found)
     }
 
-    /// Whether pieces lie so close together that to look at all that touch would take for ever.
-    fn is_too_dense(&self, threads: &Threads) -> bool {
-        let corners = |i: usize| corners(&self.points, self.pieces[i].0);
-        let boxes: Vec<_> = (0..self.pieces.len()).map(|i| around(&corners(i))).collect();
-        let (tree, n_touching) = (BoxTree::new(&boxes), AtomicUsize::new(0));
-        let most = MOST_TOUCHING.1.max(MOST_TOUCHING.0 * self.pieces.len());
-        in_runs(self.pieces.len(), threads, |touching, run| -> Vec<()> {
-            for i in run {
-                if n_touching.load(Ordering::Relaxed) > most {
-                    break;
-                }
-                tree.touching(boxes[i], touching);
-                n_touching.fetch_add(touching.len(), Ordering::Relaxed);
-            }
-            Vec::new()
-        });
-        n_touching.into_inner() > most
+    /// How many pairs of pieces whose boxes touch are looked at.
+    fn most_looked_at(&self) -> usize {
+        MOST_TOUCHING.1.max(MOST_TOUCHING.0 * self.pieces.len())
     }
 
-    /// Whether the pieces that are looked at meet in what they share alone, or are the same triangle.
-    fn is_sound(&self, rule: &Rule, threads: &Threads) -> bool {
+    /// Whether pieces meet in what they share alone, or are the same triangle. `None` where the boxes of more than `most` pairs touch.
+    fn is_sound(&self, rule: &Rule, most: usize, threads: &Threads) -> Option<bool> {
+        let n_looked_at = AtomicUsize::new(0);
         let group = |i: u32| rule.group_of[self.pieces[i as usize].1 as usize];
         let all = self.triangles();
-        let admit = |i: u32, j: u32| i < j && (rule.admits)(group(i), group(j));
+        let admit = |i: u32, j: u32| {
+            i < j && n_looked_at.fetch_add(1, Ordering::Relaxed) < most && (rule.admits)(group(i), group(j))
+        };
         let is_same = |&[i, j]: &[u32; 2]| rising(all[i as usize]) == rising(all[j as usize]);
         let crossings = crossings_of(&self.points, [&all, &all], threads, admit);
-        crossings.iter().all(|pair| is_same(pair) || !rule.crossings && self.goes_through(*pair, rule.near))
+        let is_fit =
+            |pair: &[u32; 2]| is_same(pair) || !rule.crossings && self.goes_through(*pair, rule.near);
+        (n_looked_at.into_inner() <= most).then(|| crossings.iter().all(is_fit))
     }
 
     /// Whether two pieces go through each other.

@@ -14,6 +14,7 @@ use crate::remesh::repair::tried::Tried;
 use crate::remesh::repair::{Repair, WIDER};
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
+use crate::remesh::surface::Surface;
 
 /// Short edges are looked for once more when this part of them has been collapsed.
 const ENOUGH: f64 = 0.02;
@@ -163,14 +164,14 @@ impl Repair {
         Ok(n_split)
     }
 
-    /// Splits an edge if the tets that come are good enough: an edge of a smooth surface where its middle lies on the first surface or, where that may not be, in its middle as all others; the new vertex.
+    /// Splits an edge in its middle if the new tets are good enough; the new vertex. On a smooth patch the vertex goes to the place of the first surface nearest to the middle, if the walls may lie there.
     fn split(
         &mut self,
         tet: TetId,
         ends: [VertexId; 2],
         field: &mut SizeField,
         change: &mut Change,
-        came: &mut Vec<TetId>,
+        inserted: &mut Vec<TetId>,
     ) -> Option<VertexId> {
         let [a, b] = ends;
         self.shells[0].walk(&self.complex, tet, a, b);
@@ -178,25 +179,28 @@ impl Repair {
             return None;
         }
         let hold: Hold = self.hold_on(ends);
-        let point = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
+        let middle = scale(add(self.complex.point(a), self.complex.point(b)), 0.5);
         let vertex = self.complex.next_vertex();
         let bar = self.bar_of_split(ends, field);
-        let on_surface = self.on_surface(point, hold).is_some_and(|point| {
-            split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
-                && self.surface.as_ref().is_none_or(|s| s.accepts(&self.complex, change))
-                && self.complex.check_against(change, bar).is_ok()
-        });
-        let is_good = on_surface
-            || split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
-                && self.surface.as_ref().is_none_or(|s| s.accepts_in_place(change));
-        let checked = self.complex.check_against(change, bar).ok().filter(|_| is_good)?;
-        self.complex.commit(checked, came);
-        self.operations.add(Operation::SplitEdge);
-        self.tried.came(&self.complex, came);
-        Some(vertex)
+        for (point, is_middle) in [(self.on_surface(middle, hold), false), (Some(middle), true)] {
+            let Some(point) = point else { continue };
+            let accepts = |surface: &Surface, change: &Change| match is_middle {
+                true => surface.accepts_in_place(change),
+                false => surface.accepts(&self.complex, change),
+            };
+            let is_good = split_edge(&self.complex, &self.shells[0], ends, (point, hold), bar, change)
+                && self.surface.as_ref().is_none_or(|surface| accepts(surface, change));
+            if is_good && let Ok(checked) = self.complex.check_against(change, bar) {
+                self.complex.commit(checked, inserted);
+                self.operations.add(Operation::SplitEdge);
+                self.tried.came(&self.complex, inserted);
+                return Some(vertex);
+            }
+        }
+        None
     }
 
-    /// Where the middle of an edge of a smooth surface lies on the first surface, if it was moved since; its shell was walked last.
+    /// The place of the first surface nearest to the middle of an edge of a smooth patch, where that is elsewhere; the edge is the one whose shell was walked last.
     fn on_surface(&self, middle: Point, hold: Hold) -> Option<Point> {
         let (surface, shell) = (self.surface.as_ref()?, &self.shells[0]);
         let place = shell.walls.first().filter(|_| hold == Hold::Surface)?;
