@@ -12,7 +12,8 @@ use solids::Numbers;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
-    let interface = [Interface::Match, Interface::Match, Interface::Conform { tolerance: Some(0.1) }][numbers.below(3)];
+    let interface =
+        [Interface::Match, Interface::Match, Interface::Conform { tolerance: Some(0.1) }][numbers.below(3)];
     let outside = [Outside::Cut, Outside::Keep][numbers.below(2)];
     let is_hollow = numbers.below(2) == 1;
     let brings_tets = numbers.below(3) == 2;
@@ -31,5 +32,8 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(made) = implant(&host, &[device], &options, &Rules::default(), &Threads::single()) else { return };
     solids::check(&made.mesh);
     let n_wrong = solids::n_not_positive(&made.mesh);
-    assert!(n_wrong == 0 || !made.report.is_valid(), "{n_wrong} tets are not positive, the report says valid");
+    assert!(
+        n_wrong == 0 || !made.report.is_valid(),
+        "{n_wrong} tets are not positive, the report says valid"
+    );
 });

@@ -13,7 +13,8 @@ fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
     let goal = [Goal::Repair, Goal::Best, Goal::Coarsen][numbers.below(3)];
     let adapt = SurfaceRule::Adapt { distance: None };
-    let surface = [SurfaceRule::Keep, SurfaceRule::Flat { distance: None }, adapt, SurfaceRule::Keep][numbers.below(4)];
+    let surface =
+        [SurfaceRule::Keep, SurfaceRule::Flat { distance: None }, adapt, SurfaceRule::Keep][numbers.below(4)];
     let length = [None, None, Some(0.4), Some(1.5)][numbers.below(4)];
     let most = [0.0, 0.2, 0.45, 1.0][numbers.below(4)];
     let mesh = solids::cubes(&mut numbers, most);
@@ -25,14 +26,19 @@ fuzz_target!(|bytes: &[u8]| {
     let n_wrong = solids::n_not_positive(&outcome.mesh);
     // A part whose tets are all turned over counts as numbered the other way round.
     let n_before = solids::n_not_positive(&mesh);
-    assert!(n_wrong <= n_before || outcome.report.after.inverted > 0, "{n_wrong} tets are not positive, none is reported");
+    assert!(
+        n_wrong <= n_before || outcome.report.after.inverted > 0,
+        "{n_wrong} tets are not positive, none is reported"
+    );
     let was_sound = n_before == 0;
     assert!(!was_sound || n_wrong == 0, "{n_wrong} tets are not positive, all were");
     if was_sound && matches!(surface, SurfaceRule::Keep | SurfaceRule::Flat { .. }) {
         let after = solids::volumes(&outcome.mesh);
         for (region, before) in solids::volumes(&mesh) {
             let now = after.get(&region).copied().unwrap_or_default();
-            let most = solids::tolerance(&mesh, &mesh) + solids::tolerance(&outcome.mesh, &mesh) + 1e-8 * before.abs();
+            let most = solids::tolerance(&mesh, &mesh)
+                + solids::tolerance(&outcome.mesh, &mesh)
+                + 1e-8 * before.abs();
             assert!((now - before).abs() <= most, "region {region}: {before} before, {now} after");
         }
     }

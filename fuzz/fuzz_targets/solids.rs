@@ -121,14 +121,18 @@ pub fn volumes(mesh: &Mesh) -> HashMap<i64, f64> {
     volumes
 }
 
-/// How far the volumes of a mesh that was made of `given` may be off: the area of all facets times the rounding of given coordinates. Facets that are flat but for the rounding of `f32` may be
-/// divided in another way.
+/// How far the volumes of a mesh that was made of `given` may be off: the area of all facets times the rounding of given coordinates. Facets that are flat but for the rounding of `f32`, or of a
+/// few decimals, may be divided in another way; of the last decimal a hundredth is allowed.
 pub fn tolerance(mesh: &Mesh, given: &Mesh) -> f64 {
-    let coordinates = || given.points.iter().flatten();
+    let coordinates = || given.points.iter().flatten().copied();
     let largest = coordinates().fold(0.0f64, |m, x| m.max(x.abs()));
-    let is_single = coordinates().all(|x| f64::from(*x as f32) == *x);
+    let is_single = coordinates().all(|x| f64::from(x as f32) == x);
+    let of_single = if is_single { 2.0 * f64::from(f32::EPSILON) * largest } else { 0.0 };
+    let has_decimals =
+        |ten: &f64| coordinates().all(|x| (x * ten - (x * ten).round()).abs() <= 1e-15 * (x * ten).abs());
+    let ten = (0..=9).map(|n| 10f64.powi(n)).find(has_decimals);
     let facets: f64 = tets(mesh).iter().flat_map(|t| FACETS.map(|f| area(f.map(|k| t[k])))).sum();
-    if is_single { 2.0 * f64::from(f32::EPSILON) * largest * facets } else { 1e-12 * largest * facets }
+    facets * ten.map_or(0.0, |ten| 0.01 / ten).max(of_single).max(1e-12 * largest)
 }
 
 /// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets and, where all are positive, no facet of two from the same side.

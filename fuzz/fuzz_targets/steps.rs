@@ -22,7 +22,10 @@ fuzz_target!(|bytes: &[u8]| {
         _ => solids::cubes(&mut numbers, 0.2),
     };
     let n_cells = mesh.cells.len();
-    mesh.set_cell_field(Field::scalars("dye", (0..n_cells).map(|i| 1.0 + (i % 7) as f64).collect::<Vec<_>>()));
+    mesh.set_cell_field(Field::scalars(
+        "dye",
+        (0..n_cells).map(|i| 1.0 + (i % 7) as f64).collect::<Vec<_>>(),
+    ));
     let mut options = Options { contents: vec!["dye".into()], ..Options::default() };
     options.motion.smoothing = numbers.below(3);
     let threads = Threads::single();
@@ -39,7 +42,8 @@ fuzz_target!(|bytes: &[u8]| {
             3 => {
                 let state = folder.path().join("state.vtu");
                 moving.save(&state).expect("a state is saved");
-                moving = MovingMesh::load(&state, options.clone(), &threads).expect("what is saved is loaded");
+                moving =
+                    MovingMesh::load(&state, options.clone(), &threads).expect("what is saved is loaded");
             }
             how => {
                 push(&mut goes, moving.driven_places(), how, &mut numbers);

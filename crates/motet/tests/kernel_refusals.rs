@@ -1,7 +1,8 @@
 //! What the kernel refuses, by name, whether the surface is kept or adapts; and what a mesh is once folded tets are removed.
 
 use motet::base::{TetId, VertexId};
-use motet::kernel::{Change, Complex, Hold, NewLine, NewWall, Reject, Star, VertexChange};
+use motet::geometry::tet::FACETS;
+use motet::kernel::{Behind, Change, Complex, Hold, NewLine, NewWall, Reject, Star, VertexChange};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{TetMesh, TetPart};
 use motet::ops::collapse;
@@ -288,5 +289,42 @@ fn walls_of_a_flat_tet_are_swapped_unless_they_would_fold() {
         if is_proposed {
             assert_eq!((change.cavity.len(), change.fill.len(), change.walls.len()), (1, 0, 2));
         }
+    }
+}
+
+#[test]
+fn tets_on_the_wrong_side_of_bared_walls_are_refused() {
+    let whole = complex(&cube(4), true);
+    let one = whole.tets().find(|&t| (0..4).all(|i| !whole.is_wall(t, i))).unwrap();
+    let vertices = whole.vertices(one);
+    let facets = FACETS.map(|facet| facet.map(|i| vertices[i]));
+    let others = [0, 1, 2, 3].map(|i| match whole.behind(one, i) {
+        Behind::Tet(half) => half.tet(),
+        Behind::Wall(_) => unreachable!("it is inside"),
+    });
+    let wall = |vertices: [VertexId; 3]| NewWall { vertices, patch: 7, triangle: 0 };
+    let with = |fill: &[TetId]| {
+        // One tet goes, others are there once more; walls on all that nothing else stands behind.
+        let mut change = Change { cavity: vec![one], ..Change::default() };
+        change.walls = facets.map(wall).to_vec();
+        for &other in fill {
+            let again = whole.vertices(other);
+            change.push(&whole, again, whole.region(other));
+            let outer = FACETS.map(|f| f.map(|i| again[i]));
+            let outer = outer.into_iter().filter(|f| !facets.iter().any(|g| f.iter().all(|v| g.contains(v))));
+            change.walls.extend(outer.map(wall));
+        }
+        whole.check_against(&change, 0.0).map(|_| ()).err()
+    };
+    assert_eq!(with(&[one]), None);
+    // Those behind two of its facets, once more: on the same side of a wall as they are already.
+    for [i, j] in [[0, 1], [1, 2], [2, 3], [0, 3]] {
+        let refused = with(&[others[i], others[j]]);
+        let keys = [i, j].map(|k| {
+            let mut key = facets[k];
+            key.sort_unstable();
+            key
+        });
+        assert!(matches!(refused, Some(Reject::Crowded(key)) if keys.contains(&key)), "{refused:?} {keys:?}");
     }
 }

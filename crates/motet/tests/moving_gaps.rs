@@ -72,3 +72,27 @@ fn edges_of_walls_are_as_short_as_gaps_are_wide() {
     let n_back = moving.mesh().cells.tets().count();
     assert!(n_back < n_fine && (n_back as f64) < 1.5 * n_first as f64, "{n_first} {n_fine} {n_back}");
 }
+
+/// How many tets are left, and the longest edge in the gap, where a mesh that was divided by its gaps is coarsened down to a length.
+fn coarsened(smallest: f64) -> [(usize, f64); 2] {
+    let mut moving = MovingMesh::new(&sphere_in_box(4, 4), watched(), &threads()).unwrap();
+    moving.advance(1.0, &sphere_goes(&moving, 2.0), &threads()).unwrap();
+    moving.advance(2.0, &sphere_goes(&moving, 3.4), &threads()).unwrap();
+    moving.refine(&by_gaps(), &threads()).unwrap();
+    assert!(moving.gaps().is_none(), "what was measured is of triangles that are no more");
+    let state = |moving: &mut MovingMesh| {
+        moving.certify(&threads()).unwrap();
+        (moving.mesh().cells.tets().count(), longest_in_gap(moving, 0.75))
+    };
+    let before = state(&mut moving);
+    moving.coarsen(smallest, &threads()).unwrap();
+    [before, state(&mut moving)]
+}
+
+#[test]
+fn what_a_narrow_gap_asks_for_is_not_taken_back_by_lengths() {
+    let [before, by_gap] = coarsened(0.2);
+    let [_, by_first] = coarsened(10.0);
+    assert!(by_first.0 < by_gap.0 && by_gap.0 <= before.0, "{before:?} {by_gap:?} {by_first:?}");
+    assert!(by_gap.1 <= 0.75, "{by_gap:?}");
+}

@@ -4,9 +4,9 @@ use std::time::Instant;
 
 use motet::base::{Point, Threads};
 use motet::geometry::vector::{add, norm, scale, sub};
-use motet::mesh::shapes::sphere_in_box;
+use motet::mesh::shapes::{box_grid, sphere_in_box};
 use motet::mesh::{Field, Mesh};
-use motet::moving::{MovingMesh, Options, Step};
+use motet::moving::{Motion, MovingMesh, Options, Step};
 use motet::refine::{Criterion, Wanted};
 
 fn threads() -> Threads {
@@ -138,4 +138,20 @@ fn shares_of_a_step_are_numbers_between_zero_and_one() {
             "{value}"
         );
     }
+}
+
+#[test]
+fn a_rim_that_leaves_its_plane_is_found_before_the_step() {
+    let mesh = box_grid([4, 3, 3], [[0.0; 3], [2.0, 1.5, 1.0]]);
+    let motion = Motion { sliding: vec![mesh.find_patch("xmin").unwrap()], ..Motion::default() };
+    let moving = MovingMesh::new(&mesh, Options { motion, ..Options::default() }, &threads()).unwrap();
+    let leaving = |by: &dyn Fn(Point) -> Point| {
+        let displacement: Vec<Point> = moving.driven_places().iter().map(|p| by(*p)).collect();
+        moving.leaves_plane(&displacement)
+    };
+    assert_eq!(leaving(&|_| [0.0; 3]), None);
+    assert_eq!(leaving(&|p| [0.0, 0.1 * p[1], 0.2 * p[2]]), None, "within the plane");
+    let told = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
+    assert_eq!((told.patch.as_str(), told.place), ("xmin", [0.0, 1.5, 1.0]));
+    assert!((told.distance - 0.25).abs() < 1e-15 && told.is_significant, "{told:?}");
 }

@@ -175,3 +175,38 @@ fn facets_that_lie_on_others_stay_so() {
     assert_eq!(left, right);
     assert_eq!(left, sides(&first)[0]);
 }
+
+#[test]
+fn lines_that_are_required_stay_where_others_are_merged() {
+    let n = 6;
+    let mut first = box_grid([n; 3], [[0.0; 3], [1.0; 3]]);
+    let vertex = |mesh: &Mesh, at: Point| {
+        VertexId::new(mesh.points.iter().position(|p| (0..3).all(|k| (p[k] - at[k]).abs() < 1e-9)).unwrap())
+    };
+    // Along two edges of the box; those of the second are required.
+    for z in [0.0, 1.0] {
+        let place = |i: usize| [i as f64 / n as f64, 0.0, z];
+        for i in 0..n {
+            first.cells.push(CellKind::LINE, [place(i), place(i + 1)].map(|at| vertex(&first, at)));
+        }
+    }
+    let n_cells = first.cells.len();
+    for field in &mut first.cell_data {
+        let n_rows = field.values.len();
+        let mut rows = field.values.to_i64().unwrap();
+        rows.extend(vec![1; n_cells - n_rows]);
+        *field = Field::scalars(&field.name, rows.into_iter().map(|x| x as i32).collect::<Vec<_>>());
+    }
+    let marks: Vec<u8> = (0..n_cells).map(|c| u8::from(c >= n_cells - n)).collect();
+    first.set_cell_field(Field::scalars(REQUIRED, marks));
+    let options = Options { sizes: Some(Sizes::Uniform(0.5)), surface: ADAPT, ..Options::default() };
+    let MeshOutcome { mesh, .. } = remeshed(&first, &options);
+    let lines = |mesh: &Mesh, z: f64| {
+        places(mesh, |c| {
+            let (_, kind, vertices) = mesh.cells.iter().nth(c).unwrap();
+            kind == CellKind::LINE && vertices.iter().all(|v| mesh.points[v.index()][2] == z)
+        })
+    };
+    assert_eq!(lines(&first, 1.0), lines(&mesh, 1.0));
+    assert!(lines(&mesh, 0.0).len() < n, "{} lines of {n}", lines(&mesh, 0.0).len());
+}

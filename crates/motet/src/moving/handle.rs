@@ -141,9 +141,9 @@ impl MovingMesh {
         pairs.map(|(&p, &first)| sub(p, first)).collect()
     }
 
-    /// What the watch measured last.
+    /// What the watch measured last; `None` where nothing is watched, or the mesh was divided, coarsened or repaired since: [`Self::certify`] measures.
     pub fn gaps(&self) -> Option<&contact::Gaps> {
-        self.watch.as_ref().and_then(|watch| watch.last.as_ref())
+        self.watch.as_ref().filter(|watch| !watch.is_stale()).and_then(|watch| watch.last.as_ref())
     }
 
     /// Puts a point array on the mesh, in place of one of that name: a solver's new values. Arrays are carried where the mesh changes.

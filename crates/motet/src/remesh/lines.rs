@@ -81,3 +81,95 @@ fn lines_after(complex: &Complex, change: &Change) -> Vec<(u32, [Point; 2])> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::{TetId, VertexId};
+    use crate::kernel::{NewLine, Star};
+    use crate::mesh::TetMesh;
+
+    /// A fan of tets round a line from (0, 0, 0) to (1, 0, 0) whose inner vertices have these heights, evenly apart; label 1.
+    fn fan(heights: &[f64]) -> Complex {
+        let n = heights.len() + 1;
+        let height = |i: usize| if i == 0 || i == n { 0.0 } else { heights[i - 1] };
+        let mut points: Vec<Point> = (0..=n).map(|i| [i as f64 / n as f64, height(i), 0.0]).collect();
+        points.extend([[0.5, -2.0, 0.0], [0.5, 1.0, 2.0], [0.5, 1.0, -2.0]]);
+        let mut mesh = TetMesh::new(
+            points,
+            (0..n)
+                .flat_map(|i| {
+                    [[n + 1, n + 2], [n + 2, n + 3], [n + 3, n + 1]]
+                        .map(|[a, b]| [i, i + 1, a, b].map(VertexId::new))
+                })
+                .collect(),
+        );
+        mesh.lines = (0..n).map(|i| [i, i + 1].map(VertexId::new)).collect();
+        mesh.line_labels = vec![1; n];
+        let mut complex = Complex::new(&mesh).unwrap();
+        complex.adapt_surface();
+        complex
+    }
+
+    fn label(complex: &Complex) -> u32 {
+        complex.line_label(complex.lines()[0].1.source)
+    }
+
+    #[test]
+    fn a_segment_is_near_where_all_of_it_is_near_to_lines_of_its_label() {
+        let straight = fan(&[0.0]);
+        let (first, label) = (FirstLines::of(&straight), label(&straight));
+        let ends = [[0.0; 3], [1.0, 0.0, 0.0]];
+        assert!(first.is_near(label, ends, 1e-12) && !first.is_near(label + 1, ends, 1.0));
+        for end in 0..2 {
+            let mut off = ends;
+            off[end][2] = 0.1;
+            assert!(first.is_near(label, off, 0.1 + 1e-12) && !first.is_near(label, off, 0.099));
+        }
+        // Between its ends, in the middle or in the middle of a half, it is away from a line that bends.
+        for heights in [[0.0, 0.2, 0.0], [0.2, 0.0, 0.0], [0.0, 0.0, 0.2]] {
+            let first = FirstLines::of(&fan(&heights));
+            assert!(first.is_near(label, ends, 0.2) && !first.is_near(label, ends, 0.1), "{heights:?}");
+        }
+    }
+
+    #[test]
+    fn a_moved_vertex_takes_its_lines_along() {
+        let complex = fan(&[0.0]);
+        let first = FirstLines::of(&complex);
+        let mut star = Star::default();
+        star.gather(&complex, VertexId(1));
+        let accepts = |to: Point, reach: f64| {
+            let mut change = Change::default();
+            change.cavity.extend(&star.tets);
+            change.vertex = VertexChange::Move(VertexId(1), to);
+            first.accepts(&complex, &change, reach)
+        };
+        assert!(accepts([0.3, 0.0, 0.0], 1e-12), "along the line");
+        assert!(!accepts([0.3, 0.1, 0.0], 0.09) && accepts([0.3, 0.1, 0.0], 0.11));
+        // The middles of the two lines are near, their common end is not.
+        assert!(!accepts([0.5, 0.0, 0.16], 0.15));
+    }
+
+    #[test]
+    fn the_end_of_a_spike_is_not_left_behind() {
+        // Both legs of the spike are near to what joins their feet, its end is not.
+        let mut complex = fan(&[0.0]);
+        let mut change = Change::default();
+        change
+            .lines
+            .push(NewLine { vertices: [VertexId(0), VertexId(2)], source: complex.lines()[0].1.source });
+        let first = FirstLines::of(&complex);
+        assert!(first.accepts(&complex, &change, 0.1));
+        change.vertex = VertexChange::Remove(VertexId(1));
+        assert!(first.accepts(&complex, &change, 0.1), "it lies on what comes");
+        complex = fan(&[0.3]);
+        assert!(!first.accepts(&complex, &change, 0.1) && first.accepts(&complex, &change, 0.31));
+        change.vertex = VertexChange::Move(VertexId(1), [0.5, 0.0, 0.0]);
+        assert!(!first.accepts(&complex, &change, 0.1));
+        change.lines.clear();
+        change.cavity = vec![TetId(0)];
+        change.vertex = VertexChange::Remove(VertexId(1));
+        assert!(first.accepts(&complex, &change, 0.0), "where no line comes, none is looked for");
+    }
+}

@@ -335,3 +335,48 @@ fn hold_touching(complex: &mut Complex) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::shapes::box_grid;
+    use crate::mesh::{TetMesh, TetPart};
+
+    /// The cubes from (0, 0, 0) to (1, 1, 1) and, if `both`, from there to (2, 2, 2): they share one vertex. All walls are of one patch.
+    fn cubes(both: bool) -> TetMesh {
+        let mut mesh = TetPart::of(&box_grid([2; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
+        mesh.patches.fill(1);
+        let n = mesh.points.len();
+        let place =
+            |mesh: &TetMesh, at: Point| VertexId::new(mesh.points.iter().position(|p| *p == at).unwrap());
+        let [low, high] = [place(&mesh, [0.0; 3]), place(&mesh, [1.0; 3])];
+        if both {
+            let second = |v: VertexId| if v == low { high } else { VertexId::new(n + v.index()) };
+            mesh.points.extend(mesh.points.clone().into_iter().map(|p| p.map(|x| x + 1.0)));
+            mesh.tets.extend(mesh.tets.clone().into_iter().map(|t| t.map(second)));
+            mesh.triangles.extend(mesh.triangles.clone().into_iter().map(|t| t.map(second)));
+            mesh.patches.extend(mesh.patches.clone());
+            mesh.regions.extend(mesh.regions.clone());
+        }
+        mesh
+    }
+
+    #[test]
+    fn a_vertex_where_parts_touch_stays_even_where_nothing_is_a_feature() {
+        for both in [false, true] {
+            let mesh = cubes(both);
+            let mut complex = Complex::new(&mesh).unwrap();
+            complex.adapt_surface();
+            Surface::of(&complex, 0.1).hold_features(&mut complex, Crease::NONE);
+            // Of the vertex that the second cube has in its place there is no tet.
+            let used =
+                complex.tets().flat_map(|t| complex.vertices(t)).collect::<std::collections::BTreeSet<_>>();
+            let held: Vec<Point> = used
+                .into_iter()
+                .filter(|v| complex.hold(*v) == Hold::Fixed)
+                .map(|v| complex.point(v))
+                .collect();
+            assert_eq!(held, if both { vec![[1.0; 3]] } else { Vec::new() });
+        }
+    }
+}

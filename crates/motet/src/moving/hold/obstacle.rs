@@ -72,3 +72,36 @@ impl Obstacle {
 fn fit(nodes: &[VertexId], from: &[Point], to: &[Point]) -> Rigid {
     Rigid::fit(&nodes.iter().map(|v| (from[v.index()], to[v.index()])).collect::<Vec<_>>())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A triangle round a place, facing z.
+    fn triangle([x, y, z]: Point) -> [Point; 3] {
+        [[x - 1.0, y - 1.0, z], [x + 1.0, y - 1.0, z], [x, y + 1.0, z]]
+    }
+
+    #[test]
+    fn nodes_go_along_with_the_wall_nearest_to_them_wherever_it_was_before() {
+        let at = |low: f64, high: f64| {
+            [triangle([0.0, 0.0, low]), triangle([0.0, 0.0, high]), [[0.0; 3]; 3]].concat()
+        };
+        let walls: Vec<Vec<[VertexId; 3]>> =
+            vec![vec![[0, 1, 2].map(VertexId)], vec![[3, 4, 5].map(VertexId)]];
+        let threads = Threads::single();
+        let place = |node: Point, low: f64, high: f64| {
+            let mut all = at(low, high);
+            all[6] = node;
+            all
+        };
+        let node = [0.0, 0.0, 1.0];
+        let mut obstacle = Obstacle::new(&at(0.0, 10.0), &walls, &threads);
+        // The first wall is the nearer one; then they change places.
+        assert_eq!(obstacle.distances(&[VertexId(6)], &place(node, 0.0, 10.0), &threads), [1.0]);
+        let (from, to) = (place(node, 10.0, 0.0), place(node, 10.5, 2.0));
+        assert_eq!(obstacle.carry(&[VertexId(6)], &from, &to, &threads), [[0.0, 0.0, 3.0]]);
+        assert_eq!(obstacle.distances(&[VertexId(6)], &from, &threads), [1.0]);
+        assert!(!obstacle.is_still(&from, &to) && obstacle.is_still(&from, &from));
+    }
+}
