@@ -12,7 +12,7 @@ use solids::Numbers;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
-    // The edges of thin wedges are reached by no distance that is much smaller than the body: then the finest surface comes, of tens of thousands of triangles.
+    // Any lattice cuts off the edge of a thin wedge: with a tolerance much smaller than the body the surface gets tens of thousands of triangles.
     let interface =
         [Interface::Match, Interface::Match, Interface::Conform { tolerance: Some(1.0) }][numbers.below(3)];
     let outside = [Outside::Cut, Outside::Keep][numbers.below(2)];

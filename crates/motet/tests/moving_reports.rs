@@ -151,7 +151,7 @@ fn a_rim_that_leaves_its_plane_is_found_before_the_step() {
     };
     assert_eq!(leaving(&|_| [0.0; 3]), None);
     assert_eq!(leaving(&|p| [0.0, 0.1 * p[1], 0.2 * p[2]]), None, "within the plane");
-    let told = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
-    assert_eq!((told.patch.as_str(), told.place), ("xmin", [0.0, 1.5, 1.0]));
-    assert!((told.distance - 0.25).abs() < 1e-15 && told.is_significant, "{told:?}");
+    let farthest = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
+    assert_eq!((farthest.patch.as_str(), farthest.place), ("xmin", [0.0, 1.5, 1.0]));
+    assert!((farthest.distance - 0.25).abs() < 1e-15 && farthest.is_significant, "{farthest:?}");
 }

@@ -72,7 +72,7 @@ pub enum Interface {
     /// A new surface near it: for devices that touch or cross themselves, have open ends or triangles twice, or are made of bad triangles. They are filled or hollow.
     Conform {
         /// How far the new surface may be from the old one, and the old one from it; `None`: a fifth of the radius of a round wire as thick as the device.
-        /// Where that is not reached the nearest one is taken (a finer one only if it is nearer by a tenth), and the report says so.
+        /// Where that is not reached, the nearest surface found is taken (a finer one only if it is nearer by a tenth), and the report says so.
         tolerance: Option<f64>,
     },
 }

@@ -141,7 +141,7 @@ impl MovingMesh {
         pairs.map(|(&p, &first)| sub(p, first)).collect()
     }
 
-    /// What the watch measured last; `None` where nothing is watched, or the mesh was divided, coarsened or repaired since: [`Self::certify`] measures.
+    /// What the watch measured last; `None` where nothing is watched, and where the mesh has been divided, coarsened or repaired since: [`Self::certify`] measures again.
     pub fn gaps(&self) -> Option<&contact::Gaps> {
         self.watch.as_ref().filter(|watch| !watch.is_stale()).and_then(|watch| watch.last.as_ref())
     }

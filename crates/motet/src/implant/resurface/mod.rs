@@ -37,8 +37,8 @@ const CHORD: f64 = 0.7;
 const FINER: f64 = 0.7;
 const TRIES: usize = 5;
 
-/// A finer surface that is still too far away has twice the triangles: it is taken where its distance is at most this part of the best one. Of the edge of a thin wedge a lattice leaves
-/// nearly as much however fine it is.
+/// A finer surface that is still too far away is taken only where its distance is below this part of the best one: it has twice the triangles. Any lattice cuts off the edge of a thin
+/// wedge, so that there the distance hardly falls.
 const NEARER: f64 = 0.9;
 
 /// A device's new surface.
@@ -84,9 +84,8 @@ pub(super) fn resurface(
         let lattice = Cubes::near(&old.surface, edge).lattice();
         let skin = Skin::new(lattice, &old, threads);
         let fit = old.fit(&skin, tolerance, threads);
-        if best.as_ref().is_none_or(|(_, best)| {
-            fit.farthest() < if fit.is_reached() { 1.0 } else { NEARER } * best.farthest()
-        }) {
+        let part = if fit.is_reached() { 1.0 } else { NEARER };
+        if best.as_ref().is_none_or(|(_, best)| fit.farthest() < part * best.farthest()) {
             best = Some((skin, fit));
         }
         edge *= FINER;

@@ -33,8 +33,8 @@ const ROUNDS: usize = 8;
 /// So many pairs of triangles are not divided: they take too much memory.
 const MOST_PAIRS: usize = 2_000_000;
 
-/// Pieces of divided triangles are given up where the boxes of more pairs touch than so many a piece, and than this number: so they do in a soup of triangles that nearly all go through each other, and exact
-/// signs of all these pairs take minutes.
+/// The check of divided triangles stops where the boxes of more pairs of pieces touch than this many per piece, or than the second number where that is more. Only in a soup of triangles
+/// that nearly all cross each other do so many touch, and the exact signs of all these pairs take minutes.
 const MOST_TOUCHING: (usize, usize) = (100, 200_000);
 
 /// Which triangles are divided where they meet.
