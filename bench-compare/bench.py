@@ -6,6 +6,7 @@ import sys
 
 import bench_contact
 import bench_delaunay
+import bench_drift
 import bench_files
 import bench_implant
 import bench_mesh
@@ -16,7 +17,8 @@ import bench_remesh
 from common import DISTURBED, ROOT, TARGET, Record, machine
 
 BENCHES = {"delaunay": bench_delaunay, "motion": bench_motion, "files": bench_files, "remesh": bench_remesh,
-           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant, "quality": bench_quality}
+           "contact": bench_contact, "refine": bench_refine, "mesh": bench_mesh, "implant": bench_implant, "quality": bench_quality,
+           "drift": bench_drift}
 
 
 def words():
@@ -26,6 +28,9 @@ def words():
     parser.add_argument("--largest", type=int, default=1_000_000, help="largest point set of the Delaunay bench")
     parser.add_argument("--sizes", default="ABCD", help="which of the paper's four models (default ABCD)")
     parser.add_argument("--surfaces", help="which surfaces of the mesh bench, with commas between (default: all)")
+    parser.add_argument("--cases", help="which cases of the drift bench, with commas between (default: all)")
+    parser.add_argument("--turns", type=int, help="turns of what turns in the drift bench (default 3; 6 of the bar)")
+    parser.add_argument("--cycles", type=int, help="cycles of what goes there and back in it (default: each case's own, 3 to 20)")
     parser.add_argument("--limit", type=float, default=120.0, help="seconds that one call of a program may take")
     parser.add_argument("--openfoam", action="store_true", help="install OpenFOAM too (it is used when it is there)")
     parser.add_argument("--quick", action="store_true", help="one round, small sizes")

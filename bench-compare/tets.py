@@ -65,6 +65,14 @@ def mean_ratio(points, tets):
     return np.sign(volume) * 12 * np.cbrt(3 * np.abs(volume)) ** 2 / squares
 
 
+def spread(points, tets):
+    """How quality is spread over the tets: EAS, and the mean of the mean ratio."""
+    quality = eas(points, tets)
+    p1, p5, median = np.percentile(quality, (1, 5, 50))
+    return {"worst": float(quality.min()), "p1": float(p1), "p5": float(p5), "median": float(median),
+            "mean": float(quality.mean()), "mean_ratio": float(mean_ratio(points, tets).mean())}
+
+
 def boundary(tets):
     """The facets that belong to one tet alone, turned outward."""
     facets = tets[:, FACETS].reshape(-1, 3)

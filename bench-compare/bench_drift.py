@@ -1,0 +1,109 @@
+"""Does a mesh stay the mesh it was? Long motions by `motet run`, and two of them by a loop round Mmg: counts and quality, step by step."""
+import importlib.util
+import json
+import subprocess
+import sys
+
+import numpy as np
+
+from common import HERE, MOTET, call, table
+from drift_cases import chosen
+from drift_log import cycle_ends, lines, read_frame, read_run, sums
+
+QUICK = 12  # steps of each case
+LIMIT = 30.0  # seconds that a step of the rival may take, all in all
+ROWS = 12  # cycles in the table of cycles, at most
+# name in the table: tets with an edge below this part of its size belong to the zone of a repair
+RIVALS = {"Mmg loop": 0.0, "Mmg loop, short edges too": 0.55}
+
+
+def run(record, options):
+    found, without = chosen(options)
+    left_out, results = [f"{name} (no data; MOTET_DATA names the folder)" for name in without], []
+    for case in found:
+        for program, done in programs(case, options):
+            steps = done.get("log", [])
+            row = {k: v for k, v in done.items() if k != "log"} | (sums(steps) if steps else {})
+            record.add(**row, bench="drift", case=case.name, program=program)
+            if steps:
+                results.append((case, program, row, steps))
+            if "error" in done:
+                left_out.append(f"{case.name}, {program} ({done['error']})")
+            print(f"  drift {case.name}, {program}: done", file=sys.stderr, flush=True)
+    tables(results)
+    for line in left_out:
+        print(f"\nLeft out: {line}")
+
+
+def programs(case, options):
+    """Each program's name and what it did: `log` and `status`, or `error`."""
+    try:
+        case.make()
+    except RuntimeError as why:
+        yield "motet", {"error": str(why)}
+        return
+    yield "motet", ours(case, options)
+    if case.body:
+        for name, short in RIVALS.items():
+            yield name, rival(case, options, short)
+
+
+def ours(case, options):
+    command = [MOTET / "motet", "run", "job.toml", "--threads", "1"]
+    command += ["--until", str(QUICK)] if options.quick else []
+    done = subprocess.run(command, cwd=case.folder, capture_output=True, text=True)
+    steps = read_run(case.folder / "out")
+    if not steps:
+        return {"error": (done.stderr.strip().splitlines() or ["?"])[-1][:200], "status": done.returncode}
+    return {"log": steps, "status": done.returncode}
+
+
+def rival(case, options, short):
+    """The same motion from the same mesh, in a process of its own."""
+    if not importlib.util.find_spec("mmgpy"):
+        return {"error": "no mmgpy"}
+    points, tets, _ = read_frame(case.folder / case.mesh)
+    mesh, job, log = (case.folder / name for name in ("mesh.npz", "mmg.json", "mmg.jsonl"))
+    np.savez(mesh, points=points, tets=tets)
+    steps = QUICK if options.quick else case.steps * case.cycles
+    job.write_text(json.dumps(case.body | {"steps": steps, "short": short}))
+    log.unlink(missing_ok=True)
+    done = call([sys.executable, HERE / "rivals" / "drift_mmg.py", mesh, job, log], steps * LIMIT)
+    return done if "error" in done else {"log": lines(log), "status": done["status"]}
+
+
+def tables(results):
+    print("\n## Does a mesh stay the mesh it was\n")
+    print("Long motions, one thread. Vertices, tets, vertices of walls at first, least, most, last. EAS and mean ratio over all tets: their means; "
+          "\"1 %\": a hundredth is below. \"Changed\": tets\nthat are no longer there after a step, mean over steps. A star: quality is known at some steps alone.\n")
+    header = ["case", "program", "steps", "vertices", "tets", "walls", "mean EAS first, last", "least", "1 % last", "mean ratio", "worst ever",
+              "bad ever", "inverted", "changed", "a step", "status"]
+    print(table(header, [columns(case, program, row) for case, program, row, _ in results]))
+    for case, program, _, steps in results:
+        ends = cycle_ends(steps, case.steps)
+        if len(ends) > 2:
+            print(f"\n### {case.name}, {program}: {case.about}\n\nAt the ends of cycles of {case.steps} steps.\n")
+            print(table(["cycle", "vertices", "tets", "mean EAS", "5 %", "1 %", "worst", "bad", "mean ratio"],
+                        [at_end(*end) for end in some(ends)]))
+
+
+def columns(case, program, row):
+    """A row of the large table."""
+    four = lambda key: " ".join(f"{row[f'{key}_{when}']:,}" for when in ("first", "least", "most", "last"))
+    star = "" if row["qualities"] == row["steps"] + 1 else "*"
+    return [case.name, program, row["steps"], four("points"), four("tets"), f"{row['walls_first']:,} {row['walls_last']:,}",
+            f"{row['mean_first']:.3f} {row['mean_last']:.3f}", f"{row['mean_least']:.3f}{star}", f"{row['p1_last']:.3f}",
+            f"{row['ratio_first']:.3f} {row['ratio_last']:.3f}", f"{row['worst_ever']:.3f}", row["bad_ever"], row["inverted_ever"],
+            f"{row['changed']:.1%}", f"{row['seconds']:.2f} s", row["status"]]
+
+
+def at_end(cycle, step):
+    quality = step["quality"]
+    return [cycle, f"{step['points']:,}", f"{step['tets']:,}", f"{quality['mean']:.3f}", f"{quality['p5']:.3f}", f"{quality['p1']:.3f}",
+            f"{quality['worst']:.3f}", step["bad"], f"{quality['mean_ratio']:.3f}"]
+
+
+def some(ends):
+    """All where they are few; else some, the first and the last with them."""
+    rows = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), ROWS)).round().astype(int))
+    return [ends[row] for row in rows]
