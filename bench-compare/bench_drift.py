@@ -3,10 +3,11 @@ import importlib.util
 import json
 import subprocess
 import sys
+import time
 
 import numpy as np
 
-from common import HERE, MOTET, call, table
+from common import HERE, MOTET, busy_seconds, call, cell, own_seconds, table
 from drift_cases import chosen
 from drift_log import cycle_ends, lines, read_frame, read_run, sums
 
@@ -51,11 +52,13 @@ def programs(case, options):
 def ours(case, options):
     command = [MOTET / "motet", "run", "job.toml", "--threads", "1"]
     command += ["--until", str(QUICK)] if options.quick else []
+    start, busy, own = time.perf_counter(), busy_seconds(), own_seconds()
     done = subprocess.run(command, cwd=case.folder, capture_output=True, text=True)
+    others = max(0.0, busy_seconds() - busy - (own_seconds() - own)) / (time.perf_counter() - start)
     steps = read_run(case.folder / "out")
     if not steps:
         return {"error": (done.stderr.strip().splitlines() or ["?"])[-1][:200], "status": done.returncode}
-    return {"log": steps, "status": done.returncode}
+    return {"log": steps, "status": done.returncode, "other_cpu": others}
 
 
 def rival(case, options, short):
@@ -69,13 +72,13 @@ def rival(case, options, short):
     job.write_text(json.dumps(case.body | {"steps": steps, "short": short}))
     log.unlink(missing_ok=True)
     done = call([sys.executable, HERE / "rivals" / "drift_mmg.py", mesh, job, log], steps * LIMIT)
-    return done if "error" in done else {"log": lines(log), "status": done["status"]}
+    return done if "error" in done else {"log": lines(log), "status": done["status"], "other_cpu": done["others"] / done["wall"]}
 
 
 def tables(results):
     print("\n## Does a mesh stay the mesh it was\n")
     print("Long motions, one thread. Vertices, tets, vertices of walls at first, least, most, last. EAS and mean ratio over all tets: their means; "
-          "\"1 %\": a hundredth is below. \"Changed\": tets\nthat are no longer there after a step, mean over steps. A star: quality is known at some steps alone.\n")
+          "\"1 %\": a hundredth is below. \"Changed\": tets\nthat are no longer there after a step, mean over steps. In brackets: at how many steps quality is known, where not at all of them.\n")
     header = ["case", "program", "steps", "vertices", "tets", "walls", "mean EAS first, last", "least", "1 % last", "mean ratio", "worst ever",
               "bad ever", "inverted", "changed", "a step", "status"]
     print(table(header, [columns(case, program, row) for case, program, row, _ in results]))
@@ -90,11 +93,11 @@ def tables(results):
 def columns(case, program, row):
     """A row of the large table."""
     four = lambda key: " ".join(f"{row[f'{key}_{when}']:,}" for when in ("first", "least", "most", "last"))
-    star = "" if row["qualities"] == row["steps"] + 1 else "*"
+    known = "" if row["qualities"] == row["steps"] + 1 else f" ({row['qualities']})"
     return [case.name, program, row["steps"], four("points"), four("tets"), f"{row['walls_first']:,} {row['walls_last']:,}",
-            f"{row['mean_first']:.3f} {row['mean_last']:.3f}", f"{row['mean_least']:.3f}{star}", f"{row['p1_last']:.3f}",
+            f"{row['mean_first']:.3f} {row['mean_last']:.3f}", f"{row['mean_least']:.3f}{known}", f"{row['p1_last']:.3f}",
             f"{row['ratio_first']:.3f} {row['ratio_last']:.3f}", f"{row['worst_ever']:.3f}", row["bad_ever"], row["inverted_ever"],
-            f"{row['changed']:.1%}", f"{row['seconds']:.2f} s", row["status"]]
+            f"{row['changed']:.1%}", cell(row, f"{row['seconds']:.2f} s"), row["status"]]
 
 
 def at_end(cycle, step):

@@ -76,9 +76,10 @@ def filled(*words, **surfaces):
 
 PADDLE = {"walls": box((4, 4, 2), (16, 16, 8)), "paddle": box((2, 0.25, 0.75), (16, 2, 6))}
 SPHERE = {"walls": box((6, 2, 2), (30, 10, 10), (1.5, 0, 0)), "sphere": ellipsoid((0.5,) * 3, 8)}
-EGG = {"walls": ellipsoid((2,) * 3, 10), "egg": ellipsoid((1.4, 0.7, 0.5), 10)}
+EGG = {"walls": ellipsoid((2,) * 3, 10), "egg": ellipsoid((1.2, 0.8, 0.6), 10)}
 CUP = {"cup": cylinder(4, 5, 6, 7), "interface": box((5, 1.2, 1.6), (7, 2, 2), (0, 0, 2))}
-FLAP = {"walls": box((4, 2, 2), (20, 10, 10)), "flap": sheet((0, -1, -0.6), (0, 1.2, 0), (0, 0, 1.2), (6, 6))}
+# Rounded, so that both have the very same vertices where the flap stands on the floor.
+FLAP = {"walls": box((4, 2, 2), (20, 10, 10)).round(9), "flap": sheet((0, -1, -0.6), (0, 1.2, 0), (0, 0, 1.2), (6, 6)).round(9)}
 TUBE = along_x(cylinder(5, 60, 3, 34))
 CUBE = box((2, 2, 2), (10, 10, 10))
 HOLE = ["--hole", "0,0,0"]
@@ -108,8 +109,8 @@ def squeezed(points, phase):
 
 
 def twisted(points, phase):
-    """A cube whose top and bottom turn against each other by 60 degrees, to both sides."""
-    angle = np.radians(30) * np.sin(2 * np.pi * phase) * points[:, 2]
+    """A cube whose top and bottom turn against each other by 90 degrees, to both sides."""
+    angle = np.radians(45) * np.sin(2 * np.pi * phase) * points[:, 2]
     x, y, z = points.T
     return np.stack([np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y, z], axis=1)
 
