@@ -79,7 +79,7 @@ SPHERE = {"walls": box((6, 2, 2), (30, 10, 10), (1.5, 0, 0)), "sphere": ellipsoi
 EGG = {"walls": ellipsoid((2,) * 3, 10), "egg": ellipsoid((1.2, 0.8, 0.6), 10)}
 CUP = {"cup": cylinder(4, 5, 6, 7), "interface": box((5, 1.2, 1.6), (7, 2, 2), (0, 0, 2))}
 # Rounded, so that both have the very same vertices where the flap stands on the floor.
-FLAP = {"walls": box((4, 2, 2), (20, 10, 10)).round(9), "flap": sheet((0, -1, -0.6), (0, 1.2, 0), (0, 0, 1.2), (6, 6)).round(9)}
+FLAP = {"walls": box((1.6, 2, 4), (8, 10, 20)).round(9), "flap": sheet((0, -1, -0.6), (0, 1.2, 0), (0, 0, 1.2), (6, 6)).round(9)}
 TUBE = along_x(cylinder(5, 60, 3, 34))
 CUBE = box((2, 2, 2), (10, 10, 10))
 HOLE = ["--hole", "0,0,0"]
@@ -133,7 +133,7 @@ fixed = ["walls"]
 inside = ["flap"]
 [[motion.move]]
 patch = "flap"
-bend = { hinge = [0, -1, 0], along = [0, 0, 1], towards = [1, 0, 0], length = 1.2, degrees = 60 }
+bend = { hinge = [0, -1, 0], along = [0, 1, 0], towards = [1, 0, 0], length = 1.2, degrees = 84 }
 in_time = "swing"
 """
 Z = {"axis": [0, 0, 1], "centre": [0, 0, 0]}
@@ -156,7 +156,7 @@ def cases(options):
              turn={"patch": "interface", **Z, "centre": [0, 0, 2]}),
         Case("tube", "a tube is squeezed to a tenth of its width", 16, cycles(20), FOLLOW.format("walls", "position"),
              measured_walls(TUBE, 1.745, squeezed, 16)),
-        Case("flap", "a flap beats to both sides", 24, cycles(20), BEND, fill_flap),
+        Case("flap", "a flap beats to both sides, nearly to the walls", 24, cycles(20), BEND, fill_flap),
         Case("ventricle", "a ventricle whose wall was measured", 25, cycles(3),
              FOLLOW.format("wall", "nearest") + '[repair]\nsurface = "adapt"\ndistance = 0.3\n', ventricle),
         Case("cube", "a cube is twisted to both sides", 24, cycles(10), FOLLOW.format("walls", "position"),
