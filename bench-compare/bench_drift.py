@@ -107,6 +107,7 @@ def at_end(cycle, step):
 
 
 def some(ends):
-    """All where they are few; else some, the first and the last with them."""
-    rows = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), ROWS)).round().astype(int))
-    return [ends[row] for row in rows]
+    """All where they are few; else every second, fifth, tenth, ... and the last."""
+    last = ends[-1][0]
+    apart = next((n for n in (1, 2, 5, 10, 20, 50, 100, 200, 500) if last / n <= ROWS), 1000)
+    return [end for end in ends if end[0] % apart == 0 or end is ends[-1]]
