@@ -24,14 +24,17 @@ def read_frame(path):
 
 
 def lines(path):
-    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+    """A program that was ended may have left its last line cut."""
+    whole = path.read_text().rpartition("\n")[0] if path.exists() else ""
+    return [json.loads(line) for line in whole.splitlines()]
 
 
 def read_run(folder):
     """The steps of a run from step 0 on. Where the log has no `quality` (older programs), it comes from the frames that there are."""
-    steps = lines(folder / "run.jsonl")
-    for step, times in zip(steps, lines(folder / "run.times.jsonl")):
-        step["seconds"] = times["seconds"]["total"]
+    pairs = zip(lines(folder / "run.jsonl"), lines(folder / "run.times.jsonl"))
+    steps = [step | {"seconds": times["seconds"]["total"]} for step, times in pairs]
+    if steps and (folder / "run.state.vtu").exists():
+        steps[-1].setdefault("file", "run.state.vtu")  # the mesh after the last step
     framed = [step for step in steps if "file" in step]
     ends = [step["step"] for step in (framed[:1] + framed[-1:])]
     for step in framed:
