@@ -42,20 +42,21 @@ def read_run(folder):
         if is_end or "quality" not in step:
             points, tets, walls = read_frame(folder / step["file"])
             step.setdefault("quality", spread(points, tets))
-            step["wall_points"] = len(np.unique(walls))
+            step["wall_points"], step["triangles"] = len(np.unique(walls)), len(walls)
     return steps
 
 
-def changed(step):
-    """Of the tets before a change, the part that is gone after it; summed over the changes of a step."""
-    return sum(1 - change["kept_share"] for change in step["changes"])
+def changed(step, triangles):
+    """Of the tets before a change, the part that is gone after it; summed over the changes of a step. The share in a log of motet is one of all cells,
+    so of wall triangles, too, nearly all of which stay."""
+    return sum((1 - change["kept_share"]) * (1 + triangles / change["tets_before"]) for change in step["changes"])
 
 
 def sums(steps):
     """The columns of the table, from the steps with step 0."""
     known = [step["quality"] for step in steps if "quality" in step]
     walls = [step["wall_points"] for step in steps if "wall_points" in step]
-    gone = steps[1:] or steps
+    gone, triangles = steps[1:] or steps, steps[0].get("triangles", 0)
     worst = [step["worst"]["eas"] for step in steps if step.get("worst")]
     counts = {key: [step[key] for step in steps] for key in ("points", "tets")}
     result = {f"{key}_{when}": of(count) for key, count in counts.items()
@@ -66,7 +67,7 @@ def sums(steps):
         "p1_last": known[-1]["p1"], "ratio_first": known[0]["mean_ratio"], "ratio_last": known[-1]["mean_ratio"],
         "worst_ever": min(worst), "bad_ever": max(step["bad"] for step in steps),
         "inverted_ever": max(step["inverted"] for step in steps),
-        "changed": float(np.mean([changed(step) for step in gone])), "seconds": float(np.mean([step["seconds"] for step in gone]))}
+        "changed": float(np.mean([changed(step, triangles) for step in gone])), "seconds": float(np.mean([step["seconds"] for step in gone]))}
 
 
 def cycle_ends(steps, per_cycle):
