@@ -53,6 +53,7 @@ impl Asked<'_> {
             sliding: all_facets(mesh, &self.slide)?,
             slide_tolerance: SlideTolerance(self.slide_tolerance),
             limits: Limits { substeps: self.substeps, ..Limits::default() },
+            ..Options::default()
         })
     }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use motet::Mesh;
 use motet::base::{Threads, Watch};
 use motet::contact;
-use motet::motion::{Extent, Limits, Method, MethodWords, SlideTolerance};
+use motet::motion::{Extent, Limits, Method, MethodWords, SlideTolerance, Strain};
 use motet::moving::{self, Motion, Options, Watching};
 use motet::refine::Wanted;
 use motet::remesh::{self, SurfaceRule};
@@ -27,6 +27,7 @@ use crate::words::{one_of, rules, threads};
 pub(crate) struct Asked {
     method: String,
     bodies: Vec<String>,
+    strain: String,
     within_walls: bool,
     smooth: usize,
     inside: Vec<String>,
@@ -42,7 +43,7 @@ pub(crate) struct Asked {
     hold_names: Vec<String>,
     margin: f64,
     floor: f64,
-    keep_tets: f64,
+    improve_below: f64,
     valid_at_start: bool,
     contents: Vec<String>,
     carry: BTreeMap<String, String>,
@@ -61,6 +62,7 @@ impl Asked {
         let wall = labels(&self.rigid_layer_at)?;
         let motion = Motion {
             method: Method::of_name(&self.method, MethodWords::default()).or_raise()?,
+            strain: Strain::of_name(&self.strain).or_raise()?,
             bodies: labels(&self.bodies)?,
             within_walls: self.within_walls,
             smoothing: self.smooth,
@@ -84,7 +86,7 @@ impl Asked {
             repair: self.repair.then_some(repair),
             margin: self.margin,
             floor: self.floor,
-            keep_tets: self.keep_tets,
+            improve_below: self.improve_below,
             valid_at_start: self.valid_at_start,
             rules: rules(mesh, &self.carry)?,
             contents: self.contents.clone(),

@@ -117,7 +117,7 @@ OPTIONS = {
     "MovingMesh.distance": (moving(surface=of("adapt"), distance=as_it_is), LENGTH),
     "MovingMesh.margin": (moving(margin=as_it_is), PART),
     "MovingMesh.floor": (moving(floor=as_it_is), PART),
-    "MovingMesh.keep_tets": (moving(keep_tets=as_it_is), PART),
+    "MovingMesh.improve_below": (moving(improve_below=as_it_is), PART),
     "MovingMesh.warn": (moving(watch=of(["xmin", "xmax"]), warn=as_it_is), REACH),
     "MovingMesh.within": (moving(watch=of(["xmin", "xmax"]), within=as_it_is), REACH),
     "MovingMesh.horizon": (moving(watch=of(["xmin", "xmax"]), horizon=as_it_is), REACH),

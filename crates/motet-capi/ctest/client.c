@@ -417,7 +417,7 @@ static void numbers(void)
         REFUSED(MOVING(distance), MOTET_ERROR_OPTIONS, "stray");
         REFUSED(MOVING(margin), MOTET_ERROR_OPTIONS, "margin");
         REFUSED(MOVING(floor), MOTET_ERROR_OPTIONS, "floor");
-        REFUSED(MOVING(keep_tets), MOTET_ERROR_OPTIONS, "keep_tets");
+        REFUSED(MOVING(improve_below), MOTET_ERROR_OPTIONS, "improve_below");
         REFUSED(motet_refinement_near(refinement, device, x, 0.5, NULL, &error), MOTET_ERROR_OPTIONS, "size");
         REFUSED(motet_refinement_near(refinement, device, 0.5, x, NULL, &error), MOTET_ERROR_OPTIONS, "grow");
         CHECK(no_mover == NULL && outcome == NULL && none == NULL && no_moving == NULL);

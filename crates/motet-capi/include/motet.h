@@ -392,7 +392,7 @@ typedef struct motet_moving_options {
     double min_eas;            /* a tet below is bad; default 0.2 */
     double margin;             /* tets are repaired up to so much above that; default 0.05 */
     double floor;              /* no step takes a tet that can be repaired below this; default 0.05 */
-    double keep_tets;          /* with fewer than this part of the first tets a repair brings edges back to the lengths that they had; default 0.9 */
+    double improve_below;      /* where a repair changes the mesh, tets below this are made better, too, and the number of vertices is kept; 0: not; default 0.75 */
     const char *const *contents; /* cell arrays that are densities of something that stays in its cell: their integrals are kept; default none */
     int64_t n_contents;
     const char *const *watch;  /* patches whose gaps are measured at each step; default none */

@@ -131,7 +131,7 @@ fn shares_of_a_step_are_numbers_between_zero_and_one() {
         let all = [
             Options { margin: value, ..Options::default() },
             Options { floor: value, ..Options::default() },
-            Options { keep_tets: value, ..Options::default() },
+            Options { improve_below: value, ..Options::default() },
         ];
         assert!(
             all.into_iter().all(|options| MovingMesh::new(&mesh(), options, &threads()).is_err()),

@@ -24,6 +24,7 @@ class _Asked:
 
     method: str
     bodies: Sequence[str | int]
+    strain: str
     within_walls: bool
     smooth: int
     inside: Sequence[str | int]
@@ -39,7 +40,7 @@ class _Asked:
     hold_names: Sequence[str | int]
     margin: float
     floor: float
-    keep_tets: float
+    improve_below: float
     valid_at_start: bool
     contents: Sequence[str]
     carry: Mapping[str, Carry] | None
@@ -76,6 +77,8 @@ class MovingMesh(NotPickled):
     method, within_walls, smooth, rigid_layer, rigid_layer_cells, slide_tolerance : as of :class:`Mover`
     bodies, inside, slide, rigid_layer_at : sequences of names or labels of patches
         ``inside``: patches inside the volume that are driven, such as a flap. The others as of :class:`Mover`.
+    strain : "even" or "band"
+        Of the method ``bodies``: over all that is between a body and the walls that stay, or in a band beside the body, for bodies that go on.
     repair : bool
         Whether bad tets are repaired; if not, a step ends where a cell would turn over.
     min_eas, surface, distance : as of :func:`remesh`
@@ -83,8 +86,9 @@ class MovingMesh(NotPickled):
         What repair leaves as it is, as ``hold`` of :func:`remesh`. (``hold`` here is a distance between walls, see ``watch``.)
     margin, floor : float
         Repaired are tets to ``min_eas + margin``; no step takes one that can be repaired below ``floor``.
-    keep_tets : float
-        Where there are fewer tets than this part of those at first, a repair also brings edges back to the lengths that they had.
+    improve_below : float
+        Where a repair changes the mesh, tets below this EAS are made better, too: those near it, and those that are not as they were at first; and as many vertices inside are kept as
+        there were at first. 0: bad tets are repaired, and nothing else is done.
     valid_at_start : bool
         Whether a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held. See
         ``inverted_at_start`` of a step.
@@ -111,6 +115,7 @@ class MovingMesh(NotPickled):
         *,
         method: str = "delaunay",
         bodies: Sequence[str | int] = (),
+        strain: Literal["even", "band"] = "even",
         within_walls: bool = False,
         smooth: int = 0,
         inside: Sequence[str | int] = (),
@@ -126,7 +131,7 @@ class MovingMesh(NotPickled):
         hold_names: Sequence[str | int] = (),
         margin: float = 0.05,
         floor: float = 0.05,
-        keep_tets: float = 0.9,
+        improve_below: float = 0.75,
         valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,
@@ -149,6 +154,7 @@ class MovingMesh(NotPickled):
         *,
         method: str = "delaunay",
         bodies: Sequence[str | int] = (),
+        strain: Literal["even", "band"] = "even",
         within_walls: bool = False,
         smooth: int = 0,
         inside: Sequence[str | int] = (),
@@ -164,7 +170,7 @@ class MovingMesh(NotPickled):
         hold_names: Sequence[str | int] = (),
         margin: float = 0.05,
         floor: float = 0.05,
-        keep_tets: float = 0.9,
+        improve_below: float = 0.75,
         valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,

@@ -237,6 +237,8 @@ impl Report<'_> {
             count(self.summary.inverted),
             eas.worst_cell
         ));
+        let [p1, p5, median] = eas.percentiles.map(short);
+        console.say(format_args!("  EAS: 1 % below {p1}, 5 % below {p5}, half below {median}"));
         if eas.layers > 0 {
             console.say(format_args!(
                 "  {} thin tets of boundary layers (EAS < 0.2), not counted as bad",

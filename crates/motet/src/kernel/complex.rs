@@ -103,6 +103,12 @@ impl Complex {
         self.vertex_to_tet.iter().filter(|&&t| t != NO_TET).count()
     }
 
+    /// How many vertices of tets nothing holds.
+    pub fn n_free_vertices(&self) -> usize {
+        let is_free = |(&tet, &hold): (&TetId, &Hold)| tet != NO_TET && hold == Hold::Free;
+        self.vertex_to_tet.iter().zip(&self.holds).filter(|pair| is_free(*pair)).count()
+    }
+
     /// The tets that there are, in rising order.
     pub fn tets(&self) -> impl Iterator<Item = TetId> + Clone + '_ {
         (0..self.tets.len()).map(TetId::new).filter(|&t| self.is_alive(t))

@@ -20,6 +20,7 @@ pub mod marks;
 mod measure;
 pub(crate) mod orientation;
 mod oriented_tets;
+mod qualities;
 mod seams;
 pub mod shapes;
 mod summary;
@@ -40,6 +41,7 @@ pub use exchange::{Mesh, bounds, largest_extent};
 pub use field::{Field, Values};
 pub use labels::{LabelNames, Labels, unused_name};
 pub use oriented_tets::{Judged, OrientedTets, is_inverted};
+pub use qualities::Qualities;
 pub use seams::{open_edges, seamless, seams};
 pub use summary::{
     BAD_EAS, BoundarySummary, EasSummary, MinMean, PatchSummary, QualitySummary, Range, RegionSummary,

@@ -10,6 +10,7 @@ use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
 use crate::mesh::curved::CurvedSummary;
+use crate::mesh::qualities::percentile;
 use crate::mesh::{
     Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, edge_lengths, triangulate,
 };
@@ -117,6 +118,8 @@ pub struct QualitySummary {
 pub struct EasSummary {
     /// The worst.
     pub min: f64,
+    /// The value that 1 % are below, that 5 % are below, and the median.
+    pub percentiles: [f64; 3],
     /// The mean.
     pub mean: f64,
     /// How many are bad: below [`BAD_EAS`], and not of a boundary layer.
@@ -282,24 +285,26 @@ fn triangle_mean_ratio([a, b, c]: [Point; 3]) -> f64 {
 /// Shape of the tets whose points are finite.
 fn tet_quality(mesh: &Mesh, tets: &OrientedTets) -> Option<QualitySummary> {
     let mut total: Option<QualitySummary> = None;
-    let (mut n, mut low) = (0usize, Vec::new());
+    let (mut all, mut low) = (Vec::new(), Vec::new());
     for (i, &cell) in tets.cells.iter().enumerate() {
         let tet = tets.corners(i, &mesh.points);
         if tet.into_iter().all(in_range) {
-            n += 1;
-            if total.get_or_insert_with(QualitySummary::empty).add(cell, tet) < BAD_EAS {
+            let eas = total.get_or_insert_with(QualitySummary::empty).add(cell, tet);
+            all.push(eas);
+            if eas < BAD_EAS {
                 low.push(i);
             }
         }
     }
     let judged = tets.judge(&mesh.points, low, BAD_EAS);
-    total.map(|quality| quality.finished(n, &judged))
+    total.map(|quality| quality.finished(&mut all, &judged))
 }
 
 impl QualitySummary {
     fn empty() -> Self {
         let eas = EasSummary {
             min: f64::INFINITY,
+            percentiles: [1.0; 3],
             mean: 0.0,
             bad: 0,
             layers: 0,
@@ -329,7 +334,10 @@ impl QualitySummary {
         eas
     }
 
-    fn finished(mut self, n: usize, judged: &Judged) -> Self {
+    /// `all` are the EAS of all tets.
+    fn finished(mut self, all: &mut [f64], judged: &Judged) -> Self {
+        let n = all.len();
+        self.eas.percentiles = [0.01, 0.05, 0.5].map(|part| percentile(all, part));
         (self.eas.bad, self.eas.layers) = (judged.bad.len(), judged.layers.len());
         self.eas.mean /= n as f64;
         self.mean_ratio.mean /= n as f64;

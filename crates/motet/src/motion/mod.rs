@@ -116,6 +116,7 @@ pub use matching::{Matching, SurfaceMotion, match_ids, match_patch, node_ids};
 pub use mover::{Mover, Setup, SetupSeconds, mesh_velocity};
 pub use options::{
     Elastic, Extent, FacetSet, Laplace, Limits, Method, MethodWords, Options, RigidLayer, SlideTolerance,
+    Strain,
 };
 pub use point_mover::PointMover;
 pub use prescribed::Prescribed;

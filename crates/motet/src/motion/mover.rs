@@ -15,7 +15,7 @@ use crate::motion::guided::{self, Guided, Helpers};
 use crate::motion::map::Map;
 use crate::motion::middles::Middles;
 use crate::motion::nodes::{Nodes, not_sliding};
-use crate::motion::options::{FacetSet, Limits, Method, Options};
+use crate::motion::options::{FacetSet, Limits, Method, Options, Strain};
 use crate::motion::slide::{LeavesPlane, SlidingPlane};
 use crate::motion::smooth::Smoother;
 use crate::motion::solve::Solve;
@@ -37,6 +37,7 @@ pub struct Mover {
     /// Vertices that stay in the middle of others.
     middles: Middles,
     method: Method,
+    strain: Strain,
     /// The vertices of each rigid body.
     bodies: Vec<Vec<VertexId>>,
     /// Where a Laplace equation is stiff; facets whose rotation guides.
@@ -154,6 +155,7 @@ impl Mover {
             middles,
             wall: wall(&boundary, options),
             method: options.method.clone(),
+            strain: options.strain,
             bodies: match &options.method {
                 Method::Bodies(sets) => bodies::vertices(sets, &boundary, &mesh.points)?,
                 _ => Vec::new(),
@@ -342,7 +344,8 @@ impl Mover {
             return Ok(Map::Graph(spread));
         }
         let (tets, vertices) = (&self.check.corners.tets, (&self.hanging[..], &self.nodes));
-        Bodies::new(&self.bodies, tets, points, vertices, spread, threads).map(|b| Map::Bodies(Box::new(b)))
+        Bodies::new((&self.bodies, self.strain), tets, points, vertices, spread, threads)
+            .map(|b| Map::Bodies(Box::new(b)))
     }
 
     /// The vertex of a node of the graph; `None` for a point that the graph added.

@@ -28,6 +28,30 @@ pub enum Method {
     Radial,
 }
 
+/// Where the strain goes that bodies put on what is round them: see [`Method::Bodies`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub enum Strain {
+    /// Evenly over all that lies between a body and the walls that stay: no tet gets much of it. For walls that come back.
+    #[default]
+    Even,
+    /// Into a band of about one edge beside the body: what is farther away stays as it is, to the bit. For bodies that go on: few tets become bad, again and again, and all others stay good.
+    Band,
+}
+
+impl Strain {
+    /// The one of a name, `even` or `band`.
+    ///
+    /// # Errors
+    /// When none is called that.
+    pub fn of_name(name: &str) -> Result<Self> {
+        match name {
+            "even" => Ok(Self::Even),
+            "band" => Ok(Self::Band),
+            _ => Err(Error::options(format!("there is no strain `{name}`")).remedy("give even or band")),
+        }
+    }
+}
+
 /// Linear elasticity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Elastic {
@@ -188,6 +212,8 @@ const SOLVED: Tolerance = Tolerance { residual: 1e-6, iterations: 10_000 };
 pub struct Options {
     /// How the vertices inside follow.
     pub method: Method,
+    /// Of [`Method::Bodies`]: where the strain goes. Default: [`Strain::Even`].
+    pub strain: Strain,
     /// Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap. It is slower to set up, and needs a boundary whose
     /// facets do not meet in more than they share. Default: no.
     pub within_walls: bool,

@@ -48,8 +48,8 @@ pub(super) struct Clock {
     pub(super) time: f64,
     /// How long the last step took.
     pub(super) dt: f64,
-    /// How many tets there are to be: as many as at first, or as refinement left.
-    pub(super) n_first: usize,
+    /// How many vertices that nothing holds there are to be: as many as at first, or as refinement left. `None`: as many as there are.
+    pub(super) n_free: Option<usize>,
 }
 
 impl MovingMesh {
@@ -63,8 +63,7 @@ impl MovingMesh {
         let wall = Wall::of(mesh, mover.boundary(), &options)?;
         let known = Known::at_first(mesh, mover.boundary());
         let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
-        let n_first = now.tets.len();
-        let mut moving = Self::of(options, wall, now, Clock { n_first, ..Clock::default() }, threads)?;
+        let mut moving = Self::of(options, wall, now, Clock::default(), threads)?;
         moving.measure_gaps(threads)?;
         Ok(moving)
     }
@@ -219,7 +218,7 @@ impl MovingMesh {
         let displacement = held.as_ref().map_or(displacement, |held| &held.displacement);
         let mut way = self.way(displacement, time, threads);
         let Reached { changed, left, shape, fraction } = way.go(&self.now)?;
-        let Way { points, mut seconds, changes, legs, .. } = way;
+        let Way { points, mut seconds, changes, legs, n_free, .. } = way;
         match changed {
             Some(now) => self.now = now,
             None => self.now.known.before.clone_from(&self.now.mesh.points),
@@ -230,7 +229,7 @@ impl MovingMesh {
         go_to(&mut self.now.mesh, &points, &self.options.contents);
         let is_complete = fraction == 1.0;
         let reached = if is_complete { time } else { start + (time - start) * fraction };
-        self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, ..self.clock };
+        self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, n_free };
         self.remember(&changes);
         let begin_contact = Instant::now();
         if let (Some(hold), Some(held)) = (&mut self.hold, held) {
@@ -241,7 +240,7 @@ impl MovingMesh {
         seconds.contact = holding + begin_contact.elapsed().as_secs_f64();
         let inverted_at_start = if changes.is_empty() { None } else { self.now.inverted_at_start(threads) };
         seconds.total = begin.elapsed().as_secs_f64();
-        let certified = self.certified(&shape);
+        let certified = self.certified(&shape, threads);
         Ok(Step {
             complete: is_complete,
             fraction,
@@ -265,7 +264,7 @@ impl MovingMesh {
         let gaps = self.measure_gaps(threads)?;
         let total = begin.elapsed().as_secs_f64();
         let seconds = Seconds { quality, contact: total - quality, total, ..Seconds::default() };
-        Ok(Step { complete: true, fraction: 1.0, gaps, seconds, ..self.certified(&shape) })
+        Ok(Step { complete: true, fraction: 1.0, gaps, seconds, ..self.certified(&shape, threads) })
     }
 
     /// Repairs what is bad where the mesh is, at the time that was reached. A step does so by itself; a mesh that came, or was refined, may need it before the first.
@@ -275,7 +274,8 @@ impl MovingMesh {
     pub fn repair(&mut self, threads: &Threads) -> Result<Option<Change>> {
         let mut way = self.way(&[], self.clock.time, threads);
         let Reached { changed, left, .. } = way.stay(&self.now, self.clock.step == 0)?;
-        let changes = way.changes;
+        let (changes, n_free) = (way.changes, way.n_free);
+        self.clock.n_free = n_free;
         if let Some(left) = left {
             self.now.left = left;
         }
@@ -292,7 +292,7 @@ impl MovingMesh {
             wall: &self.wall,
             displacement,
             times: [self.clock.time, time],
-            n_first: self.clock.n_first,
+            n_free: self.clock.n_free,
             threads,
             points: Vec::new(),
             seconds: Seconds::default(),
@@ -360,7 +360,7 @@ impl MovingMesh {
         let (when, history) = ((self.clock.time, Why::Refinement), Arc::new(history));
         let change = Change { operations, ..Change::new(when, counts, shape, history, points_before) };
         self.now = now;
-        self.clock.n_first = self.now.tets.len();
+        self.clock.n_free = None;
         self.now.known.size_anew(&self.now.mesh);
         self.remember(std::slice::from_ref(&change));
         Ok(change)
@@ -433,7 +433,7 @@ impl MovingMesh {
         }
     }
 
-    fn certified(&self, shape: &Shape) -> Step {
+    fn certified(&self, shape: &Shape, threads: &Threads) -> Step {
         let Self { now, clock, .. } = self;
         let shape = now.tets.without_layers(shape, &now.mesh.points, self.options.limit());
         Step {
@@ -444,6 +444,7 @@ impl MovingMesh {
             bad: shape.bad.len(),
             forced: now.n_forced(&shape),
             inverted: shape.inverted,
+            quality: now.tets.qualities(&now.mesh.points, threads),
             worst: shape.worst.map(|(cell, eas, place)| WorstTet { eas, cell, place }),
             ..Step::default()
         }

@@ -12,7 +12,7 @@ use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Why};
 use crate::moving::wall::Wall;
-use crate::remesh::{self, Goal, MeshOutcome, Sizes, remesh_mesh};
+use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
 
 /// Parts are halved down to this where tets would become flat: repairing more often than so is no way to go on.
 const SMALLEST: f64 = 1.0 / 32.0;
@@ -21,6 +21,9 @@ const LEAST: f64 = 1.0 / 4096.0;
 
 /// So often a repair is made once more with tets held that it is not to replace.
 const MOST_HELD: usize = 8;
+
+/// A tet of the first mesh is as it was at first while its EAS is no more than this below what it was.
+const AS_AT_FIRST: f64 = 0.005;
 
 /// So many tets away from a bad one tets are near it.
 const RINGS: usize = 2;
@@ -33,8 +36,8 @@ pub(super) struct Way<'a> {
     pub(super) displacement: &'a [Point],
     /// From when to when.
     pub(super) times: [f64; 2],
-    /// How many tets there are to be.
-    pub(super) n_first: usize,
+    /// How many vertices that nothing holds there are to be; `None`: as many as the mesh has when it changes first.
+    pub(super) n_free: Option<usize>,
     pub(super) threads: &'a Threads,
     /// Where the vertices are to be: scratch, and the result.
     pub(super) points: Vec<Point>,
@@ -204,15 +207,10 @@ impl Way<'_> {
         let Some(usual) = options.repair.as_ref().filter(|_| is_needed) else {
             return Ok(Repaired::Left(Vec::new()));
         };
-        let is_thinned = (now.tets.len() as f64) < options.keep_tets * self.n_first as f64;
         let mut repair = remesh::Options {
-            sizes: if is_thinned {
-                Some(Sizes::Vertices(now.known.size.clone()))
-            } else {
-                usual.sizes.clone()
-            },
             min_eas: (usual.min_eas + options.margin).min(1.0),
             only: self.worth_repair(now, shape, effort),
+            improve: self.improve(now, usual, effort),
             goal: if matches!(effort, Effort::Usual | Effort::Margin) { usual.goal } else { Goal::Best },
             ..usual.clone()
         };
@@ -229,6 +227,7 @@ impl Way<'_> {
             tries_left -= 1;
         };
         let (report, history) = (outcome.report, Arc::new(outcome.history));
+        self.n_free.get_or_insert(report.before.free_vertices);
         let left = left_of(&report);
         self.seconds.repair += begin.elapsed().as_secs_f64();
         if report.kept == now.tets.len() && outcome.mesh.points == given.points {
@@ -258,6 +257,20 @@ impl Way<'_> {
                 Some(fallen.map(|((cell, _), _)| *cell).collect())
             }
         }
+    }
+
+    /// What is improved beside the bad tets: those that are not as they were at first. A mesh of sizes of its own has no other density to keep.
+    fn improve(&self, now: &Now, usual: &remesh::Options, effort: Effort) -> Option<Improve> {
+        let below = self.options.improve_below;
+        if below == 0.0 || !matches!(effort, Effort::Usual | Effort::All) {
+            return None;
+        }
+        let low = now.tets.shape(&self.points, below, self.threads).bad;
+        let first = &now.known.first_eas;
+        let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
+        let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
+        let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
+        Some(Improve { below, cells, density: usual.sizes.is_none().then_some(density) })
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -1,6 +1,7 @@
 //! The mesh between two changes: where it is, what moves it, where each vertex was at first.
 
 use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
+use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
 use crate::mesh::{Field, Mesh, mean_edge_lengths};
@@ -52,6 +53,8 @@ pub(super) struct Known {
     pub(super) size: Vec<f64>,
     /// How long edges were there at first.
     pub(super) first_size: Vec<f64>,
+    /// Of each cell that is a tet of the first mesh the EAS that it had then, of others no number.
+    pub(super) first_eas: Vec<f64>,
 }
 
 impl Known {
@@ -66,6 +69,7 @@ impl Known {
             node,
             size: size.clone(),
             first_size: size,
+            first_eas: first_eas(mesh),
         }
     }
 
@@ -73,6 +77,11 @@ impl Known {
     pub(super) fn size_anew(&mut self, mesh: &Mesh) {
         self.size = lengths(mesh);
     }
+}
+
+/// The EAS of each cell that is a tet, of others no number.
+fn first_eas(mesh: &Mesh) -> Vec<f64> {
+    mesh.tet_field("eas", eas).values.to_f64().unwrap_or_default()
 }
 
 /// How long edges are at each vertex of tets.
@@ -197,7 +206,12 @@ impl Now {
             true => NO_NODE,
             false => self.known.node[old.index()],
         };
+        let eas = |old: &CellId| match *old == CellId::NONE {
+            true => f64::NAN,
+            false => self.known.first_eas[old.index()],
+        };
         Ok(Known {
+            first_eas: history.cells.kept().iter().map(eas).collect(),
             first,
             before,
             size,
@@ -212,3 +226,5 @@ pub(super) const FIRST: &str = "moving:first";
 pub(super) const BEFORE: &str = "moving:before";
 pub(super) const SIZE: &str = "moving:size";
 pub(super) const FIRST_SIZE: &str = "moving:first_size";
+/// A cell array of a state.
+pub(super) const FIRST_EAS: &str = "moving:first_eas";

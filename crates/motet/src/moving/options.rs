@@ -22,9 +22,9 @@ pub struct Options {
     pub margin: f64,
     /// No step, or part of one, takes a tet that can be repaired below this EAS: it is repaired on the way, as long as that is easy. Default: 0.05.
     pub floor: f64,
-    /// Where repairs have left fewer tets than this part of those at first, the next one also brings edges back to the lengths that they had at
-    /// first. Default: 0.9; 0: never.
-    pub keep_tets: f64,
+    /// Where a repair changes the mesh, tets below this EAS are made better on the whole, too: those near it, and those that are not as they were at first. And as many vertices inside are
+    /// kept as there were at first. So the next steps make fewer tets bad, and a long motion leaves the mesh that it began with. Default: 0.75; 0: bad tets are repaired, and nothing else is done.
+    pub improve_below: f64,
     /// Whether a repair that brings tets without volume where their vertices were as the step began is made once more with the tets that they replace held, and so on: schemes that
     /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step. What is left after some tries is reported as
     /// [`Step::inverted_at_start`](super::Step::inverted_at_start). Default: no.
@@ -46,7 +46,7 @@ impl Default for Options {
             repair: Some(remesh::Options::default()),
             margin: 0.05,
             floor: 0.05,
-            keep_tets: 0.9,
+            improve_below: 0.75,
             valid_at_start: false,
             rules: Rules::default(),
             contents: Contents::default(),
@@ -63,7 +63,9 @@ impl Options {
     /// Names the first of them.
     pub(super) fn check(&self) -> Result<()> {
         self.repair.as_ref().map_or(Ok(()), remesh::Options::check)?;
-        for (what, value) in [("margin", self.margin), ("floor", self.floor), ("keep_tets", self.keep_tets)] {
+        for (what, value) in
+            [("margin", self.margin), ("floor", self.floor), ("improve_below", self.improve_below)]
+        {
             if !(0.0..=1.0).contains(&value) {
                 let what = format!("{what} is {value}, expected a number in [0, 1]");
                 return Err(Error::options(what).remedy("leave it out"));
@@ -86,6 +88,8 @@ pub type Contents = Vec<String>;
 pub struct Motion {
     /// The method. Facets that it names are not looked at: see [`Self::bodies`].
     pub method: Method,
+    /// As [`motion::Options::strain`].
+    pub strain: motion::Strain,
     /// The patches of [`Method::Bodies`], each a body; none: as there.
     pub bodies: Vec<i32>,
     /// As [`motion::Options::within_walls`].
@@ -129,6 +133,7 @@ impl Motion {
             .map(|(extent, wall)| RigidLayer { extent: *extent, wall: FacetSet::joined(sets(wall)) });
         motion::Options {
             method,
+            strain: self.strain,
             within_walls: self.within_walls,
             smoothing: self.smoothing,
             also_moved: self.driven_inside(mesh),

@@ -3,7 +3,7 @@
 use crate::base::{CellId, Point, Threads};
 use crate::geometry::quality::{ROUGH_EAS_ERROR, eas, rough_eas};
 use crate::geometry::tet;
-use crate::mesh::{Mesh, OrientedTets, is_inverted};
+use crate::mesh::{Mesh, OrientedTets, Qualities, is_inverted};
 
 /// The tets of a mesh, oriented.
 #[derive(Clone, Debug)]
@@ -46,6 +46,11 @@ impl Tets {
         let look = |start: usize| self.look(start..(start + CHUNK).min(self.len()), points, limit);
         let parts = threads.each(chunks, look);
         parts.into_iter().fold(Shape::default(), Shape::and)
+    }
+
+    /// How good all tets are at some places of the vertices.
+    pub(super) fn qualities(&self, points: &[Point], threads: &Threads) -> Qualities {
+        Qualities::of(points, &self.0.tets, threads)
     }
 
     /// The EAS that some cells have at other places of the vertices.

@@ -10,7 +10,7 @@ use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
 use crate::moving::described::differences;
 use crate::moving::handle::{Clock, MovingMesh};
-use crate::moving::now::{BEFORE, FIRST, FIRST_SIZE, Known, LeftBad, Now, SIZE};
+use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, FIRST_SIZE, Known, LeftBad, Now, SIZE};
 use crate::moving::options::Options;
 use crate::moving::wall::Wall;
 
@@ -39,6 +39,7 @@ impl MovingMesh {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         let Now { mesh, mover, known, left, .. } = &self.now;
         let clock = self.clock;
+        let n_free = clock.n_free.map_or(f64::NAN, |n| n as f64);
         let mut file = mesh.clone();
         for (name, values) in [(FIRST, &known.first), (BEFORE, &known.before)] {
             file.set_point_field(Field::vectors(name, values));
@@ -48,6 +49,7 @@ impl MovingMesh {
         for (name, sizes) in [(SIZE, &known.size), (FIRST_SIZE, &known.first_size)] {
             file.set_point_field(Field::scalars(name, sizes.clone()));
         }
+        file.set_cell_field(Field::scalars(FIRST_EAS, known.first_eas.clone()));
         let triangles: Vec<u32> = self.wall.triangles.as_flattened().iter().map(|v| v.0).collect();
         file.field_data.extend([
             Field::vectors(PLACES, &self.wall.places),
@@ -55,7 +57,7 @@ impl MovingMesh {
             Field::scalars(LEFT, left.iter().map(|left| left.cell.0).collect::<Vec<_>>()),
             Field::scalars(LEFT_EAS, left.iter().map(|left| left.eas).collect::<Vec<_>>()),
             Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
-            Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, clock.n_first as f64]),
+            Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, n_free]),
         ]);
         file.field_data.extend([
             text(OPTIONS, &self.options.described()?),
@@ -88,7 +90,7 @@ impl MovingMesh {
 
     fn taken(mut mesh: Mesh, options: Options, threads: &Threads) -> Result<Self> {
         let mut taken = Taken { fields: Vec::new() };
-        for list in [&mut mesh.point_data, &mut mesh.field_data] {
+        for list in [&mut mesh.point_data, &mut mesh.cell_data, &mut mesh.field_data] {
             let is_ours = |field: &mut Field| field.name.starts_with(PREFIX);
             taken.fields.extend(list.extract_if(.., is_ours));
         }
@@ -101,14 +103,16 @@ impl MovingMesh {
         arrange(&mut mesh.point_data, &taken.text(POINT_ARRAYS)?)?;
         arrange(&mut mesh.cell_data, &taken.text(CELL_ARRAYS)?)?;
         let clock = taken.floats(CLOCK)?;
-        let &[step, time, dt, n_first] = clock.as_slice() else { return Err(no_state(CLOCK)) };
-        let clock = Clock { step: step as usize, time, dt, n_first: n_first as usize };
+        let &[step, time, dt, n_free] = clock.as_slice() else { return Err(no_state(CLOCK)) };
+        let clock =
+            Clock { step: step as usize, time, dt, n_free: (n_free >= 0.0).then_some(n_free as usize) };
         let known = Known {
             first: taken.vectors(FIRST)?,
             before: taken.vectors(BEFORE)?,
             node: taken.ids(NODE)?,
             size: taken.floats(SIZE)?,
             first_size: taken.floats(FIRST_SIZE)?,
+            first_eas: taken.floats(FIRST_EAS)?,
         };
         let wall = Wall {
             places: taken.vectors(PLACES)?,
@@ -118,7 +122,7 @@ impl MovingMesh {
                 None => Vec::new(),
             },
         };
-        check(&wall, &known, mesh.points.len())?;
+        check(&wall, &known, [mesh.points.len(), mesh.cells.len()])?;
         let left = taken.left(mesh.cells.len())?;
         let here = std::mem::replace(&mut mesh.points, taken.vectors(REFERENCE)?);
         let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
@@ -211,11 +215,14 @@ fn triangles(ids: &[u32]) -> Result<Vec<[VertexId; 3]>> {
     }
 }
 
-fn check(wall: &Wall, known: &Known, n_points: usize) -> Result<()> {
+fn check(wall: &Wall, known: &Known, [n_points, n_cells]: [usize; 2]) -> Result<()> {
     let n = wall.places.len();
     let is_node = |&node: &u32| node == super::wall::NO_NODE || (node as usize) < n;
     if !known.node.iter().all(is_node) || known.node.len() != n_points {
         return Err(no_state(NODE));
+    }
+    if known.first_eas.len() != n_cells {
+        return Err(no_state(FIRST_EAS));
     }
     if !wall.body.is_empty() && wall.body.len() != wall.triangles.len() {
         return Err(no_state(BODY));

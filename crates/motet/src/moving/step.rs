@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::base::{CellId, Id, Point, percent};
+use crate::mesh::Qualities;
 use crate::mesh::history::History;
 use crate::moving::shapes::Shape;
 use crate::remesh::Counts;
@@ -36,6 +37,8 @@ pub struct Step {
     pub inverted: usize,
     /// The worst tet.
     pub worst: Option<WorstTet>,
+    /// How good all tets are.
+    pub quality: Qualities,
     /// Where the step changed the mesh: tets that are flat or inverted where their vertices were as the step began. `None` where there is none.
     pub inverted_at_start: Option<InvertedAtStart>,
     /// How near the watched patches are.

@@ -8,6 +8,7 @@
 //! | [`split_edge`] | the tets round an edge | two for each, with a vertex on the edge |
 //! | [`split_crossed`] | the tets round two opposite edges | tets that meet where the edges pass each other |
 //! | [`Smoothing`] | the tets of a vertex | the same, the vertex at a better place |
+//! | [`Relaxation`] | the tets of a vertex | the same, the vertex where they are better on the whole |
 //! | [`Insertion`] | the tets that see a new vertex well | tets that meet in it |
 //!
 //! `bar` is the quality that a proposal has to beat: an operation that cannot stops as soon as it knows.
@@ -17,6 +18,7 @@ mod cone;
 mod edge_removal;
 mod face_removal;
 mod insertion;
+mod relaxation;
 mod smoothing;
 mod split;
 
@@ -25,5 +27,6 @@ pub use cone::cone;
 pub use edge_removal::EdgeRemoval;
 pub use face_removal::FaceRemoval;
 pub use insertion::Insertion;
+pub use relaxation::{Relaxation, defect};
 pub use smoothing::{Anywhere, Smoothing, Track};
 pub use split::{split_crossed, split_edge, split_onto};

@@ -8,6 +8,8 @@
 //! | by length | `repair::by_length` | edges far from the local average length collapsed or split, where the surface is kept: the paper's rule for type IV |
 //! | beyond | `repair::stages` | vertices moved, collapsed, inserted; what lies round the stubborn made better first |
 //! | divide | `repair::divide` | what nothing helps is divided, as long as that leaves fewer |
+//! | improve | `repair::improve` | swaps and moved vertices that make tets better on the whole, and none bad |
+//! | density | `repair::density` | as many vertices as there were: long edges divided, short ones collapsed |
 //! | thin | `repair::thin` | vertices that came and lie close to others go again where they are not needed |
 //! | choose | `repair::candidate` | of the changes that repair a tet the one that touches the fewest that nothing has touched |
 //! | surface | `surface` | kept to the bit, or within a distance of what it was |
@@ -37,7 +39,7 @@ mod whole;
 pub use held::Held;
 pub use left::{Left, Reason};
 pub use lengths::Lengths;
-pub use options::{DEFAULT_DISTANCE, Goal, Options, SurfaceRule};
+pub use options::{DEFAULT_DISTANCE, Density, Goal, Improve, Options, SurfaceRule};
 pub use report::{Counts, Operation, Report, Seconds, SizesReport, State, Worst};
 pub use run::{Outcome, remesh};
 pub use sizes::{LONG, SHORT, Sizes};

@@ -29,6 +29,8 @@ pub struct Options {
     pub held: Held,
     /// How long edges are to be; `None`: as they are. Default: `None`.
     pub sizes: Option<Sizes>,
+    /// Which tets are improved beside the bad ones; `None`: those that goal [`Goal::Best`] improves, otherwise none. Default: `None`.
+    pub improve: Option<Improve>,
     /// At most so many rounds over the bad tets. Default: 20.
     pub rounds: usize,
 }
@@ -44,6 +46,7 @@ impl Default for Options {
             keep_layers: true,
             held: Held::default(),
             sizes: None,
+            improve: None,
             rounds: 20,
         }
     }
@@ -67,6 +70,12 @@ impl Options {
             );
             return refused(what, "leave it out");
         }
+        if let Some(below) = self.improve.as_ref().map(|improve| improve.below)
+            && !(0.0..=1.0).contains(&below)
+        {
+            let what = format!("tets to be improved below an EAS of {below}, expected a number in [0, 1]");
+            return refused(what, "0.75 is the default of a moving mesh");
+        }
         match self.surface {
             SurfaceRule::Adapt { distance: Some(d) } | SurfaceRule::Loose { distance: Some(d) }
                 if !(0.0..=LARGEST).contains(&d) =>
@@ -81,6 +90,27 @@ impl Options {
     pub fn limit(&self) -> f64 {
         self.min_eas.max(self.min_dihedral_deg.to_radians() / REGULAR)
     }
+}
+
+/// Tets that are made better on the whole, none of them bad, beside those that are repaired: the mean gets better, and the next motion makes fewer bad.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Improve {
+    /// Tets below this EAS are improved where they share a vertex with what repair has changed, and among [`Self::cells`].
+    pub below: f64,
+    /// Further cells; ids of cells that are no tets say nothing.
+    pub cells: Vec<CellId>,
+    /// How many vertices are to be kept; `None`: as many as repair leaves.
+    pub density: Option<Density>,
+}
+
+/// The number of vertices that is kept, and where they belong.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Density {
+    /// For each vertex of the mesh how long edges are to be there; between vertices linear in the tets. Long edges are divided where vertices lack, short ones collapsed where there are too
+    /// many.
+    pub sizes: Vec<f64>,
+    /// How many vertices that nothing holds there are to be; `None`: as many as the mesh has.
+    pub free_vertices: Option<usize>,
 }
 
 /// What may happen to walls: the boundary, interfaces between regions, labelled facets.

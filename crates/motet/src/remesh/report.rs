@@ -86,6 +86,8 @@ pub struct Worst {
 pub struct State {
     /// How many vertices tets have.
     pub vertices: usize,
+    /// How many of these nothing holds: they lie inside, and on no line.
+    pub free_vertices: usize,
     /// How many tets there are.
     pub tets: usize,
     /// How many are bad: as [`crate::mesh::OrientedTets`] judges them, by the limit that was given.
@@ -108,6 +110,7 @@ impl State {
         let worst = complex.worst();
         Self {
             vertices: complex.n_used_vertices(),
+            free_vertices: complex.n_free_vertices(),
             tets: complex.n_tets(),
             bad: bad.len(),
             layers,

@@ -8,10 +8,10 @@ use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
-use crate::remesh::options::{Goal, Options, SurfaceRule};
-use crate::remesh::repair::{Repair, Sizing, is_among, passes};
+use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
+use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, passes};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
-use crate::remesh::sizes::{LONG, SizeField};
+use crate::remesh::sizes::{LONG, SizeField, Sizes};
 use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
@@ -89,6 +89,14 @@ pub(super) fn remesh_but(
         repair.best(options.rounds)?;
         left = repair.below(min_eas);
     }
+    if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
+        let density = improve.density.as_ref().map(|density| Density {
+            field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), mesh, LONG),
+            n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
+        });
+        improve_near(&mut repair, improve, density, min_eas)?;
+        left = repair.below(min_eas);
+    }
     report.operations = repair.operations;
     let (complex, sizing) = (repair.complex, repair.sizing);
     report.sizes = lengths_before
@@ -106,6 +114,28 @@ pub(super) fn remesh_but(
     report.left = explain(&complex, &left, min_eas, |t: TetId| extract.tet(t).0);
     report.seconds.extract = clock.lap();
     Ok(Outcome { extract, report })
+}
+
+/// By how much more a change has to lower the sum of defects for each tet that nothing has changed yet. Of the paddle of [`repair::improve`](super::repair): with 0.01 9.1 % of the tets change
+/// in a step, with 0.02 7.6 %, with 0.03 6.6 %; the mean EAS after a turn is 0.693, 0.692 and 0.685.
+const COST: f64 = 0.02;
+
+/// Keeps the number of vertices, and improves what is low near changes and among the cells that were asked for.
+fn improve_near(
+    repair: &mut Repair,
+    improve: &Improve,
+    density: Option<Density>,
+    min_eas: f64,
+) -> Result<()> {
+    let mut zone = repair.near_changes();
+    let asked = improve.cells.iter().map(|cell| TetId(cell.0));
+    zone.extend(asked.filter(|&tet| repair.complex.is_original(tet)));
+    zone.sort_unstable();
+    zone.dedup();
+    if let Some(mut density) = density {
+        repair.keep_density(&mut density, min_eas, &mut zone)?;
+    }
+    repair.improve(Aim { below: improve.below, floor: min_eas, cost: COST }, zone)
 }
 
 /// Which tets are not among some.

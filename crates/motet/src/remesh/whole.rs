@@ -56,7 +56,10 @@ pub fn remesh_part(
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
     let held = Held { cells: options.held.cells.iter().filter_map(tet_of).collect(), ..options.held.clone() };
-    let options = Options { only, held, ..options.clone() };
+    let mut options = Options { only, held, ..options.clone() };
+    if let Some(improve) = &mut options.improve {
+        improve.cells = improve.cells.iter().filter_map(tet_of).collect();
+    }
     let required = Required::of(mesh, part);
     let outcome =
         remesh_but(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;

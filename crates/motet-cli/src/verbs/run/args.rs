@@ -28,6 +28,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
 
   [motion]
   method = \"delaunay\"             # bodies, guided, ... as `motet move --method`
+  strain = \"band\"                 # of bodies: beside them (band) or everywhere (even); band where one goes on (ramp)
   smooth = 2
   rigid_layer = \"3layers\"         # or a distance
   within_walls = false
@@ -53,7 +54,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   hold = [\"solid\"]                # regions and patches that repairs leave as they are
   margin = 0.05                   # repaired tets reach min_eas + margin
   floor = 0.05                    # no step goes below this before it is repaired
-  keep_tets = 0.9                 # below this part of the first count, edges get their lengths back
+  improve_below = 0.75            # what is below near a repair gets better, too, and the count is kept; 0: off
   valid_at_start = false          # true: repairs bring no tet that has no volume where the step began
 
   [[refine]]                      # words as those of `motet refine`

@@ -6,7 +6,7 @@ use motet::base::Threads;
 use motet::contact;
 use motet::implant::{self, implant};
 use motet::mesh::history::Rules;
-use motet::motion::{Extent, Method, MethodWords, SlideTolerance};
+use motet::motion::{Extent, Method, MethodWords, SlideTolerance, Strain};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
 use motet::refine::{Criterion, Limits, Size, Wanted};
 use motet::remesh::{self, Held, SurfaceRule};
@@ -91,7 +91,7 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
         repair: (!repair.off).then_some(asked),
         margin: repair.margin,
         floor: repair.floor,
-        keep_tets: repair.keep_tets,
+        improve_below: repair.improve_below,
         valid_at_start: repair.valid_at_start,
         rules,
         contents: job.contents.clone(),
@@ -111,12 +111,25 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
         return Err(Error::input("motion.bodies names rigid bodies, but the method has none")
             .remedy("add method = \"bodies\""));
     }
+    let strain = match &asked.strain {
+        Some(_) if !matches!(method, Method::Bodies(_)) => {
+            return Err(Error::input(
+                "motion.strain says where bodies put the strain, but the method has none",
+            )
+            .remedy("add method = \"bodies\""));
+        }
+        Some(name) => Strain::of_name(name)?,
+        // What goes on does not come back: a band keeps the rest as it is.
+        None if asked.moves.iter().any(|part| part.in_time.is_ramp()) => Strain::Band,
+        None => Strain::Even,
+    };
     let rigid_layer = match &asked.rigid_layer {
         None => None,
         Some(layer) => Some((extent(layer)?, mesh.find_patches(&asked.rigid_layer_at)?)),
     };
     Ok(Motion {
         method,
+        strain,
         bodies: mesh.find_patches(&asked.bodies)?,
         within_walls: asked.within_walls,
         smoothing: asked.smooth,

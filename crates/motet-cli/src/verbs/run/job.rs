@@ -74,6 +74,7 @@ pub(super) struct Device {
 pub(super) struct Motion {
     pub(super) method: Option<String>,
     pub(super) bodies: Vec<String>,
+    pub(super) strain: Option<String>,
     pub(super) smooth: usize,
     pub(super) rigid_layer: Option<Layer>,
     pub(super) rigid_layer_at: Vec<String>,
@@ -145,6 +146,13 @@ pub(super) enum Course {
     Table(Vec<[f64; 2]>),
 }
 
+impl Course {
+    /// Whether what follows it goes on and stays where it came to.
+    pub(super) fn is_ramp(&self) -> bool {
+        matches!(self, Self::Name(name) if name == "ramp")
+    }
+}
+
 impl Default for Course {
     fn default() -> Self {
         Self::Name("beat".into())
@@ -162,7 +170,7 @@ pub(super) struct Repair {
     pub(super) hold: Vec<String>,
     pub(super) margin: f64,
     pub(super) floor: f64,
-    pub(super) keep_tets: f64,
+    pub(super) improve_below: f64,
     pub(super) valid_at_start: bool,
 }
 
@@ -177,7 +185,7 @@ impl Default for Repair {
             hold: Vec::new(),
             margin: usual.margin,
             floor: usual.floor,
-            keep_tets: usual.keep_tets,
+            improve_below: usual.improve_below,
             valid_at_start: usual.valid_at_start,
         }
     }
@@ -303,11 +311,14 @@ impl Job {
         }
         let share = |x: f64| (0.0..1.0).contains(&x);
         let repair = &self.repair;
-        if !(share(repair.min_eas) && share(repair.margin) && share(repair.floor) && share(repair.keep_tets))
+        if !(share(repair.min_eas)
+            && share(repair.margin)
+            && share(repair.floor)
+            && share(repair.improve_below))
         {
             return off(
                 "a number of [repair] is not between 0 and 1",
-                "min_eas, margin, floor and keep_tets are shares",
+                "min_eas, margin, floor and improve_below are shares",
             );
         }
         let contact = self.contact.as_ref();

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use motet::base::{percent, reasons};
+use motet::mesh::Qualities;
 use motet::motion::LeavesPlane;
 use motet::moving::{MovingMesh, Script, Seconds, Step, Stopped, Why, WorstTet};
 use serde::Serialize;
@@ -48,6 +49,12 @@ pub(crate) struct Report {
     points: usize,
     /// As it came or went on, and at the end.
     pub(crate) tets: [usize; 2],
+    /// How good all tets are: as it came or went on, and at the end.
+    pub(crate) quality: [Qualities; 2],
+    /// The least mean EAS of a step.
+    least_mean: f64,
+    /// The part of the cells that changed, all steps together, by the cells of a step.
+    changed: f64,
     /// Steps in which walls stopped in front of others.
     held_steps: usize,
     /// Of all steps the vertex that was farthest from its requested place.
@@ -70,10 +77,12 @@ pub(crate) struct Report {
 pub(super) fn line(step: &Step, console: &Console) {
     let worst = step.worst.map_or(f64::NAN, |worst| worst.eas);
     let mut text = format!(
-        "step {:>4}  time {:<8} {:>11} tets  worst EAS {worst:.4}  {} bad",
+        "step {:>4}  time {:<8} {:>11} tets  worst EAS {worst:.4}, 1 % {:.3}, mean {:.3}  {} bad",
         step.step,
         time(step.time),
         count(step.tets),
+        step.quality.p1,
+        step.quality.mean,
         step.bad
     );
     if step.forced > 0 {
@@ -104,7 +113,15 @@ pub(super) fn line(step: &Step, console: &Console) {
 impl Report {
     pub(super) fn new(job: &Job, output: &Output) -> Self {
         let (output, log) = (output.series_file.clone(), output.log.clone());
-        Self { job: job.file.clone(), output, log, of: job.n_steps(), complete: true, ..Self::default() }
+        Self {
+            job: job.file.clone(),
+            output,
+            log,
+            of: job.n_steps(),
+            complete: true,
+            least_mean: 1.0,
+            ..Self::default()
+        }
     }
 
     /// The run goes on after a step.
@@ -114,7 +131,7 @@ impl Report {
 
     pub(super) fn add(&mut self, step: &Step) {
         if self.worst_at_first.is_none() {
-            (self.worst_at_first, self.tets[0]) = (step.worst, step.tets);
+            (self.worst_at_first, self.tets[0], self.quality[0]) = (step.worst, step.tets, step.quality);
         }
         self.steps = step.step;
         self.complete &= step.complete;
@@ -130,7 +147,9 @@ impl Report {
         if let Some(worst) = step.worst.filter(|worst| self.worst.is_none_or(|w| worst.eas < w.eas)) {
             (self.worst, self.worst_at_step) = (Some(worst), step.step);
         }
-        (self.points, self.tets[1]) = (step.points, step.tets);
+        (self.points, self.tets[1], self.quality[1]) = (step.points, step.tets, step.quality);
+        self.least_mean = self.least_mean.min(step.quality.mean);
+        self.changed += 1.0 - step.changes.iter().map(|change| change.kept_share).product::<f64>();
         if let Some(gaps) = &step.gaps {
             if gaps.least.is_some_and(|gap| self.least_gap.is_none_or(|least| gap < least)) {
                 (self.least_gap, self.least_gap_at) = (gaps.least, Some(step.time));
@@ -208,6 +227,13 @@ impl Report {
                 worst.eas, self.worst_at_step, self.most_bad, self.most_bad_not_forced, self.most_inverted
             ));
         }
+        let [first, last] = self.quality;
+        let n_tets = self.tets.map(count);
+        console.say(format_args!(
+            "from first to last: {} to {} tets; EAS 1 % {:.3} to {:.3}, median {:.3} to {:.3}, mean {:.3} to {:.3} (at least {:.3}), mean ratio {:.3} to {:.3}; {:.2} % of the cells changed in a step",
+            n_tets[0], n_tets[1], first.p1, last.p1, first.median, last.median, first.mean, last.mean,
+            self.least_mean, first.mean_ratio, last.mean_ratio, 100.0 * self.changed / n.max(1) as f64
+        ));
         if self.most_inverted_at_start > 0 {
             console.say(format_args!(
                 "up to {} tets of a changed mesh are inverted where their vertices were as the step began (inverted_at_start in the log): \

@@ -19,6 +19,7 @@ use crate::algebra::{Tolerance, conjugate_gradients};
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::geometry::tet::centroid;
 use crate::geometry::vector::{add, distance, dot, norm, scale, sub};
+use crate::motion::bodies::band;
 use crate::motion::nodes::Nodes;
 use crate::motion::solve::{Numbering, System, gradients, laplacian};
 
@@ -108,6 +109,23 @@ impl Fields {
             }
         }
         Ok(Self { n_bodies: bodies.len(), shares })
+    }
+
+    /// Shares that fall from 1 to 0 in a band beside each body, those of shift and turn alike: see [`band`].
+    pub(super) fn of_band(
+        bodies: &[Vec<u32>],
+        tets: &[[VertexId; 4]],
+        points: &[Point],
+        nodes: &Nodes,
+    ) -> Self {
+        let sliding = nodes.sliding();
+        let vertex = |n: u32| nodes.vertices[n as usize];
+        let held = (0..nodes.vertices.len() as u32).filter(|n| sliding.binary_search(n).is_err());
+        let held: Vec<VertexId> = held.map(vertex).collect();
+        let of_body = |body: &Vec<u32>| body.iter().map(|&n| vertex(n)).collect();
+        let bodies: Vec<Vec<VertexId>> = bodies.iter().map(of_body).collect();
+        let shares = band::shares(&bodies, &held, tets, points);
+        Self { n_bodies: bodies.len(), shares: shares.into_iter().map(|share| [share; 2]).collect() }
     }
 
     /// Shares of a vertex in the bodies' shifts and turns.

@@ -5,10 +5,11 @@
 //! ```
 //!
 //! A body's motion is the rigid one that fits that of its vertices best: a shift `d` of its centre `c` and a turn. Each of the two reaches a vertex by its share, 1 on the
-//! body, 0 on all else that is given (see `fields`): so a vertex near a body that turns goes along an arc, where a weighted sum would cut across it and flatten
+//! body, 0 on all else that is given (see `fields`, and `band` for bodies that go on): so a vertex near a body that turns goes along an arc, where a weighted sum would cut across it and flatten
 //! cells. What the boundary does beside is left to the graph, and the boundary is where it should be. The shares belong to the first place of the mesh: a step
 //! depends on the displacement alone.
 
+mod band;
 mod fields;
 mod rigid;
 
@@ -23,7 +24,7 @@ use crate::mesh::{Boundary, bounds};
 use crate::motion::bodies::fields::Fields;
 use crate::motion::bodies::rigid::Rigid;
 use crate::motion::nodes::Nodes;
-use crate::motion::options::FacetSet;
+use crate::motion::options::{FacetSet, Strain};
 use crate::motion::spread::Spread;
 use crate::motion::update::{Displacements, Padded, Update};
 
@@ -50,7 +51,7 @@ impl Bodies {
     /// # Errors
     /// When a free vertex is at no corner, or when all cells at one are flat.
     pub(crate) fn new(
-        sets: &[Vec<VertexId>],
+        (sets, strain): (&[Vec<VertexId>], Strain),
         tets: &[[VertexId; 4]],
         points: &[Point],
         (free, nodes): (&[VertexId], &Nodes),
@@ -59,7 +60,10 @@ impl Bodies {
     ) -> Result<Self> {
         let node = |v: &VertexId| nodes.vertices[..nodes.n_driven].binary_search(v).ok().map(|i| i as u32);
         let nodes_of: Vec<Vec<u32>> = sets.iter().map(|set| set.iter().filter_map(node).collect()).collect();
-        let fields = Fields::new(&nodes_of, tets, points, (free, nodes), threads)?;
+        let fields = match strain {
+            Strain::Even => Fields::new(&nodes_of, tets, points, (free, nodes), threads)?,
+            Strain::Band => Fields::of_band(&nodes_of, tets, points, nodes),
+        };
         Ok(Self { nodes: nodes_of, vertices: nodes.vertices.clone(), fields, graph })
     }
 

@@ -1,0 +1,226 @@
+//! The band that takes the strain: what touches a body goes along, what is farther away stays to the bit, and about one edge between them is sheared.
+//!
+//! For bodies that go on (Behr and Tezduyar 1999, *The shear-slip mesh update method*, make such a band by hand). A share is a ramp of the distance from the body: 1 up to
+//! [`CLEAR`] edges, 0 from [`WIDTH`] edges farther on, nearer to the body where another wall is near. Distances are found through the mesh, from vertex to vertex with the facets nearest to the
+//! last: what is behind a wall is as far away as the way round it.
+//!
+//! Of a paddle that turns once in its box in 72 steps, with repairs and improvements (16,342 tets, mean EAS 0.715 at first):
+//!
+//! | clear, width | mean EAS | tets changed a step |
+//! |---|---|---|
+//! | 1.5, 2.5 | 0.641 | 14.4 % |
+//! | 1.25, 2 | 0.655 | 12.7 % |
+//! | 1, 2 | 0.658 | 10.7 % |
+//! | 0.3, 1 | 0.689 | 9.4 % |
+//! | 0.2, 1.3 | 0.679 | 9.2 % |
+//! | 0.1, 1 | 0.692 | 10.3 % |
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use crate::base::{Csr, Point, VertexId, rising};
+use crate::geometry::distance::point_triangle;
+use crate::geometry::tet::{EDGES, FACETS};
+use crate::geometry::vector::distance;
+use crate::mesh::mean_edge_lengths;
+
+/// How many edges away from the body the band begins.
+const CLEAR: f64 = 0.3;
+/// How many edges wide it is.
+const WIDTH: f64 = 1.0;
+/// Where another wall is near the band begins, and ends, no farther than these parts of the way there.
+const OF_GAP: [f64; 2] = [0.25, 0.85];
+
+/// Walls, and the edges that lead away from them.
+struct Walls<'a> {
+    points: &'a [Point],
+    /// The vertices that share an edge with each.
+    beside: Csr<u32>,
+    /// Whose wall each vertex is on.
+    owner: Vec<u32>,
+    /// Facets of tets with all corners on walls of one owner.
+    facets: Vec<[VertexId; 3]>,
+    facets_of: Csr<u32>,
+}
+
+/// The share of each vertex in the motion of each body: those of the first vertex, then those of the next. `bodies`: the vertices of each; `held`: those of all walls that do not slide.
+pub(super) fn shares(
+    bodies: &[Vec<VertexId>],
+    held: &[VertexId],
+    tets: &[[VertexId; 4]],
+    points: &[Point],
+) -> Vec<f64> {
+    let walls = Walls::new(bodies, held, tets, points);
+    let lengths = mean_edge_lengths(points, tets.iter().copied());
+    let mut shares = vec![0.0; points.len() * bodies.len()];
+    for (b, body) in bodies.iter().enumerate() {
+        let of_body = walls.distances(|owner| owner == BODIES + b as u32);
+        let of_others = walls.distances(|owner| owner != NOBODY && owner != BODIES + b as u32);
+        let share = |v: usize| {
+            let (from_body, from_others) = (of_body[v].distance, of_others[v].distance);
+            match from_body.is_finite() {
+                // What only the body encloses goes along with it.
+                true if from_others.is_infinite() => 1.0,
+                true => {
+                    let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
+                    ramp(from_body, from_body + from_others, 0.5 * (lengths[v] + lengths[foot]))
+                }
+                false => 0.0,
+            }
+        };
+        (0..points.len()).for_each(|v| shares[v * bodies.len() + b] = share(v));
+        held.iter().for_each(|v| shares[v.index() * bodies.len() + b] = 0.0);
+        body.iter().for_each(|v| shares[v.index() * bodies.len() + b] = 1.0);
+    }
+    shares
+}
+
+/// The share at a distance from the body, given how wide the gap to the next wall is and how long edges are.
+fn ramp(distance: f64, gap: f64, edge: f64) -> f64 {
+    let begin = (CLEAR * edge).min(OF_GAP[0] * gap);
+    let end = ((CLEAR + WIDTH) * edge).min(OF_GAP[1] * gap);
+    if distance < end { ((end - distance) / (end - begin)).min(1.0) } else { 0.0 }
+}
+
+/// Owners of vertices: nobody, a wall that is no body, and from [`BODIES`] on the bodies.
+const NOBODY: u32 = 0;
+const A_WALL: u32 = 1;
+const BODIES: u32 = 2;
+
+/// How far a vertex is from some walls, and the facet of theirs that is nearest.
+#[derive(Clone, Copy, Debug)]
+struct Far {
+    distance: f64,
+    foot: Option<u32>,
+}
+
+impl<'a> Walls<'a> {
+    fn new(bodies: &[Vec<VertexId>], held: &[VertexId], tets: &[[VertexId; 4]], points: &'a [Point]) -> Self {
+        let mut owner = vec![NOBODY; points.len()];
+        held.iter().for_each(|v| owner[v.index()] = A_WALL);
+        for (b, body) in (BODIES..).zip(bodies) {
+            body.iter().for_each(|v| owner[v.index()] = b);
+        }
+        let is_of_one = |facet: &[VertexId; 3]| {
+            let [a, b, c] = facet.map(|v| owner[v.index()]);
+            a != NOBODY && a == b && b == c
+        };
+        let of_tet = |tet: &[VertexId; 4]| FACETS.map(|facet| rising(facet.map(|i| tet[i])));
+        let mut facets: Vec<_> = tets.iter().flat_map(of_tet).filter(is_of_one).collect();
+        facets.sort_unstable();
+        facets.dedup();
+        let ends = |tet: &[VertexId; 4]| EDGES.map(|edge| rising(edge.map(|i| tet[i])));
+        let mut edges: Vec<[VertexId; 2]> = tets.iter().flat_map(ends).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let both_ways = || edges.iter().flat_map(|[a, b]| [(a.index(), b.0), (b.index(), a.0)]);
+        let uses = || (0u32..).zip(&facets).flat_map(|(i, facet)| facet.map(|v| (v.index(), i)));
+        Self {
+            points,
+            beside: Csr::from_pairs(points.len(), both_ways),
+            facets_of: Csr::from_pairs(points.len(), uses),
+            owner,
+            facets,
+        }
+    }
+
+    /// How far each vertex that lies on no wall is from the walls of some owners (Dijkstra 1959, with the distance from the nearest facet in place of the length of the way); infinite where no way
+    /// leads there that crosses no wall.
+    fn distances(&self, is_source: impl Fn(u32) -> bool) -> Vec<Far> {
+        let mut known = vec![Far { distance: f64::INFINITY, foot: None }; self.points.len()];
+        let mut front = BinaryHeap::new();
+        for (v, _) in self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner)) {
+            known[v].distance = 0.0;
+            front.push(Reached { distance: 0.0, vertex: v as u32 });
+        }
+        while let Some(Reached { distance, vertex }) = front.pop() {
+            let v = vertex as usize;
+            if distance > known[v].distance {
+                continue;
+            }
+            for &u in self.beside.list(v).iter().filter(|&&u| self.owner[u as usize] == NOBODY) {
+                let far = self.near_foot(u as usize, v, known[v].foot);
+                if far.distance < known[u as usize].distance {
+                    known[u as usize] = far;
+                    front.push(Reached { distance: far.distance, vertex: u });
+                }
+            }
+        }
+        known
+    }
+
+    /// How far vertex `u` is from the facets at the foot of its neighbour `v`; of one on the wall that is the vertex itself.
+    fn near_foot(&self, u: usize, v: usize, foot: Option<u32>) -> Far {
+        let p = self.points[u];
+        let itself = [VertexId::new(v)];
+        let corners = foot.map_or(&itself[..], |facet| &self.facets[facet as usize]);
+        let facets = corners.iter().flat_map(|corner| self.facets_of.list(corner.index()));
+        let far = |&facet: &u32| {
+            let corners = self.facets[facet as usize].map(|v| self.points[v.index()]);
+            Far { distance: point_triangle::closest(p, corners).distance(), foot: Some(facet) }
+        };
+        // Walls without facets, such as the edge of a sheet, are their vertices.
+        let vertex = Far { distance: distance(p, self.points[v]), foot: None };
+        facets.map(far).reduce(|a, b| if b.distance < a.distance { b } else { a }).unwrap_or(vertex)
+    }
+}
+
+/// A vertex on the front; nearer ones come first.
+#[derive(Clone, Copy, PartialEq)]
+struct Reached {
+    distance: f64,
+    vertex: u32,
+}
+
+impl Eq for Reached {}
+
+impl PartialOrd for Reached {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Reached {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.distance.total_cmp(&self.distance).then(other.vertex.cmp(&self.vertex))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::vector::norm;
+    use crate::mesh::shapes::sphere_in_box;
+
+    /// The shares of the sphere, and the distances of all vertices from it.
+    fn around_a_sphere() -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+        let mesh = sphere_in_box(8, 6);
+        let tets: Vec<_> = mesh.cells.tets().map(|(_, tet)| tet).collect();
+        let walls = crate::mesh::Boundary::of(&mesh.cells).vertices;
+        let is_of_sphere = |v: &VertexId| norm(mesh.points[v.index()]) < 1.001;
+        let sphere: Vec<VertexId> = walls.iter().copied().filter(is_of_sphere).collect();
+        let shares = shares(std::slice::from_ref(&sphere), &walls, &tets, &mesh.points);
+        let far = mesh.points.iter().map(|p| norm(*p) - 1.0).collect();
+        (shares, far, mean_edge_lengths(&mesh.points, tets))
+    }
+
+    #[test]
+    fn a_share_is_whole_at_the_body_and_none_beyond_the_band() {
+        let (shares, far, edges) = around_a_sphere();
+        assert!(shares.iter().zip(&far).all(|(s, d)| *d > 1e-9 || *s == 1.0));
+        let n_between = shares.iter().filter(|s| **s > 0.0 && **s < 1.0).count();
+        assert!(n_between > 0 && shares.iter().all(|s| (0.0..=1.0).contains(s)));
+        let longest = edges.iter().copied().fold(0.0, f64::max);
+        let is_beyond = |d: f64| d > (CLEAR + WIDTH) * longest;
+        assert!(far.iter().any(|d| is_beyond(*d)));
+        assert!(shares.iter().zip(&far).all(|(s, d)| !is_beyond(*d) || *s == 0.0));
+    }
+
+    #[test]
+    fn a_ramp_ends_before_a_wall_that_is_near() {
+        assert_eq!(ramp(0.85, 1.0, 10.0), 0.0);
+        assert_eq!(ramp(0.25, 1.0, 10.0), 1.0);
+        assert!((ramp(0.55, 1.0, 10.0) - 0.5).abs() < 1e-12);
+        assert_eq!([ramp(0.3, 100.0, 1.0), ramp(1.3, 100.0, 1.0)], [1.0, 0.0]);
+    }
+}

@@ -1,0 +1,171 @@
+//! Tets made better on the whole, none of them bad: swaps, and vertices moved.
+//!
+//! [`Repair::run`] asks whether the worst of what a change touches gets better. Alone it leaves a mesh in which most tets are hardly better than bad, and every step of a motion makes
+//! hundreds of them bad again. Here a change counts by the sum over its tets of their [defects](defect), each less the mesh's mean, so that neither many nor few tets are preferred. Of a
+//! paddle that turns once in its box in 72 steps (16,342 tets at first, mean EAS 0.715):
+//!
+//! | | tets | mean EAS | changed a step |
+//! |---|---|---|---|
+//! | repair alone | 37,023 | 0.370 | 10.3 % |
+//! | and improved by swaps alone | 16,200 | 0.656 | 8.4 % |
+//! | and improved by both | 16,264 | 0.692 | 7.6 % |
+
+use crate::base::{Result, TetId};
+use crate::geometry::tet::EDGES;
+use crate::kernel::{Change, Hold};
+use crate::ops::{Anywhere, defect};
+use crate::remesh::repair::Repair;
+use crate::remesh::report::Operation;
+
+/// A change has to lower the sum of the defects of what it touches by this part of it.
+const LEAST_GAIN: f64 = 0.02;
+
+/// So often the tets that were changed are looked at again.
+const ROUNDS: usize = 4;
+
+/// What is improved, and how far that may go.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::remesh) struct Aim {
+    /// Tets from this EAS on are good enough.
+    pub(in crate::remesh) below: f64,
+    /// No tet goes below this EAS, nor one that is below it any lower.
+    pub(in crate::remesh) floor: f64,
+    /// By how much more a change has to lower the sum for each tet of the first mesh that it touches: each of these costs an interpolation, others no more than they did.
+    pub(in crate::remesh) cost: f64,
+}
+
+/// The best change found for a tet.
+#[derive(Debug, Default)]
+pub(super) struct Best {
+    gain: Option<f64>,
+    operation: Operation,
+    change: Change,
+}
+
+impl Repair {
+    /// Swaps and moves the tets of a zone, the worst first, then those that came, as long as they get better on the whole.
+    pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
+        let mean = self.mean_defect();
+        let mut best = Best::default();
+        for _ in 0..ROUNDS {
+            zone.retain(|&t| self.is_low(t, aim.below));
+            self.sort(&mut zone);
+            let mut inserted = Vec::new();
+            for (i, &tet) in zone.iter().enumerate() {
+                if self.is_low(tet, aim.below) {
+                    self.watch.go_on("improving tets", i, zone.len())?;
+                    self.improve_one(tet, aim, mean, &mut best, &mut inserted);
+                }
+            }
+            if inserted.is_empty() {
+                break;
+            }
+            zone = inserted;
+        }
+        Ok(())
+    }
+
+    /// The tets that share a vertex with one that was changed.
+    pub(in crate::remesh) fn near_changes(&self) -> Vec<TetId> {
+        let mut is_near = vec![false; self.complex.n_vertex_slots()];
+        for tet in self.complex.tets().filter(|&t| !self.complex.is_original(t)) {
+            self.complex.vertices(tet).into_iter().for_each(|v| is_near[v.index()] = true);
+        }
+        let touches = |&t: &TetId| self.complex.vertices(t).into_iter().any(|v| is_near[v.index()]);
+        self.complex.tets().filter(touches).collect()
+    }
+
+    fn mean_defect(&self) -> f64 {
+        let sum: f64 = self.complex.tets().map(|t| defect(self.complex.quality(t))).sum();
+        sum / self.complex.n_tets().max(1) as f64
+    }
+
+    fn is_low(&self, tet: TetId, below: f64) -> bool {
+        self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
+    }
+
+    /// Makes the best swap at a tet, or else the best move of one of its vertices; adds the tets that came.
+    fn improve_one(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best, inserted: &mut Vec<TetId>) {
+        best.gain = None;
+        self.weigh_swaps(tet, aim, mean, best);
+        if best.gain.is_none() {
+            self.weigh_moves(tet, aim, mean, best);
+        }
+        if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
+            self.operations.add(best.operation);
+        }
+    }
+
+    fn weigh_swaps(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best) {
+        let vertices = self.complex.vertices(tet);
+        let mut change = std::mem::take(&mut self.candidate.proposal);
+        for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
+            if self.surface.is_some() {
+                self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
+                // Walls change to repair tets, not to improve them.
+                if self.hold_on(edge) != Hold::Free {
+                    continue;
+                }
+            }
+            if self.edge_removal.propose(&self.complex, tet, edge, 0.0, &mut change) {
+                self.weigh(&mut change, Operation::EdgeRemoval, aim, mean, best);
+            }
+        }
+        for facet in 0..4 {
+            if self.face_removal.propose(&self.complex, tet, facet, 0.0, &mut change) {
+                self.weigh(&mut change, Operation::FaceRemoval, aim, mean, best);
+            }
+        }
+        self.candidate.proposal = change;
+    }
+
+    fn weigh_moves(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best) {
+        let mut change = std::mem::take(&mut self.candidate.proposal);
+        for vertex in self.complex.vertices(tet) {
+            if self.complex.hold(vertex) != Hold::Free {
+                continue;
+            }
+            self.star.gather(&self.complex, vertex);
+            let star = &self.star.tets;
+            let floor = self.complex.worst_of(star).min(aim.floor).next_down();
+            if self.relaxation.propose(&self.complex, star, vertex, floor, &Anywhere, &mut change) {
+                self.weigh(&mut change, Operation::Smoothing, aim, mean, best);
+            }
+        }
+        self.candidate.proposal = change;
+    }
+
+    /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place.
+    fn weigh(&self, change: &mut Change, operation: Operation, aim: Aim, mean: f64, best: &mut Best) {
+        let bar = self.complex.worst_of(&change.cavity).min(aim.floor).next_down();
+        if change.worst() <= bar {
+            return;
+        }
+        let before: f64 = change.cavity.iter().map(|&t| defect(self.complex.quality(t))).sum();
+        let gain = before - self.defects_of_fill(change, mean) - mean * change.cavity.len() as f64;
+        let n_touched = change.cavity.iter().filter(|&&t| self.complex.is_original(t)).count();
+        let is_enough = gain > LEAST_GAIN * before + aim.cost * n_touched as f64;
+        if is_enough
+            && best.gain.is_none_or(|known| gain > known)
+            && self.complex.check_against(change, bar).is_ok()
+        {
+            std::mem::swap(change, &mut best.change);
+            (best.gain, best.operation) = (Some(gain), operation);
+        }
+    }
+
+    /// The sum of the defects of the tets to come, each less the mean.
+    pub(super) fn defects_of_fill(&self, change: &Change, mean: f64) -> f64 {
+        change.fill.iter().map(|tet| defect(tet.quality) - mean).sum()
+    }
+
+    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that came. Whether it was made.
+    pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
+        let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
+        let Ok(checked) = self.complex.check_against(change, bar) else { return false };
+        let mut tets = Vec::new();
+        self.complex.commit(checked, &mut tets);
+        inserted.append(&mut tets);
+        true
+    }
+}
