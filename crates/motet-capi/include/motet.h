@@ -407,6 +407,7 @@ typedef struct motet_moving_options {
     int64_t n_hold_names;
     double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
     int32_t valid_at_start;    /* 1: a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held; default 0 */
+    int32_t strain_in_band;    /* 1: with MOTET_BODIES the strain goes into a band beside the bodies, for bodies that go on; default 0: over all that is between them and the walls */
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

@@ -70,6 +70,7 @@ impl MotetMoverOptions {
             sliding: find(self.slide, self.n_slide, "slide")?,
             slide_tolerance: SlideTolerance(self.slide_tolerance),
             limits: Limits { substeps: natural(self.substeps, "sub-steps")?, ..Limits::default() },
+            ..Options::default()
         })
     }
 

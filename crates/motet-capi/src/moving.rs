@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::ptr;
 
 use motet::base::{Point, Threads};
-use motet::motion::{Limits, MethodWords, SlideTolerance};
+use motet::motion::{Limits, MethodWords, SlideTolerance, Strain};
 use motet::moving::{GAP, Motion, MovingMesh, Options, Step, Watching};
 use motet::refine::{self, Criterion, Size, Target, Wanted};
 use motet::{Error, Mesh, Result, contact, io, remesh};
@@ -62,6 +62,7 @@ versioned! {
         n_hold_names: i64 = 0,
         slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
         valid_at_start: i32 = 0,
+        strain_in_band: i32 = 0,
     }
 }
 
@@ -92,6 +93,7 @@ impl MotetMovingOptions {
         let wall = labels(self.wall, self.n_wall, "wall")?;
         Ok(Motion {
             method: method(self.method, MethodWords::default())?,
+            strain: if self.strain_in_band == 0 { Strain::Even } else { Strain::Band },
             bodies: labels(self.bodies, self.n_bodies, "bodies")?,
             within_walls: self.within_walls != 0,
             smoothing: natural(self.smooth, "sweeps")?,
