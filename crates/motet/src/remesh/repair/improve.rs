@@ -40,13 +40,15 @@ pub(super) struct Best {
     gain: Option<f64>,
     operation: Operation,
     change: Change,
+    /// Whether a vertex was moved in vain since a tet of it was changed last: it would be in vain again. Each vertex has some twenty tets that ask for it.
+    is_settled: Vec<bool>,
 }
 
 impl Repair {
     /// Swaps and moves the tets of a zone, the worst first, then those that came, as long as they get better on the whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
         let mean = self.mean_defect();
-        let mut best = Best::default();
+        let mut best = Best { is_settled: vec![false; self.complex.n_vertex_slots()], ..Best::default() };
         for _ in 0..ROUNDS {
             zone.retain(|&t| self.is_low(t, aim.below));
             self.sort(&mut zone);
@@ -93,6 +95,8 @@ impl Repair {
         }
         if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
             self.operations.add(best.operation);
+            let vertices = best.change.fill.iter().flat_map(|tet| tet.vertices);
+            vertices.for_each(|v| best.is_settled[v.index()] = false);
         }
     }
 
@@ -122,24 +126,25 @@ impl Repair {
     fn weigh_moves(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best) {
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free {
+            if self.complex.hold(vertex) != Hold::Free || best.is_settled[vertex.index()] {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
             let star = &self.star.tets;
             let floor = self.complex.worst_of(star).min(aim.floor).next_down();
-            if self.relaxation.propose(&self.complex, star, vertex, floor, &Anywhere, &mut change) {
-                self.weigh(&mut change, Operation::Smoothing, aim, mean, best);
-            }
+            let is_better =
+                self.relaxation.propose(&self.complex, star, vertex, floor, &Anywhere, &mut change)
+                    && self.weigh(&mut change, Operation::Smoothing, aim, mean, best);
+            best.is_settled[vertex.index()] = !is_better;
         }
         self.candidate.proposal = change;
     }
 
-    /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place.
-    fn weigh(&self, change: &mut Change, operation: Operation, aim: Aim, mean: f64, best: &mut Best) {
+    /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place. Whether it gains enough.
+    fn weigh(&self, change: &mut Change, operation: Operation, aim: Aim, mean: f64, best: &mut Best) -> bool {
         let bar = self.complex.worst_of(&change.cavity).min(aim.floor).next_down();
         if change.worst() <= bar {
-            return;
+            return false;
         }
         let before: f64 = change.cavity.iter().map(|&t| defect(self.complex.quality(t))).sum();
         let gain = before - self.defects_of_fill(change, mean) - mean * change.cavity.len() as f64;
@@ -152,6 +157,7 @@ impl Repair {
             std::mem::swap(change, &mut best.change);
             (best.gain, best.operation) = (Some(gain), operation);
         }
+        is_enough
     }
 
     /// The sum of the defects of the tets to come, each less the mean.
