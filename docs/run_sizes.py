@@ -47,6 +47,8 @@ smooth = 2
 patch = "sphere"
 shift = [3, 0, 0]
 in_time = "ramp"
+[repair]
+improve_below = 0
 """
 COLOURS = {"motion": "#17607a", "quality": "#5fb3b3", "repair": "#e0583f", "set-up": "#c99a3b", "step": "#22303c", "memory": "#7a5c99"}
 
