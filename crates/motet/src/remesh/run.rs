@@ -128,8 +128,8 @@ fn improve_near(
     min_eas: f64,
 ) -> Result<()> {
     let mut zone = repair.near_changes();
-    let asked = improve.cells.iter().map(|cell| TetId(cell.0));
-    zone.extend(asked.filter(|&tet| repair.complex.is_original(tet)));
+    let requested = improve.cells.iter().map(|cell| TetId(cell.0));
+    zone.extend(requested.filter(|&tet| repair.complex.is_original(tet)));
     zone.sort_unstable();
     zone.dedup();
     if let Some(mut density) = density {
