@@ -92,7 +92,8 @@ module motet
     type(c_ptr) :: wall = c_null_ptr
     integer(c_int64_t) :: n_wall = 0
     integer(c_int32_t) :: no_repair = 0, surface = 0
-    real(c_double) :: distance = 0, min_eas = 0.2_c_double, margin = 0.05_c_double, floor = 0.05_c_double, improve_below = 0.75_c_double
+    real(c_double) :: distance = 0, min_eas = 0.2_c_double, margin = 0.05_c_double, floor = 0.05_c_double
+    real(c_double) :: improve_below = 0.75_c_double
     type(c_ptr) :: contents = c_null_ptr
     integer(c_int64_t) :: n_contents = 0
     type(c_ptr) :: watch = c_null_ptr
