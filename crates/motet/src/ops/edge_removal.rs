@@ -1,7 +1,7 @@
 //! An edge taken out, and the hole filled in the best of all ways.
 //!
 //! The tets round an edge `ab` go. What comes in their place is a triangulation of the ring round the edge, each triangle joined to `a` and
-//! to `b`. The one whose worst tet is best is found by dynamic programming (Klincsek 1980, *Minimal triangulations of
+//! to `b`. The one whose worst tet is best, or whose tets cost least together, is found by dynamic programming (Klincsek 1980, *Minimal triangulations of
 //! polygonal domains*; Shewchuk 2002, *Two discrete optimization algorithms for the topological improvement of tetrahedral meshes*): the flips
 //! 3-2 and 4-4 are its cases for rings of three and four.
 
@@ -9,6 +9,7 @@ use crate::base::{Point, TetId, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot};
 use crate::kernel::{Change, Complex, NewWall, Shell};
+use crate::ops::{Objective, WorstAbove};
 
 /// Rings with more vertices are left alone: triangulations become many, and good ones rare.
 const LARGEST_RING: usize = 10;
@@ -17,7 +18,7 @@ const LARGEST_RING: usize = 10;
 #[derive(Clone, Debug, Default)]
 pub struct EdgeRemoval {
     shell: Shell,
-    /// For ring vertices i < j: the best worst quality of what fills the ring between them, and the third vertex of the triangle at `ij`.
+    /// For ring vertices i < j: the lowest cost of what fills the ring between them, and the third vertex of the triangle at `ij`.
     best: Vec<(f64, u8)>,
 }
 
@@ -32,6 +33,18 @@ impl EdgeRemoval {
         bar: f64,
         change: &mut Change,
     ) -> bool {
+        self.propose_for(complex, start, [a, b], &mut WorstAbove(bar), change)
+    }
+
+    /// [`Self::propose`]s the way whose cost is lowest. `false` when none is below the limit of the objective.
+    pub fn propose_for(
+        &mut self,
+        complex: &Complex,
+        start: TetId,
+        [a, b]: [VertexId; 2],
+        objective: &mut impl Objective,
+        change: &mut Change,
+    ) -> bool {
         self.shell.walk(complex, start, a, b);
         if complex.is_kept_edge(a, b) {
             return false;
@@ -40,14 +53,20 @@ impl EdgeRemoval {
         change.cavity.extend_from_slice(&self.shell.tets);
         let m = self.shell.ring.len();
         match self.shell.walls[..] {
-            [] if m >= 3 => self.fill(complex, [a, b], (0, m), bar, change),
+            [] if m >= 3 => self.fill(complex, [a, b], (0, m), objective, change),
             [i, j] if !complex.keeps_surface() => {
                 self.swap_walls(complex, [a, b], [i, j], change)
-                    && self.fill(complex, [a, b], (i, j - i + 1), bar, change)
-                    && (!self.shell.is_closed || self.fill(complex, [a, b], (j, m - j + i + 1), bar, change))
+                    && self.fill(complex, [a, b], (i, j - i + 1), objective, change)
+                    && (!self.shell.is_closed
+                        || self.fill(complex, [a, b], (j, m - j + i + 1), objective, change))
             }
             _ => false,
         }
+    }
+
+    /// The tets round the edge that was looked at last.
+    pub fn tets(&self) -> &[TetId] {
+        &self.shell.tets
     }
 
     /// The walls at places `i` and `j` of the ring go, two between the same four vertices come; `false` when they belong to different patches, and when one of
@@ -73,7 +92,7 @@ impl EdgeRemoval {
         complex: &Complex,
         edge: [VertexId; 2],
         (start, n): (usize, usize),
-        bar: f64,
+        objective: &mut impl Objective,
         change: &mut Change,
     ) -> bool {
         if n > LARGEST_RING {
@@ -88,19 +107,21 @@ impl EdgeRemoval {
             return true;
         }
         let region = complex.region(self.shell.tets[start % self.shell.tets.len()]);
-        self.tabulate(complex, edge, &ring[..n], bar, change) && {
+        let limit = objective.limit(complex, &self.shell.tets, 2 * (n - 2));
+        self.tabulate(complex, edge, &ring[..n], limit, objective, change) && {
             self.build(complex, edge, &ring[..n], region, (0, n - 1), change);
             true
         }
     }
 
-    /// Fills the table; whether the whole ring has a filling better than `bar`.
-    fn tabulate(
+    /// Fills the table; whether the whole ring has a filling that costs less than `limit`.
+    fn tabulate<O: Objective>(
         &mut self,
         complex: &Complex,
         [a, b]: [VertexId; 2],
         ring: &[VertexId],
-        bar: f64,
+        limit: f64,
+        objective: &O,
         change: &Change,
     ) -> bool {
         let best = &mut self.best;
@@ -111,31 +132,32 @@ impl EdgeRemoval {
             points[i] = complex.point(ring[i]);
         }
         best.clear();
-        best.resize(m * m, (f64::INFINITY, 0));
+        best.resize(m * m, (O::NOTHING, 0));
         for length in 2..m {
             for i in 0..m - length {
                 let j = i + length;
-                let mut found = (bar, u8::MAX);
+                let mut found = (limit, u8::MAX);
                 for k in i + 1..j {
-                    let sides = best[i * m + k].0.min(best[k * m + j].0);
-                    if sides <= found.0 {
+                    let mut cost = objective.both(best[i * m + k].0, best[k * m + j].0);
+                    if cost >= found.0 {
                         continue;
                     }
                     let [p, q, r] = [ring[i], ring[k], ring[j]];
                     let above = change.judge(complex, [p, q, r, b], [points[i], points[k], points[j], pb]);
-                    if above <= found.0 {
+                    cost = objective.both(cost, objective.cost(above));
+                    if cost >= found.0 {
                         continue;
                     }
                     let below = change.judge(complex, [p, r, q, a], [points[i], points[j], points[k], pa]);
-                    let all = sides.min(above).min(below);
-                    if all > found.0 {
-                        found = (all, k as u8);
+                    cost = objective.both(cost, objective.cost(below));
+                    if cost < found.0 {
+                        found = (cost, k as u8);
                     }
                 }
-                best[i * m + j] = if found.1 == u8::MAX { (f64::NEG_INFINITY, u8::MAX) } else { found };
+                best[i * m + j] = if found.1 == u8::MAX { (f64::INFINITY, u8::MAX) } else { found };
             }
         }
-        best[m - 1].0 > bar
+        best[m - 1].0 < limit
     }
 
     fn build(

@@ -11,13 +11,14 @@
 //! | [`Relaxation`] | the tets of a vertex | the same, the vertex where they are better on the whole |
 //! | [`Insertion`] | the tets that see a new vertex well | tets that meet in it |
 //!
-//! `bar` is the quality that a proposal has to beat: an operation that cannot stops as soon as it knows.
+//! `bar` is the quality that a proposal has to beat: an operation that cannot stops as soon as it knows. An [`Objective`] takes its place where not the worst tet alone counts.
 
 mod collapse;
 mod cone;
 mod edge_removal;
 mod face_removal;
 mod insertion;
+mod objective;
 mod relaxation;
 mod smoothing;
 mod split;
@@ -27,6 +28,7 @@ pub use cone::cone;
 pub use edge_removal::EdgeRemoval;
 pub use face_removal::FaceRemoval;
 pub use insertion::Insertion;
+pub use objective::{Objective, WorstAbove};
 pub use relaxation::{Relaxation, defect};
 pub use smoothing::{Anywhere, Smoothing, Track};
 pub use split::{split_crossed, split_edge, split_onto};

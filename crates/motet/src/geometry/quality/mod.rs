@@ -27,5 +27,5 @@ pub use eas::eas;
 pub use edge_ratio::edge_ratio;
 pub use equiangle_skew::equiangle_skew;
 pub use mean_ratio::mean_ratio;
-pub use rough_eas::{ROUGH_EAS_ERROR, rough_eas};
+pub use rough_eas::{ROUGH_EAS_ERROR, RoughStar, rough_eas};
 pub use volume::volume;

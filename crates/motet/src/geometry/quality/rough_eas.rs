@@ -78,6 +78,84 @@ fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOS
     rough(simd, corners).stored()
 }
 
+/// Tets that share a vertex, to be judged with the vertex elsewhere again and again: EAS of each to within [`ROUGH_EAS_ERROR`], in an eighth of the time of [`eas`](super::eas()).
+#[derive(Clone, Debug, Default)]
+pub struct RoughStar {
+    /// By groups of tets: the coordinates of the other three vertices.
+    others: Vec<[[[f64; MOST_LANES]; 3]; 3]>,
+    n_tets: usize,
+}
+
+impl RoughStar {
+    /// Takes the tets of a star: the corners of each, and which of them is the vertex.
+    pub fn set(&mut self, tets: impl Iterator<Item = ([Point; 4], usize)>) {
+        /// Even permutations that begin with each corner.
+        const FROM: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [3, 0, 1], [2, 1, 0]];
+        self.others.clear();
+        self.n_tets = 0;
+        for (corners, vertex) in tets {
+            let lane = self.n_tets % MOST_LANES;
+            if lane == 0 {
+                // Lanes that stay so hold no tet.
+                self.others.push([[[0.0; MOST_LANES]; 3]; 3]);
+            }
+            let group = self.others.len() - 1;
+            for (i, &corner) in FROM[vertex].iter().enumerate() {
+                for axis in 0..3 {
+                    self.others[group][i][axis][lane] = corners[corner][axis];
+                }
+            }
+            self.n_tets += 1;
+        }
+    }
+
+    /// EAS of each tet with the vertex at a place.
+    pub fn judge(&self, place: Point, out: &mut Vec<f64>) {
+        out.clear();
+        Arch::new().dispatch(At { star: self, place, out });
+    }
+}
+
+struct At<'a> {
+    star: &'a RoughStar,
+    place: Point,
+    out: &'a mut Vec<f64>,
+}
+
+impl WithSimd for At<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { star, place, out } = self;
+        let mut corners = [[Lanes::splat(simd, 0.0); 3]; 4];
+        for axis in 0..3 {
+            corners[0][axis] = Lanes::splat(simd, place[axis]);
+        }
+        for (g, others) in star.others.iter().enumerate() {
+            let n = (star.n_tets - g * MOST_LANES).min(MOST_LANES);
+            for start in (0..n).step_by(S::F64_LANES) {
+                for i in 0..3 {
+                    for axis in 0..3 {
+                        corners[i + 1][axis] = Lanes::load(simd, &others[i][axis][start..]);
+                    }
+                }
+                let some = rough(simd, corners).stored();
+                for l in 0..S::F64_LANES.min(n - start) {
+                    let is_sound = some[l].is_finite() && some[l] != 0.0;
+                    out.push(if is_sound { some[l] } else { exactly(others, place, start + l) });
+                }
+            }
+        }
+    }
+}
+
+#[cold]
+fn exactly(others: &[[[f64; MOST_LANES]; 3]; 3], place: Point, lane: usize) -> f64 {
+    let other = |i: usize| [0, 1, 2].map(|axis| others[i][axis][lane]);
+    eas([place, other(0), other(1), other(2)])
+}
+
 /// Squared lengths outside are not trusted.
 const LOW: f64 = 1e-60;
 const HIGH: f64 = 1e60;
@@ -203,7 +281,7 @@ impl<S: Simd> Lanes<S> {
     }
 
     #[inline(always)]
-    fn load(simd: S, numbers: &[f64; MOST_LANES]) -> Self {
+    fn load(simd: S, numbers: &[f64]) -> Self {
         Self(simd, S::as_simd_f64s(numbers).0[0])
     }
 
@@ -216,7 +294,9 @@ impl<S: Simd> Lanes<S> {
 
     #[inline(always)]
     fn abs(self) -> Self {
-        Self(self.0, self.0.abs_f64s(self.1))
+        // `abs_f64s` is not always inlined, which costs more than all the rest.
+        let all_but_sign = self.0.splat_f64s(f64::from_bits(u64::MAX >> 1));
+        Self(self.0, self.0.and_f64s(self.1, all_but_sign))
     }
 
     #[inline(always)]
@@ -239,11 +319,7 @@ impl<S: Simd> Lanes<S> {
     /// The root of the size, with the sign.
     #[inline(always)]
     fn signed_root(self) -> Self {
-        let mut numbers = self.stored();
-        for x in &mut numbers[..S::F64_LANES] {
-            *x = x.abs().sqrt();
-        }
-        let root = Self::load(self.0, &numbers);
+        let root = Self(self.0, self.0.sqrt_f64s(self.abs().1));
         let zero = Self::splat(self.0, 0.0);
         self.if_below(zero, -root, root)
     }

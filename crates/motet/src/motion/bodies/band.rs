@@ -52,20 +52,23 @@ pub(super) fn shares(
 ) -> Vec<f64> {
     let walls = Walls::new(bodies, held, tets, points);
     let lengths = mean_edge_lengths(points, tets.iter().copied());
+    let longest = lengths.iter().copied().fold(0.0, f64::max);
     let mut shares = vec![0.0; points.len() * bodies.len()];
     for (b, body) in bodies.iter().enumerate() {
-        let of_body = walls.distances(|owner| owner == BODIES + b as u32);
-        let of_others = walls.distances(|owner| owner != NOBODY && owner != BODIES + b as u32);
+        let is_body = |owner| owner == BODIES + b as u32;
+        let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
+        let of_body = walls.distances(is_body, (CLEAR + WIDTH) * longest);
+        // A wall in a gap so wide changes no ramp.
+        let of_others = walls.distances(is_other, ((CLEAR + WIDTH) / OF_GAP[1]).max(CLEAR / OF_GAP[0]) * longest);
+        let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
         let share = |v: usize| {
-            let (from_body, from_others) = (of_body[v].distance, of_others[v].distance);
-            match from_body.is_finite() {
+            let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
+            let gap = of_body[v].distance + of_others[v].distance;
+            match (along_body[v], along_others[v]) {
                 // What only the body encloses goes along with it.
-                true if from_others.is_infinite() => 1.0,
-                true => {
-                    let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
-                    ramp(from_body, from_body + from_others, 0.5 * (lengths[v] + lengths[foot]))
-                }
-                false => 0.0,
+                (true, false) => 1.0,
+                (true, true) => ramp(of_body[v].distance, gap, 0.5 * (lengths[v] + lengths[foot])),
+                (false, _) => 0.0,
             }
         };
         (0..points.len()).for_each(|v| shares[v * bodies.len() + b] = share(v));
@@ -125,8 +128,8 @@ impl<'a> Walls<'a> {
     }
 
     /// How far each vertex that lies on no wall is from the walls of some owners (Dijkstra 1959, with the distance from the nearest facet in place of the length of the way); infinite where no way
-    /// leads there that crosses no wall.
-    fn distances(&self, is_source: impl Fn(u32) -> bool) -> Vec<Far> {
+    /// leads there that crosses no wall, and where it is more than `enough` and a step.
+    fn distances(&self, is_source: impl Fn(u32) -> bool, enough: f64) -> Vec<Far> {
         let mut known = vec![Far { distance: f64::INFINITY, foot: None }; self.points.len()];
         let mut front = BinaryHeap::new();
         for (v, _) in self.owner.iter().enumerate().filter(|(_, owner)| is_source(**owner)) {
@@ -135,7 +138,7 @@ impl<'a> Walls<'a> {
         }
         while let Some(Reached { distance, vertex }) = front.pop() {
             let v = vertex as usize;
-            if distance > known[v].distance {
+            if distance > known[v].distance || distance > enough {
                 continue;
             }
             for &u in self.beside.list(v).iter().filter(|&&u| self.owner[u as usize] == NOBODY) {
@@ -147,6 +150,20 @@ impl<'a> Walls<'a> {
             }
         }
         known
+    }
+
+    /// Which vertices a way leads to from the walls of some owners that crosses no wall.
+    fn reached(&self, is_source: impl Fn(u32) -> bool) -> Vec<bool> {
+        let mut is_reached: Vec<bool> = self.owner.iter().map(|&owner| is_source(owner)).collect();
+        let mut front: Vec<usize> = (0..self.points.len()).filter(|&v| is_reached[v]).collect();
+        while let Some(v) = front.pop() {
+            for u in self.beside.list(v).iter().map(|&u| u as usize) {
+                if self.owner[u] == NOBODY && !std::mem::replace(&mut is_reached[u], true) {
+                    front.push(u);
+                }
+            }
+        }
+        is_reached
     }
 
     /// How far vertex `u` is from the facets at the foot of its neighbour `v`; of one on the wall that is the vertex itself.

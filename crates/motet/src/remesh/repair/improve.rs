@@ -11,9 +11,10 @@
 
 use crate::base::{Result, TetId};
 use crate::geometry::tet::EDGES;
-use crate::kernel::{Change, Hold};
-use crate::ops::{Anywhere, defect};
+use crate::kernel::{Change, Complex, Hold};
+use crate::ops::{Anywhere, Objective, defect};
 use crate::remesh::repair::Repair;
+use crate::remesh::repair::tried::Settled;
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of what it touches by this part of it.
@@ -33,21 +34,64 @@ pub(in crate::remesh) struct Aim {
     pub(in crate::remesh) cost: f64,
 }
 
+/// What changes are worth.
+#[derive(Clone, Copy, Debug)]
+struct Worth {
+    aim: Aim,
+    /// The mean defect of the mesh.
+    mean: f64,
+    /// No tet may be as bad as this.
+    bar: f64,
+}
+
+impl Worth {
+    /// What a change has to lower the sum of the defects of a cavity by, each less the mean, and that sum.
+    fn of_cavity(&self, complex: &Complex, cavity: &[TetId]) -> (f64, f64) {
+        let sum: f64 = cavity.iter().map(|&t| defect(complex.quality(t))).sum();
+        let n_touched = cavity.iter().filter(|&&t| complex.is_original(t)).count();
+        let least = LEAST_GAIN * sum + self.aim.cost * n_touched as f64;
+        (least, sum - self.mean * cavity.len() as f64)
+    }
+
+    fn bar(&self, complex: &Complex, cavity: &[TetId]) -> f64 {
+        complex.worst_of(cavity).min(self.aim.floor).next_down()
+    }
+}
+
+/// The sum of the defects is to be low.
+impl Objective for Worth {
+    const NOTHING: f64 = 0.0;
+
+    fn limit(&mut self, complex: &Complex, cavity: &[TetId], n_fill: usize) -> f64 {
+        self.bar = self.bar(complex, cavity);
+        let (least, before) = self.of_cavity(complex, cavity);
+        before + self.mean * n_fill as f64 - least
+    }
+
+    #[inline]
+    fn cost(&self, quality: f64) -> f64 {
+        if quality <= self.bar { f64::INFINITY } else { defect(quality) }
+    }
+
+    #[inline]
+    fn both(&self, a: f64, b: f64) -> f64 {
+        a + b
+    }
+}
+
 /// The best change found for a tet.
 #[derive(Debug, Default)]
-pub(super) struct Best {
+struct Best {
     gain: Option<f64>,
     operation: Operation,
     change: Change,
-    /// Whether a vertex was moved in vain since a tet of it was changed last: it would be in vain again. Each vertex has some twenty tets that ask for it.
-    is_settled: Vec<bool>,
 }
 
 impl Repair {
-    /// Swaps and moves the tets of a zone, the worst first, then those that came, as long as they get better on the whole.
+    /// Swaps and moves the tets of a zone, the worst first, then those that were inserted, as long as they get better on the whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
-        let mean = self.mean_defect();
-        let mut best = Best { is_settled: vec![false; self.complex.n_vertex_slots()], ..Best::default() };
+        let worth = Worth { aim, mean: self.mean_defect(), bar: f64::NAN };
+        let (mut best, mut settled) = (Best::default(), Settled::new());
         for _ in 0..ROUNDS {
             zone.retain(|&t| self.is_low(t, aim.below));
             self.sort(&mut zone);
@@ -55,7 +99,7 @@ impl Repair {
             for (i, &tet) in zone.iter().enumerate() {
                 if self.is_low(tet, aim.below) {
                     self.watch.go_on("improving tets", i, zone.len())?;
-                    self.improve_one(tet, aim, mean, &mut best, &mut inserted);
+                    self.improve_one(tet, worth, &mut best, &mut settled, &mut inserted);
                 }
             }
             if inserted.is_empty() {
@@ -85,78 +129,97 @@ impl Repair {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
     }
 
-    /// Makes the best swap at a tet, or else the best move of one of its vertices; adds the tets that came.
-    fn improve_one(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best, inserted: &mut Vec<TetId>) {
+    /// Makes the best swap at a tet, or else the best move of one of its vertices; adds the tets that were inserted.
+    fn improve_one(
+        &mut self,
+        tet: TetId,
+        worth: Worth,
+        best: &mut Best,
+        settled: &mut Settled,
+        inserted: &mut Vec<TetId>,
+    ) {
         best.gain = None;
-        self.weigh_swaps(tet, aim, mean, best);
+        self.weigh_swaps(tet, worth, best, settled);
         if best.gain.is_none() {
-            self.weigh_moves(tet, aim, mean, best);
+            self.weigh_moves(tet, worth, best, settled);
         }
-        if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
+        let n_before = inserted.len();
+        if best.gain.is_some() && self.commit_above(&best.change, worth.aim.floor, inserted) {
             self.operations.add(best.operation);
-            let vertices = best.change.fill.iter().flat_map(|tet| tet.vertices);
-            vertices.for_each(|v| best.is_settled[v.index()] = false);
+            settled.inserted(&self.complex, &inserted[n_before..]);
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best) {
+    fn weigh_swaps(&mut self, tet: TetId, mut worth: Worth, best: &mut Best, settled: &mut Settled) {
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
-        for edge in EDGES.map(|e| e.map(|i| vertices[i])) {
+        for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
+            if settled.has_edge(&self.complex, tet, place) {
+                continue;
+            }
             if self.surface.is_some() {
                 self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
                 // Walls change to repair tets, not to improve them.
                 if self.hold_on(edge) != Hold::Free {
+                    settled.settle_edge(&self.complex, &self.shells[0].tets, edge);
                     continue;
                 }
             }
-            if self.edge_removal.propose(&self.complex, tet, edge, 0.0, &mut change) {
-                self.weigh(&mut change, Operation::EdgeRemoval, aim, mean, best);
+            let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut worth, &mut change)
+                && self.weigh(&mut change, Operation::EdgeRemoval, worth, best);
+            if !is_better {
+                settled.settle_edge(&self.complex, self.edge_removal.tets(), edge);
             }
         }
         for facet in 0..4 {
-            if self.face_removal.propose(&self.complex, tet, facet, 0.0, &mut change) {
-                self.weigh(&mut change, Operation::FaceRemoval, aim, mean, best);
+            if settled.has_facet(&self.complex, tet, facet) {
+                continue;
+            }
+            let is_better = self.face_removal.propose(&self.complex, tet, facet, 0.0, &mut change)
+                && self.weigh(&mut change, Operation::FaceRemoval, worth, best);
+            if !is_better {
+                settled.settle_facet(tet, facet);
             }
         }
         self.candidate.proposal = change;
     }
 
-    fn weigh_moves(&mut self, tet: TetId, aim: Aim, mean: f64, best: &mut Best) {
+    fn weigh_moves(&mut self, tet: TetId, worth: Worth, best: &mut Best, settled: &mut Settled) {
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free || best.is_settled[vertex.index()] {
+            if self.complex.hold(vertex) != Hold::Free || settled.has_vertex(vertex) {
                 continue;
             }
             self.star.gather(&self.complex, vertex);
             let star = &self.star.tets;
-            let floor = self.complex.worst_of(star).min(aim.floor).next_down();
+            let bar = worth.bar(&self.complex, star);
             let is_better =
-                self.relaxation.propose(&self.complex, star, vertex, floor, &Anywhere, &mut change)
-                    && self.weigh(&mut change, Operation::Smoothing, aim, mean, best);
-            best.is_settled[vertex.index()] = !is_better;
+                self.relaxation.propose(&self.complex, star, vertex, bar, &Anywhere, &mut change)
+                    && self.weigh(&mut change, Operation::Smoothing, worth, best);
+            if !is_better {
+                settled.settle_vertex(vertex);
+            }
         }
         self.candidate.proposal = change;
     }
 
     /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place. Whether it gains enough.
-    fn weigh(&self, change: &mut Change, operation: Operation, aim: Aim, mean: f64, best: &mut Best) -> bool {
-        let bar = self.complex.worst_of(&change.cavity).min(aim.floor).next_down();
-        if change.worst() <= bar {
+    fn weigh(&self, change: &mut Change, operation: Operation, worth: Worth, best: &mut Best) -> bool {
+        let bar = worth.bar(&self.complex, &change.cavity);
+        let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
+        let gain = before - self.defects_of_fill(change, worth.mean);
+        if gain <= least || change.worst() <= bar {
             return false;
         }
-        let before: f64 = change.cavity.iter().map(|&t| defect(self.complex.quality(t))).sum();
-        let gain = before - self.defects_of_fill(change, mean) - mean * change.cavity.len() as f64;
-        let n_touched = change.cavity.iter().filter(|&&t| self.complex.is_original(t)).count();
-        let is_enough = gain > LEAST_GAIN * before + aim.cost * n_touched as f64;
-        if is_enough
-            && best.gain.is_none_or(|known| gain > known)
-            && self.complex.check_against(change, bar).is_ok()
-        {
+        if best.gain.is_some_and(|known| gain <= known) {
+            return true;
+        }
+        let is_allowed = self.complex.check_against(change, bar).is_ok();
+        if is_allowed {
             std::mem::swap(change, &mut best.change);
             (best.gain, best.operation) = (Some(gain), operation);
         }
-        is_enough
+        is_allowed
     }
 
     /// The sum of the defects of the tets to come, each less the mean.
@@ -164,7 +227,7 @@ impl Repair {
         change.fill.iter().map(|tet| defect(tet.quality) - mean).sum()
     }
 
-    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that came. Whether it was made.
+    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
     pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
         let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
         let Ok(checked) = self.complex.check_against(change, bar) else { return false };

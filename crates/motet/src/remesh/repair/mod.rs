@@ -263,11 +263,14 @@ impl Repair {
         Ok(())
     }
 
-    fn sort(&self, bad: &mut Vec<TetId>) {
-        bad.sort_unstable_by(|&a, &b| {
-            self.complex.quality(a).total_cmp(&self.complex.quality(b)).then(a.cmp(&b))
-        });
-        bad.dedup();
+    /// Sorts tets, the worst first, and leaves each once.
+    fn sort(&self, tets: &mut Vec<TetId>) {
+        // Tets of one quality by id.
+        let mut keys: Vec<_> = tets.iter().map(|&t| (rising(self.complex.quality(t)), t)).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        tets.clear();
+        tets.extend(keys.into_iter().map(|(_, tet)| tet));
     }
 
     /// The tets below a quality that may be changed, worst first.
@@ -312,7 +315,7 @@ impl Repair {
             return false;
         };
         self.operations.add(operation);
-        self.tried.came(&self.complex, came);
+        self.tried.inserted(&self.complex, came);
         let (complex, target) = (&self.complex, self.target);
         self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
         true
@@ -330,4 +333,10 @@ impl Repair {
         }
         self.candidate.offer(&self.complex, self.surface.as_ref(), operation, self.target);
     }
+}
+
+/// A number that rises with `x`, as `f64::total_cmp` compares.
+fn rising(x: f64) -> i64 {
+    let bits = x.to_bits() as i64;
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
 }

@@ -193,7 +193,7 @@ impl Repair {
             if is_good && let Ok(checked) = self.complex.check_against(change, bar) {
                 self.complex.commit(checked, inserted);
                 self.operations.add(Operation::SplitEdge);
-                self.tried.came(&self.complex, inserted);
+                self.tried.inserted(&self.complex, inserted);
                 return Some(vertex);
             }
         }
@@ -299,7 +299,7 @@ impl Repair {
         let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
         self.complex.commit(checked, came);
         self.operations.add(Operation::Collapse);
-        self.tried.came(&self.complex, came);
+        self.tried.inserted(&self.complex, came);
         true
     }
 

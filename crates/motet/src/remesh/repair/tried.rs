@@ -1,9 +1,37 @@
-//! Which bad tets have been tried in vain since anything changed at their vertices: they would be tried in vain again.
+//! What has been tried in vain since anything changed at its vertices: it would be tried in vain again.
 
 use crate::base::{TetId, VertexId};
+use crate::geometry::tet::EDGES;
 use crate::kernel::Complex;
 
-/// A memory of what was tried, with a clock that each change moves on.
+/// When the tets of each vertex were last changed, by a clock that each change moves on.
+#[derive(Debug)]
+struct Changes {
+    now: u32,
+    /// 0: never.
+    of_vertex: Vec<u32>,
+}
+
+impl Changes {
+    fn new() -> Self {
+        Self { now: 1, of_vertex: Vec::new() }
+    }
+
+    /// Whether no tet of a vertex has changed since a time, which is not 0.
+    fn none_since(&self, vertex: VertexId, time: u32) -> bool {
+        time > 0 && self.of_vertex.get(vertex.index()).is_none_or(|&changed| changed < time)
+    }
+
+    /// Notes tets that were inserted.
+    fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
+        for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
+            *at(&mut self.of_vertex, v.index()) = self.now;
+        }
+        self.now += 1;
+    }
+}
+
+/// The bad tets that were tried in vain.
 ///
 /// On a surface whose triangles make thousands of tets bad for good, rounds that change a few others cost next to nothing by it. What it overlooks: a
 /// cavity may reach beyond the tets at the vertices.
@@ -11,17 +39,15 @@ use crate::kernel::Complex;
 pub(super) struct Tried {
     /// What was asked for when it began: of what else is asked it knows nothing.
     target: f64,
-    now: u32,
+    changes: Changes,
     /// When each tet was tried in vain; 0: never.
     in_vain: Vec<u32>,
-    /// When a tet of each vertex was last changed; 0: never.
-    changed: Vec<u32>,
 }
 
 impl Tried {
     /// A memory that begins now, of tets for which `target` is asked. It has to be told of all that changes from now on.
     pub(super) fn of(target: f64) -> Self {
-        Self { target, now: 1, in_vain: Vec::new(), changed: Vec::new() }
+        Self { target, changes: Changes::new(), in_vain: Vec::new() }
     }
 
     /// A memory that keeps nothing.
@@ -31,30 +57,90 @@ impl Tried {
 
     /// Whether a tet was tried in vain, and nothing at its vertices has changed since.
     pub(super) fn knows(&self, complex: &Complex, tet: TetId, target: f64) -> bool {
-        let Some(&tried) = self.in_vain.get(tet.index()) else { return false };
-        let changed = |v: VertexId| self.changed.get(v.index()).copied().unwrap_or(0);
-        target == self.target && tried > 0 && complex.vertices(tet).into_iter().all(|v| changed(v) < tried)
+        let Some(&time) = self.in_vain.get(tet.index()) else { return false };
+        target == self.target && complex.vertices(tet).into_iter().all(|v| self.changes.none_since(v, time))
     }
 
     /// A tet has been tried in vain.
     pub(super) fn in_vain(&mut self, tet: TetId, target: f64) {
         if target == self.target {
-            put(&mut self.in_vain, tet.index(), self.now);
+            *at(&mut self.in_vain, tet.index()) = self.changes.now;
         }
     }
 
-    /// Tets have come.
-    pub(super) fn came(&mut self, complex: &Complex, tets: &[TetId]) {
-        for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
-            put(&mut self.changed, v.index(), self.now);
-        }
-        self.now += 1;
+    /// Notes tets that were inserted.
+    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
+        self.changes.inserted(complex, tets);
     }
 }
 
-fn put(times: &mut Vec<u32>, i: usize, now: u32) {
-    if times.len() <= i {
-        times.resize(i + 1, 0);
+/// The edges, facets and vertices at which no change improved the tets: each edge has some five tets that ask for it, each vertex twenty.
+#[derive(Debug)]
+pub(super) struct Settled {
+    changes: Changes,
+    /// When the edges of each tet, and then its facets, were tried in vain; 0: never.
+    of_tet: Vec<[u32; 10]>,
+    of_vertex: Vec<u32>,
+}
+
+impl Settled {
+    /// A memory that begins now. It has to be told of all that changes from now on.
+    pub(super) fn new() -> Self {
+        Self { changes: Changes::new(), of_tet: Vec::new(), of_vertex: Vec::new() }
     }
-    times[i] = now;
+
+    /// Whether an edge of a tet, by its place in [`EDGES`], was tried in vain, and no tet that has it has changed since.
+    pub(super) fn has_edge(&self, complex: &Complex, tet: TetId, edge: usize) -> bool {
+        let time = self.time(tet, edge);
+        let vertices = complex.vertices(tet);
+        EDGES[edge].into_iter().any(|i| self.changes.none_since(vertices[i], time))
+    }
+
+    /// Whether a facet of a tet was tried in vain, and none of the tets at its vertices has changed since.
+    pub(super) fn has_facet(&self, complex: &Complex, tet: TetId, facet: usize) -> bool {
+        let time = self.time(tet, EDGES.len() + facet);
+        complex.vertices(tet).into_iter().all(|v| self.changes.none_since(v, time))
+    }
+
+    /// Whether a vertex was moved in vain, and none of its tets has changed since.
+    pub(super) fn has_vertex(&self, vertex: VertexId) -> bool {
+        let time = self.of_vertex.get(vertex.index()).copied().unwrap_or(0);
+        self.changes.none_since(vertex, time)
+    }
+
+    /// The removal of an edge, which `tets` have, was tried in vain.
+    pub(super) fn settle_edge(&mut self, complex: &Complex, tets: &[TetId], ends: [VertexId; 2]) {
+        for &tet in tets {
+            let places = ends.map(|v| complex.place(tet, v));
+            let edge = EDGES.iter().position(|e| *e == places || *e == [places[1], places[0]]);
+            at(&mut self.of_tet, tet.index())[edge.unwrap_or(0)] = self.changes.now;
+        }
+    }
+
+    /// The removal of a facet was tried in vain.
+    pub(super) fn settle_facet(&mut self, tet: TetId, facet: usize) {
+        at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = self.changes.now;
+    }
+
+    /// A vertex was moved in vain.
+    pub(super) fn settle_vertex(&mut self, vertex: VertexId) {
+        *at(&mut self.of_vertex, vertex.index()) = self.changes.now;
+    }
+
+    /// Notes tets that were inserted.
+    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
+        self.changes.inserted(complex, tets);
+    }
+
+    fn time(&self, tet: TetId, place: usize) -> u32 {
+        self.of_tet.get(tet.index()).map_or(0, |times| times[place])
+    }
+}
+
+/// The entry at a place, which is made where there is none.
+fn at<T: Clone + Default>(times: &mut Vec<T>, i: usize) -> &mut T {
+    if times.len() <= i {
+        times.resize(i + 1, T::default());
+    }
+    &mut times[i]
 }
