@@ -103,7 +103,7 @@ module motet
     type(c_ptr) :: hold_names = c_null_ptr
     integer(c_int64_t) :: n_hold_names = 0
     real(c_double) :: slide_tolerance = 0.05_c_double
-    integer(c_int32_t) :: valid_at_start = 0, strain_in_band = 0
+    integer(c_int32_t) :: valid_at_start = 0, strain_in_band = 0, returns = 0
   end type
 
   ! What became of a step of a moving mesh.

@@ -63,6 +63,7 @@ versioned! {
         slide_tolerance: f64 = SlideTolerance::DEFAULT.0,
         valid_at_start: i32 = 0,
         strain_in_band: i32 = 0,
+        returns: i32 = 0,
     }
 }
 
@@ -77,6 +78,7 @@ impl MotetMovingOptions {
             margin: self.margin,
             floor: self.floor,
             improve_below: self.improve_below,
+            returns: self.returns != 0,
             valid_at_start: self.valid_at_start != 0,
             contents: owned(self.contents, self.n_contents, "contents")?,
             watch: self.watching()?,

@@ -41,6 +41,7 @@ class _Asked:
     margin: float
     floor: float
     improve_below: float
+    returns: bool
     valid_at_start: bool
     contents: Sequence[str]
     carry: Mapping[str, Carry] | None
@@ -89,6 +90,9 @@ class MovingMesh(NotPickled):
     improve_below : float
         Where a repair changes the mesh, tets below this EAS are made better, too: those near it, and those that are not as they were at first; and as many vertices inside are kept as
         there were at first. 0: bad tets are repaired, and nothing else is done.
+    returns : bool
+        Whether the walls come back to where they were at first, again and again. Then what is improved is to be good there, too: otherwise each cycle undoes what the last one did.
+        Harmful where walls go on, such as a body that turns.
     valid_at_start : bool
         Whether a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held. See
         ``inverted_at_start`` of a step.
@@ -132,6 +136,7 @@ class MovingMesh(NotPickled):
         margin: float = 0.05,
         floor: float = 0.05,
         improve_below: float = 0.75,
+        returns: bool = False,
         valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,
@@ -171,6 +176,7 @@ class MovingMesh(NotPickled):
         margin: float = 0.05,
         floor: float = 0.05,
         improve_below: float = 0.75,
+        returns: bool = False,
         valid_at_start: bool = False,
         contents: Sequence[str] = (),
         carry: Mapping[str, Carry] | None = None,

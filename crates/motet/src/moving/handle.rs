@@ -61,7 +61,8 @@ impl MovingMesh {
         options.check()?;
         let mover = Mover::new(mesh, &options.motion.of(mesh), threads)?;
         let wall = Wall::of(mesh, mover.boundary(), &options)?;
-        let known = Known::at_first(mesh, mover.boundary());
+        let mut known = Known::at_first(mesh, mover.boundary());
+        known.rest = options.returns.then(|| mesh.points.clone());
         let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
         let mut moving = Self::of(options, wall, now, Clock::default(), threads)?;
         moving.measure_gaps(threads)?;
@@ -228,6 +229,9 @@ impl MovingMesh {
         }
         go_to(&mut self.now.mesh, &points, &self.options.contents);
         let is_complete = fraction == 1.0;
+        if is_complete && self.options.returns && self.wall.is_at_rest(displacement) {
+            self.now.known.rest = Some(self.now.mesh.points.clone());
+        }
         let reached = if is_complete { time } else { start + (time - start) * fraction };
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, n_free };
         self.remember(&changes);

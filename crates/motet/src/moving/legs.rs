@@ -265,12 +265,15 @@ impl Way<'_> {
         if below == 0.0 || !matches!(effort, Effort::Usual | Effort::All) {
             return None;
         }
-        let low = now.tets.shape(&self.points, below, self.threads).bad;
+        // Where walls come back, tets are as they were at first, or not, at rest.
+        let places = now.known.rest.as_ref().unwrap_or(&self.points);
+        let low = now.tets.shape(places, below, self.threads).bad;
         let first = &now.known.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
-        Some(Improve { below, cells, density: usual.sizes.is_none().then_some(density) })
+        let density = usual.sizes.is_none().then_some(density);
+        Some(Improve { below, cells, density, poses: now.known.rest.iter().cloned().collect() })
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

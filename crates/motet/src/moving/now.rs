@@ -45,6 +45,8 @@ pub(super) struct LeftBad {
 pub(super) struct Known {
     /// Where it was at first: for one that came later, the place between those that it came from.
     pub(super) first: Vec<Point>,
+    /// Where it was when the walls were last where they were at first, for walls that come back: for one that came later, the place between those that it came from.
+    pub(super) rest: Option<Vec<Point>>,
     /// Where it was when the step began.
     pub(super) before: Vec<Point>,
     /// The node of the wall that it is, or [`NO_NODE`].
@@ -65,6 +67,7 @@ impl Known {
         let size = lengths(mesh);
         Self {
             first: mesh.points.clone(),
+            rest: None,
             before: mesh.points.clone(),
             node,
             size: size.clone(),
@@ -179,7 +182,9 @@ impl Now {
     /// began.
     pub(super) fn put_known(&self, mesh: &mut Mesh, before: &[Point], rules: &Rules) -> Rules {
         let mut rules = rules.clone();
-        for (name, values) in [(FIRST, self.known.first.as_slice()), (BEFORE, before)] {
+        let rest = self.known.rest.as_deref().map(|rest| (REST, rest));
+        for (name, values) in [(FIRST, self.known.first.as_slice()), (BEFORE, before)].into_iter().chain(rest)
+        {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Interpolate);
         }
@@ -200,6 +205,7 @@ impl Now {
             Ok(mesh.point_data.remove(place))
         };
         let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
+        let rest = self.known.rest.as_ref().map(|_| take(REST)?.to_vectors()).transpose()?;
         let [size, first_size] =
             [take(SIZE)?, take(FIRST_SIZE)?].map(|field| field.values.to_f64().unwrap_or_default());
         let node = |old: &VertexId| match *old == VertexId::NONE {
@@ -213,6 +219,7 @@ impl Now {
         Ok(Known {
             first_eas: history.cells.kept().iter().map(eas).collect(),
             first,
+            rest,
             before,
             size,
             first_size,
@@ -223,6 +230,7 @@ impl Now {
 
 /// Point arrays that go along while a mesh is changed.
 pub(super) const FIRST: &str = "moving:first";
+pub(super) const REST: &str = "moving:rest";
 pub(super) const BEFORE: &str = "moving:before";
 pub(super) const SIZE: &str = "moving:size";
 pub(super) const FIRST_SIZE: &str = "moving:first_size";

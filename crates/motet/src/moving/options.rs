@@ -25,6 +25,9 @@ pub struct Options {
     /// Where a repair changes the mesh, tets below this EAS are made better on the whole, too: those near it, and those that are not as they were at first. And as many vertices inside are
     /// kept as there were at first. So the next steps make fewer tets bad, and a long motion leaves the mesh that it began with. Default: 0.75; 0: bad tets are repaired, and nothing else is done.
     pub improve_below: f64,
+    /// Whether the walls come back to where they were at first, again and again. Then what is [improved](Self::improve_below) is to be good there, too: otherwise each cycle undoes what
+    /// the last one did. Harmful where walls go on, such as a body that turns. Default: no.
+    pub returns: bool,
     /// Whether a repair that brings tets without volume where their vertices were as the step began is made once more with the tets that they replace held, and so on: schemes that
     /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step. What is left after some tries is reported as
     /// [`Step::inverted_at_start`](super::Step::inverted_at_start). Default: no.
@@ -47,6 +50,7 @@ impl Default for Options {
             margin: 0.05,
             floor: 0.05,
             improve_below: 0.75,
+            returns: false,
             valid_at_start: false,
             rules: Rules::default(),
             contents: Contents::default(),

@@ -10,7 +10,7 @@ use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
 use crate::moving::described::differences;
 use crate::moving::handle::{Clock, MovingMesh};
-use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, FIRST_SIZE, Known, LeftBad, Now, SIZE};
+use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, FIRST_SIZE, Known, LeftBad, Now, REST, SIZE};
 use crate::moving::options::Options;
 use crate::moving::wall::Wall;
 
@@ -43,6 +43,9 @@ impl MovingMesh {
         let mut file = mesh.clone();
         for (name, values) in [(FIRST, &known.first), (BEFORE, &known.before)] {
             file.set_point_field(Field::vectors(name, values));
+        }
+        if let Some(rest) = &known.rest {
+            file.set_point_field(Field::vectors(REST, rest));
         }
         file.set_point_field(Field::vectors(REFERENCE, mover.reference()));
         file.set_point_field(Field::scalars(NODE, known.node.clone()));
@@ -108,6 +111,7 @@ impl MovingMesh {
             Clock { step: step as usize, time, dt, n_free: (n_free >= 0.0).then_some(n_free as usize) };
         let known = Known {
             first: taken.vectors(FIRST)?,
+            rest: options.returns.then(|| taken.vectors(REST)).transpose()?,
             before: taken.vectors(BEFORE)?,
             node: taken.ids(NODE)?,
             size: taken.floats(SIZE)?,

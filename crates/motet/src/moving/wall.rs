@@ -3,9 +3,13 @@
 use std::collections::HashMap;
 
 use crate::base::{Error, Point, Result, Threads, VertexId, rising};
-use crate::mesh::{Mesh, Surface};
+use crate::geometry::vector::norm;
+use crate::mesh::{Mesh, Surface, bounds, largest_extent};
 use crate::motion::{FacetSet, SurfaceCarrier};
 use crate::moving::options::Options;
+
+/// Walls that are so near to where they were at first, as a part of their extent, are at rest.
+const AT_REST: f64 = 1e-9;
 
 /// Stands for no node: a vertex that came later.
 pub(super) const NO_NODE: u32 = u32::MAX;
@@ -49,6 +53,12 @@ impl Wall {
         }
         let places = driven.iter().map(|v| mesh.points[v.index()]).collect();
         Ok(Self { places, triangles, body })
+    }
+
+    /// Whether displacements leave the walls where they were at first, to rounding.
+    pub(super) fn is_at_rest(&self, displacement: &[Point]) -> bool {
+        let near = AT_REST * bounds(&self.places).map_or(0.0, largest_extent);
+        displacement.iter().all(|d| norm(*d) <= near)
     }
 
     /// The triangles of a watched patch.

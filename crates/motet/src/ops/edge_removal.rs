@@ -144,12 +144,12 @@ impl EdgeRemoval {
                     }
                     let [p, q, r] = [ring[i], ring[k], ring[j]];
                     let above = change.judge(complex, [p, q, r, b], [points[i], points[k], points[j], pb]);
-                    cost = objective.both(cost, objective.cost(above));
+                    cost = objective.both(cost, objective.cost([p, q, r, b], above));
                     if cost >= found.0 {
                         continue;
                     }
                     let below = change.judge(complex, [p, r, q, a], [points[i], points[j], points[k], pa]);
-                    cost = objective.both(cost, objective.cost(below));
+                    cost = objective.both(cost, objective.cost([p, r, q, a], below));
                     if cost < found.0 {
                         found = (cost, k as u8);
                     }

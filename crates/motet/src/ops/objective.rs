@@ -1,6 +1,6 @@
 //! Which of several ways to fill a cavity is best.
 
-use crate::base::TetId;
+use crate::base::{TetId, VertexId};
 use crate::kernel::Complex;
 
 /// Costs of tets to come, and of several together; the lowest is best.
@@ -11,8 +11,8 @@ pub trait Objective {
     /// Looks at the tets that are to go, of which so many are to come in place; the limit that the cost of these has to be below.
     fn limit(&mut self, complex: &Complex, cavity: &[TetId], n_fill: usize) -> f64;
 
-    /// The cost of a tet of this quality; infinite where none such may come.
-    fn cost(&self, quality: f64) -> f64;
+    /// The cost of a tet with these vertices, of this quality; infinite where none such may come.
+    fn cost(&self, vertices: [VertexId; 4], quality: f64) -> f64;
 
     /// The cost of two sets of tets together.
     fn both(&self, a: f64, b: f64) -> f64;
@@ -31,7 +31,7 @@ impl Objective for WorstAbove {
     }
 
     #[inline]
-    fn cost(&self, quality: f64) -> f64 {
+    fn cost(&self, _: [VertexId; 4], quality: f64) -> f64 {
         -quality
     }
 

@@ -24,6 +24,7 @@
 //! Ventikos 2008, *Local remeshing for large amplitude grid deformations*, and goes on where it ends.
 
 pub mod classify;
+mod given;
 mod held;
 mod left;
 mod lengths;

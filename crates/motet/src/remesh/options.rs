@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::base::{CellId, Error, Result};
+use crate::base::{CellId, Error, Point, Result};
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::vector::LARGEST;
 use crate::remesh::held::Held;
@@ -101,6 +101,8 @@ pub struct Improve {
     pub cells: Vec<CellId>,
     /// How many vertices are to be kept; `None`: as many as repair leaves.
     pub density: Option<Density>,
+    /// Where the points of the mesh are at other times of a motion that comes back: in each of these poses tets are to be good as much as where they are.
+    pub poses: Vec<Vec<Point>>,
 }
 
 /// The number of vertices that is kept, and where they belong.

@@ -1,10 +1,13 @@
 //! From a mesh to a better one: join, find, repair, extract.
 
+use std::cell::LazyCell;
+use std::sync::Arc;
 use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
+use crate::remesh::given::{Given, Poses};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
@@ -66,10 +69,14 @@ pub(super) fn remesh_but(
     let surface = adaptable(&mut complex, mesh, options);
     let splits = options.goal != Goal::Coarsen;
     let longest = if splits { LONG } else { 1.0 };
-    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, mesh, longest));
+    let given = LazyCell::new(|| Arc::new(Given::new(mesh)));
+    let mut field = options.sizes.as_ref().map(|sizes| SizeField::new(sizes, &given, longest));
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     repair.operations.add_many(Operation::Peeling, n_peeled);
+    if let Some(improve) = options.improve.as_ref().filter(|improve| !improve.poses.is_empty()) {
+        repair.poses = Some(Poses::new(given.clone(), improve.poses.clone()));
+    }
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
             repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?
@@ -91,7 +98,7 @@ pub(super) fn remesh_but(
     }
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
         let density = improve.density.as_ref().map(|density| Density {
-            field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), mesh, LONG),
+            field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), &given, LONG),
             n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
         });
         improve_near(&mut repair, improve, density, min_eas)?;

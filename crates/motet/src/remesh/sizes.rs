@@ -1,15 +1,15 @@
 //! The lengths that edges are asked to have: given, checked, known anywhere.
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::tet::{EDGES, volume};
-use crate::geometry::vector::LARGEST;
-use crate::geometry::vector::{distance, dot};
-use crate::geometry::weights;
+use crate::geometry::vector::{LARGEST, distance};
 use crate::kernel::{Change, Complex};
 use crate::mesh::TetMesh;
-use crate::spatial::{Bounds, BoxTree};
+use crate::remesh::given::Given;
 
 /// An edge shorter than this part of its size is too short.
 pub const SHORT: f64 = 0.5;
@@ -111,39 +111,38 @@ pub(super) struct SizeField {
 #[derive(Debug)]
 enum Source {
     Uniform(f64),
-    Tets { tree: BoxTree, corners: Vec<([Point; 4], [f64; 4])> },
+    /// Of each vertex of the mesh as it was given.
+    Vertices(Arc<Given>, Vec<f64>),
 }
 
 impl SizeField {
     /// Of sizes that have been checked. Where nothing is split, `longest` keeps edges from becoming what others would split at once.
-    pub(super) fn new(sizes: &Sizes, mesh: &TetMesh, longest: f64) -> Self {
+    pub(super) fn new(sizes: &Sizes, given: &Arc<Given>, longest: f64) -> Self {
         let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
             Sizes::Vertices(sizes) => {
-                let of = |tet: &[VertexId; 4]| {
-                    (tet.map(|v| mesh.points[v.index()]), tet.map(|v| sizes[v.index()]))
-                };
-                let corners: Vec<_> = mesh.tets.iter().map(of).collect();
-                let boxes: Vec<Bounds> = corners.iter().map(|(tet, _)| around(*tet)).collect();
-                let known = mesh.points.iter().copied().zip(sizes.iter().copied()).collect();
-                (Source::Tets { tree: BoxTree::new(&boxes), corners }, known)
+                let known = given.points().iter().copied().zip(sizes.iter().copied()).collect();
+                (Source::Vertices(given.clone(), sizes.clone()), known)
             }
         };
         Self { source, known, longest, long: LONG, may_shorten: false }
     }
 
-    /// The size at a vertex that is, or is to be, at a point.
+    /// The size at a vertex that is, or is to be, at a point: linear in the tet that holds it.
     pub(super) fn at(&mut self, vertex: VertexId, point: Point) -> f64 {
-        let Source::Tets { tree, corners } = &self.source else {
-            let Source::Uniform(h) = self.source else { unreachable!("there are two sources") };
-            return h;
+        let (given, sizes) = match &self.source {
+            Source::Uniform(h) => return *h,
+            Source::Vertices(given, sizes) => (given, sizes),
         };
         if self.known.len() <= vertex.index() {
             self.known.resize(vertex.index() + 1, ([f64::NAN; 3], f64::NAN));
         }
         let known = &mut self.known[vertex.index()];
         if known.0 != point {
-            *known = (point, interpolated(tree, corners, point));
+            let of = |(tet, weights): ([VertexId; 4], [f64; 4])| -> f64 {
+                tet.iter().zip(weights).map(|(v, weight)| sizes[v.index()] * weight).sum()
+            };
+            *known = (point, given.at(point).map_or(f64::NAN, of));
         }
         known.1
     }
@@ -189,29 +188,4 @@ impl SizeField {
         }
         true
     }
-}
-
-/// The size at a point: linear in the tet that holds it, the first of those that do; of the nearest where none does.
-fn interpolated(tree: &BoxTree, corners: &[([Point; 4], [f64; 4])], point: Point) -> f64 {
-    let measure = |id: u32| {
-        let (tet, sizes) = corners[id as usize];
-        let weights =
-            weights(tet, point).or_else(|| weights([tet[0], tet[1], tet[3], tet[2]], point).map(swapped))?;
-        let mut off = point;
-        for (corner, weight) in tet.iter().zip(weights) {
-            (0..3).for_each(|k| off[k] -= weight * corner[k]);
-        }
-        let size: f64 = sizes.iter().zip(weights).map(|(h, w)| h * w).sum();
-        Some((dot(off, off), size))
-    };
-    tree.nearest(point, measure).map_or(f64::NAN, |(_, _, size)| size)
-}
-
-fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
-    [a, b, d, c]
-}
-
-fn around(tet: [Point; 4]) -> Bounds {
-    let fold = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| tet.iter().map(|p| p[k]).fold(tet[0][k], f));
-    [fold(f64::min), fold(f64::max)]
 }

@@ -28,7 +28,8 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
 
   [motion]
   method = \"delaunay\"             # bodies, guided, ... as `motet move --method`
-  strain = \"band\"                 # of bodies: beside them (band) or everywhere (even); band where one goes on (ramp)
+  strain = \"band\"                 # of bodies: beside them (band) or everywhere (even); band where one goes on or far
+  returns = true                  # walls come back: tets are kept good at rest, too; false where one goes on or far
   smooth = 2
   rigid_layer = \"3layers\"         # or a distance
   within_walls = false

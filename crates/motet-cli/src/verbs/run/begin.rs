@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use motet::base::Threads;
 use motet::contact;
+use motet::geometry::vector::norm;
 use motet::implant::{self, implant};
 use motet::mesh::history::Rules;
+use motet::mesh::mean_edge_lengths;
 use motet::motion::{Extent, Method, MethodWords, SlideTolerance, Strain};
 use motet::moving::{GAP, Motion, Options, Script, Watching};
 use motet::refine::{Criterion, Limits, Size, Wanted};
@@ -32,12 +34,37 @@ pub(super) struct Begin {
 impl Begin {
     pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
         let mesh = with_devices(job, threads, console)?;
-        let options = options(job, &mesh).map_err(|e| job.told(e))?;
+        let mut options = options(job, &mesh).map_err(|e| job.told(e))?;
         let script = course::script(job, &mesh, &options.motion, threads, console)?;
+        let goes_on = goes_on(job, &mesh, &options.motion, &script);
+        options.returns = job.motion.returns.unwrap_or(!goes_on);
+        if job.motion.strain.is_none() && goes_on && matches!(options.motion.method, Method::Bodies(_)) {
+            options.motion.strain = Strain::Band;
+        }
         let refining = job.refine.iter().map(|asked| wanted(job, asked, threads));
         let refining = refining.collect::<Result<_>>().map_err(|e| job.told(e))?;
         Ok(Self { mesh, script, options, refining })
     }
+}
+
+/// A body that goes farther than so many edges does not leave the tets round it as they were, whether it comes back or not.
+const FAR: f64 = 3.0;
+
+/// Whether a wall goes on and does not come back, or a rigid body goes far.
+fn goes_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
+    if job.motion.moves.iter().any(|part| part.in_time.is_ramp()) {
+        return true;
+    }
+    if !matches!(motion.method, Method::Bodies(_)) {
+        return false;
+    }
+    let edges = mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet));
+    let driven = motion.driven(mesh);
+    let steps = job.steps_in_period();
+    (1..steps).any(|k| {
+        let displacement = script.at(k as f64 / steps as f64);
+        driven.iter().zip(displacement).any(|(v, d)| norm(d) > FAR * edges[v.index()])
+    })
 }
 
 /// The mesh, devices put into it: those that keep their triangles together, since they may lie in each other, then those that get a new surface.
@@ -92,6 +119,8 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
         margin: repair.margin,
         floor: repair.floor,
         improve_below: repair.improve_below,
+        // Known once the script is.
+        returns: false,
         valid_at_start: repair.valid_at_start,
         rules,
         contents: job.contents.clone(),
@@ -119,8 +148,6 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
             .remedy("add method = \"bodies\""));
         }
         Some(name) => Strain::of_name(name)?,
-        // What goes on does not come back: a band keeps the rest as it is.
-        None if asked.moves.iter().any(|part| part.in_time.is_ramp()) => Strain::Band,
         None => Strain::Even,
     };
     let rigid_layer = match &asked.rigid_layer {

@@ -75,6 +75,7 @@ pub(super) struct Motion {
     pub(super) method: Option<String>,
     pub(super) bodies: Vec<String>,
     pub(super) strain: Option<String>,
+    pub(super) returns: Option<bool>,
     pub(super) smooth: usize,
     pub(super) rigid_layer: Option<Layer>,
     pub(super) rigid_layer_at: Vec<String>,

@@ -59,7 +59,8 @@ pub(super) fn shares(
         let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
         let of_body = walls.distances(is_body, (CLEAR + WIDTH) * longest);
         // A wall in a gap so wide changes no ramp.
-        let of_others = walls.distances(is_other, ((CLEAR + WIDTH) / OF_GAP[1]).max(CLEAR / OF_GAP[0]) * longest);
+        let of_others =
+            walls.distances(is_other, ((CLEAR + WIDTH) / OF_GAP[1]).max(CLEAR / OF_GAP[0]) * longest);
         let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
         let share = |v: usize| {
             let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());

@@ -7,7 +7,7 @@ use crate::base::{Result, TetId, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
-use crate::ops::collapse;
+use crate::ops::{collapse, defect};
 use crate::remesh::repair::Repair;
 use crate::remesh::report::Operation;
 use crate::remesh::sizes::{SHORT, SizeField};
@@ -125,7 +125,8 @@ impl Repair {
                 && field.lengthens_none(&self.complex, &change)
                 && self.complex.check_against(&change, bar).is_ok()
             {
-                let defects = self.defects_of_fill(&change, 0.0) / change.fill.len() as f64;
+                let sum: f64 = change.fill.iter().map(|tet| defect(tet.quality)).sum();
+                let defects = sum / change.fill.len() as f64;
                 if best.as_ref().is_none_or(|(least, _)| defects < *least) {
                     best = Some((defects, change));
                 }

@@ -9,16 +9,18 @@
 //! | repair alone | 37,023 | 0.370 | 10.3 % |
 //! | and improved, the strain in a band beside the paddle | 16,264 | 0.692 | 7.6 % |
 
-use crate::base::{Result, TetId};
+use crate::base::{Point, Result, TetId, VertexId};
+use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
-use crate::kernel::{Change, Complex, Hold};
+use crate::kernel::{Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, defect};
+use crate::remesh::given::Poses;
 use crate::remesh::repair::Repair;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of what it touches by this part of it.
-const LEAST_GAIN: f64 = 0.02;
+const LEAST_GAIN: f64 = 0.005;
 
 /// So often the tets that were changed are looked at again.
 const ROUNDS: usize = 4;
@@ -34,43 +36,101 @@ pub(in crate::remesh) struct Aim {
     pub(in crate::remesh) cost: f64,
 }
 
-/// What changes are worth.
+/// What tets cost, and what changes are worth.
 #[derive(Clone, Copy, Debug)]
-struct Worth {
+struct Worth<'a> {
     aim: Aim,
-    /// The mean defect of the mesh.
+    /// The mean cost of the mesh.
     mean: f64,
-    /// No tet may be as bad as this.
-    bar: f64,
+    /// Where the vertices are at other times.
+    poses: Option<&'a Poses>,
+    /// No tet may be as bad as this, where it is and in each pose.
+    bars: [f64; 1 + MOST_POSES],
 }
 
-impl Worth {
-    /// What a change has to lower the sum of the defects of a cavity by, each less the mean, and that sum.
+/// More poses are not looked at.
+const MOST_POSES: usize = 3;
+
+impl<'a> Worth<'a> {
+    fn new(aim: Aim, mean: f64, poses: Option<&'a Poses>) -> Self {
+        Self { aim, mean, poses, bars: [f64::NAN; 1 + MOST_POSES] }
+    }
+
+    fn n_poses(&self) -> usize {
+        self.poses.map_or(0, Poses::len).min(MOST_POSES)
+    }
+
+    /// The defect of a tet where it is and in all poses.
+    fn of_tet(&self, complex: &Complex, tet: TetId) -> f64 {
+        let here = defect(complex.quality(tet));
+        let Some(poses) = self.poses else { return here };
+        (0..self.n_poses()).fold(here, |sum, i| sum + in_pose(poses.quality(i, complex, tet)))
+    }
+
+    /// What a change has to lower the cost of a cavity by, each tet's less the mean, and that cost.
     fn of_cavity(&self, complex: &Complex, cavity: &[TetId]) -> (f64, f64) {
-        let sum: f64 = cavity.iter().map(|&t| defect(complex.quality(t))).sum();
+        let sum: f64 = cavity.iter().map(|&t| self.of_tet(complex, t)).sum();
         let n_touched = cavity.iter().filter(|&&t| complex.is_original(t)).count();
         let least = LEAST_GAIN * sum + self.aim.cost * n_touched as f64;
         (least, sum - self.mean * cavity.len() as f64)
     }
 
-    fn bar(&self, complex: &Complex, cavity: &[TetId]) -> f64 {
-        complex.worst_of(cavity).min(self.aim.floor).next_down()
+    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be in each pose.
+    fn of_fill(&self, change: &Change, moved: Option<(VertexId, &[Point])>) -> f64 {
+        let of = |tet: &Fill| self.of_new(tet.vertices, tet.quality, moved) - self.mean;
+        change.fill.iter().map(of).sum()
+    }
+
+    /// The cost of a tet to come.
+    fn of_new(&self, vertices: [VertexId; 4], quality: f64, moved: Option<(VertexId, &[Point])>) -> f64 {
+        if quality <= self.bars[0] {
+            return f64::INFINITY;
+        }
+        let mut cost = defect(quality);
+        let Some(poses) = self.poses else { return cost };
+        for i in 0..self.n_poses() {
+            let quality = eas(vertices.map(|v| match moved {
+                Some((moved, places)) if moved == v => places[i],
+                _ => poses.point(i, v),
+            }));
+            if quality <= self.bars[1 + i] {
+                return f64::INFINITY;
+            }
+            cost += in_pose(quality);
+        }
+        cost
+    }
+
+    /// Sets the limits for what comes in place of a cavity.
+    fn set_bars(&mut self, complex: &Complex, cavity: &[TetId]) {
+        let bar = |worst: f64| worst.min(self.aim.floor).next_down();
+        self.bars[0] = bar(complex.worst_of(cavity));
+        let Some(poses) = self.poses else { return };
+        for i in 0..self.n_poses() {
+            let qualities = cavity.iter().map(|&t| poses.quality(i, complex, t));
+            self.bars[1 + i] = bar(qualities.fold(f64::INFINITY, f64::min));
+        }
     }
 }
 
-/// The sum of the defects is to be low.
-impl Objective for Worth {
+/// The defect of a tet in a pose. Where walls slid past each other tets need not be valid there, and one is as bad as another.
+fn in_pose(quality: f64) -> f64 {
+    defect(quality.max(0.0))
+}
+
+/// The sum of the costs is to be low.
+impl Objective for Worth<'_> {
     const NOTHING: f64 = 0.0;
 
     fn limit(&mut self, complex: &Complex, cavity: &[TetId], n_fill: usize) -> f64 {
-        self.bar = self.bar(complex, cavity);
+        self.set_bars(complex, cavity);
         let (least, before) = self.of_cavity(complex, cavity);
         before + self.mean * n_fill as f64 - least
     }
 
     #[inline]
-    fn cost(&self, quality: f64) -> f64 {
-        if quality <= self.bar { f64::INFINITY } else { defect(quality) }
+    fn cost(&self, vertices: [VertexId; 4], quality: f64) -> f64 {
+        self.of_new(vertices, quality, None)
     }
 
     #[inline]
@@ -90,7 +150,10 @@ struct Best {
 impl Repair {
     /// Swaps and moves the tets of a zone, the worst first, then those that were inserted, as long as they get better on the whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
-        let worth = Worth { aim, mean: self.mean_defect(), bar: f64::NAN };
+        if let Some(poses) = &mut self.poses {
+            poses.update(&self.complex);
+        }
+        let mean = self.mean_cost(aim);
         let (mut best, mut settled) = (Best::default(), Settled::new());
         for _ in 0..ROUNDS {
             zone.retain(|&t| self.is_low(t, aim.below));
@@ -99,7 +162,7 @@ impl Repair {
             for (i, &tet) in zone.iter().enumerate() {
                 if self.is_low(tet, aim.below) {
                     self.watch.go_on("improving tets", i, zone.len())?;
-                    self.improve_one(tet, worth, &mut best, &mut settled, &mut inserted);
+                    self.improve_one(tet, (aim, mean), &mut best, &mut settled, &mut inserted);
                 }
             }
             if inserted.is_empty() {
@@ -120,8 +183,9 @@ impl Repair {
         self.complex.tets().filter(touches).collect()
     }
 
-    fn mean_defect(&self) -> f64 {
-        let sum: f64 = self.complex.tets().map(|t| defect(self.complex.quality(t))).sum();
+    fn mean_cost(&self, aim: Aim) -> f64 {
+        let worth = Worth::new(aim, 0.0, self.poses.as_ref());
+        let sum: f64 = self.complex.tets().map(|t| worth.of_tet(&self.complex, t)).sum();
         sum / self.complex.n_tets().max(1) as f64
     }
 
@@ -133,24 +197,28 @@ impl Repair {
     fn improve_one(
         &mut self,
         tet: TetId,
-        worth: Worth,
+        (aim, mean): (Aim, f64),
         best: &mut Best,
         settled: &mut Settled,
         inserted: &mut Vec<TetId>,
     ) {
         best.gain = None;
-        self.weigh_swaps(tet, worth, best, settled);
+        self.weigh_swaps(tet, (aim, mean), best, settled);
         if best.gain.is_none() {
-            self.weigh_moves(tet, worth, best, settled);
+            self.weigh_moves(tet, (aim, mean), best, settled);
         }
         let n_before = inserted.len();
-        if best.gain.is_some() && self.commit_above(&best.change, worth.aim.floor, inserted) {
+        if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
             self.operations.add(best.operation);
             settled.inserted(&self.complex, &inserted[n_before..]);
+            if let Some(poses) = &mut self.poses {
+                poses.follow(&self.complex, best.change.vertex, &inserted[n_before..]);
+            }
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, mut worth: Worth, best: &mut Best, settled: &mut Settled) {
+    fn weigh_swaps(&mut self, tet: TetId, (aim, mean): (Aim, f64), best: &mut Best, settled: &mut Settled) {
+        let mut worth = Worth::new(aim, mean, self.poses.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
@@ -184,7 +252,8 @@ impl Repair {
         self.candidate.proposal = change;
     }
 
-    fn weigh_moves(&mut self, tet: TetId, worth: Worth, best: &mut Best, settled: &mut Settled) {
+    fn weigh_moves(&mut self, tet: TetId, (aim, mean): (Aim, f64), best: &mut Best, settled: &mut Settled) {
+        let mut worth = Worth::new(aim, mean, self.poses.as_ref());
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for vertex in self.complex.vertices(tet) {
             if self.complex.hold(vertex) != Hold::Free || settled.has_vertex(vertex) {
@@ -192,10 +261,17 @@ impl Repair {
             }
             self.star.gather(&self.complex, vertex);
             let star = &self.star.tets;
-            let bar = worth.bar(&self.complex, star);
-            let is_better =
-                self.relaxation.propose(&self.complex, star, vertex, bar, &Anywhere, &mut change)
-                    && self.weigh(&mut change, Operation::Smoothing, worth, best);
+            worth.set_bars(&self.complex, star);
+            let poses = self.poses.as_ref().map(|poses| |pose: usize, v: VertexId| poses.point(pose, v));
+            let poses = (worth.n_poses(), poses);
+            let is_better = self.relaxation.propose(
+                (&self.complex, poses),
+                star,
+                vertex,
+                worth.bars[0],
+                &Anywhere,
+                &mut change,
+            ) && self.weigh(&mut change, Operation::Smoothing, worth, best);
             if !is_better {
                 settled.settle_vertex(vertex);
             }
@@ -204,27 +280,26 @@ impl Repair {
     }
 
     /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place. Whether it gains enough.
-    fn weigh(&self, change: &mut Change, operation: Operation, worth: Worth, best: &mut Best) -> bool {
-        let bar = worth.bar(&self.complex, &change.cavity);
+    fn weigh(&self, change: &mut Change, operation: Operation, mut worth: Worth, best: &mut Best) -> bool {
+        worth.set_bars(&self.complex, &change.cavity);
         let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
-        let gain = before - self.defects_of_fill(change, worth.mean);
-        if gain <= least || change.worst() <= bar {
+        let moved = match change.vertex {
+            VertexChange::Move(vertex, _) => Some((vertex, self.relaxation.places_in_poses())),
+            _ => None,
+        };
+        let gain = before - worth.of_fill(change, moved);
+        if gain <= least {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
             return true;
         }
-        let is_allowed = self.complex.check_against(change, bar).is_ok();
+        let is_allowed = self.complex.check_against(change, worth.bars[0]).is_ok();
         if is_allowed {
             std::mem::swap(change, &mut best.change);
             (best.gain, best.operation) = (Some(gain), operation);
         }
         is_allowed
-    }
-
-    /// The sum of the defects of the tets to come, each less the mean.
-    pub(super) fn defects_of_fill(&self, change: &Change, mean: f64) -> f64 {
-        change.fill.iter().map(|tet| defect(tet.quality) - mean).sum()
     }
 
     /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.

@@ -17,6 +17,7 @@ pub(super) use sizing::Sizing;
 use crate::base::{Result, TetId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
+use crate::remesh::given::Poses;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
@@ -72,6 +73,8 @@ pub(super) struct Repair {
     surface: Option<Surface>,
     /// Where sizes are asked for.
     pub(super) sizing: Option<Sizing>,
+    /// Where walls come back.
+    pub(super) poses: Option<Poses>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
     others: Vec<bool>,
     target: f64,
@@ -106,6 +109,7 @@ impl Repair {
             operations: Counts::default(),
             surface,
             sizing: None,
+            poses: None,
             others,
             target,
             n_stages: FIRST_STAGES,
