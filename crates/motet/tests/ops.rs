@@ -10,8 +10,8 @@ use motet::geometry::vector::{distance, norm};
 use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewLine, NewWall, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
 use motet::ops::{
-    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Smoothing, Track, collapse, split_crossed, split_edge,
-    split_onto,
+    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Objective, Relaxation, Smoothing, Track, collapse, defect,
+    split_crossed, split_edge, split_onto,
 };
 
 /// The ends of the edge that rings lie round.
@@ -73,6 +73,15 @@ fn worst_on(points: &[Point], triangles: &[[usize; 3]]) -> f64 {
     triangles.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
+/// The sum of the defects of these tets.
+fn defects_on(points: &[Point], triangles: &[[usize; 3]]) -> f64 {
+    let of = |t: &[usize; 3]| {
+        let [p, q, r] = t.map(|place| points[place + 2]);
+        defect(eas([p, q, r, points[1]])) + defect(eas([p, r, q, points[0]]))
+    };
+    triangles.iter().map(of).sum()
+}
+
 fn corners(complex: &Complex, change: &Change, tet: [VertexId; 4]) -> [Point; 4] {
     tet.map(|v| change.point(complex, v))
 }
@@ -126,6 +135,64 @@ fn edge_removal_finds_the_best_of_all_triangulations() {
         assert_eq!(removal.propose(&complex, first, [A, B], best - 1e-12, &mut change), best - 1e-12 > -1.0);
     }
     assert!(n_removed > 200, "{n_removed}");
+}
+
+/// The sum of the defects of the fill is to be low, and no tet as bad as `bar`.
+struct Sum {
+    limit: f64,
+    bar: f64,
+}
+
+impl Objective for Sum {
+    const NOTHING: f64 = 0.0;
+
+    fn limit(&mut self, _: &Complex, cavity: &[TetId], n_fill: usize) -> f64 {
+        assert_eq!(n_fill, 2 * (cavity.len() - 2));
+        self.limit
+    }
+
+    fn cost(&self, _: [VertexId; 4], quality: f64) -> f64 {
+        if quality <= self.bar { f64::INFINITY } else { defect(quality) }
+    }
+
+    fn both(&self, a: f64, b: f64) -> f64 {
+        a + b
+    }
+}
+
+#[test]
+fn edge_removal_finds_the_triangulation_of_the_least_sum() {
+    let (mut removal, mut change) = (EdgeRemoval::default(), dirty());
+    let mut numbers = Numbers(7);
+    let mut n_removed = 0;
+    for n in (3..=7).cycle().take(200) {
+        let points = ring(n, std::f64::consts::TAU, &mut numbers);
+        let complex = Complex::new(&round_edge(points.clone(), true)).unwrap();
+        let sum = |triangles: &Vec<[usize; 3]>| -> f64 {
+            if worst_on(&points, triangles) <= 0.1 { f64::INFINITY } else { defects_on(&points, triangles) }
+        };
+        let least = triangulations(0, n - 1).iter().map(sum).fold(f64::INFINITY, f64::min);
+        for start in (0..n).map(TetId::new) {
+            let mut objective = Sum { limit: 1e9, bar: 0.1 };
+            let is_proposed = removal.propose_for(&complex, start, [A, B], &mut objective, &mut change);
+            assert_eq!(is_proposed, least.is_finite(), "{least}");
+            if is_proposed {
+                n_removed += 1;
+                let found: f64 = change.fill.iter().map(|tet| defect(tet.quality)).sum();
+                assert!((found - least).abs() < 1e-12, "{found} and not {least}");
+                assert_sound(&complex, &change);
+            }
+        }
+        // None that costs as much as the limit.
+        for (limit, is_below) in [(least - 1e-12, false), (least + 1e-12, least.is_finite())] {
+            let mut objective = Sum { limit, bar: 0.1 };
+            assert_eq!(
+                removal.propose_for(&complex, TetId(0), [A, B], &mut objective, &mut change),
+                is_below
+            );
+        }
+    }
+    assert!(n_removed > 100, "{n_removed}");
 }
 
 #[test]
@@ -345,6 +412,40 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
         }
     }
     assert!(n_on_the_way > 25, "{n_on_the_way}");
+}
+
+#[test]
+fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_poses() {
+    let vertex = VertexId(18);
+    let mut numbers = Numbers(11);
+    let (mut star, mut relaxation, mut change) = (Star::default(), Relaxation::default(), dirty());
+    for _ in 0..50 {
+        let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
+        let complex = Complex::new(&ball_round(start)).unwrap();
+        star.gather(&complex, vertex);
+        // A pose in which all is stretched and sheared.
+        let stretched = |[x, y, z]: Point| [0.6 * x + 0.3 * y, y, 1.5 * z];
+        let sum = |place: Point, pose: &dyn Fn(Point) -> Point| -> f64 {
+            let at = |v: VertexId| if v == vertex { place } else { complex.point(v) };
+            let corners = |t: &TetId| complex.vertices(*t).map(|v| pose(at(v)));
+            star.tets.iter().map(|t| defect(eas(corners(t)).max(0.0))).sum()
+        };
+        let here = |p: Point| p;
+        let none = (0, None::<fn(usize, VertexId) -> Point>);
+        assert!(relaxation.propose((&complex, none), &star.tets, vertex, 0.0, &Anywhere, &mut change));
+        assert_sound(&complex, &change);
+        assert!(relaxation.places_in_poses().is_empty());
+        let VertexChange::Move(_, alone) = change.vertex else { panic!("{:?}", change.vertex) };
+        assert!(sum(alone, &here) < sum(start, &here));
+
+        let both = |place: Point| sum(place, &here) + sum(place, &stretched);
+        let pose = Some(|_: usize, v: VertexId| stretched(complex.point(v)));
+        assert!(relaxation.propose((&complex, (1, pose)), &star.tets, vertex, 0.0, &Anywhere, &mut change));
+        let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
+        // What is linear is found as it is.
+        assert!(distance(relaxation.places_in_poses()[0], stretched(place)) < 1e-9);
+        assert!(both(place) < both(start) && both(place) < both(alone) + 0.02 * both(start));
+    }
 }
 
 #[test]

@@ -101,8 +101,8 @@ impl RoughStar {
             }
             let group = self.others.len() - 1;
             for (i, &corner) in FROM[vertex].iter().enumerate() {
-                for axis in 0..3 {
-                    self.others[group][i][axis][lane] = corners[corner][axis];
+                for (numbers, x) in self.others[group][i].iter_mut().zip(corners[corner]) {
+                    numbers[lane] = x;
                 }
             }
             self.n_tets += 1;
@@ -141,9 +141,9 @@ impl WithSimd for At<'_> {
                     }
                 }
                 let some = rough(simd, corners).stored();
-                for l in 0..S::F64_LANES.min(n - start) {
-                    let is_sound = some[l].is_finite() && some[l] != 0.0;
-                    out.push(if is_sound { some[l] } else { exactly(others, place, start + l) });
+                for (lane, &rough) in (start..n).zip(&some[..S::F64_LANES]) {
+                    let is_sound = rough.is_finite() && rough != 0.0;
+                    out.push(if is_sound { rough } else { exactly(others, place, lane) });
                 }
             }
         }
@@ -350,6 +350,24 @@ mod tests {
     }
 
     proptest! {
+        /// A vertex that is another corner of each tet, elsewhere than it was.
+        #[test]
+        fn a_rough_star_is_near(tets in prop::collection::vec((prop::array::uniform4(point()), 0..4usize), 1..21), place in point()) {
+            let mut star = RoughStar::default();
+            let mut found = vec![0.0; 3];
+            for _ in 0..2 {
+                // Room is used again.
+                star.set(tets.iter().copied());
+                star.judge(place, &mut found);
+            }
+            prop_assert_eq!(found.len(), tets.len());
+            for (&(mut tet, corner), rough) in tets.iter().zip(found) {
+                tet[corner] = place;
+                let exact = eas(tet);
+                prop_assert!((rough - exact).abs() <= ROUGH_EAS_ERROR, "{rough} {exact}");
+            }
+        }
+
         /// Random, flat, inverted, tiny and huge ones.
         #[test]
         fn rough_is_near(tets in prop::collection::vec(prop::array::uniform4(point()), 1..13), size in prop_oneof![Just(1.0), Just(1e-40), Just(1e80)]) {
