@@ -1,9 +1,11 @@
 """Counts and mean quality over long motions: draws docs/drift.png from the logs of `bench-compare/run drift`.
 
-    bench-compare/run drift
+    bench-compare/run drift --cases flap,ventricle,cube --cycles 50
+    bench-compare/run drift --cases paddle --turns 100
     target/venv/bin/python docs/drift_picture.py
 
-Each line is a case of that benchmark, as far as its run went: how many vertices, and the mean EAS, beside those of the first mesh.
+Each line is a case of that benchmark, as far as its run went: how many vertices, as a part of those at first, and the mean EAS, at the end of each turn or cycle. Bands: least and most of all
+steps on the way.
 """
 import json
 from pathlib import Path
@@ -15,8 +17,8 @@ import matplotlib.pyplot as plt
 
 HERE = Path(__file__).resolve().parent
 RUNS = HERE.parent / "bench-compare" / "target" / "drift"
-COLOURS = {"paddle": "#17607a", "paddle-delaunay": "#5fb3b3", "channel": "#e0583f", "ellipsoid": "#c99a3b", "bar": "#7a5c99", "flap": "#22303c",
-           "ventricle": "#8a9a5b", "cube": "#b5838d"}
+# name: steps in a turn or cycle, colour
+CASES = {"paddle": (72, "#17607a"), "flap": (24, "#e0583f"), "ventricle": (25, "#8a9a5b"), "cube": (24, "#c99a3b")}
 
 
 def log(case):
@@ -26,19 +28,28 @@ def log(case):
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
+def draw(axes, values, steps, colour, label):
+    """The values at the ends of cycles, and a band from the least to the most within each."""
+    n = (len(values) - 1) // steps
+    ends = [values[k * steps] for k in range(n + 1)]
+    within = [values[k * steps:(k + 1) * steps + 1] for k in range(n)]
+    at = [k + 0.5 for k in range(n)]
+    axes.fill_between(at, [min(part) for part in within], [max(part) for part in within], color=colour, alpha=0.18, lw=0)
+    axes.plot(range(n + 1), ends, color=colour, lw=1.4, label=label)
+
+
 def main():
     figure, (counts, means) = plt.subplots(1, 2, figsize=(11, 4.2), sharex=True)
-    for case, colour in COLOURS.items():
-        steps = log(case)
-        if not steps or "quality" not in steps[0]:
+    for case, (steps, colour) in CASES.items():
+        lines = log(case)
+        if not lines:
             continue
-        at = [step["step"] for step in steps]
-        counts.plot(at, [step["points"] / steps[0]["points"] for step in steps], color=colour, lw=1.2, label=case)
-        means.plot(at, [step["quality"]["mean"] for step in steps], color=colour, lw=1.2, label=case)
+        draw(counts, [line["points"] / lines[0]["points"] for line in lines], steps, colour, case)
+        draw(means, [line["quality"]["mean"] for line in lines], steps, colour, case)
     counts.axhline(1, color="#bbbbbb", lw=0.8, zorder=0)
-    counts.set(xlabel="step", ylabel="vertices, as a part of the first", ylim=(0.9, 1.1))
-    means.set(xlabel="step", ylabel="mean EAS", ylim=(0.4, 0.8))
-    means.legend(fontsize=8, ncol=2, frameon=False)
+    counts.set(xlabel="turns or cycles", ylabel="vertices, as a part of those at first", ylim=(0.95, 1.05))
+    means.set(xlabel="turns or cycles", ylabel="mean EAS", ylim=(0.45, 0.8))
+    means.legend(frameon=False, ncol=4, loc="lower right")
     for axes in (counts, means):
         axes.spines[["top", "right"]].set_visible(False)
     figure.tight_layout()

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use motet::Mesh;
-use motet::base::Point;
+use motet::base::{Point, Threads};
+use motet::mesh::Qualities;
 use motet::mesh::history::{FieldLedger, History, Ledger, On, Rule};
 use motet::remesh::classify::DEFECT_NAMES;
 use motet::remesh::{self, Counts, LONG, Lengths, Reason, SHORT, SizesReport};
@@ -71,6 +72,8 @@ struct State {
     types: Value,
     inverted: usize,
     worst_eas: Option<Worst>,
+    /// Of all tets, those of boundary layers among them.
+    quality: Qualities,
 }
 
 #[derive(Debug, Serialize)]
@@ -110,6 +113,7 @@ impl Report {
     pub(crate) fn new(
         args: &RemeshArgs,
         [old, new]: [&Mesh; 2],
+        threads: &Threads,
         report: &remesh::Report,
         history: &History,
         fields: Vec<FieldLedger>,
@@ -129,8 +133,8 @@ impl Report {
             history: args.arrays.history.clone(),
             complete: report.is_complete(),
             min_eas: report.min_eas,
-            before: State::of(old, &report.before),
-            after: State::of(new, &report.after),
+            before: State::of(old, &report.before, threads),
+            after: State::of(new, &report.after, threads),
             operations: report.operations,
             kept: report.kept,
             untouched: report.kept_share,
@@ -260,6 +264,8 @@ impl Report {
         row("worst EAS", &worst(|w| short(w.value)));
         row("in cell", &worst(|w| w.cell.to_string()));
         row("at", &worst(|w| place(w.place)));
+        row("1 % below", &|s| short(s.quality.p1));
+        row("mean EAS", &|s| short(s.quality.mean));
         table
     }
 
@@ -344,7 +350,8 @@ impl Report {
 }
 
 impl State {
-    fn of(mesh: &Mesh, state: &remesh::State) -> Self {
+    fn of(mesh: &Mesh, state: &remesh::State, threads: &Threads) -> Self {
+        let tets: Vec<_> = mesh.cells.tets().map(|(_, tet)| tet).collect();
         let [i, ii, iii, iv, other] = state.types;
         Self {
             points: mesh.points.len(),
@@ -355,6 +362,7 @@ impl State {
             types: json!({ "I": i, "II": ii, "III": iii, "IV": iv, "other": other }),
             inverted: state.inverted,
             worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet, place: w.place }),
+            quality: Qualities::of(&mesh.points, &tets, threads),
         }
     }
 }

@@ -229,11 +229,13 @@ impl Report {
         }
         let [first, last] = self.quality;
         let n_tets = self.tets.map(count);
-        console.say(format_args!(
+        if n > 0 {
+            console.say(format_args!(
             "from first to last: {} to {} tets; EAS 1 % {:.3} to {:.3}, median {:.3} to {:.3}, mean {:.3} to {:.3} (at least {:.3}), mean ratio {:.3} to {:.3}; {:.2} % of the cells changed in a step",
             n_tets[0], n_tets[1], first.p1, last.p1, first.median, last.median, first.mean, last.mean,
-            self.least_mean, first.mean_ratio, last.mean_ratio, 100.0 * self.changed / n.max(1) as f64
+            self.least_mean, first.mean_ratio, last.mean_ratio, 100.0 * self.changed / n as f64
         ));
+        }
         if self.most_inverted_at_start > 0 {
             console.say(format_args!(
                 "up to {} tets of a changed mesh are inverted where their vertices were as the step began (inverted_at_start in the log): \

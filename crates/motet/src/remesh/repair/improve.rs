@@ -7,7 +7,7 @@
 //! | | tets | mean EAS | changed a step |
 //! |---|---|---|---|
 //! | repair alone | 37,023 | 0.370 | 10.3 % |
-//! | and improved, the strain in a band beside the paddle | 16,264 | 0.692 | 7.6 % |
+//! | and improved, the strain in a band beside the paddle | 16,101 | 0.694 | 8.2 % |
 
 use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
@@ -19,7 +19,8 @@ use crate::remesh::repair::Repair;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::report::Operation;
 
-/// A change has to lower the sum of the defects of what it touches by this part of it.
+/// A change has to lower the sum of the defects of what it touches by this part of it. Of the paddle above the mean EAS is, over all steps, never below 0.673 with 0.05 (7.0 % changed a step),
+/// 0.678 with 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
 const LEAST_GAIN: f64 = 0.005;
 
 /// So often the tets that were changed are looked at again.
