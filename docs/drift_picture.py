@@ -1,7 +1,8 @@
 """Counts and mean quality over long motions: draws docs/drift.png from the logs of `bench-compare/run drift`.
 
     bench-compare/run drift --cases flap,ventricle,cube --cycles 50
-    bench-compare/run drift --cases paddle --turns 100
+    bench-compare/run drift --cases paddle      and in its folder, bench-compare/target/drift/paddle, with steps = 7200 and degrees = 36000 in job.toml:
+    motet run job.toml --threads 1
     target/venv/bin/python docs/drift_picture.py
 
 Each line is a case of that benchmark, as far as its run went: how many vertices, as a part of those at first, and the mean EAS, at the end of each turn or cycle. Bands: least and most of all
@@ -45,7 +46,14 @@ def main():
         if not lines:
             continue
         draw(counts, [line["points"] / lines[0]["points"] for line in lines], steps, colour, case)
-        draw(means, [line["quality"]["mean"] for line in lines], steps, colour, case)
+        eas = [line["quality"]["mean"] for line in lines]
+        draw(means, eas, steps, colour, case)
+        ends = eas[::steps]
+        half = len(ends) // 2
+        print(f"{case}: {len(eas) - 1} steps, {min(line['points'] for line in lines)} to {max(line['points'] for line in lines)} vertices;"
+              f" mean EAS {sum(eas) / len(eas):.3f} over all steps, least {min(eas):.3f};"
+              f" at the ends of cycles {min(ends[1:]):.3f} to {max(ends[1:]):.3f}, of the first half {sum(ends[1:half + 1]) / half:.3f}, of the last {sum(ends[-half:]) / half:.3f};"
+              f" last change in step {max((line['step'] for line in lines if line['changes']), default=0)}")
     counts.axhline(1, color="#bbbbbb", lw=0.8, zorder=0)
     counts.set(xlabel="turns or cycles", ylabel="vertices, as a part of those at first", ylim=(0.95, 1.05))
     means.set(xlabel="turns or cycles", ylabel="mean EAS", ylim=(0.45, 0.8))

@@ -415,7 +415,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
 }
 
 #[test]
-fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_poses() {
+fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
     let vertex = VertexId(18);
     let mut numbers = Numbers(11);
     let (mut star, mut relaxation, mut change) = (Star::default(), Relaxation::default(), dirty());
@@ -423,27 +423,27 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_poses() {
         let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
         let complex = Complex::new(&ball_round(start)).unwrap();
         star.gather(&complex, vertex);
-        // A pose in which all is stretched and sheared.
+        // At rest all is stretched and sheared.
         let stretched = |[x, y, z]: Point| [0.6 * x + 0.3 * y, y, 1.5 * z];
-        let sum = |place: Point, pose: &dyn Fn(Point) -> Point| -> f64 {
+        let sum = |place: Point, moved: &dyn Fn(Point) -> Point| -> f64 {
             let at = |v: VertexId| if v == vertex { place } else { complex.point(v) };
-            let corners = |t: &TetId| complex.vertices(*t).map(|v| pose(at(v)));
+            let corners = |t: &TetId| complex.vertices(*t).map(|v| moved(at(v)));
             star.tets.iter().map(|t| defect(eas(corners(t)).max(0.0))).sum()
         };
         let here = |p: Point| p;
-        let none = (0, None::<fn(usize, VertexId) -> Point>);
+        let none = None::<fn(VertexId) -> Point>;
         assert!(relaxation.propose((&complex, none), &star.tets, vertex, 0.0, &Anywhere, &mut change));
         assert_sound(&complex, &change);
-        assert!(relaxation.places_in_poses().is_empty());
+        assert!(relaxation.place_at_rest().is_none());
         let VertexChange::Move(_, alone) = change.vertex else { panic!("{:?}", change.vertex) };
         assert!(sum(alone, &here) < sum(start, &here));
 
         let both = |place: Point| sum(place, &here) + sum(place, &stretched);
-        let pose = Some(|_: usize, v: VertexId| stretched(complex.point(v)));
-        assert!(relaxation.propose((&complex, (1, pose)), &star.tets, vertex, 0.0, &Anywhere, &mut change));
+        let rest = Some(|v: VertexId| stretched(complex.point(v)));
+        assert!(relaxation.propose((&complex, rest), &star.tets, vertex, 0.0, &Anywhere, &mut change));
         let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
         // What is linear is found as it is.
-        assert!(distance(relaxation.places_in_poses()[0], stretched(place)) < 1e-9);
+        assert!(relaxation.place_at_rest().is_some_and(|at_rest| distance(at_rest, stretched(place)) < 1e-9));
         assert!(both(place) < both(start) && both(place) < both(alone) + 0.02 * both(start));
     }
 }

@@ -262,7 +262,7 @@ impl Way<'_> {
     /// What is improved beside the bad tets: those that are not as they were at first. A mesh of sizes of its own has no other density to keep.
     fn improve(&self, now: &Now, usual: &remesh::Options, effort: Effort) -> Option<Improve> {
         let below = self.options.improve_below;
-        if below == 0.0 || !matches!(effort, Effort::Usual | Effort::All) {
+        if below == 0.0 || effort == Effort::Margin {
             return None;
         }
         // Where walls come back, tets are as they were at first, or not, at rest.
@@ -273,7 +273,7 @@ impl Way<'_> {
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
         let density = usual.sizes.is_none().then_some(density);
-        Some(Improve { below, cells, density, poses: now.known.rest.iter().cloned().collect() })
+        Some(Improve { below, cells, density, rest: now.known.rest.clone() })
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -1,5 +1,7 @@
 //! The mesh between two changes: where it is, what moves it, where each vertex was at first.
 
+use std::ops::RangeInclusive;
+
 use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
@@ -12,8 +14,8 @@ use crate::moving::shapes::{Shape, Tets};
 use crate::moving::step::{InvertedAtStart, WorstTet};
 use crate::moving::wall::{Drive, NO_NODE, Wall};
 
-/// A bad tet that repair has left: worth another try only once it is this much worse.
-const WORSE: f64 = 0.5;
+/// A bad tet that repair has left is worth another try once its EAS is outside of this range, as a part of what it was then: worse, or better because walls that forced it have let go.
+const AS_LEFT: RangeInclusive<f64> = 0.5..=1.25;
 
 /// The mesh, and all that is made anew when it changes.
 #[derive(Debug)]
@@ -156,10 +158,10 @@ impl Now {
         self.mover.boundary().iter().map(of).collect()
     }
 
-    /// Whether a bad tet was left by repair, and is hardly worse than then.
+    /// Whether a bad tet was left by repair, and is about as bad as then.
     pub(super) fn is_left(&self, cell: CellId, eas: f64) -> bool {
         let found = self.left.binary_search_by_key(&cell, |left| left.cell);
-        found.is_ok_and(|i| eas >= WORSE * self.left[i].eas)
+        found.is_ok_and(|i| AS_LEFT.contains(&(eas / self.left[i].eas)) || eas == self.left[i].eas)
     }
 
     /// How many of the bad tets walls force.

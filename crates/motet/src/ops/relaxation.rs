@@ -27,43 +27,41 @@ const DIFFERENCE: f64 = 1e-6;
 /// Room for the star, used again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Relaxation {
-    /// Where the tets are, and then in poses.
-    views: Vec<View>,
+    here: View,
+    at_rest: View,
+    /// How the vertex moves at rest; `None`: that does not count.
+    map: Option<LinearMap>,
     /// Where the vertex was in turn.
     places: Vec<Point>,
-    /// Where the vertex of the last proposal is to be in each pose.
-    places_in_poses: Vec<Point>,
+    /// Where the vertex of the last proposal is.
+    place: Point,
 }
 
-/// The tets of a star at one time.
+/// The tets of a star in one place.
 #[derive(Clone, Debug, Default)]
 struct View {
     star: RoughStar,
     qualities: Vec<f64>,
     tried: Vec<f64>,
-    /// How the vertex moves there; `None`: this is where it is.
-    map: Option<Second>,
 }
 
-/// A second place at which the tets of a star count as much as where they are, and how the vertex moves there.
+/// How a vertex moves in a second place of its star, as it moves here.
 #[derive(Clone, Copy, Debug)]
-struct Second {
+struct LinearMap {
     from: Point,
-    place: Point,
-    /// Rows: how each coordinate there follows those here.
-    map: [Point; 3],
+    to: Point,
+    /// How each coordinate there follows those here.
+    rows: [Point; 3],
 }
 
-impl Second {
-    /// The linear map that takes the edges of a vertex here to those there, with the least squares of what is left. Where they lie in a plane: none.
-    fn of(from: Point, place: Point, edges: impl Iterator<Item = [Point; 2]>) -> Option<Self> {
+impl LinearMap {
+    /// Takes the edges of a vertex here to those there, with the least squares of what is left. `None` where they lie in a plane.
+    fn of(from: Point, to: Point, edges: impl Iterator<Item = [Point; 2]>) -> Option<Self> {
         let (mut normal, mut right) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
         for [here, there] in edges {
             for i in 0..3 {
-                for j in 0..3 {
-                    normal[i][j] += here[i] * here[j];
-                    right[i][j] += there[i] * here[j];
-                }
+                normal[i] = add(normal[i], scale(here, here[i]));
+                right[i] = add(right[i], scale(here, there[i]));
             }
         }
         let [a, b, c] = normal;
@@ -73,43 +71,41 @@ impl Second {
         // The normal matrix is symmetric, and so is its inverse.
         let inverse = adjugate.map(|row| scale(row, 1.0 / determinant));
         let is_sound = determinant > 1e-9 * trace * trace * trace;
-        is_sound.then(|| Self { from, place, map: right.map(|row| inverse.map(|column| dot(row, column))) })
+        is_sound.then(|| Self { from, to, rows: right.map(|row| inverse.map(|column| dot(row, column))) })
     }
 
     fn at(&self, place: Point) -> Point {
         let shift = sub(place, self.from);
-        add(self.place, self.map.map(|row| dot(row, shift)))
+        add(self.to, self.rows.map(|row| dot(row, shift)))
     }
 }
 
 impl Relaxation {
-    /// Proposes a place on its track for a vertex whose tets are `star` at which the sum of their [defects](defect) is lower and no quality is below `floor`. With so many poses, and a map
-    /// that says where vertices are in each, the sums of their defects there count as much. `false` when none was found.
+    /// Proposes a place on its track for a vertex whose tets are `star` at which the sum of their [defects](defect) is lower and no quality is below `floor`. With a map that says where each
+    /// vertex is at rest, the sum of their defects there counts as much. `false` when none was found.
     ///
-    /// Steps down the gradient; qualities are exact at the end only, and those in poses not even then.
+    /// Steps down the gradient; qualities are exact at the end only, and those at rest not even then.
     pub fn propose(
         &mut self,
-        (complex, (n_poses, pose)): (&Complex, (usize, Option<impl Fn(usize, VertexId) -> Point>)),
+        (complex, rest): (&Complex, Option<impl Fn(VertexId) -> Point>),
         star: &[TetId],
         vertex: VertexId,
         floor: f64,
         track: &impl Track,
         change: &mut Change,
     ) -> bool {
-        self.views.resize(1 + n_poses, View::default());
-        self.views[0].star.set(star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex))));
         change.clear();
-        if let Some(pose) = pose {
-            for (i, view) in self.views[1..].iter_mut().enumerate() {
-                let corners = |t: TetId| complex.vertices(t).map(|v| pose(i, v));
-                view.star.set(star.iter().map(|&t| (corners(t), complex.place(t, vertex))));
-                let start = [complex.point(vertex), pose(i, vertex)];
-                let others = star.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != vertex);
-                let edge = |v: VertexId| [sub(complex.point(v), start[0]), sub(pose(i, v), start[1])];
-                view.map = Second::of(start[0], start[1], others.map(edge));
-                if view.map.is_none() {
-                    return false;
-                }
+        self.here.star.set(star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex))));
+        self.map = None;
+        if let Some(rest) = rest {
+            let corners = |t: TetId| complex.vertices(t).map(&rest);
+            self.at_rest.star.set(star.iter().map(|&t| (corners(t), complex.place(t, vertex))));
+            let [from, to] = [complex.point(vertex), rest(vertex)];
+            let others = star.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != vertex);
+            let edges = others.map(|v| [sub(complex.point(v), from), sub(rest(v), to)]);
+            self.map = LinearMap::of(from, to, edges);
+            if self.map.is_none() {
+                return false;
             }
         }
         self.descend(complex, star, vertex, floor - ROUGH_EAS_ERROR, track);
@@ -125,21 +121,19 @@ impl Relaxation {
                 }
             }
             let after: f64 = change.fill.iter().map(|tet| defect(tet.quality)).sum();
-            let is_better = n_poses > 0 || after < before;
+            let is_better = self.map.is_some() || after < before;
             if change.fill.len() == star.len() && change.worst() > floor && is_better {
                 change.cavity.extend_from_slice(star);
-                self.places_in_poses.clear();
-                let maps = self.views.iter().filter_map(|view| view.map);
-                self.places_in_poses.extend(maps.map(|map| map.at(place)));
+                self.place = place;
                 return true;
             }
         }
         false
     }
 
-    /// About where the vertex of the last proposal is to be in each pose: as the linear map that is nearest to the star's has it.
-    pub fn places_in_poses(&self) -> &[Point] {
-        &self.places_in_poses
+    /// About where the vertex of the last proposal is to be at rest: as the linear map that is nearest to the star's has it. `None` where that does not count.
+    pub fn place_at_rest(&self) -> Option<Point> {
+        self.map.map(|map| map.at(self.place))
     }
 
     /// Moves the vertex downhill, step by step, and leaves where it was.
@@ -168,7 +162,7 @@ impl Relaxation {
             for _ in 0..=MOST_HALVINGS {
                 if let Some(trial) = track.draw(add(place, scale(gradient, -step / steep))) {
                     let lower = self.sum_at(trial);
-                    if lower < sum && self.views[0].tried.iter().all(|&q| q > floor) {
+                    if lower < sum && self.here.tried.iter().all(|&q| q > floor) {
                         found = Some((trial, lower));
                         break;
                     }
@@ -187,12 +181,15 @@ impl Relaxation {
     }
 
     fn take_tried(&mut self) {
-        self.views.iter_mut().for_each(|view| std::mem::swap(&mut view.qualities, &mut view.tried));
+        for view in [&mut self.here, &mut self.at_rest] {
+            std::mem::swap(&mut view.qualities, &mut view.tried);
+        }
     }
 
-    /// The sum with the vertex elsewhere; the qualities are left in `tried`.
+    /// The sum with the vertex elsewhere; the qualities are left in `tried`. At rest tets need not be valid, and one that is not is as bad as another.
     fn sum_at(&mut self, place: Point) -> f64 {
-        self.views.iter_mut().map(|view| view.sum_at(place)).sum()
+        let here = self.here.sum_at(place, f64::NEG_INFINITY);
+        here + self.map.map_or(0.0, |map| self.at_rest.sum_at(map.at(place), 0.0))
     }
 
     fn gradient(&mut self, place: Point, step: f64) -> Point {
@@ -201,27 +198,22 @@ impl Relaxation {
             let mut beside = place;
             beside[axis] += step;
             self.sum_at(beside);
-            gradient[axis] = self.views.iter().map(View::rise).sum::<f64>() / step;
+            let at_rest = self.map.map_or(0.0, |_| self.at_rest.rise(0.0));
+            gradient[axis] = (self.here.rise(f64::NEG_INFINITY) + at_rest) / step;
         }
         gradient
     }
 }
 
 impl View {
-    /// No quality counts as lower: in a pose tets need not be valid, and one is as bad as another.
-    fn lowest(&self) -> f64 {
-        if self.map.is_some() { 0.0 } else { f64::NEG_INFINITY }
-    }
-
-    fn sum_at(&mut self, place: Point) -> f64 {
-        self.star.judge(self.map.map_or(place, |map| map.at(place)), &mut self.tried);
-        let lowest = self.lowest();
+    /// The sum of the defects with the vertex at a place, no quality counted as lower than `lowest`.
+    fn sum_at(&mut self, place: Point, lowest: f64) -> f64 {
+        self.star.judge(place, &mut self.tried);
         self.tried.iter().map(|&q| defect(q.max(lowest))).sum()
     }
 
     /// By how much the sum rises from the qualities to those tried, to first order.
-    fn rise(&self) -> f64 {
-        let lowest = self.lowest();
+    fn rise(&self, lowest: f64) -> f64 {
         let of = |(&q, &there): (&f64, &f64)| {
             let (q, there) = (q.clamp(lowest, 1.0), there.max(lowest));
             -2.0 * (1.0 - q) * (there - q)

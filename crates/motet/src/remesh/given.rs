@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::quality::eas;
-use crate::geometry::vector::dot;
+use crate::geometry::vector::{add, dot, scale, sub};
 use crate::geometry::weights;
 use crate::kernel::{Complex, VertexChange};
 use crate::mesh::TetMesh;
-use crate::spatial::{Bounds, BoxTree};
+use crate::spatial::{Bounds, BoxTree, around};
 
 /// The tets of a mesh before anything changes, to be searched.
 #[derive(Debug)]
@@ -37,10 +37,8 @@ impl Given {
             let tet = self.tets[id as usize].map(|v| self.points[v.index()]);
             let weights = weights(tet, point)
                 .or_else(|| weights([tet[0], tet[1], tet[3], tet[2]], point).map(swapped))?;
-            let mut off = point;
-            for (corner, weight) in tet.iter().zip(weights) {
-                (0..3).for_each(|k| off[k] -= weight * corner[k]);
-            }
+            let pairs = tet.into_iter().zip(weights);
+            let off = pairs.fold(point, |off, (corner, weight)| sub(off, scale(corner, weight)));
             Some((dot(off, off), weights))
         };
         let (_, id, weights) = self.tree.nearest(point, measure)?;
@@ -52,104 +50,67 @@ fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
     [a, b, d, c]
 }
 
-fn around(tet: [Point; 4]) -> Bounds {
-    let fold = |f: fn(f64, f64) -> f64| [0, 1, 2].map(|k| tet.iter().map(|p| p[k]).fold(tet[0][k], f));
-    [fold(f64::min), fold(f64::max)]
-}
-
-/// The mesh at other times of its motion, when it is to be good as well.
+/// The mesh when the walls are at rest: there, too, it is to be good.
 #[derive(Debug)]
-pub(super) struct Poses {
+pub(super) struct Rest {
     given: Arc<Given>,
-    poses: Vec<Pose>,
-}
-
-/// Where vertices are at one of these times.
-#[derive(Debug)]
-struct Pose {
-    /// Each vertex as it was given.
+    /// Where each vertex is as it was given.
     of_given: Vec<Point>,
-    /// Each vertex as it is.
+    /// Where each vertex is as it is now.
     points: Vec<Point>,
     /// EAS of each tet; no number until somebody has asked.
     qualities: Vec<Cell<f64>>,
 }
 
-impl Poses {
-    /// `poses`: each has the place of every vertex that was given.
-    pub(super) fn new(given: Arc<Given>, poses: Vec<Vec<Point>>) -> Self {
-        let pose = |of_given: Vec<Point>| Pose { points: of_given.clone(), of_given, qualities: Vec::new() };
-        Self { given, poses: poses.into_iter().map(pose).collect() }
-    }
-
-    /// How many there are.
-    #[inline]
-    pub(super) fn len(&self) -> usize {
-        self.poses.len()
+impl Rest {
+    /// `of_given`: where each vertex that was given is at rest.
+    pub(super) fn new(given: Arc<Given>, of_given: Vec<Point>) -> Self {
+        Self { given, points: of_given.clone(), of_given, qualities: Vec::new() }
     }
 
     /// Follows all that has changed.
     pub(super) fn update(&mut self, complex: &Complex) {
-        if self.poses.is_empty() {
-            return;
-        }
-        for pose in &mut self.poses {
-            pose.points.resize(complex.n_vertex_slots(), [f64::NAN; 3]);
-            pose.qualities.clear();
-            pose.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
-        }
-        for v in (0..complex.n_vertex_slots()).map(VertexId::new) {
-            self.follow_vertex(complex, v);
-        }
+        let places = (0..complex.n_vertex_slots()).map(|v| self.place(complex, VertexId::new(v)));
+        self.points = places.collect();
+        self.qualities.clear();
+        self.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
     }
 
     /// Follows a change that inserted tets.
     pub(super) fn follow(&mut self, complex: &Complex, vertex: VertexChange, inserted: &[TetId]) {
-        if self.poses.is_empty() {
-            return;
-        }
         if let VertexChange::Move(vertex, _) = vertex {
-            self.follow_vertex(complex, vertex);
+            self.points[vertex.index()] = self.place(complex, vertex);
         }
-        for pose in &mut self.poses {
-            pose.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
-            inserted.iter().for_each(|tet| pose.qualities[tet.index()].set(f64::NAN));
-        }
+        self.qualities.resize(complex.n_slots(), Cell::new(f64::NAN));
+        inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
     }
 
-    /// Where a vertex is in a pose.
+    /// Where a vertex is at rest.
     #[inline]
-    pub(super) fn point(&self, pose: usize, vertex: VertexId) -> Point {
-        self.poses[pose].points[vertex.index()]
+    pub(super) fn point(&self, vertex: VertexId) -> Point {
+        self.points[vertex.index()]
     }
 
-    /// EAS of a tet in a pose.
+    /// EAS of a tet at rest.
     #[inline]
-    pub(super) fn quality(&self, pose: usize, complex: &Complex, tet: TetId) -> f64 {
-        let pose = &self.poses[pose];
-        let known = &pose.qualities[tet.index()];
+    pub(super) fn quality(&self, complex: &Complex, tet: TetId) -> f64 {
+        let known = &self.qualities[tet.index()];
         if known.get().is_nan() {
-            known.set(eas(complex.vertices(tet).map(|v| pose.points[v.index()])));
+            known.set(eas(complex.vertices(tet).map(|v| self.point(v))));
         }
         known.get()
     }
 
-    /// A vertex that was inserted or has moved is where its place in the mesh that was given goes.
-    fn follow_vertex(&mut self, complex: &Complex, vertex: VertexId) {
-        let (v, place) = (vertex.index(), complex.point(vertex));
-        if self.given.points().get(v) == Some(&place) {
-            self.poses.iter_mut().for_each(|pose| pose.points[v] = pose.of_given[v]);
-            return;
+    /// Where a vertex belongs at rest: one that was inserted or has moved goes with its place in the mesh that was given.
+    fn place(&self, complex: &Complex, vertex: VertexId) -> Point {
+        let place = complex.point(vertex);
+        if self.given.points().get(vertex.index()) == Some(&place) {
+            return self.of_given[vertex.index()];
         }
-        let at = self.given.at(place);
-        for pose in &mut self.poses {
-            pose.points[v] = at.map_or(place, |(vertices, weights)| {
-                let mut point = [0.0; 3];
-                for (vertex, weight) in vertices.into_iter().zip(weights) {
-                    (0..3).for_each(|k| point[k] += weight * pose.of_given[vertex.index()][k]);
-                }
-                point
-            });
-        }
+        let Some((vertices, weights)) = self.given.at(place) else { return place };
+        vertices
+            .into_iter()
+            .zip(weights)
+            .fold([0.0; 3], |sum, (vertex, weight)| add(sum, scale(self.of_given[vertex.index()], weight)))
     }
 }

@@ -101,8 +101,21 @@ pub struct Improve {
     pub cells: Vec<CellId>,
     /// How many vertices are to be kept; `None`: as many as repair leaves.
     pub density: Option<Density>,
-    /// Where the points of the mesh are at other times of a motion that comes back: in each of these poses tets are to be good as much as where they are.
-    pub poses: Vec<Vec<Point>>,
+    /// Where each point of the mesh is when the walls are at rest, for walls that come back: there tets are to be good as much as where they are.
+    pub rest: Option<Vec<Point>>,
+}
+
+impl Improve {
+    /// Refuses arrays that are not about the points of a mesh of so many.
+    pub(super) fn check(&self, n_points: usize) -> Result<()> {
+        let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));
+        let rest = self.rest.as_ref().map(|rest| ("places at rest", rest.len()));
+        for (what, n) in sizes.into_iter().chain(rest).filter(|(_, n)| *n != n_points) {
+            return Err(Error::input(format!("{n} {what} for {n_points} points"))
+                .remedy("give one for each point of the mesh"));
+        }
+        Ok(())
+    }
 }
 
 /// The number of vertices that is kept, and where they belong.

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
-use crate::remesh::given::{Given, Poses};
+use crate::remesh::given::{Given, Rest};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
@@ -44,6 +44,9 @@ pub(super) fn remesh_but(
 ) -> Result<Outcome> {
     options.check()?;
     let mut clock = Clock(Instant::now());
+    if let Some(improve) = &options.improve {
+        improve.check(mesh.points.len())?;
+    }
     let min_eas = options.limit();
     let mut report = Report { min_eas, ..Report::default() };
     let most_tets = options.sizes.as_ref().map(|sizes| sizes.check(mesh)).transpose()?;
@@ -74,9 +77,8 @@ pub(super) fn remesh_but(
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     repair.operations.add_many(Operation::Peeling, n_peeled);
-    if let Some(improve) = options.improve.as_ref().filter(|improve| !improve.poses.is_empty()) {
-        repair.poses = Some(Poses::new(given.clone(), improve.poses.clone()));
-    }
+    let rest = options.improve.as_ref().and_then(|improve| improve.rest.clone());
+    repair.rest = rest.map(|rest| Rest::new(given.clone(), rest));
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
             repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?

@@ -50,9 +50,9 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
             args.mesh.display()
         ));
     }
-    let mut told = Report::new(args, [&old, &mesh], &threads, &report, &history, fields);
-    told.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
-    let outcome = Outcome::of(told.not_reached(&report));
-    told.tell(&outcome, console);
+    let mut summary = Report::new(args, [&old, &mesh], &threads, &report, &history, fields);
+    summary.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
+    let outcome = Outcome::of(summary.not_reached(&report));
+    summary.tell(&outcome, console);
     Ok(outcome)
 }

@@ -34,13 +34,12 @@ pub(super) struct Begin {
 impl Begin {
     pub(super) fn of(job: &Job, threads: &Threads, console: &Console) -> Result<Self> {
         let mesh = with_devices(job, threads, console)?;
-        let mut options = options(job, &mesh).map_err(|e| job.told(e))?;
-        let script = course::script(job, &mesh, &options.motion, threads, console)?;
-        let goes_on = goes_on(job, &mesh, &options.motion, &script);
-        options.returns = job.motion.returns.unwrap_or(!goes_on);
-        if job.motion.strain.is_none() && goes_on && matches!(options.motion.method, Method::Bodies(_)) {
-            options.motion.strain = Strain::Band;
-        }
+        let mut motion = motion(job, &mesh).map_err(|e| job.told(e))?;
+        let script = course::script(job, &mesh, &motion, threads, console)?;
+        let goes_on = goes_on(job, &mesh, &motion, &script);
+        motion.strain = strain(job, &motion.method, goes_on).map_err(|e| job.told(e))?;
+        let returns = job.motion.returns.unwrap_or(!goes_on);
+        let options = options(job, &mesh, motion, returns).map_err(|e| job.told(e))?;
         let refining = job.refine.iter().map(|asked| wanted(job, asked, threads));
         let refining = refining.collect::<Result<_>>().map_err(|e| job.told(e))?;
         Ok(Self { mesh, script, options, refining })
@@ -96,7 +95,7 @@ fn read(job: &Job, file: &std::path::Path, console: &Console) -> Result<Mesh> {
     Ok(mesh)
 }
 
-fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
+fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Options> {
     let mut rules = Rules::default();
     for (name, carry) in &job.carry {
         rules.carry(mesh, name, *carry)?;
@@ -114,13 +113,12 @@ fn options(job: &Job, mesh: &Mesh) -> Result<Options> {
         ..remesh::Options::default()
     };
     Ok(Options {
-        motion: motion(job, mesh)?,
+        motion,
         repair: (!repair.off).then_some(asked),
         margin: repair.margin,
         floor: repair.floor,
         improve_below: repair.improve_below,
-        // Known once the script is.
-        returns: false,
+        returns,
         valid_at_start: repair.valid_at_start,
         rules,
         contents: job.contents.clone(),
@@ -140,23 +138,12 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
         return Err(Error::input("motion.bodies names rigid bodies, but the method has none")
             .remedy("add method = \"bodies\""));
     }
-    let strain = match &asked.strain {
-        Some(_) if !matches!(method, Method::Bodies(_)) => {
-            return Err(Error::input(
-                "motion.strain says where bodies put the strain, but the method has none",
-            )
-            .remedy("add method = \"bodies\""));
-        }
-        Some(name) => Strain::of_name(name)?,
-        None => Strain::Even,
-    };
     let rigid_layer = match &asked.rigid_layer {
         None => None,
         Some(layer) => Some((extent(layer)?, mesh.find_patches(&asked.rigid_layer_at)?)),
     };
     Ok(Motion {
         method,
-        strain,
         bodies: mesh.find_patches(&asked.bodies)?,
         within_walls: asked.within_walls,
         smoothing: asked.smooth,
@@ -166,6 +153,20 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
         rigid_layer,
         ..Motion::default()
     })
+}
+
+/// Where bodies put the strain: as the job says, else in a band where one goes on.
+fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
+    let is_of_bodies = matches!(method, Method::Bodies(_));
+    match &job.motion.strain {
+        Some(_) if !is_of_bodies => {
+            Err(Error::input("motion.strain says where bodies put the strain, but the method has none")
+                .remedy("add method = \"bodies\""))
+        }
+        Some(name) => Strain::of_name(name),
+        None if is_of_bodies && goes_on => Ok(Strain::Band),
+        None => Ok(Strain::Even),
+    }
 }
 
 /// A number, or a word as on the command line of `motet move`.

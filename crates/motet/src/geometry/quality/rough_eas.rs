@@ -78,7 +78,7 @@ fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOS
     rough(simd, corners).stored()
 }
 
-/// Tets that share a vertex, to be judged with the vertex elsewhere again and again: EAS of each to within [`ROUGH_EAS_ERROR`], in an eighth of the time of [`eas`](super::eas()).
+/// Tets that share a vertex, to be judged with the vertex elsewhere again and again: EAS of each to within [`ROUGH_EAS_ERROR`].
 #[derive(Clone, Debug, Default)]
 pub struct RoughStar {
     /// By groups of tets: the coordinates of the other three vertices.

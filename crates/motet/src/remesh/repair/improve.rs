@@ -14,7 +14,7 @@ use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, defect};
-use crate::remesh::given::Poses;
+use crate::remesh::given::Rest;
 use crate::remesh::repair::Repair;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::report::Operation;
@@ -43,29 +43,25 @@ struct Worth<'a> {
     aim: Aim,
     /// The mean cost of the mesh.
     mean: f64,
-    /// Where the vertices are at other times.
-    poses: Option<&'a Poses>,
-    /// No tet may be as bad as this, where it is and in each pose.
-    bars: [f64; 1 + MOST_POSES],
+    /// The mesh at rest, where walls come back.
+    rest: Option<&'a Rest>,
+    /// No tet may be as bad as this, where it is and at rest.
+    bars: [f64; 2],
 }
 
-/// More poses are not looked at.
-const MOST_POSES: usize = 3;
-
 impl<'a> Worth<'a> {
-    fn new(aim: Aim, mean: f64, poses: Option<&'a Poses>) -> Self {
-        Self { aim, mean, poses, bars: [f64::NAN; 1 + MOST_POSES] }
+    fn new((aim, mean): (Aim, f64), rest: Option<&'a Rest>) -> Self {
+        Self { aim, mean, rest, bars: [f64::NEG_INFINITY; 2] }
     }
 
-    fn n_poses(&self) -> usize {
-        self.poses.map_or(0, Poses::len).min(MOST_POSES)
-    }
-
-    /// The defect of a tet where it is and in all poses.
+    /// Of a tet as it is.
     fn of_tet(&self, complex: &Complex, tet: TetId) -> f64 {
-        let here = defect(complex.quality(tet));
-        let Some(poses) = self.poses else { return here };
-        (0..self.n_poses()).fold(here, |sum, i| sum + in_pose(poses.quality(i, complex, tet)))
+        self.of(complex.quality(tet), self.rest.map(|rest| rest.quality(complex, tet)))
+    }
+
+    /// Of a tet of these qualities where it is and at rest: the sum of its defects. Where walls slid past each other tets need not be valid at rest, and one is as bad as another.
+    fn of(&self, here: f64, at_rest: Option<f64>) -> f64 {
+        defect(here) + at_rest.map_or(0.0, |quality| defect(quality.max(0.0)))
     }
 
     /// What a change has to lower the cost of a cavity by, each tet's less the mean, and that cost.
@@ -76,47 +72,36 @@ impl<'a> Worth<'a> {
         (least, sum - self.mean * cavity.len() as f64)
     }
 
-    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be in each pose.
-    fn of_fill(&self, change: &Change, moved: Option<(VertexId, &[Point])>) -> f64 {
+    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be at rest.
+    fn of_fill(&self, change: &Change, moved: Option<(VertexId, Point)>) -> f64 {
         let of = |tet: &Fill| self.of_new(tet.vertices, tet.quality, moved) - self.mean;
         change.fill.iter().map(of).sum()
     }
 
     /// The cost of a tet to come.
-    fn of_new(&self, vertices: [VertexId; 4], quality: f64, moved: Option<(VertexId, &[Point])>) -> f64 {
+    fn of_new(&self, vertices: [VertexId; 4], quality: f64, moved: Option<(VertexId, Point)>) -> f64 {
         if quality <= self.bars[0] {
             return f64::INFINITY;
         }
-        let mut cost = defect(quality);
-        let Some(poses) = self.poses else { return cost };
-        for i in 0..self.n_poses() {
-            let quality = eas(vertices.map(|v| match moved {
-                Some((moved, places)) if moved == v => places[i],
-                _ => poses.point(i, v),
-            }));
-            if quality <= self.bars[1 + i] {
-                return f64::INFINITY;
-            }
-            cost += in_pose(quality);
+        let at_rest = self.rest.map(|rest| {
+            eas(vertices.map(|v| match moved {
+                Some((moved, place)) if moved == v => place,
+                _ => rest.point(v),
+            }))
+        });
+        match at_rest {
+            Some(at_rest) if at_rest <= self.bars[1] => f64::INFINITY,
+            _ => self.of(quality, at_rest),
         }
-        cost
     }
 
     /// Sets the limits for what comes in place of a cavity.
     fn set_bars(&mut self, complex: &Complex, cavity: &[TetId]) {
         let bar = |worst: f64| worst.min(self.aim.floor).next_down();
-        self.bars[0] = bar(complex.worst_of(cavity));
-        let Some(poses) = self.poses else { return };
-        for i in 0..self.n_poses() {
-            let qualities = cavity.iter().map(|&t| poses.quality(i, complex, t));
-            self.bars[1 + i] = bar(qualities.fold(f64::INFINITY, f64::min));
-        }
+        let worst_at_rest =
+            |rest: &Rest| cavity.iter().map(|&t| rest.quality(complex, t)).fold(f64::INFINITY, f64::min);
+        self.bars = [bar(complex.worst_of(cavity)), bar(self.rest.map_or(f64::NEG_INFINITY, worst_at_rest))];
     }
-}
-
-/// The defect of a tet in a pose. Where walls slid past each other tets need not be valid there, and one is as bad as another.
-fn in_pose(quality: f64) -> f64 {
-    defect(quality.max(0.0))
 }
 
 /// The sum of the costs is to be low.
@@ -148,28 +133,38 @@ struct Best {
     change: Change,
 }
 
+/// What one call of [`Repair::improve`] has in hand.
+#[derive(Debug)]
+struct Course {
+    /// What is aimed at, and the mean cost of the mesh.
+    scale: (Aim, f64),
+    best: Best,
+    settled: Settled,
+    inserted: Vec<TetId>,
+}
+
 impl Repair {
     /// Swaps and moves the tets of a zone, the worst first, then those that were inserted, as long as they get better on the whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
-        if let Some(poses) = &mut self.poses {
-            poses.update(&self.complex);
+        if let Some(rest) = &mut self.rest {
+            rest.update(&self.complex);
         }
-        let mean = self.mean_cost(aim);
-        let (mut best, mut settled) = (Best::default(), Settled::new());
+        let scale = (aim, self.mean_cost(aim));
+        let mut course =
+            Course { scale, best: Best::default(), settled: Settled::new(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
             zone.retain(|&t| self.is_low(t, aim.below));
             self.sort(&mut zone);
-            let mut inserted = Vec::new();
             for (i, &tet) in zone.iter().enumerate() {
                 if self.is_low(tet, aim.below) {
                     self.watch.go_on("improving tets", i, zone.len())?;
-                    self.improve_one(tet, (aim, mean), &mut best, &mut settled, &mut inserted);
+                    self.improve_one(tet, &mut course);
                 }
             }
-            if inserted.is_empty() {
+            zone = std::mem::take(&mut course.inserted);
+            if zone.is_empty() {
                 break;
             }
-            zone = inserted;
         }
         Ok(())
     }
@@ -185,7 +180,7 @@ impl Repair {
     }
 
     fn mean_cost(&self, aim: Aim) -> f64 {
-        let worth = Worth::new(aim, 0.0, self.poses.as_ref());
+        let worth = Worth::new((aim, 0.0), self.rest.as_ref());
         let sum: f64 = self.complex.tets().map(|t| worth.of_tet(&self.complex, t)).sum();
         sum / self.complex.n_tets().max(1) as f64
     }
@@ -194,32 +189,27 @@ impl Repair {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
     }
 
-    /// Makes the best swap at a tet, or else the best move of one of its vertices; adds the tets that were inserted.
-    fn improve_one(
-        &mut self,
-        tet: TetId,
-        (aim, mean): (Aim, f64),
-        best: &mut Best,
-        settled: &mut Settled,
-        inserted: &mut Vec<TetId>,
-    ) {
-        best.gain = None;
-        self.weigh_swaps(tet, (aim, mean), best, settled);
-        if best.gain.is_none() {
-            self.weigh_moves(tet, (aim, mean), best, settled);
+    /// Makes the best swap at a tet, or else the best move of one of its vertices.
+    fn improve_one(&mut self, tet: TetId, course: &mut Course) {
+        course.best.gain = None;
+        self.weigh_swaps(tet, course);
+        if course.best.gain.is_none() {
+            self.weigh_moves(tet, course);
         }
+        let Course { scale: (aim, _), best, settled, inserted } = course;
         let n_before = inserted.len();
         if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
+            let inserted = &inserted[n_before..];
             self.operations.add(best.operation);
-            settled.inserted(&self.complex, &inserted[n_before..]);
-            if let Some(poses) = &mut self.poses {
-                poses.follow(&self.complex, best.change.vertex, &inserted[n_before..]);
+            settled.inserted(&self.complex, inserted);
+            if let Some(rest) = &mut self.rest {
+                rest.follow(&self.complex, best.change.vertex, inserted);
             }
         }
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, (aim, mean): (Aim, f64), best: &mut Best, settled: &mut Settled) {
-        let mut worth = Worth::new(aim, mean, self.poses.as_ref());
+    fn weigh_swaps(&mut self, tet: TetId, Course { scale, best, settled, .. }: &mut Course) {
+        let mut worth = Worth::new(*scale, self.rest.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
@@ -253,8 +243,9 @@ impl Repair {
         self.candidate.proposal = change;
     }
 
-    fn weigh_moves(&mut self, tet: TetId, (aim, mean): (Aim, f64), best: &mut Best, settled: &mut Settled) {
-        let mut worth = Worth::new(aim, mean, self.poses.as_ref());
+    fn weigh_moves(&mut self, tet: TetId, Course { scale, best, settled, .. }: &mut Course) {
+        let mut worth = Worth::new(*scale, self.rest.as_ref());
+        let rest = self.rest.as_ref().map(|rest| |v: VertexId| rest.point(v));
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for vertex in self.complex.vertices(tet) {
             if self.complex.hold(vertex) != Hold::Free || settled.has_vertex(vertex) {
@@ -263,10 +254,8 @@ impl Repair {
             self.star.gather(&self.complex, vertex);
             let star = &self.star.tets;
             worth.set_bars(&self.complex, star);
-            let poses = self.poses.as_ref().map(|poses| |pose: usize, v: VertexId| poses.point(pose, v));
-            let poses = (worth.n_poses(), poses);
             let is_better = self.relaxation.propose(
-                (&self.complex, poses),
+                (&self.complex, rest.as_ref()),
                 star,
                 vertex,
                 worth.bars[0],
@@ -285,7 +274,7 @@ impl Repair {
         worth.set_bars(&self.complex, &change.cavity);
         let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
         let moved = match change.vertex {
-            VertexChange::Move(vertex, _) => Some((vertex, self.relaxation.places_in_poses())),
+            VertexChange::Move(vertex, _) => self.relaxation.place_at_rest().map(|place| (vertex, place)),
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);

@@ -17,7 +17,7 @@ pub(super) use sizing::Sizing;
 use crate::base::{Result, TetId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
-use crate::remesh::given::Poses;
+use crate::remesh::given::Rest;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
@@ -74,7 +74,7 @@ pub(super) struct Repair {
     /// Where sizes are asked for.
     pub(super) sizing: Option<Sizing>,
     /// Where walls come back.
-    pub(super) poses: Option<Poses>,
+    pub(super) rest: Option<Rest>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
     others: Vec<bool>,
     target: f64,
@@ -109,7 +109,7 @@ impl Repair {
             operations: Counts::default(),
             surface,
             sizing: None,
-            poses: None,
+            rest: None,
             others,
             target,
             n_stages: FIRST_STAGES,

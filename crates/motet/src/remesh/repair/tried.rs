@@ -1,6 +1,6 @@
 //! What has been tried in vain since anything changed at its vertices: it would be tried in vain again.
 
-use crate::base::{TetId, VertexId};
+use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::kernel::Complex;
 
@@ -111,9 +111,10 @@ impl Settled {
     /// The removal of an edge, which `tets` have, was tried in vain.
     pub(super) fn settle_edge(&mut self, complex: &Complex, tets: &[TetId], ends: [VertexId; 2]) {
         for &tet in tets {
-            let places = ends.map(|v| complex.place(tet, v));
-            let edge = EDGES.iter().position(|e| *e == places || *e == [places[1], places[0]]);
-            at(&mut self.of_tet, tet.index())[edge.unwrap_or(0)] = self.changes.now;
+            let places = rising(ends.map(|v| complex.place(tet, v)));
+            if let Some(edge) = EDGES.iter().position(|edge| *edge == places) {
+                at(&mut self.of_tet, tet.index())[edge] = self.changes.now;
+            }
         }
     }
 
