@@ -1,10 +1,12 @@
 //! Over long motions a mesh stays the mesh that it was: its counts, its mean quality, and where a wall comes back the mesh itself.
 
 use motet::base::{Point, Threads};
+use motet::mesh::history::Rules;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, Cells, Mesh, Qualities};
 use motet::motion::{Method, Strain};
 use motet::moving::{Motion, MovingMesh, Options, Step};
+use motet::remesh::{Density, Improve, remesh_mesh};
 
 fn threads() -> Threads {
     Threads::single()
@@ -189,6 +191,42 @@ fn walls_that_come_back_go_on_from_a_state_to_the_same_bits() {
     assert!(n_changes > 0);
     assert_eq!(moving.mesh().points, again.mesh().points);
     assert_eq!(moving.mesh().cells, again.mesh().cells);
+}
+
+#[test]
+fn what_is_improved_has_an_entry_for_each_point() {
+    let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
+    let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
+        let improve = Improve { below: 0.75, cells: Vec::new(), density, rest };
+        let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
+        remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
+    };
+    let sizes = Density { sizes: vec![1.0; 26], free_vertices: None };
+    assert!(refusal(Some(sizes), None).contains("26 sizes for 27 points"));
+    assert!(refusal(None, Some(vec![[0.0; 3]; 28])).contains("28 places at rest for 27 points"));
+}
+
+#[test]
+fn tets_that_a_narrow_place_made_bad_are_good_again_when_it_widens() {
+    // A bar, pinched about its middle to a thirtieth of its height, eight steps a cycle.
+    let mesh = box_grid([10, 2, 2], [[0.0, -0.5, -0.5], [3.0, 0.5, 0.5]]);
+    let mut moving = MovingMesh::new(&mesh, that_returns(), &threads()).unwrap();
+    let (mut most_bad, mut counts) = (0, Vec::new());
+    for k in 1..=10 * 8 {
+        let depth = 0.97 * (0.5 - 0.5 * (std::f64::consts::TAU * f64::from(k) / 8.0).cos());
+        let goes = |&[x, _, z]: &Point| [0.0, 0.0, -z * depth * (-(x - 1.5) * (x - 1.5) * 8.0).exp()];
+        let displacement: Vec<Point> = moving.driven_places().iter().map(goes).collect();
+        let step = moving.advance(f64::from(k), &displacement, &threads()).unwrap();
+        assert!(step.complete && step.inverted == 0);
+        most_bad = most_bad.max(step.bad);
+        if k % 8 == 0 {
+            assert_eq!(step.bad, 0, "{k}");
+            counts.push(step.points);
+        }
+    }
+    assert!(most_bad > 0, "nothing became bad");
+    // Of 99 vertices 9 are inside: what the narrow place needs may wait for the next change, and does not grow.
+    assert!(counts.iter().all(|n| n.abs_diff(mesh.points.len()) <= 10), "{counts:?}");
 }
 
 #[test]

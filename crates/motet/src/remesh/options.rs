@@ -110,11 +110,11 @@ impl Improve {
     pub(super) fn check(&self, n_points: usize) -> Result<()> {
         let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));
         let rest = self.rest.as_ref().map(|rest| ("places at rest", rest.len()));
-        for (what, n) in sizes.into_iter().chain(rest).filter(|(_, n)| *n != n_points) {
-            return Err(Error::input(format!("{n} {what} for {n_points} points"))
-                .remedy("give one for each point of the mesh"));
+        match sizes.into_iter().chain(rest).find(|(_, n)| *n != n_points) {
+            None => Ok(()),
+            Some((what, n)) => Err(Error::input(format!("{n} {what} for {n_points} points"))
+                .remedy("give one for each point of the mesh")),
         }
-        Ok(())
     }
 }
 
