@@ -13,8 +13,8 @@ use crate::spatial::NearestTriangle;
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No tet is cut into pieces below this part of the first mesh's worst EAS, or below 0.55 of its median where that is less, if there is another way.
-    /// Default: 0.95.
+    /// No tet is divided into parts below this part of the EAS that its tet of the first mesh has, or that the worst of these has that is not bad, whichever is less, if there is another way; and no
+    /// bad part comes of one that is not bad. No more than 0.55 of the median EAS is required of pieces of cuts. Default: 0.95.
     pub keep: f64,
     /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
     /// refinement spreads far. Default: 0.55.
@@ -157,8 +157,7 @@ impl Refinement {
         self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
     }
 
-    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better, or all of the first mesh are good and
-    /// these are not bad.
+    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better.
     pub fn left(&self, threads: &Threads) -> Vec<Left> {
         let shape =
             threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
@@ -170,7 +169,11 @@ impl Refinement {
                     .map(|v| self.forest.reference[self.now.vertices[v.index()] as usize]))
                 .abs(),
             });
-        let bad = (0..).zip(shape).filter(|(_, eas)| *eas < self.need.floor);
+        let floor = |i: u32| {
+            let class = self.forest.nodes[self.now.nodes[i as usize] as usize].shape.class();
+            self.need.floor(self.forest.classes[class as usize].root_eas)
+        };
+        let bad = (0..).zip(shape).filter(|&(i, eas)| eas < floor(i));
         bad.map(|(i, eas): (u32, f64)| Left {
             tet: TetId(i),
             eas,

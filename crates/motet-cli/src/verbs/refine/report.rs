@@ -113,7 +113,7 @@ impl Report {
         console.say(self.table());
         if self.left > 0 {
             console.say(format_args!(
-                "{} tets in {} of the first mesh are worse than 0.95 of its worst: no way to divide these is better, or all are good",
+                "{} tets in {} of the first mesh are below the floors of these: no way to divide them is better",
                 count(self.left),
                 count(self.left_roots)
             ));

@@ -49,17 +49,21 @@ pub(in crate::refine) struct Class {
     pub(in crate::refine) best: Option<u8>,
     /// The EAS in the reference, however tets are numbered.
     pub(in crate::refine) eas: f64,
+    /// That of the root that these are parts of.
+    pub(in crate::refine) root_eas: f64,
     /// Of each way to divide, the first of the two classes inside, which follow each other, where there ever were some.
     below: [u32; 3],
 }
 
 impl Class {
     pub(in crate::refine) fn of_root(corners: [Point; 4]) -> Self {
-        Self::new(NONE, 0, 0, eas(corners).abs())
+        let eas = eas(corners).abs();
+        Self { above: NONE, way: 0, inner: 0, best: None, eas, root_eas: eas, below: [NONE; 3] }
     }
 
-    fn new(above: u32, way: u8, inner: u8, eas: f64) -> Self {
-        Self { above, way, inner, best: None, eas, below: [NONE; 3] }
+    /// One of the two inner parts of this class, divided in a way; `above` is its own id.
+    fn part(&self, above: u32, [way, inner]: [u8; 2], eas: f64) -> Self {
+        Self { above, way, inner, best: None, eas, root_eas: self.root_eas, below: [NONE; 3] }
     }
 }
 
@@ -91,7 +95,8 @@ impl Forest {
             return known;
         }
         let first = self.classes.len() as u32;
-        self.classes.extend([0, 1].map(|k| Class::new(class, way as u8, k as u8, eas[k])));
+        let whole = self.classes[class as usize];
+        self.classes.extend([0, 1].map(|k| whole.part(class, [way as u8, k as u8], eas[k])));
         self.classes[class as usize].below[way] = first;
         first
     }

@@ -8,6 +8,7 @@ use super::fills::Finder;
 use super::patterns::{FACET_EDGES, FULL};
 use super::{Forest, NONE};
 use crate::base::{Error, Result, Threads};
+use crate::mesh::BAD_EAS;
 use crate::refine::{Options, Rule};
 
 /// No more is asked of a piece than this part of the median EAS of the roots.
@@ -16,29 +17,44 @@ const OF_MEDIAN: f64 = 0.55;
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::refine) struct Need {
-    /// No tet below this EAS.
-    pub(in crate::refine) floor: f64,
-    /// No piece of a tet that is cut below this.
-    of_pieces: f64,
-    /// Nor below this part of what dividing the tet leaves.
+    /// No tet below this part of the EAS of its root, ...
+    keep: f64,
+    /// ... where that is the worst of those that are not bad, or worse.
+    worst_good: f64,
+    /// No more than this is required of a piece of a tet that is cut.
+    most_of_pieces: f64,
+    /// No piece below this part of what dividing the tet leaves.
     share: f64,
     pub(in crate::refine) rule: Rule,
 }
 
 impl Need {
-    /// The floor is a part of the worst EAS of the roots. Of pieces no more is asked than of those of the median root: in a lattice all tets are as bad as the
-    /// worst, no piece is as good as the whole, and everything would be divided.
+    /// Each root has a floor of its own: where there was one for all, a single sliver let every tet become as bad as itself. Of pieces no more is required than of those of the median
+    /// root: in a lattice all tets are as bad as the worst, no piece is as good as the whole, and everything would be divided.
     pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
         let mut shapes: Vec<f64> = forest.classes[..forest.n_roots].iter().map(|root| root.eas).collect();
         shapes.sort_unstable_by(f64::total_cmp);
-        let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
-        let floor = options.keep * worst;
-        Self { floor, of_pieces: floor.min(OF_MEDIAN * median), share: options.share, rule: options.rule }
+        let median = shapes.get(shapes.len() / 2).copied().unwrap_or(0.0);
+        let n_bad = shapes.partition_point(|&eas| eas < BAD_EAS);
+        let worst_good = shapes.get(n_bad).or(shapes.last()).copied().unwrap_or(0.0);
+        Self {
+            keep: options.keep,
+            worst_good,
+            most_of_pieces: OF_MEDIAN * median,
+            share: options.share,
+            rule: options.rule,
+        }
     }
 
-    /// What pieces of a tet have to be that could be divided into eight of this EAS or better.
-    fn of(self, divided: f64) -> f64 {
-        self.of_pieces.max(self.share * divided)
+    /// The least EAS of parts of a root of this EAS; of one that is not bad no part is to be bad.
+    pub(in crate::refine) fn floor(self, root_eas: f64) -> f64 {
+        let floor = self.keep * root_eas.min(self.worst_good);
+        if root_eas >= BAD_EAS { floor.max(BAD_EAS) } else { floor }
+    }
+
+    /// What pieces of a tet have to be that could be divided into eight of an EAS of `divided` or better.
+    fn of(self, root_eas: f64, divided: f64) -> f64 {
+        self.floor(root_eas).min(self.most_of_pieces).max(self.share * divided)
     }
 }
 
@@ -195,11 +211,12 @@ fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
     let (cuts, fill) = finder.cut(leaf, mask);
     let as_it_is = Goal { mask, cuts, way: fill.way };
     // What is good enough beside the whole is so beside its parts.
-    if fill.worst >= need.of(forest.classes[class as usize].eas) {
+    let whole = &forest.classes[class as usize];
+    if fill.worst >= need.of(whole.root_eas, whole.eas) {
         return as_it_is;
     }
     let divided = finder.divided(class);
-    let least = need.of(divided);
+    let least = need.of(whole.root_eas, divided);
     if fill.worst >= least {
         return as_it_is;
     }

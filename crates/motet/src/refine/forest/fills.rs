@@ -5,7 +5,7 @@
 use hashbrown::HashMap;
 
 use super::bey;
-use super::classes::{corners_at, inner_part};
+use super::classes::{Class, corners_at, inner_part};
 use super::close::Need;
 use super::eight::ends;
 use super::patterns::patterns;
@@ -103,7 +103,10 @@ impl Forest {
 fn best_division(forest: &Forest, class: u32, need: Need) -> Way {
     let places = with_middles(forest.corners_of_class(class));
     match need.rule {
-        Rule::Shortest => best_way(&places, forest.classes[class as usize].eas, need.floor),
+        Rule::Shortest => {
+            let Class { eas, root_eas, .. } = forest.classes[class as usize];
+            best_way(&places, eas, need.floor(root_eas))
+        }
         Rule::Bey => Way::new(&places, bey::way(forest, class)),
     }
 }
