@@ -197,7 +197,7 @@ fn walls_that_come_back_go_on_from_a_state_to_the_same_bits() {
 fn what_is_improved_has_an_entry_for_each_point() {
     let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
     let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
-        let improve = Improve { below: 0.75, cells: Vec::new(), density, rest };
+        let improve = Improve { below: 0.75, cells: Vec::new(), density, rest, cost: 0.0 };
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };

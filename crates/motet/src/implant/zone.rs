@@ -4,11 +4,14 @@ use std::collections::{BTreeSet, HashSet};
 
 use super::carve::{Carved, Fate};
 use super::gap::{Gap, Owner, Patch};
-use crate::base::{Id, Point, Result, Threads, VertexId, rising};
+use crate::base::{CellId, Id, Point, Result, Threads, VertexId, rising};
 use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
-use crate::remesh::{self, Options, SurfaceRule, remesh};
+use crate::remesh::{self, Improve, Options, SurfaceRule, remesh};
+
+/// Tets that were filled in are improved on the whole below this EAS.
+const IMPROVED: f64 = 0.6;
 
 /// The host's tets that are no more, and what came in their place. Vertices are those of the host, and behind them new ones.
 #[derive(Debug)]
@@ -79,7 +82,10 @@ impl Draft {
                 SurfaceRule::Adapt { distance: Some(stray) }
             }
         };
-        let options = Options { surface, sizes: None, ..options.clone() };
+        let cells = (0..self.tets.len()).map(CellId::new).collect();
+        let improve = Improve { below: IMPROVED, cells, density: None, rest: None, cost: 0.0 };
+        let improve = options.improve.clone().or(Some(improve));
+        let options = Options { surface, sizes: None, improve, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options, threads)?;
         let (extract, n_came) = (outcome.extract, self.tets.len());
         let mut to_result = Vec::with_capacity(extract.mesh.points.len());

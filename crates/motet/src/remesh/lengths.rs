@@ -24,6 +24,8 @@ pub struct Lengths {
     pub min: f64,
     /// The mean over all edges.
     pub mean: f64,
+    /// The standard deviation of the natural logarithm: 0 where every edge has its size, or all miss it by the same factor.
+    pub spread: f64,
     /// The longest.
     pub max: f64,
 }
@@ -33,8 +35,11 @@ impl Lengths {
         let mut edges = edges_of(complex, complex.tets());
         let locked = locked_edges(complex);
         let mut lengths = Self { edges: edges.len(), min: f64::INFINITY, ..Self::default() };
+        let mut logarithms = [0.0; 2];
         for edge in edges.drain(..) {
             let ratio = field.of_edge(complex, edge);
+            let logarithm = ratio.ln();
+            logarithms = [logarithms[0] + logarithm, logarithms[1] + logarithm * logarithm];
             lengths.min = lengths.min.min(ratio);
             lengths.max = lengths.max.max(ratio);
             lengths.mean += ratio;
@@ -52,7 +57,10 @@ impl Lengths {
             *n_held += usize::from(is_held);
         }
         lengths.min = if lengths.edges == 0 { 0.0 } else { lengths.min };
-        lengths.mean /= lengths.edges.max(1) as f64;
+        let n = lengths.edges.max(1) as f64;
+        lengths.mean /= n;
+        let [mean, mean_square] = logarithms.map(|sum| sum / n);
+        lengths.spread = (mean_square - mean * mean).max(0.0).sqrt();
         lengths
     }
 }

@@ -76,6 +76,12 @@ impl Options {
             let what = format!("tets to be improved below an EAS of {below}, expected a number in [0, 1]");
             return refused(what, "0.75 is the default of a moving mesh");
         }
+        if let Some(cost) = self.improve.as_ref().map(|improve| improve.cost)
+            && !(0.0..=LARGEST).contains(&cost)
+        {
+            let what = format!("a cost of {cost} for each tet that changes, expected a number from 0");
+            return refused(what, "0 says that it does not matter how many change");
+        }
         match self.surface {
             SurfaceRule::Adapt { distance: Some(d) } | SurfaceRule::Loose { distance: Some(d) }
                 if !(0.0..=LARGEST).contains(&d) =>
@@ -103,9 +109,15 @@ pub struct Improve {
     pub density: Option<Density>,
     /// Where each point of the mesh is when the walls are at rest, for walls that come back: there tets are to be good as much as where they are.
     pub rest: Option<Vec<Point>>,
+    /// By how much more a change has to lower the sum of the squares of what EAS lacks of 1, for each tet that nothing has changed yet: 0 where it does not matter how many tets change.
+    pub cost: f64,
 }
 
 impl Improve {
+    /// The [cost](Self::cost) where each tet that changes costs an interpolation. Of a paddle that turns in a box, where a change had to gain a fiftieth: with 0.012 9.1 % of the tets change
+    /// in a step, with 0.016 8.1 %, with 0.02 7.7 %; the mean EAS after a turn is 0.700, 0.691 and 0.696.
+    pub const FEW_CHANGES: f64 = 0.02;
+
     /// Refuses arrays that are not about the points of a mesh of so many.
     pub(super) fn check(&self, n_points: usize) -> Result<()> {
         let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));

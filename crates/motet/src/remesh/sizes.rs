@@ -117,12 +117,13 @@ enum Source {
 
 impl SizeField {
     /// Of sizes that have been checked. Where nothing is split, `longest` keeps edges from becoming what others would split at once.
-    pub(super) fn new(sizes: &Sizes, given: &Arc<Given>, longest: f64) -> Self {
+    pub(super) fn new(sizes: &Sizes, given: impl FnOnce() -> Arc<Given>, longest: f64) -> Self {
         let (source, known) = match sizes {
             Sizes::Uniform(h) => (Source::Uniform(*h), Vec::new()),
             Sizes::Vertices(sizes) => {
+                let given = given();
                 let known = given.points().iter().copied().zip(sizes.iter().copied()).collect();
-                (Source::Vertices(given.clone(), sizes.clone()), known)
+                (Source::Vertices(given, sizes.clone()), known)
             }
         };
         Self { source, known, longest, long: LONG, may_shorten: false }
@@ -153,7 +154,20 @@ impl SizeField {
         distance(ends[0].1, ends[1].1) / (0.5 * (p + q))
     }
 
-    /// The same of an edge of a complex.
+    /// The lengths of the six edges of a tet as parts of their sizes: whole meshes are swept with it, and the sizes of its corners are looked up once.
+    #[inline]
+    pub(super) fn of_tet(&mut self, vertices: [VertexId; 4], corners: [Point; 4]) -> [f64; 6] {
+        let (mut sizes, mut ratios) = ([0.0; 4], [0.0; 6]);
+        for i in 0..4 {
+            sizes[i] = self.at(vertices[i], corners[i]);
+        }
+        for (ratio, [i, j]) in ratios.iter_mut().zip(EDGES) {
+            *ratio = distance(corners[i], corners[j]) / (0.5 * (sizes[i] + sizes[j]));
+        }
+        ratios
+    }
+
+    /// The length of an edge of a complex as a part of its size.
     pub(super) fn of_edge(&mut self, complex: &Complex, ends: [VertexId; 2]) -> f64 {
         self.ratio(ends.map(|v| (v, complex.point(v))))
     }

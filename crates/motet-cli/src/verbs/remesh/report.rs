@@ -311,6 +311,7 @@ impl Report {
         row("shortest", &|l| short(l.min));
         row("mean", &|l| short(l.mean));
         row("longest", &|l| short(l.max));
+        row("spread", &|l| short(l.spread));
         table
     }
 

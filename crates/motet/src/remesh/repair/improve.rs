@@ -15,8 +15,8 @@ use crate::geometry::tet::EDGES;
 use crate::kernel::{Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, defect};
 use crate::remesh::given::Rest;
-use crate::remesh::repair::Repair;
 use crate::remesh::repair::tried::Settled;
+use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of what it touches by this part of it. Of the paddle above the mean EAS is, over all steps, never below 0.673 with 0.05 (7.0 % changed a step),
@@ -133,12 +133,20 @@ struct Best {
     change: Change,
 }
 
+/// The best change found for a tet, and what it has to keep to.
+#[derive(Debug)]
+struct Found {
+    best: Best,
+    /// Where sizes are asked for: no change brings an edge that is too long or too short.
+    sizing: Option<Sizing>,
+}
+
 /// What one call of [`Repair::improve`] has in hand.
 #[derive(Debug)]
 struct Course {
     /// What is aimed at, and the mean cost of the mesh.
     scale: (Aim, f64),
-    best: Best,
+    found: Found,
     settled: Settled,
     inserted: Vec<TetId>,
 }
@@ -150,8 +158,8 @@ impl Repair {
             rest.update(&self.complex);
         }
         let scale = (aim, self.mean_cost(aim));
-        let mut course =
-            Course { scale, best: Best::default(), settled: Settled::new(), inserted: Vec::new() };
+        let found = Found { best: Best::default(), sizing: self.sizing.take() };
+        let mut course = Course { scale, found, settled: Settled::new(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
             zone.retain(|&t| self.is_low(t, aim.below));
             self.sort(&mut zone);
@@ -166,6 +174,7 @@ impl Repair {
                 break;
             }
         }
+        self.sizing = course.found.sizing;
         Ok(())
     }
 
@@ -189,16 +198,20 @@ impl Repair {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
     }
 
-    /// Makes the best swap at a tet, or else the best move of one of its vertices.
+    /// Makes the best swap at a tet, or else moves its vertices.
     fn improve_one(&mut self, tet: TetId, course: &mut Course) {
-        course.best.gain = None;
         self.weigh_swaps(tet, course);
-        if course.best.gain.is_none() {
+        if !self.make_best(course) {
             self.weigh_moves(tet, course);
         }
-        let Course { scale: (aim, _), best, settled, inserted } = course;
+    }
+
+    /// Makes the best change that was found, if there is one and it may be made; forgets it.
+    fn make_best(&mut self, course: &mut Course) -> bool {
+        let Course { scale: (aim, _), found: Found { best, .. }, settled, inserted } = course;
         let n_before = inserted.len();
-        if best.gain.is_some() && self.commit_above(&best.change, aim.floor, inserted) {
+        let is_made = best.gain.take().is_some() && self.commit_above(&best.change, aim.floor, inserted);
+        if is_made {
             let inserted = &inserted[n_before..];
             self.operations.add(best.operation);
             settled.inserted(&self.complex, inserted);
@@ -206,9 +219,10 @@ impl Repair {
                 rest.follow(&self.complex, best.change.vertex, inserted);
             }
         }
+        is_made
     }
 
-    fn weigh_swaps(&mut self, tet: TetId, Course { scale, best, settled, .. }: &mut Course) {
+    fn weigh_swaps(&mut self, tet: TetId, Course { scale, found, settled, .. }: &mut Course) {
         let mut worth = Worth::new(*scale, self.rest.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
@@ -225,7 +239,7 @@ impl Repair {
                 }
             }
             let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut worth, &mut change)
-                && self.weigh(&mut change, Operation::EdgeRemoval, worth, best);
+                && self.weigh(&mut change, Operation::EdgeRemoval, worth, found);
             if !is_better {
                 settled.settle_edge(&self.complex, self.edge_removal.tets(), edge);
             }
@@ -234,8 +248,9 @@ impl Repair {
             if settled.has_facet(&self.complex, tet, facet) {
                 continue;
             }
-            let is_better = self.face_removal.propose(&self.complex, tet, facet, 0.0, &mut change)
-                && self.weigh(&mut change, Operation::FaceRemoval, worth, best);
+            let bar = self.complex.quality(tet).min(scale.0.floor).next_down();
+            let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
+                && self.weigh(&mut change, Operation::FaceRemoval, worth, found);
             if !is_better {
                 settled.settle_facet(tet, facet);
             }
@@ -243,34 +258,43 @@ impl Repair {
         self.candidate.proposal = change;
     }
 
-    fn weigh_moves(&mut self, tet: TetId, Course { scale, best, settled, .. }: &mut Course) {
+    /// Moves the vertices of a tet, each where that is better; where tets that change cost something, the one alone that gains most.
+    fn weigh_moves(&mut self, tet: TetId, course: &mut Course) {
+        for vertex in self.complex.vertices(tet) {
+            if self.complex.hold(vertex) != Hold::Free || course.settled.has_vertex(vertex) {
+                continue;
+            }
+            if !self.weigh_move(vertex, course) {
+                course.settled.settle_vertex(vertex);
+            } else if course.scale.0.cost == 0.0 {
+                self.make_best(course);
+            }
+        }
+        self.make_best(course);
+    }
+
+    fn weigh_move(&mut self, vertex: VertexId, Course { scale, found, .. }: &mut Course) -> bool {
         let mut worth = Worth::new(*scale, self.rest.as_ref());
         let rest = self.rest.as_ref().map(|rest| |v: VertexId| rest.point(v));
         let mut change = std::mem::take(&mut self.candidate.proposal);
-        for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free || settled.has_vertex(vertex) {
-                continue;
-            }
-            self.star.gather(&self.complex, vertex);
-            let star = &self.star.tets;
-            worth.set_bars(&self.complex, star);
-            let is_better = self.relaxation.propose(
-                (&self.complex, rest.as_ref()),
-                star,
-                vertex,
-                worth.bars[0],
-                &Anywhere,
-                &mut change,
-            ) && self.weigh(&mut change, Operation::Smoothing, worth, best);
-            if !is_better {
-                settled.settle_vertex(vertex);
-            }
-        }
+        self.star.gather(&self.complex, vertex);
+        let star = &self.star.tets;
+        worth.set_bars(&self.complex, star);
+        let is_better = self.relaxation.propose(
+            (&self.complex, rest.as_ref()),
+            star,
+            vertex,
+            worth.bars[0],
+            &Anywhere,
+            &mut change,
+        ) && self.weigh(&mut change, Operation::Smoothing, worth, found);
         self.candidate.proposal = change;
+        is_better
     }
 
     /// Takes a change as the best if it gains enough, and more than the best so far; the one that was the best is left in its place. Whether it gains enough.
-    fn weigh(&self, change: &mut Change, operation: Operation, mut worth: Worth, best: &mut Best) -> bool {
+    fn weigh(&self, change: &mut Change, operation: Operation, mut worth: Worth, found: &mut Found) -> bool {
+        let Found { best, sizing } = found;
         worth.set_bars(&self.complex, &change.cavity);
         let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
         let moved = match change.vertex {
@@ -284,7 +308,8 @@ impl Repair {
         if best.gain.is_some_and(|known| gain <= known) {
             return true;
         }
-        let is_allowed = self.complex.check_against(change, worth.bars[0]).is_ok();
+        // Whether the mesh allows it is asked of the best alone.
+        let is_allowed = sizing.as_mut().is_none_or(|sizing| sizing.field.accepts(&self.complex, change));
         if is_allowed {
             std::mem::swap(change, &mut best.change);
             (best.gain, best.operation) = (Some(gain), operation);

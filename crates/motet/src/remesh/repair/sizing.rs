@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::base::{Point, Result, TetId, VertexId};
+use crate::base::{Point, Result, TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, scale};
 use crate::kernel::{Change, Hold};
@@ -19,12 +19,16 @@ use crate::remesh::surface::Surface;
 /// Short edges are looked for once more when this part of them has been collapsed.
 const ENOUGH: f64 = 0.02;
 
+/// Edges shorter than this part of their size are collapsed where that brings none that is too long: down to [`SHORT`] alone a mesh that was finer keeps twice the tets that its sizes ask for.
+const DENSE: f64 = 0.7;
+
 /// Edges whose lengths, as parts of their sizes, differ by no more than this factor count as equally long.
 const ALIKE: f64 = 1.0 + 1e-9;
 /// Tets of a lower quality are next to flat: a tenth of what is bad by default. Beside a longer edge that stays no split brings one, whatever was there.
 const FLATTEST: f64 = 0.02;
 
 /// What sizes are asked for, and how far that may go.
+#[derive(Debug)]
 pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
     /// Whether long edges are split; if not, short ones are collapsed once.
@@ -78,7 +82,8 @@ impl Repair {
         for _ in 0..rounds {
             let n_made = self.with_sizing(Self::split_long)? + self.with_sizing(Self::collapse_short)?;
             self.repair_once()?;
-            let short = self.with_sizing(|repair, sizing| Ok(repair.short_edges(&mut sizing.field)))?;
+            let short =
+                self.with_sizing(|repair, sizing| Ok(repair.short_edges(&mut sizing.field, SHORT)))?;
             if n_made as f64 > ENOUGH * short.len() as f64 {
                 continue;
             }
@@ -234,7 +239,8 @@ impl Repair {
         // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
         let mut has_news = vec![true; self.complex.n_vertex_slots()];
         loop {
-            let short = self.short_edges(&mut sizing.field);
+            let shortest = if sizing.splits { DENSE } else { SHORT };
+            let short = self.short_edges(&mut sizing.field, shortest);
             let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
             for (i, &edge) in short.iter().enumerate() {
@@ -257,9 +263,9 @@ impl Repair {
         }
     }
 
-    /// Edges that are too short and may be collapsed, the shortest first.
-    fn short_edges(&self, field: &mut SizeField) -> Vec<Edge> {
-        let mut short = self.edges(field, |ratio| ratio < SHORT);
+    /// Edges shorter than a part of their size that may be collapsed, the shortest first.
+    fn short_edges(&self, field: &mut SizeField, shortest: f64) -> Vec<Edge> {
+        let mut short = self.edges(field, |ratio| ratio < shortest);
         let may_go = |v: &VertexId| match self.complex.hold(*v) {
             Hold::Free => true,
             Hold::Surface | Hold::Edge => self.surface.is_some(),
@@ -308,11 +314,10 @@ impl Repair {
         let mut edges = Vec::new();
         for tet in self.complex.tets() {
             let vertices = self.complex.vertices(tet);
-            for [a, b] in EDGES.map(|e| e.map(|i| vertices[i])) {
-                let ends = [a.min(b), a.max(b)];
-                let ratio = field.of_edge(&self.complex, ends);
+            let ratios = field.of_tet(vertices, self.complex.corners(tet));
+            for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
                 if is_such(ratio) {
-                    edges.push(Edge { ratio, ends, tet });
+                    edges.push(Edge { ratio, ends: rising([vertices[i], vertices[j]]), tet });
                 }
             }
         }
