@@ -408,7 +408,7 @@ typedef struct motet_moving_options {
     double slide_tolerance;    /* how far vertices of a patch that slides may be off its plane, as a part of its radius; default 0.05 */
     int32_t valid_at_start;    /* 1: a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held; default 0 */
     int32_t strain_in_band;    /* 1: with MOTET_BODIES the strain goes into a band beside the bodies, for bodies that go on; default 0: over all that is between them and the walls */
-    int32_t returns;           /* 1: the walls come back to where they were at first, again and again, and tets are to be good there, too; default 0 */
+    int32_t returns;           /* 1: the walls come back to where they were at first, again and again, and tets are to be good there, too; a mesh that does not settle is replaced by the first one there; default 0 */
 } motet_moving_options;
 
 void motet_moving_options_init(motet_moving_options *options, size_t size);

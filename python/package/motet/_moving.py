@@ -92,6 +92,7 @@ class MovingMesh(NotPickled):
         there were at first. 0: bad tets are repaired, and nothing else is done.
     returns : bool
         Whether the walls come back to where they were at first, again and again. Then what is improved is to be good there, too: otherwise each cycle undoes what the last one did.
+        A mesh that still changes in each cycle, and loses, is replaced by the first one when the walls are back: a change whose ``why`` is "return".
         Harmful where walls go on, such as a body that turns.
     valid_at_start : bool
         Whether a repair that brings tets without volume where their vertices were as the step began is made again with the tets that they replace held. See

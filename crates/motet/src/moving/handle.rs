@@ -11,9 +11,10 @@ use crate::mesh::history::{History, Rule};
 use crate::mesh::{Field, Mesh};
 use crate::motion::{LeavesPlane, Mover, mesh_velocity};
 use crate::moving::contents::go_to;
+use crate::moving::first::{FirstMesh, Returns};
 use crate::moving::hold::{self, Held, Hold};
 use crate::moving::legs::{Reached, Way};
-use crate::moving::now::{Known, Now};
+use crate::moving::now::{InFirst, Known, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
@@ -34,6 +35,8 @@ pub struct MovingMesh {
     pub(super) changes: VecDeque<(usize, Arc<History>)>,
     /// Changes of steps up to this one are no longer known.
     pub(super) forgotten: Option<usize>,
+    /// How walls have come back, and the first mesh.
+    pub(super) returns: Returns,
     watch: Option<Watch>,
     pub(super) hold: Option<Hold>,
     /// What the last step stopped.
@@ -65,6 +68,7 @@ impl MovingMesh {
         known.rest = options.returns.then(|| mesh.points.clone());
         let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
         let mut moving = Self::of(options, wall, now, Clock::default(), threads)?;
+        moving.remember_first(threads);
         moving.measure_gaps(threads)?;
         Ok(moving)
     }
@@ -85,10 +89,19 @@ impl MovingMesh {
             clock,
             changes: VecDeque::new(),
             forgotten: None,
+            returns: Returns::default(),
             watch,
             hold,
             held: Held::default(),
         })
+    }
+
+    /// The mesh as it is now is the first one.
+    fn remember_first(&mut self, threads: &Threads) {
+        self.returns.first = FirstMesh::of(&self.now, &self.options, threads);
+        if self.returns.first.is_some() {
+            self.now.known.in_first = InFirst::same(&self.now.mesh);
+        }
     }
 
     /// Where the vertices that are driven were at first: those of the boundary, and of patches inside that were asked for, in the
@@ -235,6 +248,7 @@ impl MovingMesh {
         let reached = if is_complete { time } else { start + (time - start) * fraction };
         self.clock = Clock { step: self.clock.step + 1, time: reached, dt: reached - start, n_free };
         self.remember(&changes);
+        self.returns.count_step(is_complete.then_some(displacement), &changes);
         let begin_contact = Instant::now();
         if let (Some(hold), Some(held)) = (&mut self.hold, held) {
             hold.advance(&held.displacement, fraction);
@@ -287,6 +301,10 @@ impl MovingMesh {
             self.now = now;
             self.remember(&changes);
         }
+        // What is bad at first is not wanted back.
+        if self.clock.step == 0 && self.returns.first.is_some() {
+            self.remember_first(threads);
+        }
         Ok(changes.into_iter().next())
     }
 
@@ -294,6 +312,7 @@ impl MovingMesh {
         Way {
             options: &self.options,
             wall: &self.wall,
+            returns: &self.returns,
             displacement,
             times: [self.clock.time, time],
             n_free: self.clock.n_free,
@@ -366,6 +385,8 @@ impl MovingMesh {
         self.now = now;
         self.clock.n_free = None;
         self.now.known.size_anew(&self.now.mesh);
+        // The first mesh is no longer the one that is wanted.
+        (self.returns.first, self.now.known.in_first) = (None, InFirst::default());
         self.remember(std::slice::from_ref(&change));
         Ok(change)
     }

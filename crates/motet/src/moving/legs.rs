@@ -7,6 +7,7 @@ use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, scale, sub};
 use crate::mesh::history::Origin;
+use crate::moving::first::Returns;
 use crate::moving::now::{BEFORE, Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
@@ -32,6 +33,8 @@ const RINGS: usize = 2;
 pub(super) struct Way<'a> {
     pub(super) options: &'a Options,
     pub(super) wall: &'a Wall,
+    /// How walls have come back so far.
+    pub(super) returns: &'a Returns,
     /// Of the nodes of the wall, from where they were at first.
     pub(super) displacement: &'a [Point],
     /// From when to when.
@@ -71,8 +74,25 @@ enum Effort {
 }
 
 impl Way<'_> {
-    /// Goes from where `start` is, which stays as it is.
+    /// Goes from where `start` is, which stays as it is. Where walls have come back, the first mesh may be put back at the end.
     pub(super) fn go(&mut self, start: &Now) -> Result<Reached> {
+        let reached = self.moved_and_repaired(start)?;
+        if reached.fraction < 1.0 || self.returns.count.is_unsettled {
+            return Ok(reached);
+        }
+        let put_back = match &reached.changed {
+            Some(now) => self.put_back(now, &now.known.before, true)?,
+            None => self.put_back(start, &start.mesh.points, false)?,
+        };
+        Ok(put_back.map_or(reached, |put_back| self.at_first_mesh(put_back)))
+    }
+
+    fn at_first_mesh(&mut self, (now, shape): (Now, Shape)) -> Reached {
+        self.points.clone_from(&now.mesh.points);
+        Reached { changed: Some(now), left: None, shape, fraction: 1.0 }
+    }
+
+    fn moved_and_repaired(&mut self, start: &Now) -> Result<Reached> {
         let (mut changed, mut gone, mut effort) = (None::<Now>, 0.0, Effort::Usual);
         loop {
             let watch = self.threads.watch();
@@ -86,14 +106,21 @@ impl Way<'_> {
                 return Ok(Reached { changed, left: None, shape, fraction: gone });
             }
             let is_end = part == 1.0;
+            // The first mesh of a step is where it was as the step began.
+            let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.known.before);
+            // What is going to be put back anyhow is not repaired first.
+            if is_end
+                && self.returns.count.is_unsettled
+                && let Some(put_back) = self.put_back(now, before, changed.is_some())?
+            {
+                return Ok(self.at_first_mesh(put_back));
+            }
             let is_worth_it = shape.bad.iter().any(|&(cell, eas)| !now.is_left(cell, eas));
             if is_end && !(is_worth_it && self.options.repair.is_some()) {
                 return Ok(Reached { changed, left: None, shape, fraction: gone });
             }
             effort = if is_stuck { Effort::All } else { Effort::Usual };
             let time = self.times[0] + (self.times[1] - self.times[0]) * gone;
-            // The first mesh of a step is where it was as the step began.
-            let before = changed.as_ref().map_or(&start.mesh.points, |now| &now.known.before);
             let next = match self.repaired(now, before, &shape, time, effort)? {
                 Repaired::Changed(next) => *next,
                 Repaired::Left(left) if is_end => {
@@ -177,7 +204,7 @@ impl Way<'_> {
     }
 
     /// The shape of the tets where [`Self::points`] has the vertices.
-    fn shape_at(&mut self, now: &Now) -> Shape {
+    pub(super) fn shape_at(&mut self, now: &Now) -> Shape {
         let begin = Instant::now();
         let shape = now.tets.shape(&self.points, self.options.limit(), self.threads);
         self.seconds.quality += begin.elapsed().as_secs_f64();
@@ -228,7 +255,7 @@ impl Way<'_> {
         };
         let (report, history) = (outcome.report, Arc::new(outcome.history));
         self.n_free.get_or_insert(report.before.free_vertices);
-        let left = left_of(&report);
+        let left = left_of(&report, options.limit());
         self.seconds.repair += begin.elapsed().as_secs_f64();
         if report.kept == now.tets.len() && outcome.mesh.points == given.points {
             return Ok(Repaired::Left(left));
@@ -265,15 +292,16 @@ impl Way<'_> {
         if below == 0.0 || effort == Effort::Margin {
             return None;
         }
-        // Where walls come back, tets are as they were at first, or not, at rest.
-        let places = now.known.rest.as_ref().unwrap_or(&self.points);
+        // Where walls come back, tets are as they were at first, or not, at rest. A mesh that is put back need not be good there.
+        let rest = now.known.rest.as_ref().filter(|_| !self.returns.count.is_unsettled);
+        let places = rest.unwrap_or(&self.points);
         let low = now.tets.shape(places, below, self.threads).bad;
         let first = &now.known.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
         let density = usual.sizes.is_none().then_some(density);
-        Some(Improve { below, cells, density, rest: now.known.rest.clone(), cost: Improve::FEW_CHANGES })
+        Some(Improve { below, cells, density, rest: rest.cloned(), cost: Improve::FEW_CHANGES })
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.
@@ -315,13 +343,14 @@ fn replaced_by_inverted(outcome: &MeshOutcome) -> Result<Vec<CellId>> {
     Ok(replaced)
 }
 
-fn left_of(report: &remesh::Report) -> Vec<LeftBad> {
+/// The bad tets that repair has left. Those between the limit and what repair aims at are not bad yet: they are tried when they fall below the limit.
+fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
     let of = |left: &remesh::Left| LeftBad {
         cell: CellId(left.tet),
         eas: left.eas,
         is_forced: left.reason.is_forced(),
     };
-    let mut all: Vec<LeftBad> = report.left.iter().map(of).collect();
+    let mut all: Vec<LeftBad> = report.left.iter().filter(|left| left.eas < limit).map(of).collect();
     all.sort_by_key(|left| left.cell);
     all
 }

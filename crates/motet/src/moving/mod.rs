@@ -5,6 +5,7 @@
 //! | `options` | what is asked: how the inside follows, what is repaired, what is watched; patches by label, since ids do not last |
 //! | `handle` | [`MovingMesh`]: made once, then [`advance`](MovingMesh::advance), [`refine`](MovingMesh::refine), arrays, velocity, history |
 //! | `legs` | a step, in as many parts as it takes: on while tets stay well shaped, then repaired, then on |
+//! | `first` | the first mesh, put back where walls come back and the mesh does not settle by itself |
 //! | `now` | the mesh between two changes: where it is, what moves it, where each vertex was at first |
 //! | `coarsen` | divisions taken back by lengths, where nobody knows any more what was whole |
 //! | `contents` | what cells hold of something that stays in them, while they move and where they change |
@@ -16,6 +17,7 @@
 //! | `script` | what walls do in time, told in words or by frames |
 //! | `step` | what a step says of itself |
 //! | `described` | options as text: a state is gone on with by those that it was saved with |
+//! | `first_state` | the first mesh as arrays of a state |
 //! | `state` | all of it in a file, and back: a run that was stopped goes on to the same bytes |
 //!
 //! ```
@@ -57,6 +59,8 @@
 mod coarsen;
 mod contents;
 mod described;
+mod first;
+mod first_state;
 mod handle;
 mod hold;
 mod legs;

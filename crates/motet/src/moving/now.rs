@@ -59,6 +59,41 @@ pub(super) struct Known {
     pub(super) first_size: Vec<f64>,
     /// Of each cell that is a tet of the first mesh the EAS that it had then, of others no number.
     pub(super) first_eas: Vec<f64>,
+    /// What it is in the first mesh, where that may be put back.
+    pub(super) in_first: InFirst,
+}
+
+/// What each vertex and each cell is in the first mesh: no id for those that came later. Empty where the first mesh is not remembered.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct InFirst {
+    pub(super) vertices: Vec<VertexId>,
+    pub(super) cells: Vec<CellId>,
+}
+
+impl InFirst {
+    /// Of the first mesh itself.
+    pub(super) fn same(first: &Mesh) -> Self {
+        Self {
+            vertices: (0..first.points.len()).map(VertexId::new).collect(),
+            cells: (0..first.cells.len()).map(CellId::new).collect(),
+        }
+    }
+
+    /// After a change.
+    fn after(&self, history: &History) -> Self {
+        if self.vertices.is_empty() {
+            return Self::default();
+        }
+        Self {
+            vertices: of_kept(history.vertices.kept(), &self.vertices),
+            cells: of_kept(history.cells.kept(), &self.cells),
+        }
+    }
+}
+
+/// Of each thing what it was before the change, where it was kept.
+fn of_kept<I: Id>(kept: &[I], before: &[I]) -> Vec<I> {
+    kept.iter().map(|old| if *old == I::NONE { I::NONE } else { before[old.place()] }).collect()
 }
 
 impl Known {
@@ -75,6 +110,7 @@ impl Known {
             size: size.clone(),
             first_size: size,
             first_eas: first_eas(mesh),
+            in_first: InFirst::default(),
         }
     }
 
@@ -200,7 +236,7 @@ impl Now {
     }
 
     /// What is known of the vertices of a mesh that came of one with [these arrays](Self::put_known).
-    fn known_of(&self, mesh: &mut Mesh, history: &History) -> Result<Known> {
+    pub(super) fn known_of(&self, mesh: &mut Mesh, history: &History) -> Result<Known> {
         let mut take = |name: &str| -> Result<Field> {
             let place = mesh.point_data.iter().position(|field| field.name == name);
             let place = place.ok_or_else(|| Error::input(format!("the array {name} was lost on the way")))?;
@@ -220,6 +256,7 @@ impl Now {
         };
         Ok(Known {
             first_eas: history.cells.kept().iter().map(eas).collect(),
+            in_first: self.known.in_first.after(history),
             first,
             rest,
             before,
@@ -236,5 +273,5 @@ pub(super) const REST: &str = "moving:rest";
 pub(super) const BEFORE: &str = "moving:before";
 pub(super) const SIZE: &str = "moving:size";
 pub(super) const FIRST_SIZE: &str = "moving:first_size";
-/// A cell array of a state.
+/// Arrays of a state.
 pub(super) const FIRST_EAS: &str = "moving:first_eas";

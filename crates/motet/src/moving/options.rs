@@ -26,7 +26,9 @@ pub struct Options {
     /// kept as there were at first. So the next steps make fewer tets bad, and a long motion leaves the mesh that it began with. Default: 0.75; 0: bad tets are repaired, and nothing else is done.
     pub improve_below: f64,
     /// Whether the walls come back to where they were at first, again and again. Then what is [improved](Self::improve_below) is to be good there, too: otherwise each cycle undoes what
-    /// the last one did. Harmful where walls go on, such as a body that turns. Default: no.
+    /// the last one did. A mesh that still changes on the way to each return, and loses, is replaced by the first one when the walls are back: a change of its own
+    /// ([`Why::Return`](super::Why::Return)), by which arrays are carried as by all others. From then on the mesh is improved for where it is alone, and the first one is put back at each return. Meshes that settle are
+    /// never replaced; nothing is put back after a refinement, or where nothing is repaired. Harmful where walls go on, such as a body that turns. Default: no.
     pub returns: bool,
     /// Whether a repair that brings tets without volume where their vertices were as the step began is made once more with the tets that they replace held, and so on: schemes that
     /// integrate over an earlier time level need their volume there. Held tets may stay bad for this step. What is left after some tries is reported as

@@ -9,6 +9,7 @@ use crate::io::{self, Compression, WriteOptions};
 use crate::mesh::{Field, Mesh, Values};
 use crate::motion::Mover;
 use crate::moving::described::differences;
+use crate::moving::first::Returns;
 use crate::moving::handle::{Clock, MovingMesh};
 use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, FIRST_SIZE, Known, LeftBad, Now, REST, SIZE};
 use crate::moving::options::Options;
@@ -22,8 +23,6 @@ const TRIANGLES: &str = "moving:wall_triangles";
 const BODY: &str = "moving:wall_body";
 const HELD: &str = "moving:wall_held";
 const LEFT: &str = "moving:left";
-const LEFT_EAS: &str = "moving:left_eas";
-const LEFT_FORCED: &str = "moving:left_forced";
 const CLOCK: &str = "moving:clock";
 const OPTIONS: &str = "moving:options";
 const POINT_ARRAYS: &str = "moving:point_arrays";
@@ -57,11 +56,10 @@ impl MovingMesh {
         file.field_data.extend([
             Field::vectors(PLACES, &self.wall.places),
             Field { components: 3, ..Field::scalars(TRIANGLES, triangles) },
-            Field::scalars(LEFT, left.iter().map(|left| left.cell.0).collect::<Vec<_>>()),
-            Field::scalars(LEFT_EAS, left.iter().map(|left| left.eas).collect::<Vec<_>>()),
-            Field::scalars(LEFT_FORCED, left.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, n_free]),
         ]);
+        file.field_data.extend(LeftBad::to_fields(left, LEFT));
+        self.returns.put_on(&mut file, &known.in_first);
         file.field_data.extend([
             text(OPTIONS, &self.options.described()?),
             text(POINT_ARRAYS, &names(&mesh.point_data)),
@@ -109,15 +107,6 @@ impl MovingMesh {
         let &[step, time, dt, n_free] = clock.as_slice() else { return Err(no_state(CLOCK)) };
         let clock =
             Clock { step: step as usize, time, dt, n_free: (n_free >= 0.0).then_some(n_free as usize) };
-        let known = Known {
-            first: taken.vectors(FIRST)?,
-            rest: options.returns.then(|| taken.vectors(REST)).transpose()?,
-            before: taken.vectors(BEFORE)?,
-            node: taken.ids(NODE)?,
-            size: taken.floats(SIZE)?,
-            first_size: taken.floats(FIRST_SIZE)?,
-            first_eas: taken.floats(FIRST_EAS)?,
-        };
         let wall = Wall {
             places: taken.vectors(PLACES)?,
             triangles: triangles(&taken.ids(TRIANGLES)?)?,
@@ -126,15 +115,26 @@ impl MovingMesh {
                 None => Vec::new(),
             },
         };
+        let (returns, in_first) = Returns::taken(&taken, &mesh, wall.places.len(), &options, threads)?;
+        let known = Known {
+            first: taken.vectors(FIRST)?,
+            rest: options.returns.then(|| taken.vectors(REST)).transpose()?,
+            before: taken.vectors(BEFORE)?,
+            node: taken.ids(NODE)?,
+            size: taken.floats(SIZE)?,
+            first_size: taken.floats(FIRST_SIZE)?,
+            first_eas: taken.floats(FIRST_EAS)?,
+            in_first,
+        };
         check(&wall, &known, [mesh.points.len(), mesh.cells.len()])?;
-        let left = taken.left(mesh.cells.len())?;
+        let left = taken.left(LEFT, mesh.cells.len())?;
         let here = std::mem::replace(&mut mesh.points, taken.vectors(REFERENCE)?);
         let mover = Mover::new(&mesh, &options.motion.of(&mesh), threads)?;
         mesh.points = here;
         let now = Now::of(mesh, mover, known, left, &wall, threads)?;
         let forgotten = Some(clock.step);
         let mut moving = Self::of(options, wall, now, clock, threads)?;
-        moving.forgotten = forgotten;
+        (moving.forgotten, moving.returns) = (forgotten, returns);
         if let Some(hold) = &mut moving.hold {
             hold.last = taken.vectors(HELD)?;
             if hold.last.len() != moving.wall.places.len() {
@@ -146,50 +146,83 @@ impl MovingMesh {
 }
 
 /// The arrays that were taken off a file.
-struct Taken {
+pub(super) struct Taken {
     fields: Vec<Field>,
 }
 
 impl Taken {
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.fields.iter().any(|field| field.name == name)
+    }
+
+    /// Those whose names begin so, without that.
+    pub(super) fn named(&self, prefix: &str) -> Vec<Field> {
+        let rest = |field: &Field| {
+            field.name.strip_prefix(prefix).map(|name| Field { name: name.to_owned(), ..field.clone() })
+        };
+        self.fields.iter().filter_map(rest).collect()
+    }
+
     fn field(&self, name: &str) -> Result<&Field> {
         self.fields.iter().find(|field| field.name == name).ok_or_else(|| no_state(name))
     }
 
-    fn vectors(&self, name: &str) -> Result<Vec<Point>> {
+    pub(super) fn vectors(&self, name: &str) -> Result<Vec<Point>> {
         self.field(name)?.to_vectors()
     }
 
-    fn floats(&self, name: &str) -> Result<Vec<f64>> {
+    pub(super) fn floats(&self, name: &str) -> Result<Vec<f64>> {
         self.field(name)?.values.to_f64().ok_or_else(|| no_state(name))
     }
 
-    fn ids(&self, name: &str) -> Result<Vec<u32>> {
+    pub(super) fn ids(&self, name: &str) -> Result<Vec<u32>> {
         match &self.field(name)?.values {
             Values::U32(ids) => Ok(ids.clone()),
             _ => Err(no_state(name)),
         }
     }
 
-    fn text(&self, name: &str) -> Result<String> {
+    pub(super) fn bytes(&self, name: &str) -> Result<Vec<u8>> {
         match &self.field(name)?.values {
-            Values::U8(bytes) => String::from_utf8(bytes.clone()).map_err(|_| no_state(name)),
+            Values::U8(bytes) => Ok(bytes.clone()),
             _ => Err(no_state(name)),
         }
     }
 
-    fn left(&self, n_cells: usize) -> Result<Vec<LeftBad>> {
-        let (cells, eas, forced) = (self.ids(LEFT)?, self.floats(LEFT_EAS)?, self.floats(LEFT_FORCED)?);
+    fn text(&self, name: &str) -> Result<String> {
+        String::from_utf8(self.bytes(name)?).map_err(|_| no_state(name))
+    }
+
+    /// Bad tets that [`LeftBad::to_fields`] has written.
+    pub(super) fn left(&self, name: &str, n_cells: usize) -> Result<Vec<LeftBad>> {
+        let [cells, eas, forced] = LeftBad::names(name);
+        let (cells, eas, forced) = (self.ids(&cells)?, self.floats(&eas)?, self.floats(&forced)?);
         let is_right = cells.len() == eas.len()
             && cells.len() == forced.len()
             && cells.is_sorted()
             && cells.iter().all(|&cell| (cell as usize) < n_cells);
         if !is_right {
-            return Err(no_state(LEFT));
+            return Err(no_state(name));
         }
         let all = cells.into_iter().zip(eas).zip(forced);
         Ok(all
             .map(|((cell, eas), forced)| LeftBad { cell: CellId(cell), eas, is_forced: forced != 0.0 })
             .collect())
+    }
+}
+
+impl LeftBad {
+    fn names(name: &str) -> [String; 3] {
+        ["", "_eas", "_forced"].map(|end| format!("{name}{end}"))
+    }
+
+    pub(super) fn to_fields(all: &[Self], name: &str) -> [Field; 3] {
+        let [cells, eas, forced] = Self::names(name);
+        [
+            Field::scalars(cells, all.iter().map(|left| left.cell.0).collect::<Vec<_>>()),
+            Field::scalars(eas, all.iter().map(|left| left.eas).collect::<Vec<_>>()),
+            Field::scalars(forced, all.iter().map(|left| u8::from(left.is_forced)).collect::<Vec<_>>()),
+        ]
     }
 }
 
@@ -237,7 +270,7 @@ fn check(wall: &Wall, known: &Known, [n_points, n_cells]: [usize; 2]) -> Result<
     }
 }
 
-fn no_state(name: &str) -> Error {
+pub(super) fn no_state(name: &str) -> Error {
     Error::input(format!("is no state of a moving mesh, or is damaged: the array {name} is missing or off"))
         .remedy("start the run anew")
 }

@@ -88,6 +88,8 @@ pub enum Why {
     Repair,
     /// Tets were to be divided, or divisions taken back.
     Refinement,
+    /// Walls have come back, and the first mesh was put back.
+    Return,
 }
 
 /// A change of connectivity, at one time.
