@@ -3,10 +3,11 @@
 use motet::base::{Point, Threads};
 use motet::mesh::history::Rules;
 use motet::mesh::shapes::box_grid;
-use motet::mesh::{Boundary, Cells, Mesh, Qualities};
+use motet::mesh::{Boundary, Cells, Field, Mesh, Qualities};
 use motet::motion::{Method, Strain};
-use motet::moving::{Motion, MovingMesh, Options, Step};
-use motet::remesh::{Density, Improve, remesh_mesh};
+use motet::moving::{Motion, MovingMesh, Options, Step, Why};
+use motet::refine::{Criterion, Wanted};
+use motet::remesh::{Density, Goal, Improve, remesh_mesh};
 
 fn threads() -> Threads {
     Threads::single()
@@ -141,10 +142,15 @@ fn a_paddle_that_swings_comes_back_to_the_same_mesh() {
 
 /// Twists a cube of two by two by two about z, its top against its bottom, to both sides, eight steps a cycle.
 fn twist(moving: &mut MovingMesh, k: i32) -> Step {
-    let far = (std::f64::consts::TAU * f64::from(k) / 8.0).sin() * 0.75;
+    twist_by(moving, k, 0.75, 0.0)
+}
+
+/// Twists the cube by up to `most` to each side, and shifts it by so much. The same to the bit in each cycle.
+fn twist_by(moving: &mut MovingMesh, k: i32, most: f64, shift: f64) -> Step {
+    let far = (std::f64::consts::TAU * f64::from(k % 8) / 8.0).sin() * most;
     let goes = |&p: &Point| {
         let to = turned(p, far * p[2]);
-        [to[0] - p[0], to[1] - p[1], to[2] - p[2]]
+        [to[0] - p[0] + shift, to[1] - p[1], to[2] - p[2]]
     };
     let displacement: Vec<Point> = moving.driven_places().iter().map(goes).collect();
     moving.advance(f64::from(k), &displacement, &threads()).unwrap()
@@ -191,6 +197,206 @@ fn walls_that_come_back_go_on_from_a_state_to_the_same_bits() {
     assert!(n_changes > 0);
     assert_eq!(moving.mesh().points, again.mesh().points);
     assert_eq!(moving.mesh().cells, again.mesh().cells);
+}
+
+#[test]
+fn probe() {
+    for n in [5, 6] {
+        let mesh = well_filled(n);
+        for far in [0.65, 0.75, 0.85, 0.95] {
+            let mut moving = MovingMesh::new(&mesh, that_returns(), &threads()).unwrap();
+            let first = quality(&mesh).mean;
+            let begin = std::time::Instant::now();
+            let mut text = String::new();
+            for k in 1..=7 * 8 {
+                let step = twist_by(&mut moving, k, far, 0.0);
+                if is_put_back(&step) {
+                    text += &format!(" R{k}");
+                }
+                if step.bad > 0 || step.inverted > 0 || !step.complete {
+                    text += &format!(" BAD{k}:{}", step.bad);
+                }
+                if k % 4 == 0 {
+                    let c = if step.changes.is_empty() { "" } else { "c" };
+                    text += &format!(" {:.3}{c}", step.quality.mean / first);
+                }
+            }
+            println!(
+                "{n} {} {first:.3} {far} {:.1} s: {text}",
+                mesh.cells.len(),
+                begin.elapsed().as_secs_f64()
+            );
+        }
+    }
+}
+
+/// A cube, eight steps a cycle of a twist, whose mesh changes in each cycle and loses.
+fn restless() -> MovingMesh {
+    restless_with(that_returns())
+}
+
+fn restless_with(options: Options) -> MovingMesh {
+    MovingMesh::new(&well_filled(RESTLESS.0), options, &threads()).unwrap()
+}
+
+/// A cube whose tets are as good as repair gets them: a lattice gains by each change.
+fn well_filled(n: usize) -> Mesh {
+    let mut mesh = box_grid([n; 3], [[-1.0; 3], [1.0; 3]]);
+    for (i, p) in mesh.points.iter_mut().enumerate() {
+        if p.iter().all(|x| x.abs() < 0.99) {
+            (0..3).for_each(|k| p[k] += 0.3 / n as f64 * ((7 * i + 3 * k) as f64).sin());
+        }
+    }
+    let best = motet::remesh::Options { goal: Goal::Best, ..Default::default() };
+    remesh_mesh(&mesh, &best, &Rules::default(), &threads()).unwrap().mesh
+}
+
+/// Edges along a side, and the angle.
+const RESTLESS: (usize, f64) = (6, 1.0);
+/// An angle by which the finer cube settles.
+const SETTLES: f64 = 0.75;
+
+fn twist_restless(moving: &mut MovingMesh, k: i32) -> Step {
+    let step = twist_by(moving, k, RESTLESS.1, 0.0);
+    assert!(step.complete && step.inverted == 0 && step.bad == 0, "{k}: {} bad", step.bad);
+    step
+}
+
+fn is_put_back(step: &Step) -> bool {
+    step.changes.iter().any(|change| change.why == Why::Return)
+}
+
+#[test]
+fn where_a_mesh_does_not_settle_the_first_one_is_put_back_and_cycles_repeat_to_the_bit() {
+    let mut moving = restless();
+    let first = moving.mesh().clone();
+    let (mut put_back, mut cycles) = (Vec::new(), [Vec::new(), Vec::new()]);
+    for k in 1..=8 * 8 {
+        let step = twist_restless(&mut moving, k);
+        if is_put_back(&step) {
+            put_back.push(k);
+            assert!(k % 4 == 0 && moving.mesh().cells == first.cells, "{k}");
+        }
+        if k % 8 == 0 && !put_back.is_empty() {
+            // Its walls are exactly where they were, and its way is the one from the first mesh.
+            assert_eq!(moving.mesh().points, first.points, "{k}");
+            assert!(step.changes.len() <= 1);
+        }
+        if k > 6 * 8 {
+            cycles[usize::from(k > 7 * 8)].push((moving.mesh().clone(), step.quality));
+        }
+    }
+    assert!(put_back.first().is_some_and(|k| (12..=40).contains(k)), "{put_back:?}");
+    let [one, other] = cycles;
+    assert!(one == other && one.iter().any(|(mesh, _)| mesh.cells != first.cells));
+}
+
+#[test]
+fn walls_that_come_back_only_nearly_count() {
+    let mut moving = restless();
+    let first = quality(moving.mesh());
+    // A hundredth of the width is not a tenth of an edge.
+    let mut n_put_back = 0;
+    for k in 1..=6 * 8 {
+        let step = twist_by(&mut moving, k, RESTLESS.1, if k % 8 == 0 { 0.02 } else { 0.0 });
+        assert!(step.complete && step.inverted == 0 && step.bad == 0, "{k}: {} bad", step.bad);
+        n_put_back += usize::from(is_put_back(&step) && k % 8 == 0);
+        let shifted = quality(moving.mesh());
+        assert!(!is_put_back(&step) || shifted.mean > 0.995 * first.mean, "{k}: {shifted:?} {first:?}");
+    }
+    assert!(n_put_back > 0);
+}
+
+/// Of a cell array: its integral, with the vertices at `points`.
+fn integral(mesh: &Mesh, points: &[Point], name: &str) -> f64 {
+    let values = mesh.cell_field(name).unwrap().values.to_f64().unwrap();
+    let of = |(cell, tet): (motet::base::CellId, [motet::base::VertexId; 4])| {
+        values[cell.index()] * motet::geometry::tet::volume(tet.map(|v| points[v.index()])).abs()
+    };
+    mesh.cells.tets().map(of).sum()
+}
+
+#[test]
+fn arrays_are_carried_to_the_first_mesh() {
+    let mut moving = restless_with(Options { contents: vec!["dye".into()], ..that_returns() });
+    let n_cells = moving.mesh().cells.len();
+    let dye: Vec<f64> = (0..n_cells).map(|i| 1.5 + (7.0 * i as f64).sin()).collect();
+    moving.set_cell_field(Field::scalars("dye", dye)).unwrap();
+    let all = integral(moving.mesh(), &moving.mesh().points, "dye");
+    let mut n_put_back = 0;
+    for k in 1..=6 * 8 {
+        let heat = (0..moving.mesh().cells.len()).map(|i| 2.0 + (3.0 * i as f64).cos()).collect::<Vec<_>>();
+        moving.set_cell_field(Field::scalars("heat", heat)).unwrap();
+        let before = moving.mesh().clone();
+        let step = twist_restless(&mut moving, k);
+        let mesh = moving.mesh();
+        let dye = integral(mesh, &mesh.points, "dye");
+        assert!((dye / all - 1.0).abs() < 1e-9, "{k}: {dye} of {all}");
+        let [change] = step.changes.as_slice() else { continue };
+        if change.why == Why::Return {
+            n_put_back += 1;
+            let [was, is] = [(&before, &change.points_before), (mesh, &mesh.points)]
+                .map(|(mesh, points)| integral(mesh, points, "heat"));
+            assert!((is / was - 1.0).abs() < 1e-9, "{k}: {is} of {was}");
+            let linear = |&[x, y, z]: &Point| 1.0 + 2.0 * x - y + 0.5 * z;
+            let field = Field::scalars("linear", change.points_before.iter().map(linear).collect::<Vec<_>>());
+            let carried = change.history.transfer_points(&field).unwrap().values.to_f64().unwrap();
+            let off = carried.iter().zip(&mesh.points).map(|(value, p)| (value - linear(p)).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-12);
+            assert_eq!((change.tets_before, change.tets_after), (before.cells.tets().count(), step.tets));
+        }
+    }
+    assert!(n_put_back > 0);
+}
+
+#[test]
+fn a_state_goes_on_to_the_same_bits_before_and_after_the_first_mesh_was_put_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut moving = restless();
+    let (mut states, mut put_back) = (Vec::new(), Vec::new());
+    for k in 1..=5 * 8 {
+        let step = twist_restless(&mut moving, k);
+        put_back.extend(is_put_back(&step).then_some(k));
+        if [6, 10, 33].contains(&k) {
+            let path = folder.path().join(format!("{k}.vtu"));
+            moving.save(&path).unwrap();
+            states.push((k, path));
+        }
+    }
+    assert!(put_back.first().is_some_and(|&k| 10 < k && k < 33), "{put_back:?}");
+    for (saved, path) in states {
+        let mut again = MovingMesh::load(&path, that_returns(), &Threads::new(2).unwrap()).unwrap();
+        for k in saved + 1..=5 * 8 {
+            let step = twist_restless(&mut again, k);
+            assert_eq!(is_put_back(&step), put_back.contains(&k), "{k} from {saved}");
+        }
+        assert_eq!(again.mesh(), moving.mesh(), "from {saved}");
+        assert_eq!(again.velocity(), moving.velocity(), "from {saved}");
+    }
+}
+
+#[test]
+fn nothing_is_put_back_after_a_refinement() {
+    let mut moving = restless();
+    twist_restless(&mut moving, 1);
+    let criteria = vec![Criterion::Ball { centre: [0.0; 3], radius: 0.1 }];
+    let wanted = Wanted { criteria, generations: Some(1), ..Wanted::default() };
+    let changes = moving.refine(&wanted, &threads()).unwrap();
+    assert!(!changes.is_empty());
+    let steps = (2..=6 * 8).map(|k| twist_by(&mut moving, k, RESTLESS.1, 0.0));
+    assert!(!steps.into_iter().any(|step| is_put_back(&step)));
+}
+
+#[test]
+fn a_mesh_that_settles_is_left_alone() {
+    let mut moving = cube_that_returns();
+    let mut last_change = 0;
+    for k in 1..=10 * 8 {
+        let step = twist_by(&mut moving, k, SETTLES, 0.0);
+        assert!(!is_put_back(&step), "{k}");
+        last_change = if step.changes.is_empty() { last_change } else { k };
+    }
+    assert!((1..=4 * 8).contains(&last_change), "{last_change}");
 }
 
 #[test]

@@ -354,3 +354,24 @@ fn left_of(report: &remesh::Report, limit: f64) -> Vec<LeftBad> {
     all.sort_by_key(|left| left.cell);
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::remesh::{Left, Reason};
+
+    #[test]
+    fn what_repair_left_above_the_limit_is_not_left_bad() {
+        let of = |tet: u32, eas: f64| Left {
+            tet,
+            eas,
+            place: [0.0; 3],
+            defect: "other",
+            reason: Reason::NothingHelps,
+        };
+        let report =
+            remesh::Report { left: vec![of(7, 0.1), of(3, 0.22), of(2, 0.19)], ..Default::default() };
+        let left: Vec<_> = left_of(&report, 0.2).into_iter().map(|left| (left.cell.0, left.eas)).collect();
+        assert_eq!(left, [(2, 0.19), (7, 0.1)]);
+    }
+}
