@@ -351,7 +351,7 @@ def test_without_a_script_tables_and_charts_are_left(moved):
         page.driver.get(moved.as_uri())
         texts = [e.text for e in page.driver.find_elements("css selector", "noscript, summary, figcaption")]
         assert any("Certificate of each frame" in text for text in texts)
-        assert any("EAS quality: worst and mean" in text for text in texts)
+        assert any("EAS quality: worst, 1 % and mean" in text for text in texts)
         assert not page.element("viewer").is_displayed()
     finally:
         page.close()

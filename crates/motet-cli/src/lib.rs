@@ -11,6 +11,7 @@ mod console;
 mod exit;
 mod outputs;
 mod progress;
+mod quality;
 mod table;
 mod verbs;
 mod words;

@@ -2,11 +2,11 @@
 
 use motet::Mesh;
 use motet::base::{CellId, Point};
-use motet::geometry::quality::{dihedral, eas};
+use motet::geometry::quality::{dihedral, eas, mean_ratio};
 use motet::geometry::tet::centroid;
 use motet::geometry::vector::is_finite;
 use motet::mesh::curved::CurvedCells;
-use motet::mesh::{BAD_EAS, CellKind, OrientedTets};
+use motet::mesh::{BAD_EAS, CellKind, OrientedTets, Qualities};
 use serde::Serialize;
 
 /// Bars of EAS: one below 0, then twenty to 1.
@@ -19,7 +19,8 @@ pub(crate) const ANGLE_BARS: usize = 15;
 pub(crate) struct Quality {
     pub(crate) tets: usize,
     pub(crate) eas_min: f64,
-    pub(crate) eas_mean: f64,
+    /// How good all are together.
+    pub(crate) all: Qualities,
     /// Below [`BAD_EAS`], and not of a boundary layer.
     pub(crate) bad: usize,
     /// Below [`BAD_EAS`], and of a boundary layer.
@@ -47,11 +48,14 @@ pub(crate) struct ByCell {
 pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let mut eas = vec![f32::NAN; mesh.cells.len()];
     let (mut quality, mut low) = (Quality::empty(), Vec::new());
+    let (mut values, mut ratios) = (Vec::new(), 0.0);
     let tets = OrientedTets::of(mesh);
     for (i, cell) in tets.cells.iter().enumerate() {
         let tet = tets.corners(i, &mesh.points);
         if tet.iter().all(|p| is_finite(*p)) {
             let value = quality.add(cell.index(), tet);
+            values.push(value);
+            ratios += mean_ratio(tet);
             eas[cell.index()] = value as f32;
             if value < BAD_EAS {
                 low.push(i);
@@ -65,7 +69,9 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let judged = tets.judge(&mesh.points, low, BAD_EAS);
     (quality.bad, quality.layers) = (judged.bad.len(), judged.layers.len());
     let bad = judged.bad.into_iter().map(|i| tets.cells[i]).collect();
-    ((quality.tets > 0).then(|| quality.finished()), ByCell { eas, bad })
+    let all = Qualities::of_values(&mut values, ratios);
+    quality.all = all.unwrap_or_default();
+    (all.map(|_| quality.finished()), ByCell { eas, bad })
 }
 
 /// Quadratic cells, in rising order, the determinant of whose Jacobian is not positive everywhere.
@@ -80,7 +86,7 @@ impl Quality {
         Self {
             tets: 0,
             eas_min: f64::INFINITY,
-            eas_mean: 0.0,
+            all: Qualities::default(),
             bad: 0,
             layers: 0,
             inverted: 0,
@@ -93,7 +99,7 @@ impl Quality {
         }
     }
 
-    /// The mean is a sum until [`Self::finished`], angles are radians.
+    /// Angles are radians until [`Self::finished`].
     fn add(&mut self, cell: usize, tet: [Point; 4]) -> f64 {
         let eas = eas(tet);
         let [low, high] = dihedral::min_max(tet);
@@ -101,7 +107,6 @@ impl Quality {
             (self.eas_min, self.worst_cell, self.worst_at) = (eas, cell, centroid(tet));
         }
         self.tets += 1;
-        self.eas_mean += eas;
         self.angle_min = self.angle_min.min(low);
         self.angle_max = self.angle_max.max(high);
         self.eas_bars[if eas < 0.0 { 0 } else { 1 + ((eas * 20.0) as usize).min(EAS_BARS - 2) }] += 1;
@@ -110,7 +115,6 @@ impl Quality {
     }
 
     fn finished(mut self) -> Self {
-        self.eas_mean /= self.tets as f64;
         self.angle_min = self.angle_min.to_degrees();
         self.angle_max = self.angle_max.to_degrees();
         self
@@ -130,8 +134,8 @@ mod tests {
             let ours = of(&mesh).0.unwrap();
             let theirs = Summary::of(&mesh).quality.unwrap();
             assert_eq!(
-                (ours.eas_min, ours.eas_mean, ours.bad),
-                (theirs.eas.min, theirs.eas.mean, theirs.eas.bad)
+                (ours.eas_min, ours.all, ours.bad),
+                (theirs.eas.min, theirs.distribution, theirs.eas.bad)
             );
             assert_eq!(
                 (ours.worst_cell, ours.worst_at),

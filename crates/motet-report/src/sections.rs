@@ -28,6 +28,22 @@ const TELLING: [&str; 12] = [
     "deviation",
 ];
 
+/// What a table of frames says of the tets of each.
+const QUALITY_COLUMNS: [&str; 12] = [
+    "tets",
+    "worst EAS",
+    "at cell",
+    "near x, y, z",
+    "1 % below",
+    "5 % below",
+    "median EAS",
+    "mean EAS",
+    "mean ratio",
+    "bad",
+    "inverted",
+    "angles, degrees",
+];
+
 /// One input's part of the page.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Section {
@@ -144,8 +160,12 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
         threshold: Some((motet::mesh::BAD_EAS, "bad below 0.2")),
         from_zero: true,
         ..chart(
-            "EAS quality: worst and mean",
-            vec![line("worst", quality(|q| q.eas_min)), line("mean", quality(|q| q.eas_mean))],
+            "EAS quality: worst, 1 % and mean",
+            vec![
+                line("worst", quality(|q| q.eas_min)),
+                line("1 % below", quality(|q| q.all.p1)),
+                line("mean", quality(|q| q.all.mean)),
+            ],
         )
     };
     let bad = Chart {
@@ -174,16 +194,7 @@ fn frames(shown: &Shown) -> Grid {
     let has_gap = shown.facts.iter().any(|facts| facts.least_gap.is_some());
     let mut head = vec!["frame", "time", "points", "cells"];
     if has_quality {
-        head.extend([
-            "tets",
-            "worst EAS",
-            "at cell",
-            "near x, y, z",
-            "mean EAS",
-            "bad",
-            "inverted",
-            "angles, degrees",
-        ]);
+        head.extend(QUALITY_COLUMNS);
     }
     if has_gap {
         head.extend(["least gap", "at x, y, z"]);
@@ -209,13 +220,17 @@ fn frames(shown: &Shown) -> Grid {
 }
 
 fn quality_cells(facts: &Facts) -> Vec<String> {
-    let Some(q) = &facts.quality else { return vec![String::new(); 8] };
+    let Some(q) = &facts.quality else { return vec![String::new(); QUALITY_COLUMNS.len()] };
     vec![
         count(q.tets),
         short(q.eas_min),
         q.worst_cell.to_string(),
         q.worst_at.map(short).join(", "),
-        short(q.eas_mean),
+        short(q.all.p1),
+        short(q.all.p5),
+        short(q.all.median),
+        short(q.all.mean),
+        short(q.all.mean_ratio),
         count(q.bad),
         count(q.inverted),
         format!("{} to {}", short(q.angle_min), short(q.angle_max)),
@@ -254,14 +269,40 @@ pub(crate) fn of_log(log: &Log) -> Section {
     }
 }
 
+/// Columns that are lines of one chart, by the names that they end with: how good all tets are.
+const QUALITIES: [(&str, &str); 4] = [
+    ("quality.worst", "worst"),
+    ("quality.p1", "1 % below"),
+    ("quality.median", "median"),
+    ("quality.mean", "mean"),
+];
+
+/// The distribution of the EAS of all tets over the rows; `None` where there is none.
+fn quality_chart(table: &Table, (x_name, x): &(String, Vec<f64>)) -> Option<Chart> {
+    let line = |(key, name): (&str, &str)| {
+        table.column(key).map(|column| Line { name: name.to_owned(), y: column.numbers() })
+    };
+    let lines: Vec<Line> = QUALITIES.into_iter().filter_map(line).collect();
+    (lines.len() == QUALITIES.len()).then(|| Chart {
+        title: "EAS of all tets".to_owned(),
+        x_name: x_name.clone(),
+        x: x.clone(),
+        lines,
+        threshold: Some((motet::mesh::BAD_EAS, "bad below 0.2")),
+        from_zero: true,
+    })
+}
+
 /// Charts of the columns that change, and how many of these have none.
 fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
     let (x_name, x) = abscissa(table);
+    let qualities = quality_chart(table, &(x_name.clone(), x.clone()));
+    let is_drawn = |name: &str| qualities.is_some() && QUALITIES.iter().any(|(key, _)| *key == name);
     let changes = |column: &&Column| {
         let numbers = column.numbers();
         let mut there = numbers.iter().flatten().filter(|x| x.is_finite());
         let first = there.next();
-        !is_id(&column.name) && there.any(|x| Some(x) != first)
+        !is_id(&column.name) && !is_drawn(&column.name) && there.any(|x| Some(x) != first)
     };
     let (seconds, mut others): (Vec<&Column>, Vec<&Column>) =
         table.columns.iter().filter(changes).partition(|column| is_seconds(&column.name));
@@ -275,8 +316,8 @@ fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
         from_zero: columns.len() > 1,
         ..Chart::default()
     };
-    let mut charts: Vec<Chart> =
-        others.iter().take(MOST_CHARTS).map(|column| chart(column.name.clone(), &[*column])).collect();
+    let single = others.iter().take(MOST_CHARTS).map(|column| chart(column.name.clone(), &[*column]));
+    let mut charts: Vec<Chart> = qualities.iter().cloned().chain(single).collect();
     if !seconds.is_empty() {
         charts.push(chart("seconds by stage".to_owned(), &seconds[..seconds.len().min(8)]));
     }

@@ -13,6 +13,7 @@ use serde_json::json;
 
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, short, time as time_of};
 use crate::words::{self, shown};
 
@@ -39,6 +40,7 @@ Lengths are in units of the mesh, angles in degrees.
 Examples:
   motet info vessel.vtu
   motet info vessel.vtu --json | jq .quality.eas.min
+  motet info vessel.vtu --json | jq .quality.distribution    worst, 1 %, 5 %, median and mean EAS
   motet info vessel.msh -o quality.vtu        colour by eas in ParaView to see where it is bad")]
 pub(crate) struct InfoArgs {
     /// The mesh file (or folder, or series: .pvd, .vtkhdf with steps)
@@ -216,29 +218,21 @@ impl Report<'_> {
         let Some(quality) = &self.summary.quality else { return };
         let eas = &quality.eas;
         let [x, y, z] = eas.worst_at.map(short);
-        let mut table = Table::new(["quality of tets", "min", "mean", "max"]);
-        table.row(["EAS".into(), short(eas.min), short(eas.mean), String::new()]);
-        table.row([
-            "mean ratio".into(),
-            short(quality.mean_ratio.min),
-            short(quality.mean_ratio.mean),
-            String::new(),
-        ]);
-        table.row([
-            "dihedral angle".into(),
-            short(quality.dihedral_deg.min),
-            String::new(),
-            short(quality.dihedral_deg.max),
-        ]);
+        let table = quality::table([("the mesh", Some(quality.distribution))]);
         console.say(format_args!("\n{table}"));
+        let [least, median, largest] = quality.edges.map(short);
+        console.say(format_args!(
+            "  worst mean ratio {}; dihedral angles {} to {} degrees; edges {least} to {largest} long, median {median}",
+            short(quality.mean_ratio.min),
+            short(quality.dihedral_deg.min),
+            short(quality.dihedral_deg.max)
+        ));
         console.say(format_args!(
             "  {} bad (EAS < 0.2), {} inverted or flat; worst: cell {} at ({x}, {y}, {z})",
             count(eas.bad),
             count(self.summary.inverted),
             eas.worst_cell
         ));
-        let [p1, p5, median] = eas.percentiles.map(short);
-        console.say(format_args!("  EAS: 1 % below {p1}, 5 % below {p5}, half below {median}"));
         if eas.layers > 0 {
             console.say(format_args!(
                 "  {} thin tets of boundary layers (EAS < 0.2), not counted as bad",

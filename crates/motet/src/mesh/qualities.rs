@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::quality::{eas, mean_ratio};
+use crate::geometry::vector::in_range;
+use crate::mesh::{Mesh, OrientedTets};
 
 /// The distribution of the EAS of tets, and the mean of their mean ratios; all 1 where there is no tet.
 ///
@@ -38,29 +40,39 @@ impl Qualities {
             (eas(corners), mean_ratio(corners))
         };
         let (mut eas, ratios): (Vec<f64>, Vec<f64>) = threads.map(tets.len(), of_tet).into_iter().unzip();
-        if eas.is_empty() {
-            return Self::default();
-        }
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        let (mean_eas, mean_ratio) = (mean(&eas), mean(&ratios));
-        let mut at = |part: f64| percentile(&mut eas, part);
-        Self { worst: at(0.0), p1: at(0.01), p5: at(0.05), median: at(0.5), mean: mean_eas, mean_ratio }
+        Self::of_values(&mut eas, ratios.iter().sum()).unwrap_or_default()
     }
-}
 
-/// The value at a part of the way from the least of `values` to the greatest, rounded down; puts them in another order.
-///
-/// # Panics
-/// When there is no value.
-pub(super) fn percentile(values: &mut [f64], part: f64) -> f64 {
-    let place = (part * (values.len() - 1) as f64) as usize;
-    *values.select_nth_unstable_by(place, f64::total_cmp).1
+    /// Looks at every tet of a mesh, of quadratic ones at the corners, as their neighbours orient them; `None` where there is no tet of finite points.
+    pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Option<Self> {
+        let OrientedTets { mut tets, .. } = OrientedTets::of(mesh);
+        tets.retain(|tet| tet.iter().all(|v| in_range(mesh.points[v.index()])));
+        (!tets.is_empty()).then(|| Self::of(&mesh.points, &tets, threads))
+    }
+
+    /// From the EAS of all tets, which it puts in another order, and the sum of their mean ratios; `None` where there is no tet.
+    pub fn of_values(eas: &mut [f64], ratios: f64) -> Option<Self> {
+        let n = eas.len() as f64;
+        let mean = eas.iter().sum::<f64>() / n;
+        // What is above the median need not be looked at again for what is below, and so on.
+        let (mut low, places) = (eas, [0.5, 0.05, 0.01, 0.0]);
+        let mut values = [1.0; 4];
+        let n_last = low.len().checked_sub(1)?;
+        for (value, part) in values.iter_mut().zip(places) {
+            let place = (part * n_last as f64) as usize;
+            *value = *low.select_nth_unstable_by(place, f64::total_cmp).1;
+            low = &mut low[..=place];
+        }
+        let [median, p5, p1, worst] = values;
+        Some(Self { worst, p1, p5, median, mean, mean_ratio: ratios / n })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::mesh::shapes::sphere_in_box;
+    use crate::mesh::{CellKind, Cells};
 
     #[test]
     fn percentiles_are_those_of_the_sorted_values() {
@@ -73,6 +85,46 @@ mod tests {
         assert_eq!([found.worst, found.p1, found.p5, found.median], [sorted[0], at(0.01), at(0.05), at(0.5)]);
         assert!((found.mean - sorted.iter().sum::<f64>() / sorted.len() as f64).abs() < 1e-12);
         assert!(found.worst < found.p1 && found.p5 < found.median && found.mean_ratio > found.mean);
+    }
+
+    #[test]
+    fn percentiles_of_few_or_equal_values_are_those_of_the_sorted_ones() {
+        for n in [1, 2, 3, 19, 20, 21, 99, 100, 101, 102, 1000] {
+            // A permutation, with each value several times where n is large.
+            let values: Vec<f64> = (0..n).map(|i| f64::from((i * 7919 + 13) % n % 37) / 37.0 - 0.1).collect();
+            let (mut sorted, mut shuffled) = (values.clone(), values.clone());
+            sorted.sort_by(f64::total_cmp);
+            let found = Qualities::of_values(&mut shuffled, 0.5 * f64::from(n)).unwrap();
+            let at = |part: f64| sorted[(part * f64::from(n - 1)) as usize];
+            assert_eq!(
+                [found.worst, found.p1, found.p5, found.median],
+                [0.0, 0.01, 0.05, 0.5].map(at),
+                "{n}"
+            );
+            assert_eq!(found.mean_ratio, 0.5);
+        }
+    }
+
+    #[test]
+    fn a_mesh_that_is_numbered_the_other_way_round_is_as_good() {
+        let mesh = sphere_in_box(4, 2);
+        let threads = Threads::single();
+        let tets: Vec<_> = mesh.cells.tets().map(|(_, tet)| tet).collect();
+        let turned: Vec<_> = tets.iter().map(|&[a, b, c, d]| [a, b, d, c]).collect();
+        let plain = Qualities::of(&mesh.points, &tets, &threads);
+        assert_eq!(Qualities::of_mesh(&mesh, &threads), Some(plain));
+        let mut cells = Cells::new();
+        turned.into_iter().for_each(|tet| cells.push(CellKind::TETRA, tet));
+        let other = Mesh::new(mesh.points.clone(), cells);
+        let found = Qualities::of_mesh(&other, &threads).unwrap();
+        assert!((found.worst - plain.worst).abs() < 1e-12 && (found.mean - plain.mean).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_number_does_not_count() {
+        let mut mesh = sphere_in_box(4, 2);
+        mesh.points.iter_mut().for_each(|p| p[0] = f64::NAN);
+        assert_eq!(Qualities::of_mesh(&mesh, &Threads::single()), None);
     }
 
     #[test]

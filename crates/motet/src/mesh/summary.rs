@@ -10,9 +10,8 @@ use crate::geometry::{quality, triangle};
 use crate::mesh::adjacency::Facets;
 use crate::mesh::check::{Defect, DefectKind, SurfaceFacets, check_with, is_closed, is_conforming};
 use crate::mesh::curved::CurvedSummary;
-use crate::mesh::qualities::percentile;
 use crate::mesh::{
-    Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, cell_volume, edge_lengths, triangulate,
+    Boundary, CellKind, Judged, Labels, Mesh, OrientedTets, Qualities, cell_volume, edge_lengths, triangulate,
 };
 
 /// A tet below this EAS is bad.
@@ -111,6 +110,10 @@ pub struct QualitySummary {
     pub dihedral_deg: Range,
     /// `12 (3V)^(2/3) / sum of squared edge lengths`.
     pub mean_ratio: MinMean,
+    /// How good all tets are together.
+    pub distribution: Qualities,
+    /// The least, the median and the largest length of their edges.
+    pub edges: [f64; 3],
 }
 
 /// Equi-angle quality of the tets.
@@ -297,7 +300,8 @@ fn tet_quality(mesh: &Mesh, tets: &OrientedTets) -> Option<QualitySummary> {
         }
     }
     let judged = tets.judge(&mesh.points, low, BAD_EAS);
-    total.map(|quality| quality.finished(&mut all, &judged))
+    let edges = edge_lengths(&mesh.points, tets.tets.iter().copied()).unwrap_or_default();
+    total.map(|quality| QualitySummary { edges, ..quality }.finished(&mut all, &judged))
 }
 
 impl QualitySummary {
@@ -313,10 +317,11 @@ impl QualitySummary {
             histogram: [0; 11],
         };
         let dihedral_deg = Range { min: f64::INFINITY, max: f64::NEG_INFINITY };
-        Self { eas, dihedral_deg, mean_ratio: MinMean { min: f64::INFINITY, mean: 0.0 } }
+        let mean_ratio = MinMean { min: f64::INFINITY, mean: 0.0 };
+        Self { eas, dihedral_deg, mean_ratio, distribution: Qualities::default(), edges: [0.0; 3] }
     }
 
-    /// Adds a tet, and answers its EAS. Means are sums until [`Self::finished`], angles radians.
+    /// Adds a tet, and answers its EAS. Until [`Self::finished`] the mean ratio is a sum, angles are radians, and there is no distribution.
     fn add(&mut self, cell: CellId, tet: [Point; 4]) -> f64 {
         let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
         if eas < self.eas.min {
@@ -324,7 +329,6 @@ impl QualitySummary {
             self.eas.worst_cell = cell;
             self.eas.worst_at = crate::geometry::tet::centroid(tet);
         }
-        self.eas.mean += eas;
         self.eas.histogram[if eas < 0.0 { 0 } else { 1 + ((eas * 10.0) as usize).min(9) }] += 1;
         let [low, high] = quality::dihedral::min_max(tet);
         self.dihedral_deg.min = self.dihedral_deg.min.min(low);
@@ -336,11 +340,10 @@ impl QualitySummary {
 
     /// `all` are the EAS of all tets.
     fn finished(mut self, all: &mut [f64], judged: &Judged) -> Self {
-        let n = all.len();
-        self.eas.percentiles = [0.01, 0.05, 0.5].map(|part| percentile(all, part));
+        let all = Qualities::of_values(all, self.mean_ratio.mean).unwrap_or_default();
+        self.eas.percentiles = [all.p1, all.p5, all.median];
         (self.eas.bad, self.eas.layers) = (judged.bad.len(), judged.layers.len());
-        self.eas.mean /= n as f64;
-        self.mean_ratio.mean /= n as f64;
+        (self.eas.mean, self.mean_ratio.mean, self.distribution) = (all.mean, all.mean_ratio, all);
         self.dihedral_deg =
             Range { min: self.dihedral_deg.min.to_degrees(), max: self.dihedral_deg.max.to_degrees() };
         self

@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::base::{CellId, Point, Threads, VertexId, percent};
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
+use crate::mesh::Qualities;
 use crate::mesh::curved::LeastJacobian;
 use crate::motion::check::Check;
 use crate::motion::slide::LeavesPlane;
@@ -58,6 +59,9 @@ pub struct Quality {
     pub worst_eas: Option<Worst>,
     /// The worst mean ratio of a tet.
     pub worst_mean_ratio: Option<Worst>,
+    /// How good all tets are together; `None` where there is no tet.
+    #[serde(rename = "quality", skip_serializing_if = "Option::is_none")]
+    pub distribution: Option<Qualities>,
     /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
     /// its three edges span over the product of their lengths (Knupp 2000).
     pub worst_scaled_jacobian: Option<Worst>,
@@ -115,13 +119,16 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     let n = check.corners.len();
     let chunk = |start: usize| measure_some(check, points, start..(start + CHUNK).min(n));
     let starts: Vec<usize> = (0..n).step_by(CHUNK).collect();
-    let parts: Vec<(Quality, Vec<CellId>)> = match threads.pool() {
+    let parts: Vec<Measured> = match threads.pool() {
         None => starts.into_iter().map(chunk).collect(),
         Some(pool) => pool.install(|| starts.into_par_iter().map(chunk).collect()),
     };
-    let mut low = Vec::new();
-    let all = parts.into_iter().fold(Quality::default(), |all, (part, part_low)| {
-        low.extend(part_low);
+    let (mut low, mut eas, mut ratios) = (Vec::new(), Vec::with_capacity(n), 0.0);
+    let all = parts.into_iter().fold(Quality::default(), |all, measured| {
+        let part = measured.quality;
+        low.extend(measured.low);
+        eas.extend(measured.eas);
+        ratios += measured.ratios;
         Quality {
             worst_eas: worse(all.worst_eas, part.worst_eas),
             worst_mean_ratio: worse(all.worst_mean_ratio, part.worst_mean_ratio),
@@ -132,7 +139,21 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     let place = |cell: &CellId| check.tets.cells.binary_search(cell).ok();
     let judged = check.tets.judge(points, low.iter().filter_map(place).collect(), BAD_EAS);
     let worst_curved_jacobian = worst_curved(check, points, threads);
-    Quality { bad: judged.bad.len(), layers: judged.layers.len(), worst_curved_jacobian, ..all }
+    let distribution = Qualities::of_values(&mut eas, ratios);
+    Quality { bad: judged.bad.len(), layers: judged.layers.len(), distribution, worst_curved_jacobian, ..all }
+}
+
+/// What some corners came to.
+#[derive(Default)]
+struct Measured {
+    /// But for counts and distribution.
+    quality: Quality,
+    /// The tets below [`BAD_EAS`].
+    low: Vec<CellId>,
+    /// The EAS of each tet.
+    eas: Vec<f64>,
+    /// The sum of the mean ratios of tets.
+    ratios: f64,
 }
 
 /// The worst quadratic cell. Chunks are the same for any number of threads, and so is what each passes over.
@@ -145,9 +166,9 @@ fn worst_curved(check: &Check, points: &[Point], threads: &Threads) -> Option<Wo
     worst.into_iter().map(|worst| worst.map(as_worst)).fold(None, worse)
 }
 
-/// The quality of some corners but for the counts, and the tets below [`BAD_EAS`] among them.
-fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> (Quality, Vec<CellId>) {
-    let (mut quality, mut low) = (Quality::default(), Vec::new());
+fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>) -> Measured {
+    let mut measured = Measured { eas: Vec::with_capacity(corners.len()), ..Measured::default() };
+    let quality = &mut measured.quality;
     for i in corners {
         let tet: [VertexId; 4] = check.corners.tets[i];
         let cell = check.corners.cells[i];
@@ -157,16 +178,19 @@ fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>
         if check.corners.is_cell[i] {
             let value = eas(tet);
             if value < BAD_EAS {
-                low.push(cell);
+                measured.low.push(cell);
             }
+            let ratio = mean_ratio(tet);
+            measured.eas.push(value);
+            measured.ratios += ratio;
             quality.worst_eas = worse(quality.worst_eas, as_worst(value));
-            quality.worst_mean_ratio = worse(quality.worst_mean_ratio, as_worst(mean_ratio(tet)));
+            quality.worst_mean_ratio = worse(quality.worst_mean_ratio, as_worst(ratio));
         } else {
             quality.worst_scaled_jacobian =
                 worse(quality.worst_scaled_jacobian, as_worst(scaled_jacobian(tet)));
         }
     }
-    (quality, low)
+    measured
 }
 
 /// The one with the smaller value; of equal ones the first.

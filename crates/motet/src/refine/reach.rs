@@ -13,8 +13,8 @@ use super::shapes::Shapes;
 use super::true_surface::OnSurface;
 use super::whole::MeshRefinement;
 use crate::base::{Error, Result, TetId, Threads};
-use crate::mesh::TetPart;
 use crate::mesh::history::{History, Rules};
+use crate::mesh::{Qualities, TetPart};
 
 /// How a mesh is to be.
 #[derive(Clone, Debug, Default)]
@@ -109,6 +109,8 @@ pub struct Step {
     pub worst_mean_ratio: f64,
     /// The mean one.
     pub mean_mean_ratio: f64,
+    /// How good all tets are together.
+    pub quality: Qualities,
     /// The worst EAS over the worst of the first mesh.
     pub eas_of_first: f64,
     /// The same for mean ratios.
@@ -312,6 +314,7 @@ impl Step {
             mean_eas: now.mean_eas,
             worst_mean_ratio: now.worst_mean_ratio,
             mean_mean_ratio: now.mean_mean_ratio,
+            quality: now.all,
             eas_of_first: now.worst_eas / first.worst_eas,
             mean_ratio_of_first: now.worst_mean_ratio / first.worst_mean_ratio,
             seconds,

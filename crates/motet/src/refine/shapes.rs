@@ -1,8 +1,8 @@
-//! How well the tets of a mesh are shaped, in four numbers.
+//! How well the tets of a mesh are shaped.
 
 use crate::base::Threads;
 use crate::geometry::quality::{eas, mean_ratio};
-use crate::mesh::TetMesh;
+use crate::mesh::{Qualities, TetMesh};
 
 /// Of all tets, as if all were numbered the same way round.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Shapes {
     pub worst_mean_ratio: f64,
     /// The mean of the mean ratios.
     pub mean_mean_ratio: f64,
+    /// How good all are together.
+    pub all: Qualities,
 }
 
 impl Shapes {
@@ -25,7 +27,11 @@ impl Shapes {
             [eas(corners).abs(), mean_ratio(corners).abs()]
         });
         let worst = |k: usize| each.iter().map(|pair| pair[k]).reduce(f64::min).unwrap_or(0.0);
-        let mean = |k: usize| each.iter().map(|pair| pair[k]).sum::<f64>() / each.len().max(1) as f64;
-        Self { worst_eas: worst(0), mean_eas: mean(0), worst_mean_ratio: worst(1), mean_mean_ratio: mean(1) }
+        let sum = |k: usize| each.iter().map(|pair| pair[k]).sum::<f64>();
+        let mean = |k: usize| sum(k) / each.len().max(1) as f64;
+        let mut eas: Vec<f64> = each.iter().map(|pair| pair[0]).collect();
+        let all = Qualities::of_values(&mut eas, sum(1)).unwrap_or_default();
+        let [worst_eas, worst_mean_ratio] = [0, 1].map(worst);
+        Self { worst_eas, mean_eas: mean(0), worst_mean_ratio, mean_mean_ratio: mean(1), all }
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use motet::implant::{Device, Implanted, Inside, implant};
-use motet::mesh::{LabelNames, unused_name};
+use motet::mesh::{LabelNames, Qualities, unused_name};
 use motet::{Error, io};
 
 pub(crate) use args::ImplantArgs;
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     let made = implant(&host, &devices, &options, &rules, &threads);
     let Implanted { mut mesh, history, report } =
         made.map_err(|e| in_its_file(e, &args.host, &args.devices, &devices))?;
+    let quality = [&host, &mesh].map(|mesh| Qualities::of_mesh(mesh, &threads));
     meter.stage("writing");
     let Written { lost, seconds: write } =
         args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
@@ -45,7 +46,7 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     lost.iter().for_each(|what| console.warn(what));
     let outcome = Outcome::of(report.not_reached());
-    Report::new(args, report, [read, write, begin.elapsed().as_secs_f64()]).tell(&outcome, console);
+    Report::new(args, report, quality, [read, write, begin.elapsed().as_secs_f64()]).tell(&outcome, console);
     Ok(outcome)
 }
 

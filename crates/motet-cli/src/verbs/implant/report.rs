@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use motet::base::Point;
 use motet::implant;
+use motet::mesh::Qualities;
 use motet::remesh::Left;
 use serde::Serialize;
 
 use super::args::ImplantArgs;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -33,6 +35,8 @@ pub(super) struct Report {
     volume_deviation: f64,
     /// Bad tets that no angle of a surface forces.
     unforced: usize,
+    /// How good all tets are: of the host, and of the mesh.
+    quality: [Option<Qualities>; 2],
     report: implant::Report,
     seconds: Seconds,
 }
@@ -48,7 +52,13 @@ struct Seconds {
 const FIRST: usize = 10;
 
 impl Report {
-    pub(super) fn new(args: &ImplantArgs, report: implant::Report, [read, write, total]: [f64; 3]) -> Self {
+    /// `quality`: of the host, and of the mesh; `seconds`: to read, to write, and all.
+    pub(super) fn new(
+        args: &ImplantArgs,
+        report: implant::Report,
+        quality: [Option<Qualities>; 2],
+        [read, write, total]: [f64; 3],
+    ) -> Self {
         Self {
             host: args.host.clone(),
             devices: args.devices.clone(),
@@ -58,6 +68,7 @@ impl Report {
             valid: report.is_valid(),
             volume_deviation: report.volume_deviation(),
             unforced: report.n_unforced(),
+            quality,
             report,
             seconds: Seconds { read, write, total },
         }
@@ -102,6 +113,8 @@ impl Report {
             count(report.improved.left.len()),
             worst.map_or("-".into(), |worst| short(worst.eas))
         ));
+        let [host, mesh] = self.quality;
+        console.say(quality::table([("host", host), ("with devices", mesh)]));
         console.say(format_args!(
             "volume {}, expected {}; off by {:.0e} at most",
             short(report.volume),

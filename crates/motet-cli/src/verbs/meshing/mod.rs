@@ -8,6 +8,7 @@ mod words;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use motet::mesh::Qualities;
 use motet::meshing::{Dividing, Surfaces, fill, sizes_by};
 use motet::preflight::{Preflight, Role, culprits};
 use motet::{Mesh, io};
@@ -65,6 +66,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     }
     let filled = fill(&surfaces, &preflight, &options, &threads)?;
     let fill = filling.elapsed().as_secs_f64();
+    let quality = Qualities::of_mesh(&filled.mesh, &threads);
     meter.stage("writing");
     let writing = Instant::now();
     let lost = io::write(&args.output, &filled.mesh, &args.writing.options())?;
@@ -77,6 +79,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
         filled.report,
         filled.improved,
         filled.layers,
+        quality,
         [read, check, fill, write, begin.elapsed().as_secs_f64()],
         outcome == Outcome::Done,
     );

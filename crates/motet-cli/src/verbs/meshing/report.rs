@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use motet::mesh::Qualities;
 use motet::meshing;
 use motet::preflight::{FaultKind, Preflight, Repair, RepairKind};
 use motet::remesh;
@@ -10,6 +11,7 @@ use serde::Serialize;
 use super::args::MeshArgs;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{count, seconds, short};
 use crate::words;
 
@@ -30,6 +32,8 @@ pub(crate) struct Report<'a> {
     improved: Option<remesh::Report>,
     /// `null` where no layers were asked for.
     layers: Option<meshing::layers::Report>,
+    /// How good all tets of the mesh are; `null` where the surfaces were refused.
+    quality: Option<Qualities>,
     seconds: Seconds,
 }
 
@@ -56,6 +60,7 @@ impl<'a> Report<'a> {
             filled: None,
             improved: None,
             layers: None,
+            quality: None,
             seconds: Seconds::default(),
         }
     }
@@ -65,12 +70,14 @@ impl<'a> Report<'a> {
         filled: meshing::Report,
         improved: Option<remesh::Report>,
         layers: Option<meshing::layers::Report>,
+        quality: Option<Qualities>,
         [read, check, fill, write, total]: [f64; 5],
         complete: bool,
     ) {
         self.filled = Some(filled);
         self.improved = improved;
         self.layers = layers;
+        self.quality = quality;
         self.complete = complete;
         self.seconds = Seconds { read, check, fill, write, total };
     }
@@ -176,6 +183,9 @@ impl<'a> Report<'a> {
                 count(improved.before.bad.saturating_sub(improved.after.bad)),
                 count(improved.after.bad)
             ));
+        }
+        if self.quality.is_some() {
+            console.say(quality::table([("the mesh", self.quality)]));
         }
         for body in filled.bodies.iter().take(TOLD) {
             let name = body.name.as_ref().map_or_else(String::new, |name| format!(" {name}"));

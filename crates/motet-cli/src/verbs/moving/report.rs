@@ -15,6 +15,7 @@ use super::inverted;
 use super::plan::Plan;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
 
@@ -269,6 +270,9 @@ impl Report {
             console.say(format_args!("{n} vertices of the interface {} driven by the array", interface.name));
         }
         console.say(step_table(&self.before, &self.steps));
+        if self.before.quality.distribution.is_some() {
+            console.say(self.quality_table());
+        }
         self.warn_of_what_came(console);
         self.tell_end(console);
         console.say(format_args!(
@@ -287,6 +291,15 @@ impl Report {
     pub(super) fn not_reached(&self) -> Option<String> {
         let last = self.steps.last()?;
         last.certificate.not_reached().map(|why| format!("step {}: {why}", last.step))
+    }
+
+    /// How good all tets are: as the mesh came, and after each step that was written or is the last.
+    fn quality_table(&self) -> Table {
+        let last = self.steps.len().saturating_sub(1);
+        let told = self.steps.iter().enumerate().filter(|(k, step)| *k == last || step.file.is_some());
+        let steps =
+            told.map(|(_, step)| (format!("step {}", step.step), step.certificate.quality.distribution));
+        quality::table([("as it came".to_owned(), self.before.quality.distribution)].into_iter().chain(steps))
     }
 
     /// Planes that are flat within the tolerance, but not flat.

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::args::RefineArgs;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -111,6 +112,11 @@ impl Report {
             short(self.first_worst_eas)
         ));
         console.say(self.table());
+        let at = |step: Option<&Step>| step.map(|step| step.quality);
+        console.say(quality::table([
+            ("as it came", at(self.steps.first())),
+            ("at the end", at(self.steps.last())),
+        ]));
         if self.left > 0 {
             console.say(format_args!(
                 "{} tets in {} of the first mesh are below the floors of these: no way to divide them is better",

@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use super::args::{RemeshArgs, Surface};
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
@@ -72,8 +73,8 @@ struct State {
     types: Value,
     inverted: usize,
     worst_eas: Option<Worst>,
-    /// Of all tets, those of boundary layers among them.
-    quality: Qualities,
+    /// Of all tets, those of boundary layers among them; null where there is none.
+    quality: Option<Qualities>,
 }
 
 #[derive(Debug, Serialize)]
@@ -177,6 +178,8 @@ impl Report {
             console.say(self.operation_words());
         }
         console.say(self.state_table());
+        let states = [("before", self.before.quality), ("after", self.after.quality)];
+        console.say(quality::table(states));
         if let Some(sizes) = &self.sizes {
             console.say(Self::size_table(sizes));
         }
@@ -264,8 +267,6 @@ impl Report {
         row("worst EAS", &worst(|w| short(w.value)));
         row("in cell", &worst(|w| w.cell.to_string()));
         row("at", &worst(|w| place(w.place)));
-        row("1 % below", &|s| short(s.quality.p1));
-        row("mean EAS", &|s| short(s.quality.mean));
         table
     }
 
@@ -352,7 +353,6 @@ impl Report {
 
 impl State {
     fn of(mesh: &Mesh, state: &remesh::State, threads: &Threads) -> Self {
-        let tets: Vec<_> = mesh.cells.tets().map(|(_, tet)| tet).collect();
         let [i, ii, iii, iv, other] = state.types;
         Self {
             points: mesh.points.len(),
@@ -363,7 +363,7 @@ impl State {
             types: json!({ "I": i, "II": ii, "III": iii, "IV": iv, "other": other }),
             inverted: state.inverted,
             worst_eas: state.worst.map(|w| Worst { value: w.eas, cell: w.tet, place: w.place }),
-            quality: Qualities::of(&mesh.points, &tets, threads),
+            quality: Qualities::of_mesh(mesh, threads),
         }
     }
 }

@@ -12,6 +12,7 @@ use super::job::Job;
 use super::output::Output;
 use crate::console::Console;
 use crate::exit::Outcome;
+use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
 
@@ -227,14 +228,15 @@ impl Report {
                 worst.eas, self.worst_at_step, self.most_bad, self.most_bad_not_forced, self.most_inverted
             ));
         }
-        let [first, last] = self.quality;
-        let n_tets = self.tets.map(count);
         if n > 0 {
+            let [first, last] = self.quality.map(Some);
+            console.say(quality::table([("at first", first), ("at last", last)]));
             console.say(format_args!(
-            "from first to last: {} to {} tets; EAS 1 % {:.3} to {:.3}, median {:.3} to {:.3}, mean {:.3} to {:.3} (at least {:.3}), mean ratio {:.3} to {:.3}; {:.2} % of the cells changed in a step",
-            n_tets[0], n_tets[1], first.p1, last.p1, first.median, last.median, first.mean, last.mean,
-            self.least_mean, first.mean_ratio, last.mean_ratio, 100.0 * self.changed / n as f64
-        ));
+                "from {} tets at first; mean EAS of a step at least {:.3}; {:.2} % of the cells changed in a step",
+                count(self.tets[0]),
+                self.least_mean,
+                100.0 * self.changed / n as f64
+            ));
         }
         if self.most_inverted_at_start > 0 {
             console.say(format_args!(
