@@ -74,7 +74,7 @@ fn changed_meshes_are_told_before_and_after() {
     let folder = folder();
     let host = read(folder.path("box.vtu")).unwrap();
     let of = |name: &str| read(folder.path(name)).unwrap();
-    let remeshed = told(&folder, &["remesh", "box.vtu", "-o", "remeshed.vtu", "--min-eas", "0.35"]);
+    let remeshed = told(&folder, &["remesh", "box.vtu", "-o", "remeshed.vtu", "--min-eas", "0.26"]);
     holds(&remeshed["before"]["quality"], &host, "remesh, before");
     holds(&remeshed["after"]["quality"], &of("remeshed.vtu"), "remesh, after");
     let words = ["refine", "box.vtu", "-o", "fine.vtu", "--ball", "2,0,0,0.5", "--generations", "1"];
