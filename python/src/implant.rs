@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::border::{Given, parts};
 use crate::history::History;
-use crate::report::{Changed, report};
+use crate::report::{Changed, quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
@@ -64,5 +64,7 @@ pub(crate) fn implant<'py>(
     let made = watched(py, threads, progress, put)?;
     let Implanted { mesh, history, report: told } = made;
     let not_reached = told.not_reached();
-    Ok((parts(py, mesh)?, History(history), report(py, &told)?, not_reached))
+    let told = report(py, &told)?;
+    told.set_item("quality", [quality(py, &host.0)?, quality(py, &mesh)?])?;
+    Ok((parts(py, mesh)?, History(history), told, not_reached))
 }

@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::border::{Given, parts};
 use crate::error::{OrRaise, called};
-use crate::report::report;
+use crate::report::{quality, report};
 use crate::watch::watched;
 
 /// What a call asks for; a class with these attributes on Python's side.
@@ -87,6 +87,7 @@ pub(crate) fn mesh<'py>(
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
     let not_reached = filled.not_reached(&options);
     let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
+    told.set_item("quality", quality(py, &filled.mesh)?)?;
     Ok((parts(py, filled.mesh)?, told, not_reached))
 }
 

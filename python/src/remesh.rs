@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::border::{Given, parts};
 use crate::error::OrRaise;
 use crate::history::History;
-use crate::report::{Changed, report};
+use crate::report::{Changed, quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
@@ -55,7 +55,11 @@ pub(crate) fn remesh<'py>(
     };
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
-    let MeshOutcome { mesh, history, report: told, .. } = outcome;
+    let MeshOutcome { mesh: new, history, report: told, .. } = outcome;
     let not_reached = told.not_reached();
-    Ok((parts(py, mesh)?, History(history), report(py, &told)?, not_reached))
+    let told = report(py, &told)?;
+    for (state, mesh) in [("before", &mesh.0), ("after", &new)] {
+        told.get_item(state)?.set_item("quality", quality(py, mesh)?)?;
+    }
+    Ok((parts(py, new)?, History(history), told, not_reached))
 }

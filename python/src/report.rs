@@ -1,5 +1,8 @@
 //! Reports as dictionaries.
 
+use motet::Mesh;
+use motet::base::Threads;
+use motet::mesh::Qualities;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
@@ -12,6 +15,11 @@ pub(crate) type Changed<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, 
 /// Anything that a report is made of, as dictionaries, lists and numbers.
 pub(crate) fn report<'py>(py: Python<'py>, told: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     Ok(pythonize::pythonize(py, told)?)
+}
+
+/// How good all tets of a mesh are; None where it has none.
+pub(crate) fn quality<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyAny>> {
+    report(py, &Qualities::of_mesh(mesh, &Threads::single()))
 }
 
 /// A report with `not_reached`: why the requested result was not reached, None where it was.

@@ -21,7 +21,7 @@ def test_bad_tets_are_repaired_and_all_else_stays():
     mesh = shaken()
     done = motet.remesh(mesh)
     assert done.complete and done.report.before.bad > 0 == done.report.after.bad
-    assert np.nanmin(done.mesh.quality()) >= 0.2
+    assert np.nanmin(done.mesh.quality()) >= 0.2 and done.report.after.quality.worst >= 0.2 > done.report.before.quality.worst
     old = done.history.cell_to_old
     kept = old >= 0
     np.testing.assert_array_equal(done.mesh.cell_data["id"][kept], old[kept])
@@ -72,6 +72,7 @@ def test_a_device_is_implanted():
     told = done.mesh.summary()
     assert told.conforming and told.inverted == 0
     assert told.volume == pytest.approx(64.0)
+    assert done.report.quality == [host.summary().quality.distribution, told.quality.distribution]
     assert told.regions["coil"].volume == pytest.approx(device.summary().volume or motet.mesh(device).mesh.summary().volume)
     hollow = motet.implant(host, [device, motet.shapes.coil((0, 0, -1.2))], inside="hollow")
     assert {"device", "device_2"} <= set(hollow.mesh.patch_names.values())
@@ -83,6 +84,7 @@ def test_surfaces_are_filled():
     assert done.complete and done.history is None and done.report.layers.prisms > 0
     told = done.mesh.summary()
     assert set(told.patches) == {"wall", "inlet", "outlet"} and told.quality.eas.min > 0
+    assert done.report.quality.p1 == told.quality.distribution.p1 and done.report.quality.mean > done.report.quality.p5
     plain = motet.mesh(shapes.stent())
     assert plain.mesh.n_points >= shapes.stent().n_points and plain.report.triangles_kept == plain.report.triangles
 

@@ -97,6 +97,8 @@ class Changed:
     history: History | None
     """Where everything came from; None for a mesh that was made of surfaces."""
     report: Report
+    """What was done. ``quality`` tells how good all tets are (``worst``, ``p1``, ``p5``, ``median``, ``mean`` EAS, ``mean_ratio``): of a mesh made of surfaces; of host and mesh
+    where something was implanted; in ``before`` and ``after`` of a repair; in each of ``steps`` of a refinement."""
     not_reached: str | None = None
     """Why the requested result was not reached; None where it was. The report has the details."""
 

@@ -199,7 +199,7 @@ class Mover(NotPickled):
         -------
         points : array (n, 3)
         certificate : Report
-            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``substeps``, ``seconds``; with quadratic cells
+            ``complete``, ``fraction`` of the way that was reached, ``inverted``, ``bad``, ``worst_eas`` with cell and place, ``quality`` of all tets, ``substeps``, ``seconds``; with quadratic cells
             ``worst_curved_jacobian``, the least scaled Jacobian with cell and place.
         """
         given = self._displacement(displacement)
