@@ -1,4 +1,5 @@
 """Does a mesh stay the mesh it was? Long motions by `motet run`, and two of them by a loop round Mmg: counts and quality, step by step."""
+import argparse
 import importlib.util
 import json
 import subprocess
@@ -7,8 +8,9 @@ import time
 
 import numpy as np
 
+import drift_transfer
 from common import HERE, MOTET, busy_seconds, call, cell, own_seconds, table
-from drift_cases import chosen
+from drift_cases import cases, chosen
 from drift_log import cycle_ends, lines, read_frame, read_run, sums
 
 QUICK = 12  # steps of each case
@@ -19,7 +21,7 @@ RIVALS = {"Mmg loop": 0.0, "Mmg loop, short edges too": 0.55}
 
 
 def run(record, options):
-    found, without = chosen(options)
+    found, without, with_transfer = asked(options)
     left_out, results = [f"{name} (no data; MOTET_DATA names the folder)" for name in without], []
     for case in found:
         for program, done in programs(case, options):
@@ -31,9 +33,25 @@ def run(record, options):
             if "error" in done:
                 left_out.append(f"{case.name}, {program} ({done['error']})")
             print(f"  drift {case.name}, {program}: done", file=sys.stderr, flush=True)
-    tables(results)
+    if results:
+        tables(results)
+    if with_transfer:
+        try:
+            drift_transfer.run(record, options, next(case for case in cases(options) if case.name == "paddle"))
+        except (OSError, RuntimeError) as why:
+            left_out.append(f"{drift_transfer.NAME} ({why})")
     for line in left_out:
         print(f"\nLeft out: {line}")
+
+
+def asked(options):
+    """The cases, the names of those without data, and whether fields are looked at, too: that is no case of `motet run`."""
+    names = options.cases.split(",") if options.cases else None
+    if names is None or drift_transfer.NAME not in names:
+        return *chosen(options), names is None
+    names.remove(drift_transfer.NAME)
+    options = argparse.Namespace(**vars(options) | {"cases": ",".join(names)})
+    return *(chosen(options) if names else ([], [])), True
 
 
 def programs(case, options):

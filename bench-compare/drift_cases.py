@@ -74,6 +74,7 @@ def filled(*words, **surfaces):
     return fill
 
 
+PADDLE_SIZE = 0.25
 PADDLE = {"walls": box((4, 4, 2), (16, 16, 8)), "paddle": box((2, 0.25, 0.75), (16, 2, 6))}
 SPHERE = {"walls": box((6, 2, 2), (30, 10, 10), (1.5, 0, 0)), "sphere": ellipsoid((0.5,) * 3, 8)}
 EGG = {"walls": ellipsoid((2,) * 3, 10), "egg": ellipsoid((1.2, 0.8, 0.6), 10)}
@@ -84,7 +85,7 @@ TUBE = along_x(cylinder(5, 60, 3, 34))
 CUBE = box((2, 2, 2), (10, 10, 10))
 HOLE = ["--hole", "0,0,0"]
 
-fill_paddle = filled("walls.stl", "paddle.stl", *HOLE, "--size", 0.25, **PADDLE)
+fill_paddle = filled("walls.stl", "paddle.stl", *HOLE, "--size", PADDLE_SIZE, **PADDLE)
 fill_sphere = filled("walls.stl", "sphere.stl", *HOLE, "--size", 0.2, "--growth", 0.3, **SPHERE)
 fill_egg = filled("walls.stl", "egg.stl", *HOLE, "--size", 0.35, "--growth", 0.3, **EGG)
 fill_cup = filled("cup.stl", "interface.stl", "--seed", "0,0,0.2=fluid", "--seed", "0,0,2=solid", "--size", 0.8, **CUP)

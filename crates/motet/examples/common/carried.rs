@@ -1,0 +1,125 @@
+//! Fields that follow exact functions of the place while vertices move, and are carried where the mesh changes.
+
+use std::f64::consts::FRAC_PI_2;
+
+use motet::base::{Point, VertexId};
+use motet::geometry::tet;
+use motet::mesh::history::History;
+use motet::mesh::{Field, Mesh};
+use serde_json::{Value, json};
+
+/// Values at vertices, and where these are.
+pub(crate) struct Carried {
+    places: Vec<Point>,
+    linear: Vec<f64>,
+    smooth: Vec<f64>,
+    /// The largest absolute value of the linear function at first.
+    range: f64,
+}
+
+fn linear(p: Point) -> f64 {
+    0.7 * p[0] - 1.3 * p[1] + 2.1 * p[2] + 0.4
+}
+
+fn smooth(p: Point) -> f64 {
+    (FRAC_PI_2 * p[0]).sin() * (FRAC_PI_2 * p[1]).cos() + p[2] * p[2]
+}
+
+/// The integral of values of cells over the tets.
+pub(crate) fn integral(mesh: &Mesh, places: &[Point], values: &[f64]) -> f64 {
+    mesh.cells.tets().map(|(cell, corners)| values[cell.index()] * volume(places, corners)).sum()
+}
+
+fn volume(places: &[Point], corners: [VertexId; 4]) -> f64 {
+    tet::volume(corners.map(|v| places[v.index()]))
+}
+
+impl Carried {
+    pub(crate) fn new(mesh: &Mesh) -> Self {
+        let of = |f: fn(Point) -> f64| mesh.points.iter().map(|p| f(*p)).collect::<Vec<_>>();
+        let range = of(linear).into_iter().fold(0.0, |most, x| x.abs().max(most));
+        Self { places: mesh.points.clone(), linear: of(linear), smooth: of(smooth), range }
+    }
+
+    pub(crate) fn places(&self) -> &[Point] {
+        &self.places
+    }
+
+    /// Vertices move: each value changes by what the exact function does on the way.
+    pub(crate) fn go_to(&mut self, places: &[Point]) {
+        for (i, (&to, from)) in places.iter().zip(&mut self.places).enumerate() {
+            self.linear[i] += linear(to) - linear(*from);
+            self.smooth[i] += smooth(to) - smooth(*from);
+            *from = to;
+        }
+    }
+
+    /// Vertices move to `before`, and the mesh changes there.
+    ///
+    /// # Errors
+    /// When the history is that of another mesh.
+    pub(crate) fn change(&mut self, before: &[Point], history: &History) -> motet::Result<()> {
+        self.go_to(before);
+        let carry = |values: &[f64]| -> motet::Result<Vec<f64>> {
+            let field = history.transfer_points(&Field::scalars("", values.to_vec()))?;
+            Ok(field.values.to_f64().unwrap_or_default())
+        };
+        (self.linear, self.smooth) = (carry(&self.linear)?, carry(&self.smooth)?);
+        self.places = history.transfer_points(&Field::vectors("", &self.places))?.to_vectors()?;
+        Ok(())
+    }
+
+    /// All vertices are new, at `places`.
+    pub(crate) fn interpolate(&mut self, parts: &[[(VertexId, f64); 4]], places: &[Point]) {
+        let of = |values: &[f64]| -> Vec<f64> {
+            let mean =
+                |row: &[(VertexId, f64); 4]| row.iter().map(|(v, part)| part * values[v.index()]).sum();
+            parts.iter().map(mean).collect()
+        };
+        (self.linear, self.smooth) = (of(&self.linear), of(&self.smooth));
+        // On straight walls a vertex is where it was interpolated but for rounding.
+        self.places = places.to_vec();
+    }
+
+    /// How far the fields are off on a mesh whose vertices are where they are here.
+    pub(crate) fn measured(&self, mesh: &Mesh) -> Value {
+        let off = self.linear.iter().zip(&self.places).map(|(u, p)| (u - linear(*p)).abs() / self.range);
+        let error: Vec<f64> = self.smooth.iter().zip(&self.places).map(|(u, p)| u - smooth(*p)).collect();
+        let (mut squares, mut own, mut all) = (0.0, 0.0, 0.0);
+        for (_, corners) in mesh.cells.tets() {
+            let volume = volume(&self.places, corners);
+            // Of linear functions on a tet: exactly a twentieth of the squares and of the square of the sum.
+            let e = corners.map(|v| error[v.index()]);
+            let sum: f64 = e.iter().sum();
+            squares += volume / 20.0 * (e.iter().map(|x| x * x).sum::<f64>() + sum * sum);
+            let [o, a] = self.by_points(corners);
+            (own, all) = (own + volume * o, all + volume * a);
+        }
+        json!({
+            "linear": off.fold(0.0, f64::max),
+            "smooth": (squares / all).sqrt(),
+            "most": error.iter().fold(0.0, |most: f64, e| e.abs().max(most)),
+            "own": (own / all).sqrt(),
+            "points": self.places.len(),
+            "tets": mesh.cells.tets().count(),
+        })
+    }
+
+    /// The means over a tet of the squares of the exact function's interpolant less the function, and of the function, by a rule of four points.
+    fn by_points(&self, corners: [VertexId; 4]) -> [f64; 2] {
+        const NEAR: f64 = 0.585_410_196_624_968_5;
+        const FAR: f64 = 0.138_196_601_125_010_5;
+        let places = corners.map(|v| self.places[v.index()]);
+        let mean = |i: usize, of: &dyn Fn(usize) -> f64| {
+            (0..4).map(|j| if i == j { NEAR } else { FAR } * of(j)).sum::<f64>()
+        };
+        let (mut own, mut all) = (0.0, 0.0);
+        for i in 0..4 {
+            let exact = smooth([0, 1, 2].map(|k| mean(i, &|j| places[j][k])));
+            let interpolated = mean(i, &|j| smooth(places[j]));
+            own += (interpolated - exact).powi(2) / 4.0;
+            all += exact.powi(2) / 4.0;
+        }
+        [own, all]
+    }
+}
