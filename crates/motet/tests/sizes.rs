@@ -245,3 +245,46 @@ fn prisms_of_long_flat_tets_come_to_their_sizes() {
         assert!((after / before - 1.0).abs() < 0.01, "{what}: volume {before}, then {after}");
     }
 }
+
+/// The mean EAS of all tets.
+fn mean_eas(mesh: &TetMesh) -> f64 {
+    let eas = |tet: &[VertexId; 4]| motet::geometry::quality::eas(tet.map(|v| mesh.points[v.index()]));
+    mesh.tets.iter().map(eas).sum::<f64>() / mesh.tets.len() as f64
+}
+
+#[test]
+fn tets_of_new_sizes_are_good_on_the_whole_and_edges_about_as_long_as_requested() {
+    // Finer, and from twice and three times as fine.
+    for (n, size) in [(4, 0.1), (4, 0.07), (16, 0.125), (16, 0.18)] {
+        let outcome = remesh(&cube(n), &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
+        let after = tell(&format!("cube of {n} to {size}"), &outcome);
+        let mean = mean_eas(&outcome.extract.mesh);
+        println!("    mean EAS {mean:.3}");
+        assert!(mean > 0.66, "{mean}");
+        assert!(after.spread < 0.21, "{}", after.spread);
+        assert!((0.84..1.06).contains(&after.mean), "{}", after.mean);
+        let logarithms: Vec<f64> = ratios(&outcome.extract.mesh, |_| size).iter().map(|r| r.ln()).collect();
+        let mean = logarithms.iter().sum::<f64>() / logarithms.len() as f64;
+        let square = logarithms.iter().map(|l| (l - mean) * (l - mean)).sum::<f64>();
+        assert!((after.spread - (square / logarithms.len() as f64).sqrt()).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn sizes_requested_again_and_again_change_nothing_more() {
+    let options = asked(Sizes::Uniform(0.17), ADAPT);
+    let mut mesh = cube(9);
+    let mut counts = Vec::new();
+    for _ in 0..20 {
+        let outcome = remesh(&mesh, &options, &Threads::single()).unwrap();
+        mesh = outcome.extract.mesh;
+        counts.push((mesh.points.len(), mesh.tets.len(), mean_eas(&mesh)));
+    }
+    println!("{counts:?}");
+    let ([.., before, last], third) = (counts.as_slice(), counts[2]) else { unreachable!() };
+    assert_eq!(before, last);
+    assert!(
+        (third.1 as f64 / last.1 as f64 - 1.0).abs() < 0.01 && (third.2 - last.2).abs() < 0.01,
+        "{counts:?}"
+    );
+}

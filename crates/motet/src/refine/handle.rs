@@ -13,8 +13,8 @@ use crate::spatial::NearestTriangle;
 /// How to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No tet is divided into parts below this part of the EAS that its tet of the first mesh has, or that the worst of these has that is not bad, whichever is less, if there is another way; and no
-    /// bad part comes of one that is not bad. No more than 0.55 of the median EAS is required of pieces of cuts. Default: 0.95.
+    /// No part of a tet is below this part of the first mesh's worst EAS, and no bad part comes of a tet of the first mesh that is not bad, if there is another way. No more than 0.55 of the median
+    /// EAS is required of pieces of cuts. Default: 0.95.
     pub keep: f64,
     /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
     /// refinement spreads far. Default: 0.55.

@@ -17,10 +17,8 @@ const OF_MEDIAN: f64 = 0.55;
 /// What shapes closing may leave.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::refine) struct Need {
-    /// No tet below this part of the EAS of its root, ...
-    keep: f64,
-    /// ... where that is the worst of those that are not bad, or worse.
-    worst_good: f64,
+    /// No part below this EAS: a part of the worst of the roots.
+    floor: f64,
     /// No more than this is required of a piece of a tet that is cut.
     most_of_pieces: f64,
     /// No piece below this part of what dividing the tet leaves.
@@ -29,32 +27,29 @@ pub(in crate::refine) struct Need {
 }
 
 impl Need {
-    /// Each root has a floor of its own: where there was one for all, a single sliver let every tet become as bad as itself. Of pieces no more is required than of those of the median
-    /// root: in a lattice all tets are as bad as the worst, no piece is as good as the whole, and everything would be divided.
+    /// Of pieces no more is required than of those of the median root: in a lattice all tets are as bad as the worst, no piece is as good as the whole, and everything would be divided.
     pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
         let mut shapes: Vec<f64> = forest.classes[..forest.n_roots].iter().map(|root| root.eas).collect();
         shapes.sort_unstable_by(f64::total_cmp);
-        let median = shapes.get(shapes.len() / 2).copied().unwrap_or(0.0);
-        let n_bad = shapes.partition_point(|&eas| eas < BAD_EAS);
-        let worst_good = shapes.get(n_bad).or(shapes.last()).copied().unwrap_or(0.0);
+        let (worst, median) = (shapes.first().unwrap_or(&0.0), shapes.get(shapes.len() / 2).unwrap_or(&0.0));
         Self {
-            keep: options.keep,
-            worst_good,
+            floor: options.keep * worst,
             most_of_pieces: OF_MEDIAN * median,
             share: options.share,
             rule: options.rule,
         }
     }
 
-    /// The least EAS of parts of a root of this EAS; of one that is not bad no part is to be bad.
+    /// The least EAS of the parts of a root of this EAS. Of one that is not bad none is to be bad: with one floor for all, a single sliver let every tet become as bad as itself. Bad roots share
+    /// a floor: where each had its own, thin tets of boundary layers could not be cut, and 255,208 tets became 859,601.
     pub(in crate::refine) fn floor(self, root_eas: f64) -> f64 {
-        let floor = self.keep * root_eas.min(self.worst_good);
-        if root_eas >= BAD_EAS { floor.max(BAD_EAS) } else { floor }
+        if root_eas >= BAD_EAS { self.floor.max(BAD_EAS) } else { self.floor }
     }
 
-    /// What pieces of a tet have to be that could be divided into eight of an EAS of `divided` or better.
+    /// What pieces of a tet have to be that could be divided into eight of an EAS of `divided` or better. Where dividing would leave bad ones, too, it is no way out.
     fn of(self, root_eas: f64, divided: f64) -> f64 {
-        self.floor(root_eas).min(self.most_of_pieces).max(self.share * divided)
+        let floor = if divided >= BAD_EAS { self.floor(root_eas) } else { self.floor };
+        floor.min(self.most_of_pieces).max(self.share * divided)
     }
 }
 
