@@ -83,7 +83,8 @@ impl Draft {
             }
         };
         let cells = (0..self.tets.len()).map(CellId::new).collect();
-        let improve = Improve { below: IMPROVED, cells, density: None, rest: None, cost: 0.0 };
+        let improve =
+            Improve { below: IMPROVED, cells, density: None, rest: None, cost: Improve::FEW_CHANGES };
         let improve = options.improve.clone().or(Some(improve));
         let options = Options { surface, sizes: None, improve, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options, threads)?;

@@ -302,7 +302,7 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        if gain <= least {
+        if gain <= least || self.adds_low(change, worth.aim.floor) {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
@@ -317,8 +317,17 @@ impl Repair {
         is_allowed
     }
 
-    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
+    /// Whether a change leaves more tets below a floor than it found. One that walls force lowers what is required of the others in its cavity.
+    fn adds_low(&self, change: &Change, floor: f64) -> bool {
+        let n_after = change.fill.iter().filter(|tet| tet.quality < floor).count();
+        n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < floor).count()
+    }
+
+    /// Makes a change that leaves no more tets below a floor than it found, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
     pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
+        if self.adds_low(change, floor) {
+            return false;
+        }
         let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
         let Ok(checked) = self.complex.check_against(change, bar) else { return false };
         let mut tets = Vec::new();
