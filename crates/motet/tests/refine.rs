@@ -8,7 +8,7 @@ use common::{Numbers, random_mesh};
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::{eas, mean_ratio};
 use motet::geometry::tet::{self, centroid, volume};
-use motet::geometry::vector::{add, distance, scale};
+use motet::geometry::vector::{add, distance};
 use motet::mesh::TetMesh;
 use motet::refine::{Options, Refinement, Rule, estimate, mark};
 use motet::spatial::NearestTriangle;
@@ -326,7 +326,9 @@ fn tets_that_no_division_keeps_are_told() {
         for _ in 0..2 {
             refinement.refine(&nearest(refinement.mesh(), first.points[0], 2), &threads).unwrap();
         }
-        let (floor, now) = (0.95 * worst(&first, eas), refinement.mesh());
+        // Of a tet that is not bad no part is to be bad.
+        let (root, now) = (worst(&first, eas), refinement.mesh());
+        let floor = if root >= 0.2 { (0.95 * root).max(0.2) } else { 0.95 * root };
         let is_bad = |i: &u32| eas(corners(now, now.tets[*i as usize])) < floor * (1.0 - 1e-9);
         let expected: Vec<TetId> = (0..now.tets.len() as u32).filter(is_bad).map(TetId).collect();
         let left = refinement.left(&threads);
@@ -336,42 +338,4 @@ fn tets_that_no_division_keeps_are_told() {
     }
     println!("{n_told} of {} tets have parts that are worse", mesh.tets.len());
     assert!(n_told > 0 && n_told < mesh.tets.len());
-}
-
-#[test]
-fn a_sliver_lets_no_part_of_a_good_tet_become_bad() {
-    let threads = Threads::single();
-    let mut first = ball_in_box();
-    let shape = |mesh: &TetMesh, tet: usize| eas(corners(mesh, mesh.tets[tet]));
-    // A corner of a tet is moved nearly onto its opposite facet, as long as no tet turns over.
-    let mut inside = vec![true; first.points.len()];
-    first.triangles.as_flattened().iter().for_each(|v| inside[v.index()] = false);
-    let tet = (0..first.tets.len()).find(|&t| {
-        let [apex, a, b, c] = first.tets[t];
-        let point = |v: VertexId| first.points[v.index()];
-        let foot = scale(add(add(point(a), point(b)), point(c)), 1.0 / 3.0);
-        let mut moved = first.clone();
-        moved.points[apex.index()] = add(scale(foot, 0.99), scale(point(apex), 0.01));
-        let is_upright = (0..moved.tets.len()).all(|t| shape(&moved, t) > 0.0);
-        inside[apex.index()] && is_upright && {
-            first = moved;
-            true
-        }
-    });
-    let tet = tet.expect("some corner can be moved");
-    assert!(shape(&first, tet) < 0.05);
-    let roots: Vec<f64> = (0..first.tets.len()).map(|t| shape(&first, t)).collect();
-    let mut refinement = Refinement::new(&first, Options::default(), &threads).unwrap();
-    let place = centroid(corners(&first, first.tets[tet]));
-    for _ in 0..4 {
-        let marked = nearest(refinement.mesh(), place, 200);
-        refinement.refine(&marked, &threads).unwrap();
-    }
-    let mesh = refinement.mesh();
-    fits(&first, mesh);
-    let of_root: Vec<TetId> = refinement.roots().collect();
-    let became_bad = |t: &usize| shape(mesh, *t) < 0.2 && roots[of_root[*t].index()] >= 0.25;
-    let n_bad = (0..mesh.tets.len()).filter(became_bad).count();
-    println!("{} tets, {n_bad} bad ones of good roots", mesh.tets.len());
-    assert_eq!(n_bad, 0);
 }
