@@ -81,7 +81,8 @@ pub(super) fn remesh_but(
     repair.rest = rest.map(|rest| Rest::new(given.clone(), rest));
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
-            repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?
+            let is_far = lengths_before.as_ref().is_some_and(Lengths::are_far_off);
+            repair.bring_to_sizes(Sizing { field, splits, is_far, most_tets }, options.rounds)?
         }
         _ => repair.run(bad, options.rounds)?,
     };
@@ -99,7 +100,10 @@ pub(super) fn remesh_but(
         left = repair.below(min_eas);
     }
     if repair.sizing.is_some() && options.goal == Goal::Repair && !repair.is_hopeless() {
-        repair.improve(Aim { below: SIZED, floor: min_eas, cost: 0.0 }, repair.near_changes())?;
+        repair.improve(
+            Aim { below: SIZED, floor: min_eas, cost: 0.0, may_add_low: false },
+            repair.near_changes(),
+        )?;
         left = repair.below(min_eas);
     }
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
@@ -147,7 +151,8 @@ fn improve_near(
     if let Some(mut density) = density {
         repair.keep_density(&mut density, min_eas, &mut zone)?;
     }
-    repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost }, zone)
+    let may_add_low = improve.density.is_some();
+    repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost, may_add_low }, zone)
 }
 
 /// Which tets are not among some.

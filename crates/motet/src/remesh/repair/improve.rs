@@ -35,6 +35,8 @@ pub(in crate::remesh) struct Aim {
     pub(in crate::remesh) floor: f64,
     /// By how much more a change has to lower the sum for each tet of the first mesh that it touches: each of these costs an interpolation, others no more than they did.
     pub(in crate::remesh) cost: f64,
+    /// Whether a change may leave more tets below the floor than it found, where walls force one: in a moving mesh, whose next repair takes them, that lets others go on.
+    pub(in crate::remesh) may_add_low: bool,
 }
 
 /// What tets cost, and what changes are worth.
@@ -302,7 +304,7 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        if gain <= least || self.adds_low(change, worth.aim.floor) {
+        if gain <= least || !worth.aim.may_add_low && self.adds_low(change, worth.aim.floor) {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
@@ -323,11 +325,8 @@ impl Repair {
         n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < floor).count()
     }
 
-    /// Makes a change that leaves no more tets below a floor than it found, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
+    /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.
     pub(super) fn commit_above(&mut self, change: &Change, floor: f64, inserted: &mut Vec<TetId>) -> bool {
-        if self.adds_low(change, floor) {
-            return false;
-        }
         let bar = self.complex.worst_of(&change.cavity).min(floor).next_down();
         let Ok(checked) = self.complex.check_against(change, bar) else { return false };
         let mut tets = Vec::new();

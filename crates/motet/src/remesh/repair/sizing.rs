@@ -33,6 +33,8 @@ pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
     /// Whether long edges are split; if not, short ones are collapsed once.
     pub(in crate::remesh) splits: bool,
+    /// Whether edges are far from their sizes: a mesh that has them stays as it is.
+    pub(in crate::remesh) is_far: bool,
     /// No edge is split once there are so many tets.
     pub(in crate::remesh) most_tets: usize,
 }
@@ -239,7 +241,7 @@ impl Repair {
         // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
         let mut has_news = vec![true; self.complex.n_vertex_slots()];
         loop {
-            let shortest = if sizing.splits { DENSE } else { SHORT };
+            let shortest = if sizing.splits && sizing.is_far { DENSE } else { SHORT };
             let short = self.short_edges(&mut sizing.field, shortest);
             let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
