@@ -304,7 +304,7 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        if gain <= least || !worth.aim.may_add_low && self.adds_low(change, worth.aim.floor) {
+        if gain <= least || (!worth.aim.may_add_low && self.adds_low(change, worth.aim.floor)) {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
