@@ -62,9 +62,9 @@ pub(crate) fn implant<'py>(
     let rules = rules(&host.0, &carry)?;
     let put = |threads: &Threads| motet::implant::implant(&host.0, &devices, &options, &rules, threads);
     let made = watched(py, threads, progress, put)?;
-    let Implanted { mesh, history, report: told } = made;
-    let not_reached = told.not_reached();
-    let told = report(py, &told)?;
-    told.set_item("quality", [quality(py, &host.0)?, quality(py, &mesh)?])?;
-    Ok((parts(py, mesh)?, History(history), told, not_reached))
+    let Implanted { mesh, history, report: reported } = made;
+    let not_reached = reported.not_reached();
+    let reported = report(py, &reported)?;
+    reported.set_item("quality", [quality(py, &host.0)?, quality(py, &mesh)?])?;
+    Ok((parts(py, mesh)?, History(history), reported, not_reached))
 }

@@ -86,9 +86,9 @@ pub(crate) fn mesh<'py>(
     })?;
     let (improved, layers) = (filled.improved.as_ref(), filled.layers.as_ref());
     let not_reached = filled.not_reached(&options);
-    let told = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
-    told.set_item("quality", quality(py, &filled.mesh)?)?;
-    Ok((parts(py, filled.mesh)?, told, not_reached))
+    let reported = report(py, &Told { report: &filled.report, improved, layers, repaired: &repaired })?;
+    reported.set_item("quality", quality(py, &filled.mesh)?)?;
+    Ok((parts(py, filled.mesh)?, reported, not_reached))
 }
 
 /// The caps of a surface, put on any frame of it.

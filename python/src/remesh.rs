@@ -55,11 +55,11 @@ pub(crate) fn remesh<'py>(
     };
     let rules = rules(&mesh.0, &carry)?;
     let outcome = watched(py, threads, progress, |threads| remesh_mesh(&mesh.0, &options, &rules, threads))?;
-    let MeshOutcome { mesh: new, history, report: told, .. } = outcome;
-    let not_reached = told.not_reached();
-    let told = report(py, &told)?;
+    let MeshOutcome { mesh: new, history, report: reported, .. } = outcome;
+    let not_reached = reported.not_reached();
+    let reported = report(py, &reported)?;
     for (state, mesh) in [("before", &mesh.0), ("after", &new)] {
-        told.get_item(state)?.set_item("quality", quality(py, mesh)?)?;
+        reported.get_item(state)?.set_item("quality", quality(py, mesh)?)?;
     }
-    Ok((parts(py, new)?, History(history), told, not_reached))
+    Ok((parts(py, new)?, History(history), reported, not_reached))
 }

@@ -31,8 +31,8 @@ mod tests {
     #[test]
     fn a_row_has_a_number_for_each_name() {
         let quality = Qualities { worst: 0.1, p1: 0.2, p5: 0.3, median: 0.6, mean: 0.5, mean_ratio: 0.8 };
-        let told = table([("before", Some(quality)), ("after", None)]).to_string();
-        let rows: Vec<&str> = told.lines().collect();
+        let printed = table([("before", Some(quality)), ("after", None)]).to_string();
+        let rows: Vec<&str> = printed.lines().collect();
         assert_eq!(rows.len(), 3);
         assert!(rows[0].ends_with("mean   mean ratio"));
         let numbers: Vec<&str> = rows[1].split_whitespace().skip(1).collect();

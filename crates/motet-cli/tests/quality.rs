@@ -24,10 +24,10 @@ fn expected(mesh: &Mesh) -> [f64; 6] {
     [at(0.0), at(0.01), at(0.05), at(0.5), mean(&sorted), mean(&ratios)]
 }
 
-fn holds(told: &Value, mesh: &Mesh, what: &str) {
+fn holds(report: &Value, mesh: &Mesh, what: &str) {
     let keys = ["worst", "p1", "p5", "median", "mean", "mean_ratio"];
     for (key, value) in keys.into_iter().zip(expected(mesh)) {
-        let found = told[key].as_f64().unwrap_or(f64::NAN);
+        let found = report[key].as_f64().unwrap_or(f64::NAN);
         assert!((found - value).abs() < 1e-12, "{what}, {key}: {found}, expected {value}");
     }
 }
@@ -48,7 +48,7 @@ fn folder() -> Folder {
 }
 
 /// What a call says to programs, after it said the table to people.
-fn told(folder: &Folder, words: &[&str]) -> Value {
+fn reported(folder: &Folder, words: &[&str]) -> Value {
     let text = stdout(&folder.motet(words).assert().success());
     let rows: Vec<&str> = text.lines().skip_while(|line| !line.contains(HEAD)).skip(1).collect();
     assert!(rows.first().is_some_and(|row| row.split_whitespace().count() > 6), "{words:?}: {text}");
@@ -59,8 +59,8 @@ fn told(folder: &Folder, words: &[&str]) -> Value {
 #[test]
 fn info_tells_the_distribution_and_the_lengths_of_edges() {
     let folder = folder();
-    let told = told(&folder, &["info", "box.vtu"]);
-    let quality = &told["quality"];
+    let info = reported(&folder, &["info", "box.vtu"]);
+    let quality = &info["quality"];
     holds(&quality["distribution"], &read(folder.path("box.vtu")).unwrap(), "info");
     assert_eq!(quality["distribution"]["worst"], quality["eas"]["min"]);
     assert_eq!(quality["distribution"]["p5"], quality["eas"]["percentiles"][1]);
@@ -70,34 +70,34 @@ fn info_tells_the_distribution_and_the_lengths_of_edges() {
 }
 
 #[test]
-fn changed_meshes_are_told_before_and_after() {
+fn changed_meshes_are_reported_before_and_after() {
     let folder = folder();
     let host = read(folder.path("box.vtu")).unwrap();
     let of = |name: &str| read(folder.path(name)).unwrap();
-    let remeshed = told(&folder, &["remesh", "box.vtu", "-o", "remeshed.vtu", "--min-eas", "0.26"]);
+    let remeshed = reported(&folder, &["remesh", "box.vtu", "-o", "remeshed.vtu", "--min-eas", "0.26"]);
     holds(&remeshed["before"]["quality"], &host, "remesh, before");
     holds(&remeshed["after"]["quality"], &of("remeshed.vtu"), "remesh, after");
     let words = ["refine", "box.vtu", "-o", "fine.vtu", "--ball", "2,0,0,0.5", "--generations", "1"];
-    let refined = told(&folder, &words);
+    let refined = reported(&folder, &words);
     holds(&refined["steps"][0]["quality"], &host, "refine, before");
     holds(&refined["steps"][1]["quality"], &of("fine.vtu"), "refine, after");
-    let implanted = told(&folder, &["implant", "host.vtu", "device.vtu", "-o", "with.vtu"]);
+    let implanted = reported(&folder, &["implant", "host.vtu", "device.vtu", "-o", "with.vtu"]);
     holds(&implanted["quality"][0], &of("host.vtu"), "implant, host");
     holds(&implanted["quality"][1], &of("with.vtu"), "implant, mesh");
 }
 
 #[test]
-fn a_filled_surface_is_told() {
+fn a_filled_surface_is_reported() {
     let folder = folder();
-    let filled = told(&folder, &["mesh", "ball.stl", "-o", "ball.vtu", "--size", "0.3"]);
+    let filled = reported(&folder, &["mesh", "ball.stl", "-o", "ball.vtu", "--size", "0.3"]);
     holds(&filled["quality"], &read(folder.path("ball.vtu")).unwrap(), "mesh");
 }
 
 #[test]
-fn each_frame_of_a_motion_is_told() {
+fn each_frame_of_a_motion_is_reported() {
     let folder = folder();
     let words = ["move", "box.vtu", "-o", "out.pvd", "--translate", "sphere=0.5,0,0", "--steps", "2"];
-    let moved = told(&folder, &words);
+    let moved = reported(&folder, &words);
     holds(&moved["before"]["quality"], &read(folder.path("box.vtu")).unwrap(), "move, before");
     let frames = motet::io::read_series(folder.path("out.pvd")).unwrap();
     assert_eq!(frames.len(), 3);

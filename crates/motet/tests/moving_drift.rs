@@ -369,7 +369,7 @@ fn a_mesh_that_need_not_change_comes_back_to_the_bit_and_is_left_alone() {
 fn what_is_improved_has_an_entry_for_each_point() {
     let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
     let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
-        let improve = Improve { below: 0.75, cells: Vec::new(), density, rest, cost: 0.0 };
+        let improve = Improve { below: 0.75, cells: Vec::new(), neighbours: true, density, rest, cost: 0.0 };
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };
@@ -397,8 +397,10 @@ fn tets_that_a_narrow_place_made_bad_are_good_again_when_it_widens() {
         }
     }
     assert!(most_bad > 0, "nothing became bad");
-    // Of 99 vertices 9 are inside: what the narrow place needs may wait for the next change, and does not grow.
-    assert!(counts.iter().all(|n| n.abs_diff(mesh.points.len()) <= 10), "{counts:?}");
+    // Of 99 vertices 9 are inside. What the narrow place needs may wait for the next change, and does not grow.
+    let (earlier, later) = counts.split_at(counts.len() / 2);
+    assert!(later.iter().max() <= earlier.iter().max(), "{counts:?}");
+    assert!(counts.last().is_some_and(|n| n.abs_diff(mesh.points.len()) <= 2), "{counts:?}");
 }
 
 #[test]

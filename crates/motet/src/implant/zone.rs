@@ -83,8 +83,14 @@ impl Draft {
             }
         };
         let cells = (0..self.tets.len()).map(CellId::new).collect();
-        let improve =
-            Improve { below: IMPROVED, cells, density: None, rest: None, cost: Improve::FEW_CHANGES };
+        let improve = Improve {
+            below: IMPROVED,
+            cells,
+            neighbours: false,
+            density: None,
+            rest: None,
+            cost: Improve::FEW_CHANGES,
+        };
         let improve = options.improve.clone().or(Some(improve));
         let options = Options { surface, sizes: None, improve, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options, threads)?;

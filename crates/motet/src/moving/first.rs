@@ -41,7 +41,7 @@ const MOST_TRIES: usize = 8;
 /// The mesh that is wanted back, as it was before anything of it changed.
 #[derive(Clone, Debug)]
 pub(super) struct FirstMesh {
-    /// Its points are where they were at first; of arrays it has those that say what it is.
+    /// The mesh with its points where they were at first, and of its arrays those that identify it: labels, ids, marks, the memory of refinement.
     pub(super) mesh: Mesh,
     pub(super) known: Known,
     /// Bad tets that repair left, cells rising.

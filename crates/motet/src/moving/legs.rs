@@ -301,7 +301,14 @@ impl Way<'_> {
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
         let density = usual.sizes.is_none().then_some(density);
-        Some(Improve { below, cells, density, rest: rest.cloned(), cost: Improve::FEW_CHANGES })
+        Some(Improve {
+            below,
+            cells,
+            neighbours: true,
+            density,
+            rest: rest.cloned(),
+            cost: Improve::FEW_CHANGES,
+        })
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -7,9 +7,6 @@ use crate::geometry::tet::EDGES;
 use crate::kernel::{Complex, Hold};
 use crate::remesh::sizes::{LONG, SHORT, SizeField};
 
-/// So large a part of the edges may be too short where no collapse is good.
-const FEW: f64 = 0.02;
-
 /// The edges of a mesh beside their sizes: each length as a part of the mean size at its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Lengths {
@@ -34,12 +31,6 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Whether edges that nothing holds are too long, or more than a few too short.
-    pub(super) fn are_far_off(&self) -> bool {
-        let n_short = self.too_short - self.too_short_held;
-        self.too_long > self.too_long_held || n_short as f64 > FEW * self.edges as f64
-    }
-
     pub(super) fn of(complex: &Complex, field: &mut SizeField) -> Self {
         let mut edges = edges_of(complex, complex.tets());
         let locked = locked_edges(complex);

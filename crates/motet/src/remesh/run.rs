@@ -81,8 +81,7 @@ pub(super) fn remesh_but(
     repair.rest = rest.map(|rest| Rest::new(given.clone(), rest));
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
-            let is_far = lengths_before.as_ref().is_some_and(Lengths::are_far_off);
-            repair.bring_to_sizes(Sizing { field, splits, is_far, most_tets }, options.rounds)?
+            repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?
         }
         _ => repair.run(bad, options.rounds)?,
     };
@@ -100,10 +99,7 @@ pub(super) fn remesh_but(
         left = repair.below(min_eas);
     }
     if repair.sizing.is_some() && options.goal == Goal::Repair && !repair.is_hopeless() {
-        repair.improve(
-            Aim { below: SIZED, floor: min_eas, cost: 0.0, may_add_low: false },
-            repair.near_changes(),
-        )?;
+        repair.improve(Aim { below: SIZED, floor: min_eas, cost: 0.0 }, repair.near_changes())?;
         left = repair.below(min_eas);
     }
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
@@ -143,7 +139,7 @@ fn improve_near(
     density: Option<Density>,
     min_eas: f64,
 ) -> Result<()> {
-    let mut zone = repair.near_changes();
+    let mut zone = if improve.neighbours { repair.near_changes() } else { repair.inserted() };
     let requested = improve.cells.iter().map(|cell| TetId(cell.0));
     zone.extend(requested.filter(|&tet| repair.complex.is_original(tet)));
     zone.sort_unstable();
@@ -151,8 +147,7 @@ fn improve_near(
     if let Some(mut density) = density {
         repair.keep_density(&mut density, min_eas, &mut zone)?;
     }
-    let may_add_low = improve.density.is_some();
-    repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost, may_add_low }, zone)
+    repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost }, zone)
 }
 
 /// Which tets are not among some.

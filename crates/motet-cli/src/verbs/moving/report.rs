@@ -296,9 +296,9 @@ impl Report {
     /// How good all tets are: as the mesh came, and after each step that was written or is the last.
     fn quality_table(&self) -> Table {
         let last = self.steps.len().saturating_sub(1);
-        let told = self.steps.iter().enumerate().filter(|(k, step)| *k == last || step.file.is_some());
+        let reported = self.steps.iter().enumerate().filter(|(k, step)| *k == last || step.file.is_some());
         let steps =
-            told.map(|(_, step)| (format!("step {}", step.step), step.certificate.quality.distribution));
+            reported.map(|(_, step)| (format!("step {}", step.step), step.certificate.quality.distribution));
         quality::table([("as it came".to_owned(), self.before.quality.distribution)].into_iter().chain(steps))
     }
 

@@ -35,8 +35,6 @@ pub(in crate::remesh) struct Aim {
     pub(in crate::remesh) floor: f64,
     /// By how much more a change has to lower the sum for each tet of the first mesh that it touches: each of these costs an interpolation, others no more than they did.
     pub(in crate::remesh) cost: f64,
-    /// Whether a change may leave more tets below the floor than it found, where walls force one: in a moving mesh, whose next repair takes them, that lets others go on.
-    pub(in crate::remesh) may_add_low: bool,
 }
 
 /// What tets cost, and what changes are worth.
@@ -180,10 +178,15 @@ impl Repair {
         Ok(())
     }
 
-    /// The tets that share a vertex with one that was changed.
+    /// The tets that were inserted.
+    pub(in crate::remesh) fn inserted(&self) -> Vec<TetId> {
+        self.complex.tets().filter(|&t| !self.complex.is_original(t)).collect()
+    }
+
+    /// The tets that share a vertex with one that was inserted.
     pub(in crate::remesh) fn near_changes(&self) -> Vec<TetId> {
         let mut is_near = vec![false; self.complex.n_vertex_slots()];
-        for tet in self.complex.tets().filter(|&t| !self.complex.is_original(t)) {
+        for tet in self.inserted() {
             self.complex.vertices(tet).into_iter().for_each(|v| is_near[v.index()] = true);
         }
         let touches = |&t: &TetId| self.complex.vertices(t).into_iter().any(|v| is_near[v.index()]);
@@ -304,7 +307,7 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        if gain <= least || (!worth.aim.may_add_low && self.adds_low(change, worth.aim.floor)) {
+        if gain <= least || self.adds_low(change, worth.aim.floor) {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
@@ -319,10 +322,13 @@ impl Repair {
         is_allowed
     }
 
-    /// Whether a change leaves more tets below a floor than it found. One that walls force lowers what is required of the others in its cavity.
+    /// Whether a change leaves more tets below a floor than it found, and the worst no better: beside a tet that walls force others could become bad, too. Where the worst gets better, as in a place that
+    /// walls make narrow for a while, two that are hardly bad are worth more than one that is nearly flat.
     fn adds_low(&self, change: &Change, floor: f64) -> bool {
-        let n_after = change.fill.iter().filter(|tet| tet.quality < floor).count();
-        n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < floor).count()
+        let is_low = |quality: f64| quality < floor;
+        let n_after = change.fill.iter().filter(|tet| is_low(tet.quality)).count();
+        let n_before = || change.cavity.iter().filter(|&&t| is_low(self.complex.quality(t))).count();
+        n_after > 0 && n_after > n_before() && change.worst() <= self.complex.worst_of(&change.cavity)
     }
 
     /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.

@@ -216,9 +216,9 @@ impl Repair {
     /// would leave a mesh whose mean falls short.
     pub(super) fn best(&mut self, rounds: usize) -> Result<()> {
         let usual = self.target;
-        self.improve(Aim { below: GOOD, floor: usual, cost: 0.0, may_add_low: false }, self.below(GOOD))?;
+        self.improve(Aim { below: GOOD, floor: usual, cost: 0.0 }, self.below(GOOD))?;
         self.raise_worst(rounds)?;
-        self.improve(Aim { below: GOOD, floor: self.target, cost: 0.0, may_add_low: false }, self.below(GOOD))
+        self.improve(Aim { below: GOOD, floor: self.target, cost: 0.0 }, self.below(GOOD))
     }
 
     fn raise_worst(&mut self, rounds: usize) -> Result<()> {

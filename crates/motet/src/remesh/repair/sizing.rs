@@ -19,7 +19,8 @@ use crate::remesh::surface::Surface;
 /// Short edges are looked for once more when this part of them has been collapsed.
 const ENOUGH: f64 = 0.02;
 
-/// Edges shorter than this part of their size are collapsed where that brings none that is too long: down to [`SHORT`] alone a mesh that was finer keeps twice the tets that its sizes ask for.
+/// Where the mesh is being changed, edges are collapsed that are shorter than this part of their size: down to [`SHORT`] alone a mesh that was finer keeps twice the tets that its sizes ask for. What
+/// nothing has changed stays while its edges are neither too long nor too short, so a mesh that has its sizes stays as it is.
 const DENSE: f64 = 0.7;
 
 /// Edges whose lengths, as parts of their sizes, differ by no more than this factor count as equally long.
@@ -33,8 +34,6 @@ pub(in crate::remesh) struct Sizing {
     pub(in crate::remesh) field: SizeField,
     /// Whether long edges are split; if not, short ones are collapsed once.
     pub(in crate::remesh) splits: bool,
-    /// Whether edges are far from their sizes: a mesh that has them stays as it is.
-    pub(in crate::remesh) is_far: bool,
     /// No edge is split once there are so many tets.
     pub(in crate::remesh) most_tets: usize,
 }
@@ -109,7 +108,7 @@ impl Repair {
     /// flat tets are flat: a coarse mesh that is split to the end at once has bad tets nearly everywhere.
     fn split_by_levels(&mut self) -> Result<()> {
         let longest = self.with_sizing(|repair, sizing| {
-            let long = repair.edges(&mut sizing.field, |ratio| ratio > LONG);
+            let long = repair.edges(&mut sizing.field, |ratio, _| ratio > LONG);
             Ok(long.iter().map(|edge| edge.ratio).fold(LONG, f64::max))
         })?;
         let n_levels = (longest / LONG).log2().ceil() as i32;
@@ -145,7 +144,7 @@ impl Repair {
     /// Splits edges that are too long in their middles, the longest first, until none is left that may be; how many there were.
     fn split_long(&mut self, sizing: &mut Sizing) -> Result<usize> {
         let too_long = sizing.field.long;
-        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio| ratio > too_long));
+        let mut long = BinaryHeap::from(self.edges(&mut sizing.field, |ratio, _| ratio > too_long));
         let (mut n_split, mut change, mut came) = (0, Change::default(), Vec::new());
         while let Some(edge) = long.pop() {
             if self.complex.n_tets() > sizing.most_tets {
@@ -241,8 +240,8 @@ impl Repair {
         // Whether a tet at a vertex has come since the last time that all were tried: elsewhere what was refused would be refused again.
         let mut has_news = vec![true; self.complex.n_vertex_slots()];
         loop {
-            let shortest = if sizing.splits && sizing.is_far { DENSE } else { SHORT };
-            let short = self.short_edges(&mut sizing.field, shortest);
+            let dense = if sizing.splits { DENSE } else { SHORT };
+            let short = self.short_edges(&mut sizing.field, dense);
             let had_news = std::mem::replace(&mut has_news, vec![false; self.complex.n_vertex_slots()]);
             let mut n_now = 0;
             for (i, &edge) in short.iter().enumerate() {
@@ -265,9 +264,11 @@ impl Repair {
         }
     }
 
-    /// Edges shorter than a part of their size that may be collapsed, the shortest first.
-    fn short_edges(&self, field: &mut SizeField, shortest: f64) -> Vec<Edge> {
-        let mut short = self.edges(field, |ratio| ratio < shortest);
+    /// Edges that are too short, or of tets that are no longer as they came and shorter than a part of their size, and may be collapsed; the shortest first.
+    fn short_edges(&self, field: &mut SizeField, dense: f64) -> Vec<Edge> {
+        let is_short =
+            |ratio: f64, tet: TetId| ratio < SHORT || ratio < dense && !self.complex.is_original(tet);
+        let mut short = self.edges(field, is_short);
         let may_go = |v: &VertexId| match self.complex.hold(*v) {
             Hold::Free => true,
             Hold::Surface | Hold::Edge => self.surface.is_some(),
@@ -311,14 +312,14 @@ impl Repair {
         true
     }
 
-    /// The edges whose length as a part of their size is such, but for those of locked tets; each once, in the order of their vertices.
-    fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64) -> bool) -> Vec<Edge> {
+    /// The edges that are such by their length as a part of their size and one of their tets, but for those of locked tets; each once, in the order of their vertices.
+    fn edges(&self, field: &mut SizeField, is_such: impl Fn(f64, TetId) -> bool) -> Vec<Edge> {
         let mut edges = Vec::new();
         for tet in self.complex.tets() {
             let vertices = self.complex.vertices(tet);
             let ratios = field.of_tet(vertices, self.complex.corners(tet));
             for (ratio, [i, j]) in ratios.into_iter().zip(EDGES) {
-                if is_such(ratio) {
+                if is_such(ratio, tet) {
                     edges.push(Edge { ratio, ends: rising([vertices[i], vertices[j]]), tet });
                 }
             }
