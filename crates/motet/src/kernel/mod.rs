@@ -23,6 +23,7 @@ mod news;
 mod peel;
 mod spare;
 mod star;
+mod vertex_move;
 
 pub use change::{Change, Fill, NewLine, NewWall, VertexChange};
 pub use check::{Checked, Reject};
