@@ -369,7 +369,8 @@ fn a_mesh_that_need_not_change_comes_back_to_the_bit_and_is_left_alone() {
 fn what_is_improved_has_an_entry_for_each_point() {
     let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
     let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
-        let improve = Improve { below: 0.75, cells: Vec::new(), neighbours: true, density, rest, cost: 0.0 };
+        let improve =
+            Improve { below: 0.75, cells: Vec::new(), keeps_others: false, density, rest, cost: 0.0 };
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };

@@ -86,7 +86,7 @@ impl Draft {
         let improve = Improve {
             below: IMPROVED,
             cells,
-            neighbours: false,
+            keeps_others: true,
             density: None,
             rest: None,
             cost: Improve::FEW_CHANGES,

@@ -304,7 +304,7 @@ impl Way<'_> {
         Some(Improve {
             below,
             cells,
-            neighbours: true,
+            keeps_others: false,
             density,
             rest: rest.cloned(),
             cost: Improve::FEW_CHANGES,

@@ -101,12 +101,12 @@ impl Options {
 /// Tets that are made better on the whole, none of them bad, beside those that are repaired: the mean gets better, and the next motion makes fewer bad.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Improve {
-    /// Tets below this EAS are improved where repair has inserted them, beside these ([`Self::neighbours`]), and among [`Self::cells`].
+    /// Tets below this EAS are improved where they share a vertex with what repair has changed, and among [`Self::cells`].
     pub below: f64,
     /// Further cells; ids of cells that are no tets say nothing.
     pub cells: Vec<CellId>,
-    /// Whether tets beside those that repair has changed are improved, too; where not, of what repair has left those that it has inserted alone.
-    pub neighbours: bool,
+    /// Whether all tets stay that are not among [`Self::cells`] and that repair has not changed.
+    pub keeps_others: bool,
     /// How many vertices are to be kept; `None`: as many as repair leaves.
     pub density: Option<Density>,
     /// Where each point of the mesh is when the walls are at rest, for walls that come back: there tets are to be good as much as where they are.

@@ -107,7 +107,7 @@ pub(super) fn remesh_but(
             field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), || given.clone(), LONG),
             n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
         });
-        improve_near(&mut repair, improve, density, min_eas)?;
+        improve_near(&mut repair, improve, density, (min_eas, mesh.tets.len()))?;
         left = repair.below(min_eas);
     }
     report.operations = repair.operations;
@@ -137,15 +137,18 @@ fn improve_near(
     repair: &mut Repair,
     improve: &Improve,
     density: Option<Density>,
-    min_eas: f64,
+    (min_eas, n_tets): (f64, usize),
 ) -> Result<()> {
-    let mut zone = if improve.neighbours { repair.near_changes() } else { repair.inserted() };
+    let mut zone = repair.near_changes();
     let requested = improve.cells.iter().map(|cell| TetId(cell.0));
     zone.extend(requested.filter(|&tet| repair.complex.is_original(tet)));
     zone.sort_unstable();
     zone.dedup();
     if let Some(mut density) = density {
         repair.keep_density(&mut density, min_eas, &mut zone)?;
+    }
+    if improve.keeps_others {
+        repair.kept = others(n_tets, &improve.cells);
     }
     repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost }, zone)
 }

@@ -16,7 +16,7 @@ use crate::kernel::{Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, defect};
 use crate::remesh::given::Rest;
 use crate::remesh::repair::tried::Settled;
-use crate::remesh::repair::{Repair, Sizing};
+use crate::remesh::repair::{Repair, Sizing, is_among};
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of what it touches by this part of it. Of the paddle above the mean EAS is, over all steps, never below 0.673 with 0.05 (7.0 % changed a step),
@@ -178,15 +178,10 @@ impl Repair {
         Ok(())
     }
 
-    /// The tets that were inserted.
-    pub(in crate::remesh) fn inserted(&self) -> Vec<TetId> {
-        self.complex.tets().filter(|&t| !self.complex.is_original(t)).collect()
-    }
-
     /// The tets that share a vertex with one that was inserted.
     pub(in crate::remesh) fn near_changes(&self) -> Vec<TetId> {
         let mut is_near = vec![false; self.complex.n_vertex_slots()];
-        for tet in self.inserted() {
+        for tet in self.complex.tets().filter(|&t| !self.complex.is_original(t)) {
             self.complex.vertices(tet).into_iter().for_each(|v| is_near[v.index()] = true);
         }
         let touches = |&t: &TetId| self.complex.vertices(t).into_iter().any(|v| is_near[v.index()]);
@@ -307,7 +302,8 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        if gain <= least || self.adds_low(change, worth.aim.floor) {
+        let is_kept = |&tet: &TetId| self.complex.is_original(tet) && is_among(&self.kept, tet);
+        if gain <= least || self.adds_low(change, worth.aim.floor) || change.cavity.iter().any(is_kept) {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {

@@ -77,6 +77,8 @@ pub(super) struct Repair {
     pub(super) rest: Option<Rest>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
     others: Vec<bool>,
+    /// The tets of the first mesh that improving leaves as they are, by id; empty: there are none.
+    pub(super) kept: Vec<bool>,
     target: f64,
     n_stages: usize,
     candidate: Candidate,
@@ -111,6 +113,7 @@ impl Repair {
             sizing: None,
             rest: None,
             others,
+            kept: Vec::new(),
             target,
             n_stages: FIRST_STAGES,
             candidate: Candidate::default(),
