@@ -57,9 +57,14 @@ impl History {
     ) -> PyResult<Bound<'py, PyAny>> {
         let field = to_field(name, array)?;
         let on_points = one_of("on", on, &[("points", true), ("cells", false)])?;
-        let mean = if on_points { Rule::Interpolate } else { Rule::Conserve };
+        let (mean, linear) = match on_points {
+            true => (Rule::Interpolate, Rule::Linear),
+            false => (Rule::Conserve, Rule::Conserve),
+        };
         let rule = rule
-            .map(|rule| one_of("rule", rule, &[("mean", mean), ("inherit", Rule::Inherit)]))
+            .map(|rule| {
+                one_of("rule", rule, &[("mean", mean), ("linear", linear), ("inherit", Rule::Inherit)])
+            })
             .transpose()?;
         let new = called(py, || match (on_points, rule) {
             (true, None) => self.0.transfer_points(&field).map(Some),

@@ -27,11 +27,16 @@ pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> 
     })
 }
 
-/// What becomes of arrays, from their names to "mean", "inherit" or "drop".
+/// What becomes of arrays, from their names to "mean", "linear", "inherit" or "drop".
 pub(crate) fn rules(mesh: &Mesh, carry: &BTreeMap<String, String>) -> PyResult<Rules> {
     let mut rules = Rules::default();
     for (name, word) in carry {
-        let known = [("mean", Carry::Mean), ("inherit", Carry::Inherit), ("drop", Carry::Drop)];
+        let known = [
+            ("mean", Carry::Mean),
+            ("linear", Carry::Linear),
+            ("inherit", Carry::Inherit),
+            ("drop", Carry::Drop),
+        ];
         rules.carry(mesh, name, one_of("carry", word, &known)?).or_raise()?;
     }
     Ok(rules)

@@ -44,6 +44,8 @@ def test_a_history_carries_arrays_later():
     off = sum(region.deviation for region in done.history.ledger.regions)
     assert abs(new @ volume(done.mesh) - density @ volume(mesh)) <= density.max() * off + 1e-12 and off < 1e-4
     assert set(done.history.transfer(mesh.cell_data["id"], on="cells", rule="inherit")) <= set(mesh.cell_data["id"])
+    exact = mesh.point_data["linear"]
+    np.testing.assert_allclose(done.history.transfer(exact, on="points", rule="linear"), later, atol=1e-12)
     tensors = np.arange(9.0 * mesh.n_points).reshape(-1, 3, 3)
     assert done.history.transfer(tensors, on="points").shape == (done.mesh.n_points, 3, 3)
     again = motet.remesh(done.mesh, sizes=0.1)

@@ -17,7 +17,7 @@ module motet
   integer(c_int32_t), parameter, public :: MOTET_LINE = 3, MOTET_TRIANGLE = 5, MOTET_QUAD = 9, MOTET_TETRA = 10, &
       MOTET_HEXAHEDRON = 12, MOTET_WEDGE = 13, MOTET_PYRAMID = 14
   integer(c_int32_t), parameter, public :: MOTET_ON_POINTS = 0, MOTET_ON_CELLS = 1
-  integer(c_int32_t), parameter, public :: MOTET_RULE_MEAN = 0, MOTET_RULE_INHERIT = 1
+  integer(c_int32_t), parameter, public :: MOTET_RULE_MEAN = 0, MOTET_RULE_INHERIT = 1, MOTET_RULE_LINEAR = 2
   integer(c_int32_t), parameter, public :: MOTET_DELAUNAY = 0, MOTET_BODIES = 1, MOTET_GUIDED = 2, MOTET_ELASTIC = 3, &
       MOTET_LAPLACE = 4, MOTET_IDW = 5, MOTET_RBF = 6
 

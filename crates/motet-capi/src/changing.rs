@@ -105,7 +105,8 @@ pub(crate) unsafe extern "C" fn motet_outcome_transfer(
         let is_on_points = on_points(on)?;
         let rule = match (rule, is_on_points) {
             (0, true) => Rule::Interpolate,
-            (0, false) => Rule::Conserve,
+            (0 | 2, false) => Rule::Conserve,
+            (2, true) => Rule::Linear,
             (1, _) => Rule::Inherit,
             _ => return Err(Error::options(format!("there is no rule {rule}"))),
         };

@@ -15,7 +15,7 @@ use crate::verbs::convert::WritingArgs;
 #[command(next_help_heading = "Arrays")]
 pub(crate) struct ArrayArgs {
     /// What becomes of an array where the mesh changes. Repeatable
-    #[arg(long, value_name = "ARRAY=mean|inherit|drop", value_parser = carry)]
+    #[arg(long, value_name = "ARRAY=mean|linear|inherit|drop", value_parser = carry)]
     carry: Vec<(String, Carry)>,
     /// Add the cell array `eas`
     #[arg(long)]
@@ -68,14 +68,15 @@ fn write_history(file: &Path, history: &History) -> Result<()> {
     io::replace(file, &json).map(drop)
 }
 
-/// `ARRAY=mean|inherit|drop`
+/// `ARRAY=mean|linear|inherit|drop`
 fn carry(text: &str) -> Result<(String, Carry), String> {
     let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
     let carry = match rule {
         "mean" => Carry::Mean,
+        "linear" => Carry::Linear,
         "inherit" => Carry::Inherit,
         "drop" => Carry::Drop,
-        _ => return Err("ARRAY=mean, ARRAY=inherit or ARRAY=drop is expected".into()),
+        _ => return Err("ARRAY=mean, ARRAY=linear, ARRAY=inherit or ARRAY=drop is expected".into()),
     };
     Ok((name.to_owned(), carry))
 }

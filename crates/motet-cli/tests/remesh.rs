@@ -219,7 +219,7 @@ fn the_report_tells_how_well_arrays_were_carried() {
     ));
     folder.mesh("shaken.vtu", &mesh);
     let words = ["remesh", "shaken.vtu", "-o", "out.vtu", "--json", "--quality"];
-    let words = words.into_iter().chain(["--carry", "constant=inherit"]);
+    let words = words.into_iter().chain(["--carry", "constant=inherit", "--carry", "linear=linear"]);
     let told = report(&folder.motet(words).assert().code(0));
     let new = read(folder.path("out.vtu")).unwrap();
     let fields = told["fields"].as_array().unwrap();
@@ -228,7 +228,7 @@ fn the_report_tells_how_well_arrays_were_carried() {
     assert_eq!(
         heads,
         [
-            ["linear", "points", "interpolate"],
+            ["linear", "points", "linear"],
             ["constant", "points", "inherit"],
             ["constant", "cells", "inherit"],
             ["pressure", "cells", "conserve"]

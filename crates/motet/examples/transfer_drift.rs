@@ -1,6 +1,7 @@
 //! What a long motion makes of fields: a paddle turns in its box, and fields are carried through every change of the mesh; beside it, a new mesh of everything after each turn.
 //!
-//! `transfer_drift turn MESH [--turns N] [--steps N]` moves the patch `paddle` of MESH about z. `transfer_drift anew MESH [--turns N] [--each N] [--size H]` fills the walls of
+//! `transfer_drift turn MESH [--turns N] [--steps N] [--rule mean|linear]` moves the patch `paddle` of MESH about z; fields on points are carried by the rule.
+//! `transfer_drift anew MESH [--turns N] [--each N] [--size H] [--rule mean|linear]` fills the walls of
 //! MESH anew once a turn, or so often, and carries the fields from each mesh to the next one; it finds no other error on the way. Walls are the same; inside, each mesh is
 //! of another lattice, since all is turned in space before it is filled. Seven meshes take turns. Both print a JSON object a turn.
 //!
@@ -19,15 +20,16 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use carried::{Carried, integral};
-use motet::base::{Point, Threads, VertexId};
+use motet::base::{Id, Point, Threads};
 use motet::geometry::tet;
 use motet::io;
+use motet::mesh::history::Rule;
 use motet::mesh::{Field, Mesh};
 use motet::meshing::{self, Dividing, Sizes, Surfaces, fill};
 use motet::motion::{FacetSet, Method, Prescribed, Strain};
 use motet::moving::{InTime, Motion, MovingMesh, Options, Script, Step};
 use motet::preflight::Role;
-use motet::spatial::BoxTree;
+use motet::spatial::trace;
 use serde_json::json;
 
 struct Call {
@@ -38,6 +40,7 @@ struct Call {
     /// New meshes a turn.
     each: usize,
     size: f64,
+    rule: Rule,
 }
 
 const USAGE: &str = "transfer_drift turn MESH, or anew MESH";
@@ -45,7 +48,8 @@ const USAGE: &str = "transfer_drift turn MESH, or anew MESH";
 fn call() -> Result<Call, Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
     let [how, mesh] = [words.next(), words.next()].map(|word| word.ok_or(USAGE));
-    let mut call = Call { how: how?, mesh: mesh?, turns: 3, steps: 72, each: 1, size: 0.25 };
+    let mut call =
+        Call { how: how?, mesh: mesh?, turns: 3, steps: 72, each: 1, size: 0.25, rule: Rule::Interpolate };
     while let Some(word) = words.next() {
         let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
@@ -53,6 +57,8 @@ fn call() -> Result<Call, Box<dyn Error>> {
             "--steps" => call.steps = value.parse()?,
             "--each" => call.each = value.parse()?,
             "--size" => call.size = value.parse()?,
+            "--rule" if value == "mean" => call.rule = Rule::Interpolate,
+            "--rule" if value == "linear" => call.rule = Rule::Linear,
             _ => return Err(format!("what is {word}? {USAGE}").into()),
         }
     }
@@ -63,8 +69,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let call = call()?;
     let mesh = io::read(&call.mesh)?;
     match call.how.as_str() {
-        "turn" => turn(&mesh, call.turns, call.steps),
-        "anew" => anew(&mesh, call.turns, call.each, call.size),
+        "turn" => turn(&mesh, &call),
+        "anew" => anew(&mesh, &call),
         _ => Err(USAGE.into()),
     }
 }
@@ -84,7 +90,7 @@ fn density_field(name: &str, mesh: &Mesh) -> Field {
     Field::scalars(name, values)
 }
 
-fn turn(mesh: &Mesh, turns: usize, steps: usize) -> Result<(), Box<dyn Error>> {
+fn turn(mesh: &Mesh, &Call { turns, steps, rule, .. }: &Call) -> Result<(), Box<dyn Error>> {
     let threads = Threads::single();
     let mut given = mesh.clone();
     given.set_cell_field(density_field(CONTENTS, mesh));
@@ -112,7 +118,7 @@ fn turn(mesh: &Mesh, turns: usize, steps: usize) -> Result<(), Box<dyn Error>> {
             return Err(format!("step {k} stopped on its way").into());
         }
         for change in &step.changes {
-            carried.change(&change.points_before, &change.history)?;
+            carried.change(&change.points_before, &change.history, rule)?;
         }
         conserved = conserved.max(conserved_by(&before, &moving, &step, &carried)?);
         changes += step.changes.len();
@@ -150,14 +156,20 @@ fn conserved_by(before: &Mesh, moving: &MovingMesh, step: &Step, now: &Carried) 
 const MESHES: usize = 7;
 
 /// Each turn ends with the next mesh, or goes through so many.
-fn anew(mesh: &Mesh, turns: usize, each: usize, size: f64) -> Result<(), Box<dyn Error>> {
+fn anew(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(), Box<dyn Error>> {
     let filled = |k: usize| filled(mesh, 0.5 + k as f64, size);
     let meshes = (0..MESHES).map(filled).collect::<motet::Result<Vec<_>>>()?;
-    let ways: Vec<_> = (0..MESHES).map(|k| parts(&meshes[k], &meshes[(k + 1) % MESHES])).collect();
+    let way = |k: usize| {
+        let (old, new) = (&meshes[k], &meshes[(k + 1) % MESHES]);
+        let (vertices, cells) = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
+        trace::between(old, new, &vertices, &cells, &Threads::single())
+    };
+    let ways = (0..MESHES).map(way).collect::<motet::Result<Vec<_>>>()?;
     let mut carried = Carried::new(&meshes[0]);
     for k in 1..=turns * each {
         let new = &meshes[k % MESHES];
-        carried.interpolate(&ways[(k - 1) % MESHES], &new.points);
+        let before = carried.places().to_vec();
+        carried.change(&before, &ways[(k - 1) % MESHES], rule)?;
         if k % each == 0 {
             let mut line = carried.measured(new);
             line["turn"] = json!(k / each);
@@ -186,41 +198,4 @@ fn filled(mesh: &Mesh, angle: f64, size: f64) -> motet::Result<Mesh> {
     let mut filled = fill(&surfaces, &surfaces.preflight(&threads), &options, &threads)?.mesh;
     filled.points.iter_mut().for_each(turned(-angle));
     Ok(filled)
-}
-
-/// For each point of `new` the vertices of `old` that its value is a mean of, with their parts: those of the tet that holds it, or comes nearest to it.
-fn parts(old: &Mesh, new: &Mesh) -> Vec<[(VertexId, f64); 4]> {
-    let tets: Vec<[VertexId; 4]> = old.cells.tets().map(|(_, tet)| tet).collect();
-    let corners = |t: usize| tets[t].map(|v| old.points[v.index()]);
-    let reach = 1e-6;
-    let bounds = |points: &[Point]| {
-        let low = points.iter().fold([f64::INFINITY; 3], |a, p| [0, 1, 2].map(|k| a[k].min(p[k] - reach)));
-        let high =
-            points.iter().fold([f64::NEG_INFINITY; 3], |a, p| [0, 1, 2].map(|k| a[k].max(p[k] + reach)));
-        [low, high]
-    };
-    let tree = BoxTree::new(&(0..tets.len()).map(|t| bounds(&corners(t))).collect::<Vec<_>>());
-    let mut found = Vec::new();
-    let of_point = |p: &Point| {
-        found.clear();
-        tree.touching(bounds(&[*p]), &mut found);
-        let all = found.iter().map(|&t| (t as usize, barycentric(corners(t as usize), *p)));
-        let least = |shares: &[f64; 4]| shares.iter().copied().fold(f64::INFINITY, f64::min);
-        let best = all.max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
-        let (t, shares) = best.unwrap_or((0, [1.0, 0.0, 0.0, 0.0]));
-        [0, 1, 2, 3].map(|i| (tets[t][i], shares[i]))
-    };
-    new.points.iter().map(of_point).collect()
-}
-
-/// The shares of the corners in a point.
-fn barycentric(corners: [Point; 4], p: Point) -> [f64; 4] {
-    let part = |i: usize| {
-        let mut with = corners;
-        with[i] = p;
-        tet::volume(with)
-    };
-    let parts = [0, 1, 2, 3].map(part);
-    let all: f64 = parts.iter().sum();
-    parts.map(|part| part / all)
 }

@@ -1,13 +1,13 @@
 //! Over long motions a mesh stays the mesh that it was: its counts, its mean quality, and where a wall comes back the mesh itself.
 
 use motet::base::{Point, Threads};
-use motet::mesh::history::Rules;
+use motet::mesh::history::{Rule, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, Cells, Field, Mesh, Qualities};
 use motet::motion::{Method, Strain};
 use motet::moving::{Motion, MovingMesh, Options, Step, Why};
 use motet::refine::{Criterion, Wanted};
-use motet::remesh::{Density, Goal, Improve, remesh_mesh};
+use motet::remesh::{Density, Goal, Improve, SurfaceRule, remesh_mesh};
 
 fn threads() -> Threads {
     Threads::single()
@@ -18,17 +18,20 @@ const PADDLE: Point = [1.0, 1.0 / 3.0, 1.0 / 3.0];
 
 /// A box of 4 by 4 by 2 with a paddle in it, about the origin.
 fn paddle_in_box() -> Mesh {
-    let grid = box_grid([12, 12, 6], [[-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]]);
-    let is_paddle = |vertices: &[motet::base::VertexId]| {
-        let middle = |k: usize| vertices.iter().map(|v| grid.points[v.index()][k]).sum::<f64>() / 4.0;
-        (0..3).all(|k| middle(k).abs() < PADDLE[k])
+    without(&box_grid([12, 12, 6], [[-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]]), is_paddle)
+}
+
+/// A mesh without the tets whose middles are in a body about the origin.
+fn without(grid: &Mesh, is_body: impl Fn(Point) -> bool) -> Mesh {
+    let middle = |tet: [motet::base::VertexId; 4]| {
+        [0, 1, 2].map(|k| tet.iter().map(|v| grid.points[v.index()][k]).sum::<f64>() / 4.0)
     };
     let mut cells = Cells::new();
-    for (_, tet) in grid.cells.tets().filter(|(_, tet)| !is_paddle(tet)) {
+    for (_, tet) in grid.cells.tets().filter(|(_, tet)| !is_body(middle(*tet))) {
         cells.push(motet::mesh::CellKind::TETRA, tet);
     }
     let mut mesh = Mesh::new(grid.points.clone(), cells);
-    // Points within the paddle are of no tet.
+    // Points within the body are of no tet.
     let is_used: Vec<bool> = {
         let mut is_used = vec![false; mesh.points.len()];
         mesh.cells.tets().flat_map(|(_, tet)| tet).for_each(|v| is_used[v.index()] = true);
@@ -75,13 +78,25 @@ struct Limits {
 
 /// Turns the paddle in steps of ten degrees.
 fn turn_on(n_steps: i32, options: Options, limits: &Limits) {
-    let mesh = paddle_in_box();
-    let first = quality(&mesh);
+    go_on(&paddle_in_box(), n_steps, options, limits, |moving, k| {
+        turn(moving, f64::from(k), f64::from(10 * k).to_radians())
+    });
+}
+
+/// Moves a body in so many steps.
+fn go_on(
+    mesh: &Mesh,
+    n_steps: i32,
+    options: Options,
+    limits: &Limits,
+    advance: impl Fn(&mut MovingMesh, i32) -> Step,
+) {
+    let first = quality(mesh);
     let n_walls = Boundary::of(&mesh.cells).vertices.len();
-    let mut moving = MovingMesh::new(&mesh, options, &threads()).unwrap();
+    let mut moving = MovingMesh::new(mesh, options, &threads()).unwrap();
     let n_first = moving.mesh().cells.tets().count();
     for k in 1..=n_steps {
-        let step = turn(&mut moving, f64::from(k), f64::from(10 * k).to_radians());
+        let step = advance(&mut moving, k);
         assert!(step.complete && step.inverted == 0 && step.bad == 0, "{k}: {} bad", step.bad);
         let of = |n: usize, first: usize| (n as f64 / first as f64 - 1.0).abs();
         assert!(of(step.points, mesh.points.len()) < limits.vertices, "{k}: {} vertices", step.points);
@@ -104,6 +119,19 @@ fn a_paddle_that_turns_in_a_band_leaves_counts_and_quality_as_they_were() {
 fn a_paddle_that_turns_by_the_graph_leaves_counts_and_quality_as_they_were() {
     let limits = Limits { vertices: 0.03, tets: 0.12, mean: 0.1 };
     turn_on(36, options(Method::Delaunay, Strain::Even), &limits);
+}
+
+#[test]
+fn a_body_that_goes_along_a_channel_leaves_counts_and_quality_as_they_were() {
+    let is_body = |p: Point| p.iter().all(|x| x.abs() < 0.35);
+    let mesh = without(&box_grid([18, 6, 6], [[-1.0, -1.0, -1.0], [5.0, 1.0, 1.0]]), is_body);
+    let advance = |moving: &mut MovingMesh, k: i32| {
+        let goes = |&p: &Point| if is_body(p) { [0.1 * f64::from(k), 0.0, 0.0] } else { [0.0; 3] };
+        let displacement: Vec<Point> = moving.driven_places().iter().map(goes).collect();
+        moving.advance(f64::from(k), &displacement, &threads()).unwrap()
+    };
+    let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
+    go_on(&mesh, 38, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
 }
 
 #[test]
@@ -314,6 +342,53 @@ fn arrays_are_carried_to_the_first_mesh() {
         }
     }
     assert!(n_put_back > 0);
+}
+
+#[test]
+fn walls_that_come_back_and_may_change_leave_the_same_mesh_at_the_ends_of_cycles() {
+    let surface = SurfaceRule::Adapt { distance: Some(0.02) };
+    let repair = motet::remesh::Options { surface, ..Default::default() };
+    let mut moving = restless_with(Options { repair: Some(repair), ..that_returns() });
+    let first = quality(moving.mesh());
+    let mut ends = Vec::new();
+    for k in 1..=10 * 8 {
+        let step = twist_restless(&mut moving, k);
+        if k % 8 == 0 {
+            ends.push((step.points as f64, step.quality.mean));
+        }
+    }
+    for (points, mean) in &ends[2..] {
+        assert!((points / ends[2].0 - 1.0).abs() < 0.01 && (mean / ends[2].1 - 1.0).abs() < 0.01, "{ends:?}");
+        assert!((mean / first.mean - 1.0).abs() < 0.03, "{first:?} {ends:?}");
+    }
+}
+
+/// What changes of a cube on its way make of a field, each by itself: the sum of the squares of the errors off the exact function at new and moved vertices.
+fn errors_of_changes(of: impl Fn(Point) -> f64, rules: [Rule; 2]) -> [f64; 2] {
+    let mut moving = restless();
+    let (mut errors, mut n_changed) = ([0.0; 2], 0);
+    for k in 1..=3 * 8 {
+        let step = twist_restless(&mut moving, k);
+        let Some(change) = step.changes.last() else { continue };
+        let before = Field::vectors("", &change.points_before);
+        let places = change.history.transfer_points(&before).unwrap().to_vectors().unwrap();
+        let field = Field::scalars("", change.points_before.iter().map(|&p| of(p)).collect::<Vec<_>>());
+        for (error, rule) in errors.iter_mut().zip(rules) {
+            let carried = change.history.transfer_points_by(&field, rule).unwrap().unwrap();
+            let carried = carried.values.to_f64().unwrap();
+            *error += carried.iter().zip(&places).map(|(u, &p)| (u - of(p)).powi(2)).sum::<f64>();
+        }
+        n_changed += change.history.vertices.changed().len();
+    }
+    assert!(n_changed > 50);
+    errors
+}
+
+#[test]
+fn changes_leave_a_smooth_field_with_less_error_than_linear_interpolation() {
+    let smooth = |p: Point| (1.5 * p[0]).sin() * p[1].cos() + p[2] * p[2];
+    let [quadratic, linear] = errors_of_changes(smooth, [Rule::Interpolate, Rule::Linear]);
+    assert!(linear > 1e-4 && quadratic < 0.1 * linear, "{quadratic}, linear {linear}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ from ._mesh import Mesh, MeshLike, as_mesh, named, point
 from ._report import Progress, Report, report
 from ._words import checked, checked_class
 
-Carry = Literal["mean", "inherit", "drop"]
+Carry = Literal["mean", "linear", "inherit", "drop"]
 
 
 @checked_class
@@ -50,7 +50,7 @@ class History:
         return report(self._native.ledger)
 
     def transfer(
-        self, array: ArrayLike, *, on: Literal["points", "cells"], rule: Literal["mean", "inherit"] | None = None, name: str = "array"
+        self, array: ArrayLike, *, on: Literal["points", "cells"], rule: Literal["mean", "linear", "inherit"] | None = None, name: str = "array"
     ) -> Any:
         """An array of the old mesh on the new one; what did not change goes over bit for bit.
 
@@ -59,8 +59,9 @@ class History:
         array : array (n, ..)
             A row for each old point, or cell.
         on : {"points", "cells"}
-        rule : {"mean", "inherit"}
-            ``mean``: on points interpolated, on cells averaged by volume, so that integrals stay. ``inherit``: the value of what has the largest share.
+        rule : {"mean", "linear", "inherit"}
+            ``mean``: on points interpolated (exact for quadratic fields off walls, between the values around), on cells averaged by volume, so that integrals stay.
+            ``linear``: on points linear in each old tet. ``inherit``: the value of what has the largest share.
             None: real numbers get their mean; whole numbers, texts, directions (by ``name`` or by their lengths) are inherited.
         """
         given = array if isinstance(array, list) else np.asarray(array)
@@ -154,7 +155,7 @@ def remesh(
         Tets of these regions and triangles of these patches stay to the bit, with their vertices.
     sizes : float, name of a point array, or array (n,)
         How long edges are to be.
-    carry : mapping from array to {"mean", "inherit", "drop"}
+    carry : mapping from array to {"mean", "linear", "inherit", "drop"}
         What becomes of arrays where the mesh changes.
     progress : callable
         Gets what is being done, how much of it is done and how much there is (0 where that is not known), some times a second. What it raises ends the

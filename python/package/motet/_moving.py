@@ -99,7 +99,7 @@ class MovingMesh(NotPickled):
         ``inverted_at_start`` of a step.
     contents : sequence of names
         Cell arrays that are densities of something that stays in its cell: their integrals are kept while cells move.
-    carry : mapping from names to "mean", "inherit" or "drop"
+    carry : mapping from names to "mean", "linear", "inherit" or "drop"
         What becomes of arrays where the mesh changes.
     watch : sequence of patches
         Their gaps are measured at each step; ``warn``, ``within`` as of :class:`Contact`, ``horizon``: how far ahead is looked, in units of time; ``hold``: walls stop

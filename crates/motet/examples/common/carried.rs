@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use motet::base::{Point, VertexId};
 use motet::geometry::tet;
-use motet::mesh::history::History;
+use motet::mesh::history::{History, Rule};
 use motet::mesh::{Field, Mesh};
 use serde_json::{Value, json};
 
@@ -54,31 +54,19 @@ impl Carried {
         }
     }
 
-    /// Vertices move to `before`, and the mesh changes there.
+    /// Vertices move to `before`, and the mesh changes there; fields are carried by a rule of points.
     ///
     /// # Errors
     /// When the history is that of another mesh.
-    pub(crate) fn change(&mut self, before: &[Point], history: &History) -> motet::Result<()> {
+    pub(crate) fn change(&mut self, before: &[Point], history: &History, rule: Rule) -> motet::Result<()> {
         self.go_to(before);
         let carry = |values: &[f64]| -> motet::Result<Vec<f64>> {
-            let field = history.transfer_points(&Field::scalars("", values.to_vec()))?;
-            Ok(field.values.to_f64().unwrap_or_default())
+            let field = history.transfer_points_by(&Field::scalars("", values.to_vec()), rule)?;
+            Ok(field.and_then(|field| field.values.to_f64()).unwrap_or_default())
         };
         (self.linear, self.smooth) = (carry(&self.linear)?, carry(&self.smooth)?);
         self.places = history.transfer_points(&Field::vectors("", &self.places))?.to_vectors()?;
         Ok(())
-    }
-
-    /// All vertices are new, at `places`.
-    pub(crate) fn interpolate(&mut self, parts: &[[(VertexId, f64); 4]], places: &[Point]) {
-        let of = |values: &[f64]| -> Vec<f64> {
-            let mean =
-                |row: &[(VertexId, f64); 4]| row.iter().map(|(v, part)| part * values[v.index()]).sum();
-            parts.iter().map(mean).collect()
-        };
-        (self.linear, self.smooth) = (of(&self.linear), of(&self.smooth));
-        // On straight walls a vertex is where it was interpolated but for rounding.
-        self.places = places.to_vec();
     }
 
     /// How far the fields are off on a mesh whose vertices are where they are here.

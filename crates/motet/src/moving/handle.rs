@@ -352,7 +352,7 @@ impl MovingMesh {
             let sizes: Vec<f64> =
                 gaps.into_iter().map(|gap| gap.clamp(f64::MIN_POSITIVE, NO_LIMIT)).collect();
             given.set_point_field(Field::scalars(GAP, sizes));
-            rules.points.insert(GAP.to_owned(), Rule::Interpolate);
+            rules.points.insert(GAP.to_owned(), Rule::Linear);
         }
         let mut refinement = MeshRefinement::new(&given, refine::Options::default(), threads)?;
         let wanted = Wanted { keeps_history: true, ..wanted.clone() };

@@ -224,10 +224,11 @@ impl Now {
         for (name, values) in [(FIRST, self.known.first.as_slice()), (BEFORE, before)].into_iter().chain(rest)
         {
             mesh.set_point_field(Field::vectors(name, values));
-            rules.points.insert(name.to_owned(), Rule::Interpolate);
+            rules.points.insert(name.to_owned(), Rule::Linear);
         }
         for (name, values) in [(SIZE, &self.known.size), (FIRST_SIZE, &self.known.first_size)] {
             mesh.set_point_field(Field::scalars(name, values.clone()));
+            rules.points.insert(name.to_owned(), Rule::Linear);
         }
         // A rule may name an array that the user has taken off since.
         rules.points.retain(|name, _| mesh.point_field(name).is_some());

@@ -11,7 +11,7 @@ use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
 use crate::remesh::run::remesh_but;
 use crate::remesh::{Options, Report};
-use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, trace};
+use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
 
 /// A whole mesh after remeshing, where each part of it was before, and what was done.
 #[derive(Debug)]
@@ -255,6 +255,7 @@ fn history(
         },
         threads,
     )?;
+    let wide = quadratic(old, &traced.vertices, threads);
     // Lines are the last cells.
     let mut cells = traced.cells;
     for &(cell, i) in &joined.new_lines {
@@ -262,7 +263,7 @@ fn history(
         cells.push(cell, &[(before, 1.0)], before);
     }
     Ok(History {
-        vertices: Origins::new(old.points.len(), vertex_to_old, traced.vertices)?,
+        vertices: Origins::new(old.points.len(), vertex_to_old, traced.vertices)?.with_quadratic(wide)?,
         cells: Origins::new(old.cells.len(), joined.cell_to_old.clone(), cells)?,
         ledger: traced.ledger,
     })

@@ -282,6 +282,7 @@ impl Report {
             };
             let rule = match field.rule {
                 Rule::Interpolate => "interpolated",
+                Rule::Linear => "interpolated linearly",
                 Rule::Conserve => "conserved",
                 Rule::Inherit => "inherited",
                 Rule::Drop => "dropped",

@@ -70,7 +70,7 @@ A job, in TOML; names of files are relative to it. All but `mesh` and `output` i
   # hold = 0.02   walls stop at this distance, wherever they are requested to go: each patch gives way to those after it
 
   [carry]
-  pressure = \"mean\"               # or inherit, drop
+  pressure = \"mean\"               # or linear, inherit, drop
 
 Exit status 3: the job cannot be read, or names what does not exist (file, line). 4: a step could \
 not be completed, or bad tets are left that walls do not force; what was reached is written.")]

@@ -32,7 +32,7 @@ impl History {
     /// Also when the rule means nothing: values on points are interpolated, not conserved, and whole numbers, texts have no mean.
     pub fn transfer_points_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
         check(field, self.vertices.n_old(), "point")?;
-        check_rule(field, rule, Rule::Interpolate, "point")?;
+        check_rule(field, rule, &[Rule::Interpolate, Rule::Linear], "point")?;
         Ok((rule != Rule::Drop).then(|| carried(&self.vertices, field, rule)))
     }
 
@@ -42,7 +42,7 @@ impl History {
     /// Also when the rule means nothing: values on cells are conserved, not interpolated, and whole numbers, texts have no mean.
     pub fn transfer_cells_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
         check(field, self.cells.n_old(), "cell")?;
-        check_rule(field, rule, Rule::Conserve, "cell")?;
+        check_rule(field, rule, &[Rule::Conserve], "cell")?;
         Ok((rule != Rule::Drop).then(|| carried(&self.cells, field, rule)))
     }
 
@@ -93,11 +93,12 @@ fn check(field: &Field, n_old: usize, what: &str) -> Result<()> {
     check_rows(std::slice::from_ref(field), n_old, what).map_err(|e| e.remedy(remedy))
 }
 
-fn check_rule(field: &Field, rule: Rule, mean: Rule, what: &str) -> Result<()> {
+fn check_rule(field: &Field, rule: Rule, means: &[Rule], what: &str) -> Result<()> {
+    let known: Vec<String> = means.iter().map(|mean| format!("{mean:?}")).collect();
     let error = match rule {
         Rule::Inherit | Rule::Drop => return Ok(()),
-        rule if rule != mean => Error::options(format!("cannot be asked to {rule:?}"))
-            .remedy(format!("{what} arrays take {mean:?}, Inherit or Drop")),
+        rule if !means.contains(&rule) => Error::options(format!("cannot be asked to {rule:?}"))
+            .remedy(format!("{what} arrays take {}, Inherit or Drop", known.join(", "))),
         _ if has_mean(field) => return Ok(()),
         _ => Error::options(format!("is asked to {rule:?}, but whole numbers and texts have no mean"))
             .remedy("Inherit it, or store it as floats"),
@@ -125,8 +126,8 @@ fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>
 /// `field` has a row for each old thing, and means where the rule takes some.
 fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule) -> Field {
     let values = match &field.values {
-        Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, field.components, old)),
-        Values::F32(old) if rule != Rule::Inherit => Values::F32(mixed(origins, field.components, old)),
+        Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, field.components, rule, old)),
+        Values::F32(old) if rule != Rule::Inherit => Values::F32(mixed(origins, field.components, rule, old)),
         _ => return field.pick(origins.main().map(I::place)),
     };
     Field { name: field.name.clone(), components: field.components, values }
@@ -149,22 +150,24 @@ impl Float for f32 {
     }
 }
 
-fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, old: &[T]) -> Vec<T> {
+fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, rule: Rule, old: &[T]) -> Vec<T> {
     let mut new = Vec::with_capacity(origins.len() * components);
-    for origin in origins.iter() {
-        match origin {
-            Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
-            Origin::Changed(row) => new.extend((0..components).map(|k| {
-                let value = |id: I| old[id.place() * components + k].into();
-                T::rounded(mean(&row, value))
-            })),
-        }
+    let add = |origin: Origin<'_, I>| match origin {
+        Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
+        Origin::Changed(row) => new.extend((0..components).map(|k| {
+            let value = |id: I| old[id.place() * components + k].into();
+            T::rounded(mean(&row, value))
+        })),
+    };
+    match rule {
+        Rule::Interpolate => origins.iter_quadratic().for_each(add),
+        _ => origins.iter().for_each(add),
     }
     new
 }
 
 /// The mean of a row's values. Taken from the first one on, so that equal values give their own, to the bit; and
-/// never beyond the least or the largest, as rounding might.
+/// never beyond the least or the largest, as rounding and negative shares might.
 fn mean<I: Id>(row: &Row<'_, I>, value: impl Fn(I) -> f64) -> f64 {
     let first = value(row.from[0]);
     let (mut sum, mut least, mut largest) = (0.0, first, first);

@@ -5,7 +5,7 @@
 //!
 //! | of the new mesh | its row |
 //! |---|---|
-//! | a vertex that is new or moved | the vertices of the old tet that held its place, with their weights there |
+//! | a vertex that is new or moved | the vertices of the old tet that held its place, with their weights there; off walls also a row of the vertices around that is exact for quadratic fields |
 //! | a tet that is new | the old tets it overlaps, with their parts of its volume |
 //! | any other cell that is new | the one cell it inherits from |
 //!
@@ -23,6 +23,7 @@ pub use fields::{FieldIntegral, FieldLedger, On, field_ledger};
 pub use ledger::{Ledger, RegionLedger};
 pub(crate) use numbers::numbers_cells;
 pub use numbers::{REFINE_ROOT, number_anew};
+pub(crate) use origins::merge;
 pub use origins::{Origin, Origins};
 pub use row::{Row, Rows};
 pub use rule::{Carry, Rule, Rules};

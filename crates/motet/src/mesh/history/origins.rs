@@ -2,19 +2,25 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::row::{Row, Rows};
+use super::row::{Row, Rows, Signs};
 use crate::base::{Error, Id, Result};
+
+/// Rows for quadratic fields that would be longer than this are left out where changes are joined: each change makes them longer.
+const LONGEST: usize = 400;
 
 /// For each thing of the new mesh the old thing that it is, or a row of old things with shares.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts<I>")]
-#[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
+#[serde(bound(serialize = "I: Id + Serialize", deserialize = "I: Id + Deserialize<'de>"))]
 pub struct Origins<I> {
     n_old: usize,
     /// The old id of each new thing that was kept; `NONE` where it changed.
     kept: Vec<I>,
     /// A row for each new thing that changed, in their order.
     changed: Rows<I>,
+    /// A further row for some of those that changed.
+    #[serde(skip_serializing_if = "Rows::is_empty")]
+    quadratic: Rows<I>,
 }
 
 /// Where one thing came from.
@@ -33,13 +39,15 @@ struct Parts<I> {
     n_old: usize,
     kept: Vec<I>,
     changed: Rows<I>,
+    #[serde(default)]
+    quadratic: Rows<I>,
 }
 
 impl<I: Id> TryFrom<Parts<I>> for Origins<I> {
     type Error = Error;
 
     fn try_from(parts: Parts<I>) -> Result<Self> {
-        Self::new(parts.n_old, parts.kept, parts.changed)
+        Self::new(parts.n_old, parts.kept, parts.changed)?.with_quadratic(parts.quadratic)
     }
 }
 
@@ -50,7 +58,7 @@ impl<I: Id> Origins<I> {
     /// # Errors
     /// When an old id does not exist, or something has both an old id and a row, or neither.
     pub fn new(n_old: usize, kept: Vec<I>, changed: Rows<I>) -> Result<Self> {
-        changed.check(n_old)?;
+        changed.check(n_old, Signs::Positive)?;
         if let Some(new) = kept.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
             return Err(Error::input(format!("was {}, but there were {n_old}", kept[new]))
                 .at(format!("origin of {new}")));
@@ -63,14 +71,27 @@ impl<I: Id> Origins<I> {
                 changed.len()
             )));
         }
-        Ok(Self { n_old, kept, changed })
+        Ok(Self { n_old, kept, changed, quadratic: Rows::new() })
+    }
+
+    /// With rows for quadratic fields of some of those that changed, in place of those that it had.
+    ///
+    /// # Errors
+    /// When an old id does not exist, shares do not sum to 1, or something with such a row has not changed.
+    pub fn with_quadratic(self, rows: Rows<I>) -> Result<Self> {
+        rows.check(self.n_old, Signs::Any)?;
+        match rows.ids().iter().find(|id| self.changed.ids().binary_search(id).is_err()) {
+            Some(id) => Err(Error::input("has a row for quadratic fields, but has not changed")
+                .at(format!("origin of {id}"))),
+            None => Ok(Self { quadratic: rows, ..self }),
+        }
     }
 
     /// Everything stayed.
     ///
     /// Panics when `n` is more than ids can count.
     pub fn identity(n: usize) -> Self {
-        Self { n_old: n, kept: (0..n).map(I::of).collect(), changed: Rows::new() }
+        Self { n_old: n, kept: (0..n).map(I::of).collect(), changed: Rows::new(), quadratic: Rows::new() }
     }
 
     /// How many things the old mesh had.
@@ -98,6 +119,11 @@ impl<I: Id> Origins<I> {
         &self.changed
     }
 
+    /// Rows of more old things for some of those that changed: exact not only for linear fields, but for quadratic ones, too. Their shares may be negative.
+    pub fn quadratic(&self) -> &Rows<I> {
+        &self.quadratic
+    }
+
     /// Where `id` of the new mesh came from.
     ///
     /// Panics when there is no such thing.
@@ -117,6 +143,17 @@ impl<I: Id> Origins<I> {
         })
     }
 
+    /// Where everything came from, in the order of the new mesh, by rows for quadratic fields where there are any.
+    pub fn iter_quadratic(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
+        let mut rows = self.quadratic.ids().iter().zip(self.quadratic.iter()).peekable();
+        self.iter().enumerate().map(move |(place, origin)| {
+            match rows.next_if(|(id, _)| id.place() == place) {
+                Some((_, row)) => Origin::Changed(row),
+                None => origin,
+            }
+        })
+    }
+
     /// For each new thing the old one that it inherits from.
     pub fn main(&self) -> impl Iterator<Item = I> + '_ {
         self.iter().map(|origin| origin.main())
@@ -129,27 +166,49 @@ impl<I: Id> Origins<I> {
     pub fn then(&self, later: &Self) -> Self {
         assert_eq!(later.n_old, self.len(), "the later change starts where this one ends");
         let mut kept = Vec::with_capacity(later.len());
-        let mut changed = Rows::new();
+        let (mut changed, mut quadratic) = (Rows::new(), Rows::new());
         let mut parts = Vec::new();
-        for (id, origin) in later.iter().enumerate() {
-            let (from, shares) = origin.parts();
-            let direct = matches!(origin, Origin::Kept(_)).then(|| self.of(from[0]));
+        for (id, (origin, wide)) in later.iter().zip(later.iter_quadratic()).enumerate() {
+            let direct = matches!(origin, Origin::Kept(_)).then(|| self.of(origin.main()));
             if let Some(Origin::Kept(old)) = direct {
                 kept.push(old);
                 continue;
             }
-            parts.clear();
-            for (&middle, &share) in from.iter().zip(shares) {
-                let middle = self.of(middle);
-                let (from, shares) = middle.parts();
-                parts.extend(from.iter().zip(shares).map(|(&old, &part)| (old, share * part)));
-            }
-            merge(&mut parts);
+            let (id, main) = (I::of(id), self.of(origin.main()).main());
             kept.push(I::NONE);
-            changed.push(I::of(id), &parts, self.of(origin.main()).main());
+            joined(&origin, |middle| self.of(middle), &mut parts);
+            changed.push(id, &parts, main);
+            let is_wide = |&middle: &I| self.quadratic.of(middle).is_some();
+            if later.quadratic.of(id).is_some() || wide.parts().0.iter().any(is_wide) {
+                joined(&wide, |middle| self.of_quadratic(middle), &mut parts);
+                if parts.len() <= LONGEST {
+                    quadratic.push_signed(id, &parts, main);
+                }
+            }
         }
-        Self { n_old: self.n_old, kept, changed }
+        Self { n_old: self.n_old, kept, changed, quadratic }
     }
+
+    /// Where `id` came from, by its row for quadratic fields where it has one.
+    fn of_quadratic(&self, id: I) -> Origin<'_, I> {
+        self.quadratic.of(id).map_or_else(|| self.of(id), Origin::Changed)
+    }
+}
+
+/// The parts of an origin, each with its parts in turn; one entry for each old thing, by rising id.
+fn joined<'a, I: Id + 'a>(
+    origin: &Origin<'_, I>,
+    of: impl Fn(I) -> Origin<'a, I>,
+    parts: &mut Vec<(I, f64)>,
+) {
+    parts.clear();
+    let (from, shares) = origin.parts();
+    for (&middle, &share) in from.iter().zip(shares) {
+        let middle = of(middle);
+        let (from, shares) = middle.parts();
+        parts.extend(from.iter().zip(shares).map(|(&old, &part)| (old, share * part)));
+    }
+    merge(parts);
 }
 
 impl<I: Id> Origin<'_, I> {
@@ -171,7 +230,7 @@ impl<I: Id> Origin<'_, I> {
 }
 
 /// One entry for each old thing, by rising id.
-fn merge<I: Id>(parts: &mut Vec<(I, f64)>) {
+pub(crate) fn merge<I: Id>(parts: &mut Vec<(I, f64)>) {
     parts.sort_by_key(|p| p.0);
     parts.dedup_by(|later, first| {
         let same = later.0 == first.0;

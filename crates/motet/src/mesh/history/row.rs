@@ -58,7 +58,7 @@ impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
 pub struct Row<'a, I> {
     /// Old things.
     pub from: &'a [I],
-    /// The share of each, all positive, 1 in sum.
+    /// The share of each, 1 in sum; all positive but in [rows for quadratic fields](super::Origins::quadratic).
     pub shares: &'a [f64],
     /// The old thing whose ids, names and directions are inherited: the one with the largest share, and for a moved
     /// vertex the vertex itself.
@@ -98,6 +98,20 @@ impl<I: Id> Rows<I> {
         self.main.push(main);
     }
 
+    /// Adds the row of `id`, which is larger than all ids before. Shares of either sign stay as they are, but that the largest gets what their sum lacks to 1.
+    ///
+    /// Panics when `id` is not the largest, or there are no parts.
+    pub fn push_signed(&mut self, id: I, parts: &[(I, f64)], main: I) {
+        assert!(self.ids.last().is_none_or(|&last| last < id), "rows come in rising order of their ids");
+        assert!(!parts.is_empty(), "a row has parts");
+        let start = self.shares.len();
+        self.from.push(parts.iter().map(|p| p.0));
+        self.shares.extend(parts.iter().map(|p| p.1));
+        settle(&mut self.shares[start..]);
+        self.ids.push(id);
+        self.main.push(main);
+    }
+
     /// How many rows there are.
     pub fn len(&self) -> usize {
         self.ids.len()
@@ -129,22 +143,32 @@ impl<I: Id> Rows<I> {
     }
 
     /// Checks that the rows name only the `n_old` old things, with shares that are some.
-    pub(super) fn check(&self, n_old: usize) -> Result<()> {
-        let fault = self.iter().zip(&self.ids).find_map(|(row, id)| row.fault(n_old).map(|what| (id, what)));
+    pub(super) fn check(&self, n_old: usize, signs: Signs) -> Result<()> {
+        let fault =
+            self.iter().zip(&self.ids).find_map(|(row, id)| row.fault(n_old, signs).map(|what| (id, what)));
         fault.map_or(Ok(()), |(id, what)| Err(Error::input(what).at(format!("row of {id}"))))
     }
 }
 
+/// Which shares a row may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Signs {
+    Positive,
+    Any,
+}
+
 impl<I: Id> Row<'_, I> {
-    fn fault(&self, n_old: usize) -> Option<String> {
+    fn fault(&self, n_old: usize, signs: Signs) -> Option<String> {
         let named = self.from.iter().chain([&self.main]);
         if let Some(beyond) = named.into_iter().find(|old| old.place() >= n_old) {
             return Some(format!("names the old id {beyond}, but there were {n_old}"));
         }
         let sum: f64 = self.shares.iter().sum();
-        let positive = self.shares.iter().all(|&share| share > 0.0);
-        (!positive || (sum - 1.0).abs() > SUM || sum.is_nan())
-            .then(|| format!("has shares {:?}, which must be positive and sum to 1", self.shares))
+        let fits = |share: f64| share > 0.0 || signs == Signs::Any;
+        let must = if signs == Signs::Any { "sum to 1" } else { "be positive and sum to 1" };
+        let is_fault =
+            !self.shares.iter().all(|&share| fits(share)) || (sum - 1.0).abs() > SUM || sum.is_nan();
+        is_fault.then(|| format!("has shares {:?}, which must {must}", self.shares))
     }
 }
 

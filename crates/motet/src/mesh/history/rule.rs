@@ -11,9 +11,11 @@ use crate::mesh::{Field, Mesh, Values};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
-    /// Points: linear in each old tet. Fields that are linear in space stay so to the last digits, others between the values
-    /// they had.
+    /// Points: by the [row for quadratic fields](super::Origins::quadratic) where there is one, linear in each old tet elsewhere. Fields that are linear in space
+    /// stay so to the last digits, others between the values around.
     Interpolate,
+    /// Points: linear in each old tet. Fields that are linear in space stay so to the last digits, others between the values at its vertices.
+    Linear,
     /// Cells: the mean over what a new tet overlaps. The integral over each region stays (up to its
     /// [`deviation`](super::RegionLedger::deviation)), constants stay to the bit, other values between those they came from.
     Conserve,
@@ -53,6 +55,8 @@ pub struct Rules {
 pub enum Carry {
     /// On points interpolated, on cells averaged by volume.
     Mean,
+    /// On points [`Rule::Linear`], on cells averaged by volume.
+    Linear,
     /// [`Rule::Inherit`].
     Inherit,
     /// [`Rule::Drop`].
@@ -65,17 +69,18 @@ impl Rules {
     /// # Errors
     /// When `mesh` has no such array.
     pub fn carry(&mut self, mesh: &Mesh, name: &str, carry: Carry) -> Result<()> {
-        let rule = |mean| match carry {
+        let rule = |mean, linear| match carry {
             Carry::Mean => mean,
+            Carry::Linear => linear,
             Carry::Inherit => Rule::Inherit,
             Carry::Drop => Rule::Drop,
         };
         let (on_points, on_cells) = (mesh.point_field(name).is_some(), mesh.cell_field(name).is_some());
         if on_points {
-            self.points.insert(name.to_owned(), rule(Rule::Interpolate));
+            self.points.insert(name.to_owned(), rule(Rule::Interpolate, Rule::Linear));
         }
         if on_cells {
-            self.cells.insert(name.to_owned(), rule(Rule::Conserve));
+            self.cells.insert(name.to_owned(), rule(Rule::Conserve, Rule::Conserve));
         }
         if on_points || on_cells {
             return Ok(());

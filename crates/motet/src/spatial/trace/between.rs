@@ -1,6 +1,6 @@
 //! The whole history between two meshes, from what is known to be the same.
 
-use super::{ChangedVertex, Labelled, LocalChange, trace};
+use super::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
 use crate::base::{CellId, Error, Id, Result, Threads, VertexId};
 use crate::mesh::history::{History, Origins};
 use crate::mesh::{CellKind, Labels, Mesh};
@@ -47,8 +47,9 @@ pub fn between(
         },
         threads,
     )?;
+    let wide = quadratic(old, &traced.vertices, threads);
     Ok(History {
-        vertices: Origins::new(old.points.len(), vertices, traced.vertices)?,
+        vertices: Origins::new(old.points.len(), vertices, traced.vertices)?.with_quadratic(wide)?,
         cells: Origins::new(old.cells.len(), cells, traced.cells)?,
         ledger: traced.ledger,
     })

@@ -11,11 +11,13 @@
 //! [`between`] makes the whole history of two meshes, [`trace`] the rows of what changed alone.
 
 mod between;
+mod quadratic;
 mod tets;
 mod triangles;
 mod vertices;
 
 pub use between::between;
+pub(crate) use quadratic::quadratic;
 
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::mesh::history::{Ledger, Rows};
