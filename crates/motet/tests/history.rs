@@ -429,8 +429,12 @@ fn rows_for_quadratic_fields_have_to_fit() {
     let history = History { vertices: fits, cells: Origins::identity(0), ledger: Ledger::default() };
     let field = |values: [f64; 3]| Field::scalars("u", values.to_vec());
     assert_eq!(history.transfer_points(&field([4.0, 8.0, 4.0])).unwrap().values, vec![4.0, 6.0].into());
-    // Not beyond the values around.
+    assert_eq!(history.transfer_points(&field([4.0, 8.0, 0.0])).unwrap().values, vec![0.0, 7.0].into());
+    // Not beyond the values around, and not where those of the first row are equal, or another one is no number.
+    assert_eq!(history.transfer_points(&field([4.0, 8.0, -1e6])).unwrap().values, vec![-1e6, 8.0].into());
     assert_eq!(history.transfer_points(&field([0.0, 0.0, 4.0])).unwrap().values, vec![4.0, 0.0].into());
+    let carried = history.transfer_points(&field([4.0, 8.0, f64::NAN])).unwrap();
+    assert_eq!(floats(&carried)[1], 6.0);
     let stored = serde_json::to_string(&history).unwrap();
     assert_eq!(serde_json::from_str::<History>(&stored).unwrap(), history);
     let beyond = stored.replace("[0,1,2]", "[0,1,9]");

@@ -2,7 +2,7 @@
 
 use super::origins::{Origin, Origins};
 use super::rule::has_mean;
-use super::{History, Row, Rule, Rules};
+use super::{History, Row, Rows, Rule, Rules};
 use crate::base::{Error, Id, Result};
 use crate::mesh::exchange::check_rows;
 use crate::mesh::{Field, Mesh, Values};
@@ -152,18 +152,31 @@ impl Float for f32 {
 
 fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, rule: Rule, old: &[T]) -> Vec<T> {
     let mut new = Vec::with_capacity(origins.len() * components);
-    let add = |origin: Origin<'_, I>| match origin {
-        Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
-        Origin::Changed(row) => new.extend((0..components).map(|k| {
-            let value = |id: I| old[id.place() * components + k].into();
-            T::rounded(mean(&row, value))
-        })),
-    };
-    match rule {
-        Rule::Interpolate => origins.iter_quadratic().for_each(add),
-        _ => origins.iter().for_each(add),
+    let (none, quadratic) = (Rows::new(), origins.quadratic());
+    let wide = if rule == Rule::Interpolate { quadratic } else { &none };
+    let mut wide = wide.ids().iter().zip(wide.iter()).peekable();
+    for (place, origin) in origins.iter().enumerate() {
+        let wide = wide.next_if(|(id, _)| id.place() == place).map(|(_, row)| row);
+        match origin {
+            Origin::Kept(id) => new.extend_from_slice(&old[id.place() * components..][..components]),
+            Origin::Changed(row) => new.extend((0..components).map(|k| {
+                let value = |id: I| old[id.place() * components + k].into();
+                T::rounded(interpolated(&row, wide.as_ref(), value))
+            })),
+        }
     }
     new
+}
+
+/// The value by a row for linear fields, or by a further one for quadratic fields: no farther from the first than values in that row differ, so that a jump or what is no number
+/// two rings away makes nothing of a value.
+fn interpolated<I: Id>(row: &Row<'_, I>, wide: Option<&Row<'_, I>>, value: impl Fn(I) -> f64) -> f64 {
+    let linear = mean(row, &value);
+    let Some(wide) = wide else { return linear };
+    let ends = |(least, largest): (f64, f64), &id: &I| (value(id).min(least), value(id).max(largest));
+    let (least, largest) = row.from.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    let (apart, term) = (largest - least, mean(wide, &value) - linear);
+    if term.is_finite() && apart.is_finite() { linear + term.clamp(-apart, apart) } else { linear }
 }
 
 /// The mean of a row's values. Taken from the first one on, so that equal values give their own, to the bit; and

@@ -74,7 +74,7 @@ impl History {
     }
 
     /// This change and then a `later` one, as one: from this one's old mesh to the later one's new mesh. Transferring by it
-    /// gives what two transfers give, up to rounding; inherited values go the same way exactly.
+    /// gives what two transfers give, up to rounding and where [`Rule::Interpolate`] limits a value; inherited values go the same way exactly.
     ///
     /// Panics when `later` does not start from as many vertices and cells as this one ends with.
     #[must_use]

@@ -143,17 +143,6 @@ impl<I: Id> Origins<I> {
         })
     }
 
-    /// Where everything came from, in the order of the new mesh, by rows for quadratic fields where there are any.
-    pub fn iter_quadratic(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
-        let mut rows = self.quadratic.ids().iter().zip(self.quadratic.iter()).peekable();
-        self.iter().enumerate().map(move |(place, origin)| {
-            match rows.next_if(|(id, _)| id.place() == place) {
-                Some((_, row)) => Origin::Changed(row),
-                None => origin,
-            }
-        })
-    }
-
     /// For each new thing the old one that it inherits from.
     pub fn main(&self) -> impl Iterator<Item = I> + '_ {
         self.iter().map(|origin| origin.main())
@@ -168,7 +157,7 @@ impl<I: Id> Origins<I> {
         let mut kept = Vec::with_capacity(later.len());
         let (mut changed, mut quadratic) = (Rows::new(), Rows::new());
         let mut parts = Vec::new();
-        for (id, (origin, wide)) in later.iter().zip(later.iter_quadratic()).enumerate() {
+        for (id, origin) in later.iter().enumerate() {
             let direct = matches!(origin, Origin::Kept(_)).then(|| self.of(origin.main()));
             if let Some(Origin::Kept(old)) = direct {
                 kept.push(old);
@@ -179,6 +168,7 @@ impl<I: Id> Origins<I> {
             joined(&origin, |middle| self.of(middle), &mut parts);
             changed.push(id, &parts, main);
             let is_wide = |&middle: &I| self.quadratic.of(middle).is_some();
+            let wide = later.quadratic.of(id).map_or(origin, Origin::Changed);
             if later.quadratic.of(id).is_some() || wide.parts().0.iter().any(is_wide) {
                 joined(&wide, |middle| self.of_quadratic(middle), &mut parts);
                 if parts.len() <= LONGEST {

@@ -12,7 +12,7 @@ use crate::mesh::{Field, Mesh, Values};
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
     /// Points: by the [row for quadratic fields](super::Origins::quadratic) where there is one, linear in each old tet elsewhere. Fields that are linear in space
-    /// stay so to the last digits, others between the values around.
+    /// stay so to the last digits, others between the values around, no farther from the linear value than those at the tet's vertices differ.
     Interpolate,
     /// Points: linear in each old tet. Fields that are linear in space stay so to the last digits, others between the values at its vertices.
     Linear,
