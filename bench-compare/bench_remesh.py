@@ -4,7 +4,7 @@ import sys
 from common import HERE, MOTET, TARGET, cell, in_turn, seconds_text, table
 from remesh_files import Case, made
 from sameness import compared
-from tets import BAD, worth
+from tets import BAD, spread, worth
 
 ROUNDS = 3
 # name in the table: word for rivals/remesh_python.py
@@ -54,14 +54,14 @@ def run(record, options):
         for program, result in results.items():
             if "error" not in result:
                 mesh = made(places[program])
-                result |= worth(*mesh) | compared(case.points, case.tets, *mesh)
+                result |= worth(*mesh) | spread(*mesh) | compared(case.points, case.tets, *mesh)
             record.add(**{**result, "bench": "remesh", "mesh": name, "program": program})
         print(f"  remesh {name}: done", file=sys.stderr, flush=True)
         tables(case, results)
 
 
 def tables(case, results):
-    given = worth(case.points, case.tets)
+    given = worth(case.points, case.tets) | spread(case.points, case.tets)
     print(f"\n## Bad tets of a moved mesh, {case.name}\n")
     print(f"A sphere moved in a box by a Laplace equation (diffusivity 1/volume): {len(case.points):,} vertices, "
           f"{len(case.tets):,} tets, {given['bad']} of them bad (EAS < {BAD:g}).\nOne thread each, boundary to be kept; "
@@ -70,7 +70,7 @@ def tables(case, results):
     ours = results["motet"].get("seconds")
     rows = [["as it was", "", "", "", *columns(given), "", "", "", ""]]
     rows += [line(name, result, ours) for name, result in results.items() if "error" not in result]
-    print(table(["program", "version", "seconds", "/motet", "tets", "bad", "inverted", "worst EAS", "5 % EAS", "dihedral",
+    print(table(["program", "version", "seconds", "/motet", "tets", "bad", "inverted", "worst EAS", "1 %", "5 %", "median", "mean", "dihedral",
                  "kept to the bit", "kept to 1e-9", "touched", "boundary"], rows))
     for name, result in results.items():
         if "error" in result:
@@ -84,7 +84,7 @@ def line(name, result, ours):
 
 
 def columns(worth):
-    return [f"{worth['tets']:,}", worth["bad"], worth["inverted"], f"{worth['worst']:.3f}", f"{worth['fifth_percentile']:.3f}",
+    return [f"{worth['tets']:,}", worth["bad"], worth["inverted"], *(f"{worth[key]:.3f}" for key in ("worst", "p1", "p5", "median", "mean")),
             f"{worth['least_dihedral']:.1f} to {worth['greatest_dihedral']:.1f}"]
 
 

@@ -237,9 +237,9 @@ const char *motet_outcome_not_reached(const motet_outcome *outcome);
 motet_status motet_outcome_to_old(const motet_outcome *outcome, int32_t on, int32_t *old, int64_t n, motet_error **error);
 /* An array of the old mesh on the new one. */
 enum {
-    MOTET_RULE_MEAN = 0,   /* on points interpolated; on cells averaged by volume, so that integrals stay */
+    MOTET_RULE_MEAN = 0,    /* on points interpolated; on cells averaged by volume, so that integrals stay */
     MOTET_RULE_INHERIT = 1, /* the value of what has the largest share */
-    MOTET_RULE_LINEAR = 2 /* on points linear in each old tet; on cells as MEAN */
+    MOTET_RULE_LINEAR = 2   /* on points linear in each old tet; on cells as MEAN */
 };
 motet_status motet_outcome_transfer(
     const motet_outcome *outcome, int32_t on, int32_t rule, const double *values, int64_t n, int32_t components, double *out, int64_t n_out,

@@ -78,13 +78,13 @@ struct Limits {
 
 /// Turns the paddle in steps of ten degrees.
 fn turn_on(n_steps: i32, options: Options, limits: &Limits) {
-    go_on(&paddle_in_box(), n_steps, options, limits, |moving, k| {
+    advance_and_check(&paddle_in_box(), n_steps, options, limits, |moving, k| {
         turn(moving, f64::from(k), f64::from(10 * k).to_radians())
     });
 }
 
-/// Moves a body in so many steps.
-fn go_on(
+/// Moves a body in so many steps, and checks counts and qualities after each.
+fn advance_and_check(
     mesh: &Mesh,
     n_steps: i32,
     options: Options,
@@ -122,7 +122,7 @@ fn a_paddle_that_turns_by_the_graph_leaves_counts_and_quality_as_they_were() {
 }
 
 #[test]
-fn a_body_that_goes_along_a_channel_leaves_counts_and_quality_as_they_were() {
+fn a_body_moved_along_a_channel_leaves_counts_and_quality_as_they_were() {
     let is_body = |p: Point| p.iter().all(|x| x.abs() < 0.35);
     let mesh = without(&box_grid([18, 6, 6], [[-1.0, -1.0, -1.0], [5.0, 1.0, 1.0]]), is_body);
     let advance = |moving: &mut MovingMesh, k: i32| {
@@ -131,7 +131,7 @@ fn a_body_that_goes_along_a_channel_leaves_counts_and_quality_as_they_were() {
         moving.advance(f64::from(k), &displacement, &threads()).unwrap()
     };
     let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
-    go_on(&mesh, 38, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
+    advance_and_check(&mesh, 38, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
 }
 
 #[test]

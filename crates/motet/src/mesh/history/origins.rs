@@ -168,8 +168,8 @@ impl<I: Id> Origins<I> {
             joined(&origin, |middle| self.of(middle), &mut parts);
             changed.push(id, &parts, main);
             let is_wide = |&middle: &I| self.quadratic.of(middle).is_some();
-            let wide = later.quadratic.of(id).map_or(origin, Origin::Changed);
-            if later.quadratic.of(id).is_some() || wide.parts().0.iter().any(is_wide) {
+            let wide = later.of_quadratic(id);
+            if wide != origin || wide.parts().0.iter().any(is_wide) {
                 joined(&wide, |middle| self.of_quadratic(middle), &mut parts);
                 if parts.len() <= LONGEST {
                     quadratic.push_signed(id, &parts, main);

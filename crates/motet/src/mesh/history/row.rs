@@ -82,20 +82,13 @@ impl<I: Id> Rows<I> {
     ///
     /// Panics when `id` is not the largest.
     pub fn push(&mut self, id: I, parts: &[(I, f64)], main: I) {
-        assert!(self.ids.last().is_none_or(|&last| last < id), "rows come in rising order of their ids");
         let sum: f64 = parts.iter().map(|p| p.1).filter(|&share| share > 0.0).sum();
-        let scaled = parts.iter().map(|&(old, share)| (old, share / sum)).filter(|p| p.1 > 0.0);
-        let start = self.shares.len();
         if sum > 0.0 && sum.is_finite() {
-            self.from.push(scaled.clone().map(|p| p.0));
-            self.shares.extend(scaled.map(|p| p.1));
+            let scaled = parts.iter().map(|&(old, share)| (old, share / sum)).filter(|p| p.1 > 0.0);
+            self.push_signed(id, &scaled.collect::<Vec<_>>(), main);
         } else {
-            self.from.push([main]);
-            self.shares.push(1.0);
+            self.push_signed(id, &[(main, 1.0)], main);
         }
-        settle(&mut self.shares[start..]);
-        self.ids.push(id);
-        self.main.push(main);
     }
 
     /// Adds the row of `id`, which is larger than all ids before. Shares of either sign stay as they are, but that the largest gets what their sum lacks to 1.

@@ -11,12 +11,13 @@
 //! Values around are those across no wall: neither across a triangle of the mesh nor in another region, where a field may have a kink. A vertex whose tet has
 //! only corners on walls has no such row: what holds on walls is not to depend on what is off them.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 
 use super::map;
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{dot, sub};
 use crate::mesh::history::{Rows, merge};
+use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{CellKind, Mesh};
 
 /// Negative shares of a row sum to this at most; what goes beyond is scaled down towards the row for linear fields. A row with more could make of rounding what is none.
@@ -112,12 +113,21 @@ impl<'a> Around<'a> {
         let near = mesh.cells.tets().filter(|(_, tet)| tet.iter().any(|v| is_near[v.index()]));
         let (tets, regions): (Vec<_>, Vec<i32>) =
             near.map(|(cell, tet)| (tet, labels.as_ref().map_or(0, |l| l.ids[cell.index()]))).unzip();
-        let walls: HashSet<[VertexId; 3]> = mesh
+        let triangles: Vec<[VertexId; 3]> = mesh
             .cells
             .iter()
             .filter(|(_, kind, v)| *kind == CellKind::TRIANGLE && v.iter().any(|v| is_near[v.index()]))
-            .map(|(_, _, v)| sorted([v[0], v[1], v[2]]))
+            .map(|(_, _, v)| [v[0], v[1], v[2]])
             .collect();
+        let mut beside = vec![[NONE; 4]; tets.len()];
+        for_each_tet_facet(&tets, &triangles, |facet| {
+            if let [(a, i), (b, j)] = *facet.tets
+                && !facet.is_wall(&regions)
+            {
+                beside[a.index()][i] = b.0;
+                beside[b.index()][j] = a.0;
+            }
+        });
         let mut place = vec![NONE; mesh.points.len()];
         let mut n_places = 0;
         for v in tets.iter().flatten() {
@@ -131,7 +141,6 @@ impl<'a> Around<'a> {
                 |(t, tet): (usize, &[VertexId; 4])| tet.map(|v| (place[v.index()] as usize, t as u32));
             tets.iter().enumerate().flat_map(corners)
         });
-        let beside = beside(&tets, &regions, &walls);
         Self { points: &mesh.points, tets, beside, place, at }
     }
 
@@ -197,31 +206,6 @@ impl<'a> Around<'a> {
         let fit = fit(&offsets)?;
         Some(ring.into_iter().zip(fit).collect())
     }
-}
-
-/// For each tet the one of its region across the facet opposite to each corner, where no wall is.
-fn beside(tets: &[[VertexId; 4]], regions: &[i32], walls: &HashSet<[VertexId; 3]>) -> Vec<[u32; 4]> {
-    let opposite =
-        |tet: &[VertexId; 4], i: usize| sorted([tet[(i + 1) % 4], tet[(i + 2) % 4], tet[(i + 3) % 4]]);
-    let mut facets: Vec<([VertexId; 3], u32, usize)> =
-        (0u32..).zip(tets).flat_map(|(t, tet)| [0, 1, 2, 3].map(|i| (opposite(tet, i), t, i))).collect();
-    facets.sort_unstable();
-    let mut beside = vec![[NONE; 4]; tets.len()];
-    for pair in facets.chunk_by(|a, b| a.0 == b.0) {
-        if let [(facet, a, i), (_, b, j)] = *pair
-            && regions[a as usize] == regions[b as usize]
-            && !walls.contains(&facet)
-        {
-            beside[a as usize][i] = b;
-            beside[b as usize][j] = a;
-        }
-    }
-    beside
-}
-
-fn sorted(mut facet: [VertexId; 3]) -> [VertexId; 3] {
-    facet.sort_unstable();
-    facet
 }
 
 /// The nine terms of a quadratic that is 0 at the origin.
