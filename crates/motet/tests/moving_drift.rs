@@ -1,9 +1,10 @@
 //! Over long motions a mesh stays the mesh that it was: its counts, its mean quality, and where a wall comes back the mesh itself.
 
-use motet::base::{Point, Threads};
+use motet::base::{Point, Threads, VertexId};
+use motet::geometry::vector::{cross, dot};
 use motet::mesh::history::{Rule, Rules};
 use motet::mesh::shapes::box_grid;
-use motet::mesh::{Boundary, Cells, Field, Mesh, Qualities};
+use motet::mesh::{Boundary, CellKind, Cells, Field, Mesh, Qualities};
 use motet::motion::{Method, Strain};
 use motet::moving::{Motion, MovingMesh, Options, Step, Why};
 use motet::refine::{Criterion, Wanted};
@@ -23,12 +24,9 @@ fn paddle_in_box() -> Mesh {
 
 /// A mesh without the tets whose middles are in a body about the origin.
 fn without(grid: &Mesh, is_body: impl Fn(Point) -> bool) -> Mesh {
-    let middle = |tet: [motet::base::VertexId; 4]| {
-        [0, 1, 2].map(|k| tet.iter().map(|v| grid.points[v.index()][k]).sum::<f64>() / 4.0)
-    };
     let mut cells = Cells::new();
-    for (_, tet) in grid.cells.tets().filter(|(_, tet)| !is_body(middle(*tet))) {
-        cells.push(motet::mesh::CellKind::TETRA, tet);
+    for (_, tet) in grid.cells.tets().filter(|(_, tet)| !is_body(middle(grid, tet))) {
+        cells.push(CellKind::TETRA, tet);
     }
     let mut mesh = Mesh::new(grid.points.clone(), cells);
     // Points within the body are of no tet.
@@ -39,6 +37,10 @@ fn without(grid: &Mesh, is_body: impl Fn(Point) -> bool) -> Mesh {
     };
     mesh.points.iter_mut().zip(is_used).filter(|(_, used)| !used).for_each(|(p, _)| *p = [0.0; 3]);
     mesh
+}
+
+fn middle(mesh: &Mesh, vertices: &[VertexId]) -> Point {
+    [0, 1, 2].map(|k| vertices.iter().map(|v| mesh.points[v.index()][k]).sum::<f64>() / vertices.len() as f64)
 }
 
 fn is_paddle(p: Point) -> bool {
@@ -132,6 +134,68 @@ fn a_body_moved_along_a_channel_leaves_counts_and_quality_as_they_were() {
     };
     let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
     advance_and_check(&mesh, 38, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
+}
+
+#[test]
+fn a_body_that_tumbles_about_none_of_its_axes_leaves_counts_and_quality_as_they_were() {
+    let half = [0.8, 1.6 / 3.0, 0.8 / 3.0];
+    let is_body = |p: Point| (0..3).all(|k| p[k].abs() < half[k] + 1e-9);
+    let mesh = without(&box_grid([12; 3], [[-1.6; 3], [1.6; 3]]), is_body);
+    // Rodrigues' formula.
+    let axis = [1.0 / 3.0_f64.sqrt(); 3];
+    let tumbled = |p: Point, angle: f64| {
+        let ((s, c), across) = (angle.sin_cos(), cross(axis, p));
+        [0, 1, 2].map(|k| c * p[k] + s * across[k] + (1.0 - c) * dot(axis, p) * axis[k])
+    };
+    let advance = |moving: &mut MovingMesh, k: i32| {
+        let angle = f64::from(10 * k).to_radians();
+        let goes = |&p: &Point| {
+            let to = if is_body(p) { tumbled(p, angle) } else { p };
+            [to[0] - p[0], to[1] - p[1], to[2] - p[2]]
+        };
+        let displacement: Vec<Point> = moving.driven_places().iter().map(goes).collect();
+        moving.advance(f64::from(k), &displacement, &threads()).unwrap()
+    };
+    let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.04 };
+    advance_and_check(&mesh, 36, options(Method::Bodies(Vec::new()), Strain::Band), &limits, advance);
+}
+
+/// The patch of the interface of [`bar_in_box`].
+const INTERFACE: i32 = 99;
+
+/// A box whose tets within a bar are a region of their own, with triangles between the two regions.
+fn bar_in_box() -> Mesh {
+    let mut mesh = box_grid([12, 12, 6], [[-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]]);
+    let regions: Vec<i32> =
+        mesh.cells.iter().map(|(_, _, vertices)| 1 + i32::from(is_paddle(middle(&mesh, vertices)))).collect();
+    let mut patches = vec![0; mesh.cells.len()];
+    let mut facets = std::collections::BTreeMap::new();
+    for (cell, tet) in mesh.cells.tets() {
+        for skip in 0..4 {
+            let mut facet: Vec<VertexId> = (0..4).filter(|k| *k != skip).map(|k| tet[k]).collect();
+            facet.sort_unstable();
+            *facets.entry(facet).or_insert(0) += if regions[cell.index()] == 2 { 1 } else { 10 };
+        }
+    }
+    let mut regions = regions;
+    for (facet, _) in facets.into_iter().filter(|(_, sides)| *sides == 11) {
+        mesh.cells.push(CellKind::TRIANGLE, <[VertexId; 3]>::try_from(facet).unwrap());
+        regions.push(0);
+        patches.push(INTERFACE);
+    }
+    mesh.cell_data.clear();
+    mesh.set_cell_field(Field::scalars("region", regions));
+    mesh.set_cell_field(Field::scalars("patch", patches));
+    mesh
+}
+
+#[test]
+fn a_bar_that_is_meshed_too_turns_and_leaves_counts_and_quality_as_they_were() {
+    let motion = Motion { inside: vec![INTERFACE], ..Motion::default() };
+    let limits = Limits { vertices: 0.03, tets: 0.12, mean: 0.1 };
+    advance_and_check(&bar_in_box(), 36, Options { motion, ..Options::default() }, &limits, |moving, k| {
+        turn(moving, f64::from(k), f64::from(10 * k).to_radians())
+    });
 }
 
 #[test]
@@ -444,8 +508,7 @@ fn a_mesh_that_need_not_change_comes_back_to_the_bit_and_is_left_alone() {
 fn what_is_improved_has_an_entry_for_each_point() {
     let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
     let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
-        let improve =
-            Improve { below: 0.75, cells: Vec::new(), keeps_others: false, density, rest, cost: 0.0 };
+        let improve = Improve { below: 0.75, cells: Some(Vec::new()), density, rest, ..Improve::filled() };
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };

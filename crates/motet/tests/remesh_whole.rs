@@ -411,7 +411,7 @@ fn tets_numbered_the_other_way_round_stay_so() {
     let straight = remeshed(&old, &Options::default());
     old.cells = cells;
     let outcome = remeshed(&old, &Options::default());
-    assert!(outcome.is_turned && !straight.is_turned);
+    assert!(outcome.mesh.is_turned() && !straight.mesh.is_turned());
     assert_kept(&old, &outcome);
     assert_eq!(outcome.report.before.types, straight.report.before.types);
     assert_eq!((outcome.report.after.bad, outcome.report.after.inverted), (0, 0));

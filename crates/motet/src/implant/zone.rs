@@ -10,9 +10,6 @@ use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::remesh::{self, Improve, Options, SurfaceRule, remesh};
 
-/// Tets that were filled in are improved on the whole below this EAS.
-const IMPROVED: f64 = 0.6;
-
 /// The host's tets that are no more, and what came in their place. Vertices are those of the host, and behind them new ones.
 #[derive(Debug)]
 pub(super) struct Draft {
@@ -83,14 +80,8 @@ impl Draft {
             }
         };
         let cells = (0..self.tets.len()).map(CellId::new).collect();
-        let improve = Improve {
-            below: IMPROVED,
-            cells,
-            keeps_others: true,
-            density: None,
-            rest: None,
-            cost: Improve::FEW_CHANGES,
-        };
+        let improve =
+            Improve { cells: Some(cells), keeps_others: true, raises_worst: true, ..Improve::filled() };
         let improve = options.improve.clone().or(Some(improve));
         let options = Options { surface, sizes: None, improve, ..options.clone() };
         let outcome = remesh(&zone.mesh, &options, threads)?;

@@ -301,6 +301,11 @@ impl Complex {
         self.keeps_surface = false;
     }
 
+    /// Lets no wall change from now on.
+    pub fn keep_surface(&mut self) {
+        self.keeps_surface = true;
+    }
+
     /// Whether an edge must stay although no wall holds it.
     #[inline]
     pub fn is_fixed_edge(&self, a: VertexId, b: VertexId) -> bool {

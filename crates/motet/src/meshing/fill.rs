@@ -19,10 +19,9 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::quality::eas;
 use crate::geometry::rounding;
 use crate::geometry::tet::volume;
-use crate::mesh::history::Rules;
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::preflight::Preflight;
-use crate::remesh::{self, SurfaceRule, remesh_mesh};
+use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
 
 /// Vertices of a flat facet are off a plane through three of them by up to so many times what rounding has moved each coordinate.
 const OFF_PLANE: f64 = 4.0;
@@ -71,17 +70,22 @@ pub struct Options {
     pub holes: Vec<Point>,
     /// Whether bodies that closed surfaces turned inward enclose are left out, such as the cavity of a hollow body; those that a seed names stay. Default: false.
     pub voids: bool,
-    /// How the tets are improved once they are there; `None`: not at all. Default: `None`.
+    /// How the tets are repaired and improved once they are there; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
     /// Layers of thin cells on walls. Default: `None`.
     pub layers: Option<Layers>,
 }
 
 impl Options {
-    /// Points inside by `sizes`, if any; tets below `min_eas` repaired, below the usual bound where there are sizes and it is not told.
+    /// Points inside by `sizes`, if any; tets below `min_eas` repaired, below the usual bound where there are sizes and it is not told. Where there are sizes, tets are improved on the whole, too.
     pub fn with_sizes(sizes: Option<Sizes>, min_eas: Option<f64>) -> Self {
         let min_eas = min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
-        let improve = min_eas.map(|min_eas| remesh::Options { min_eas, ..remesh::Options::default() });
+        let on_the_whole = sizes.as_ref().map(|_| Improve::filled());
+        let improve = min_eas.map(|min_eas| remesh::Options {
+            min_eas,
+            improve: on_the_whole,
+            ..remesh::Options::default()
+        });
         Self { sizes, improve, ..Self::default() }
     }
 
@@ -294,8 +298,8 @@ fn improve(
         None => improve.surface,
     };
     let improve = remesh::Options { rounds, surface, ..improve.clone() };
-    let outcome = remesh_mesh(&mesh, &improve, &Rules::default(), threads)?;
-    Ok((outcome.mesh, Some(outcome.report)))
+    let (mesh, report) = remesh_labelled(&mesh, &improve, threads)?;
+    Ok((mesh, Some(report)))
 }
 
 /// Names of bodies as those of regions, which are numbered from 1.

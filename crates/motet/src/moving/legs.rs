@@ -303,8 +303,9 @@ impl Way<'_> {
         let density = usual.sizes.is_none().then_some(density);
         Some(Improve {
             below,
-            cells,
+            cells: Some(cells),
             keeps_others: false,
+            raises_worst: false,
             density,
             rest: rest.cloned(),
             cost: Improve::FEW_CHANGES,

@@ -81,7 +81,7 @@ impl LinearMap {
 }
 
 impl Relaxation {
-    /// Proposes a place on its track for a vertex whose tets are `star` at which the sum of their [defects](defect) is lower and no quality is below `floor`. With a map that says where each
+    /// Proposes a place on its track for a vertex whose tets are `star` at which the sum of their [defects](defect) is lower, by about `least` or more, and no quality is below `floor`. With a map that says where each
     /// vertex is at rest, the sum of their defects there counts as much. `false` when none was found.
     ///
     /// Steps down the gradient; qualities are exact at the end only, and those at rest not even then.
@@ -90,7 +90,7 @@ impl Relaxation {
         (complex, rest): (&Complex, Option<impl Fn(VertexId) -> Point>),
         star: &[TetId],
         vertex: VertexId,
-        floor: f64,
+        [floor, least]: [f64; 2],
         track: &impl Track,
         change: &mut Change,
     ) -> bool {
@@ -108,7 +108,10 @@ impl Relaxation {
                 return false;
             }
         }
-        self.descend(complex, star, vertex, floor - ROUGH_EAS_ERROR, track);
+        let gain = self.descend(complex, star, vertex, [floor - ROUGH_EAS_ERROR, least], track);
+        if gain < least {
+            return false;
+        }
         let before: f64 = star.iter().map(|&t| defect(complex.quality(t))).sum();
         // Where a tet is below the floor after all, an earlier place.
         while let Some(place) = self.places.pop() {
@@ -136,30 +139,33 @@ impl Relaxation {
         self.map.map(|map| map.at(self.place))
     }
 
-    /// Moves the vertex downhill, step by step, and leaves where it was.
+    /// Moves the vertex downhill, step by step, and leaves where it was. By how much the sum is lower; stops where it cannot be by `least`, if it is convex.
     fn descend(
         &mut self,
         complex: &Complex,
         star: &[TetId],
         vertex: VertexId,
-        floor: f64,
+        [floor, least]: [f64; 2],
         track: &impl Track,
-    ) {
+    ) -> f64 {
         let start = complex.point(vertex);
         let edge = |&t: &TetId| sub(complex.corners(t)[(complex.place(t, vertex) + 1) % 4], start);
         let size = star.iter().map(|t| norm(edge(t))).sum::<f64>() / star.len().max(1) as f64;
         let mut sum = self.sum_at(start);
         self.take_tried();
-        let (mut place, mut step) = (start, FIRST_STEP * size);
+        let (mut place, mut step, mut gain) = (start, FIRST_STEP * size, 0.0);
         self.places.clear();
         for _ in 0..MOST_STEPS {
             let gradient = track.along(self.gradient(place, DIFFERENCE * size));
             let steep = norm(gradient);
             if steep * size <= 1e-6 {
-                return;
+                break;
             }
             let mut found = None;
             for _ in 0..=MOST_HALVINGS {
+                if gain + step * steep < least {
+                    break;
+                }
                 if let Some(trial) = track.draw(add(place, scale(gradient, -step / steep))) {
                     let lower = self.sum_at(trial);
                     if lower < sum && self.here.tried.iter().all(|&q| q > floor) {
@@ -169,15 +175,16 @@ impl Relaxation {
                 }
                 step *= 0.5;
             }
-            let Some((trial, lower)) = found else { return };
+            let Some((trial, lower)) = found else { break };
             self.take_tried();
-            let gain = sum - lower;
-            (place, sum) = (trial, lower);
+            let gained = sum - lower;
+            (place, sum, gain) = (trial, lower, gain + gained);
             self.places.push(place);
-            if gain < SMALLEST_GAIN * sum {
-                return;
+            if gained < SMALLEST_GAIN * sum {
+                break;
             }
         }
+        gain
     }
 
     fn take_tried(&mut self) {

@@ -99,7 +99,8 @@ pub(super) fn remesh_but(
         left = repair.below(min_eas);
     }
     if repair.sizing.is_some() && options.goal == Goal::Repair && !repair.is_hopeless() {
-        repair.improve(Aim { below: SIZED, floor: min_eas, cost: 0.0 }, repair.near_changes())?;
+        let aim = Aim { below: Improve::NEW_TETS, floor: min_eas, limit: min_eas, cost: 0.0 };
+        repair.improve(aim, repair.near_changes())?;
         left = repair.below(min_eas);
     }
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
@@ -107,7 +108,7 @@ pub(super) fn remesh_but(
             field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), || given.clone(), LONG),
             n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
         });
-        improve_near(&mut repair, improve, density, (min_eas, mesh.tets.len()))?;
+        improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
         left = repair.below(min_eas);
     }
     report.operations = repair.operations;
@@ -129,28 +130,37 @@ pub(super) fn remesh_but(
     Ok(Outcome { extract, report })
 }
 
-/// Tets that edges brought to their sizes have left below this EAS are improved on the whole.
-const SIZED: f64 = 0.6;
-
 /// Keeps the number of vertices, and improves what is low near changes and among the cells that were asked for.
 fn improve_near(
     repair: &mut Repair,
     improve: &Improve,
     density: Option<Density>,
-    (min_eas, n_tets): (f64, usize),
+    options: &Options,
+    n_tets: usize,
 ) -> Result<()> {
-    let mut zone = repair.near_changes();
-    let requested = improve.cells.iter().map(|cell| TetId(cell.0));
-    zone.extend(requested.filter(|&tet| repair.complex.is_original(tet)));
-    zone.sort_unstable();
-    zone.dedup();
+    let min_eas = options.limit();
+    let mut zone = match &improve.cells {
+        None => repair.complex.tets().collect(),
+        Some(cells) => {
+            let requested = cells.iter().map(|cell| TetId(cell.0));
+            let mut zone = repair.near_changes();
+            zone.extend(requested.filter(|&tet| repair.complex.is_original(tet)));
+            zone.sort_unstable();
+            zone.dedup();
+            zone
+        }
+    };
     if let Some(mut density) = density {
         repair.keep_density(&mut density, min_eas, &mut zone)?;
     }
-    if improve.keeps_others {
-        repair.kept = others(n_tets, &improve.cells);
+    if let Some(cells) = improve.cells.as_ref().filter(|_| improve.keeps_others) {
+        repair.kept = others(n_tets, cells);
     }
-    repair.improve(Aim { below: improve.below, floor: min_eas, cost: improve.cost }, zone)
+    let aim = Aim { below: improve.below, floor: min_eas, limit: min_eas, cost: improve.cost };
+    match improve.raises_worst && !repair.are_many(repair.below(min_eas).len()) {
+        true => repair.best_within(aim, zone, options.rounds),
+        false => repair.improve(aim, zone),
+    }
 }
 
 /// Which tets are not among some.

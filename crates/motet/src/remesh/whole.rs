@@ -1,5 +1,6 @@
 //! Remeshing of everything that a file holds: cells of other kinds stay, arrays are carried.
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use crate::base::{CellId, Csr, Id, Point, Result, Threads, VertexId};
@@ -7,9 +8,9 @@ use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{dot, sub};
 use crate::kernel::Extract;
 use crate::mesh::history::{History, Origins, Rules, number_anew};
-use crate::mesh::{CellKind, Cells, Mesh, TetPart};
+use crate::mesh::{CellKind, Cells, Field, Mesh, TetPart};
 use crate::remesh::held::{Held, Required};
-use crate::remesh::run::remesh_but;
+use crate::remesh::run::{Outcome, remesh_but};
 use crate::remesh::{Options, Report};
 use crate::spatial::trace::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
 
@@ -22,8 +23,6 @@ pub struct MeshOutcome {
     pub history: History,
     /// What was done. Its `tet`s are ids of cells: `before` of the mesh before, all others of the new one.
     pub report: Report,
-    /// Whether most tets are numbered the other way round, before and after: the report speaks of them as if they were not.
-    pub is_turned: bool,
 }
 
 /// Repairs the bad tets of a mesh of any cells, and carries its arrays across by `rules`. What stayed stays to the bit: points, cells, rows of arrays.
@@ -53,32 +52,74 @@ pub fn remesh_part(
     rules: &Rules,
     threads: &Threads,
 ) -> Result<MeshOutcome> {
+    let Changed { mut report, extract, joined } = changed(mesh, part, options, threads)?;
+    let begin = Instant::now();
+    let history = history(mesh, part, &extract, &joined, threads)?;
+    let mut new = Mesh::new(extract.mesh.points, joined.cells);
+    history.transfer(mesh, &mut new, rules)?;
+    number_anew(&mut new, &extract.vertex_to_old, &joined.cell_to_old);
+    new.unmark_new_points(&extract.vertex_to_old);
+    report.seconds.history = begin.elapsed().as_secs_f64();
+    Ok(MeshOutcome { mesh: new, history, report })
+}
+
+/// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] keeps everything that it has.
+pub fn has_labels_alone(mesh: &Mesh) -> bool {
+    mesh.point_data.is_empty() && labels(mesh).count() == mesh.cell_data.len()
+}
+
+/// The arrays that hold the regions and the patches of a mesh.
+fn labels(mesh: &Mesh) -> impl Iterator<Item = &Field> {
+    let arrays = [mesh.regions(), mesh.patches()].map(|labels| labels.map(|labels| labels.array));
+    mesh.cell_data.iter().filter(move |field| arrays.iter().flatten().any(|array| *array == field.name))
+}
+
+/// Repairs the bad tets of a mesh without arrays, but for the labels of its cells: as [`remesh_mesh`] does, but no history is made, which takes as long as the repair where most tets change. Other arrays
+/// are left out. The mesh, and what was done.
+///
+/// # Errors
+/// When there is no tet, and when tets do not make a mesh (the place is the first such cell).
+pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Report)> {
+    options.check()?;
+    let begin = Instant::now();
+    let part = TetPart::of(mesh)?;
+    let taken_out = begin.elapsed().as_secs_f64();
+    let Changed { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
+    report.seconds.join += taken_out;
+    let like = joined.like(&part, &extract);
+    let pick = |field: &Field| field.pick(like.iter().map(|cell| cell.index()));
+    let new = Mesh {
+        cell_data: labels(mesh).map(pick).collect(),
+        field_data: mesh.field_data.clone(),
+        label_names: mesh.label_names.clone(),
+        ..Mesh::new(extract.mesh.points, joined.cells)
+    };
+    Ok((new, report))
+}
+
+/// A mesh after remeshing, before its arrays are carried.
+struct Changed {
+    report: Report,
+    extract: Extract,
+    joined: Joined,
+}
+
+fn changed(mesh: &Mesh, part: &TetPart, options: &Options, threads: &Threads) -> Result<Changed> {
     let tet_of = |cell: &CellId| part.tet_to_cell.binary_search(cell).ok().map(CellId::new);
     let only = options.only.as_ref().map(|only| only.iter().filter_map(tet_of).collect());
     let held = Held { cells: options.held.cells.iter().filter_map(tet_of).collect(), ..options.held.clone() };
     let mut options = Options { only, held, ..options.clone() };
-    if let Some(improve) = &mut options.improve {
-        improve.cells = improve.cells.iter().filter_map(tet_of).collect();
+    if let Some(cells) = options.improve.as_mut().and_then(|improve| improve.cells.as_mut()) {
+        *cells = cells.iter().filter_map(tet_of).collect();
     }
     let required = Required::of(mesh, part);
-    let outcome =
+    let Outcome { mut report, extract } =
         remesh_but(&part.mesh, &required, &options, threads).map_err(|error| part.at_cell(error))?;
-    let mut report = outcome.report;
-
     let begin = Instant::now();
-    let joined = Joined::of(mesh, part, &outcome.extract);
-    let assembled = begin.elapsed().as_secs_f64();
-    let history = history(mesh, part, &outcome.extract, &joined, threads)?;
-    let mut new = Mesh::new(outcome.extract.mesh.points, joined.cells);
-    history.transfer(mesh, &mut new, rules)?;
-    number_anew(&mut new, &outcome.extract.vertex_to_old, &joined.cell_to_old);
-    new.unmark_new_points(&outcome.extract.vertex_to_old);
-
-    report.seconds.extract += assembled;
-    report.seconds.history = begin.elapsed().as_secs_f64() - assembled;
-    tell_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
-    let is_turned = new.is_turned();
-    Ok(MeshOutcome { mesh: new, history, report, is_turned })
+    let joined = Joined::of(mesh, part, &extract);
+    report.seconds.extract += begin.elapsed().as_secs_f64();
+    report_cells(&mut report, &part.tet_to_cell, &joined.tet_to_cell);
+    Ok(Changed { report, extract, joined })
 }
 
 /// The cells of the new mesh, and which of the old ones each was.
@@ -136,6 +177,26 @@ impl Joined {
             joined.push_new(CellKind::LINE, &line_as_before(i, part, extract));
         }
         joined
+    }
+
+    /// For each cell an old one that has its labels: itself, or for a new tet one of its region that was removed, for a new triangle or line the one that it is a part of.
+    fn like(&self, part: &TetPart, extract: &Extract) -> Vec<CellId> {
+        let mut like = self.cell_to_old.clone();
+        let removed = extract.gone_tets.iter().map(|t| t.index());
+        let of_region: BTreeMap<i32, CellId> =
+            removed.map(|t| (part.mesh.regions[t], part.tet_to_cell[t])).collect();
+        for (t, cell) in self.tet_to_cell.iter().enumerate() {
+            if like[cell.index()] == CellId::NONE {
+                like[cell.index()] = of_region[&extract.mesh.regions[t]];
+            }
+        }
+        for &(cell, t) in &self.new_triangles {
+            like[cell.index()] = part.triangle_to_cell[extract.triangle_to_old[t] as usize];
+        }
+        for &(cell, line) in &self.new_lines {
+            like[cell.index()] = part.line_to_cell[extract.line_to_old[line] as usize];
+        }
+        like
     }
 
     fn push_new(&mut self, kind: CellKind, vertices: &[VertexId]) {
@@ -274,7 +335,7 @@ fn labelled<const N: usize>(cells: impl Iterator<Item = (CellId, [VertexId; N], 
 }
 
 /// Puts ids of cells in place of those of tets.
-fn tell_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
+fn report_cells(report: &mut Report, old: &[CellId], new: &[CellId]) {
     let cell = |to_cell: &[CellId], tet: u32| to_cell[tet as usize].0;
     report.before.worst.iter_mut().for_each(|w| w.tet = cell(old, w.tet));
     report.after.worst.iter_mut().for_each(|w| w.tet = cell(new, w.tet));

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use motet::io;
 use motet::mesh::history::field_ledger;
-use motet::remesh::{MeshOutcome, remesh_mesh};
+use motet::remesh::{MeshOutcome, has_labels_alone, remesh_labelled, remesh_mesh};
 
 pub(crate) use args::{RemeshArgs, eas};
 
@@ -31,26 +31,30 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.held = args.held(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
-    let outcome = remesh_mesh(&old, &options, &rules, &threads).map_err(|e| e.in_file(&args.mesh))?;
+    let outcome = match args.arrays.history.is_none() && has_labels_alone(&old) {
+        true => remesh_labelled(&old, &options, &threads).map(|(mesh, report)| (mesh, None, report)),
+        false => remesh_mesh(&old, &options, &rules, &threads)
+            .map(|MeshOutcome { mesh, history, report, .. }| (mesh, Some(history), report)),
+    };
+    let (mut mesh, history, report) = outcome.map_err(|e| e.in_file(&args.mesh))?;
     meter.stage("writing");
-    let MeshOutcome { mut mesh, history, report, is_turned } = outcome;
     let begin_fields = Instant::now();
     let fields = field_ledger(&old, &mesh, &rules);
     let on_fields = begin_fields.elapsed().as_secs_f64();
     let Written { lost, seconds: write } =
-        args.arrays.write(&mut mesh, Some(&history), &args.output, &args.writing)?;
+        args.arrays.write(&mut mesh, history.as_ref(), &args.output, &args.writing)?;
     drop(meter);
 
     console.detail(format_args!("read {} in {}", args.mesh.display(), seconds(read)));
     console.detail(format_args!("wrote {} in {}", args.output.display(), seconds(write)));
     notes.iter().chain(&lost).for_each(|what| console.warn(what));
-    if is_turned {
+    if mesh.is_turned() {
         console.warn(format_args!(
             "{}: most tets are numbered the other way round, and stay so; other programs may call them inverted",
             args.mesh.display()
         ));
     }
-    let mut summary = Report::new(args, [&old, &mesh], &threads, &report, &history, fields);
+    let mut summary = Report::new(args, [&old, &mesh], &threads, &report, history.as_ref(), fields);
     summary.end([read, on_fields, write, begin.elapsed().as_secs_f64()], notes, lost);
     let outcome = Outcome::of(summary.not_reached(&report));
     summary.tell(&outcome, console);

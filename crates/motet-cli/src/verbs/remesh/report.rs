@@ -49,8 +49,8 @@ pub(crate) struct Report {
     /// Edges beside the sizes that were asked for; null where none were.
     sizes: Option<SizesReport>,
     left: Vec<Left>,
-    /// How well the volumes of old and new tets fit.
-    volumes: Ledger,
+    /// How well the volumes of old and new tets fit; `null` where no array was carried and no history was written.
+    volumes: Option<Ledger>,
     /// How well arrays of real numbers were carried.
     fields: Vec<FieldLedger>,
     passed_over: Vec<String>,
@@ -116,7 +116,7 @@ impl Report {
         [old, new]: [&Mesh; 2],
         threads: &Threads,
         report: &remesh::Report,
-        history: &History,
+        history: Option<&History>,
         fields: Vec<FieldLedger>,
     ) -> Self {
         let left = |left: &remesh::Left| Left {
@@ -143,7 +143,7 @@ impl Report {
             held: report.held,
             sizes: report.sizes,
             left: report.left.iter().map(left).collect(),
-            volumes: history.ledger.clone(),
+            volumes: history.map(|history| history.ledger.clone()),
             fields,
             passed_over: Vec::new(),
             lost: Vec::new(),

@@ -12,19 +12,22 @@
 use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
-use crate::kernel::{Change, Complex, Fill, Hold, VertexChange};
+use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, defect};
 use crate::remesh::given::Rest;
 use crate::remesh::repair::tried::Settled;
-use crate::remesh::repair::{Repair, Sizing, is_among};
+use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
 
 /// A change has to lower the sum of the defects of what it touches by this part of it. Of the paddle above the mean EAS is, over all steps, never below 0.673 with 0.05 (7.0 % changed a step),
 /// 0.678 with 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
 const LEAST_GAIN: f64 = 0.005;
 
+/// A tet is nearly flat below this part of the limit.
+const FLAT: f64 = 0.5;
+
 /// So often the tets that were changed are looked at again.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 
 /// What is improved, and how far that may go.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +36,8 @@ pub(in crate::remesh) struct Aim {
     pub(in crate::remesh) below: f64,
     /// No tet goes below this EAS, nor one that is below it any lower.
     pub(in crate::remesh) floor: f64,
+    /// Tets below this EAS are bad: no change adds one, also where the floor is higher.
+    pub(in crate::remesh) limit: f64,
     /// By how much more a change has to lower the sum for each tet of the first mesh that it touches: each of these costs an interpolation, others no more than they did.
     pub(in crate::remesh) cost: f64,
 }
@@ -159,16 +164,10 @@ impl Repair {
         }
         let scale = (aim, self.mean_cost(aim));
         let found = Found { best: Best::default(), sizing: self.sizing.take() };
-        let mut course = Course { scale, found, settled: Settled::new(), inserted: Vec::new() };
+        let mut course = Course { scale, found, settled: Settled::default(), inserted: Vec::new() };
         for _ in 0..ROUNDS {
-            zone.retain(|&t| self.is_low(t, aim.below));
-            self.sort(&mut zone);
-            for (i, &tet) in zone.iter().enumerate() {
-                if self.is_low(tet, aim.below) {
-                    self.watch.go_on("improving tets", i, zone.len())?;
-                    self.improve_one(tet, &mut course);
-                }
-            }
+            self.swap_low(&mut zone, &mut course)?;
+            self.move_low(&mut zone, &mut course)?;
             zone = std::mem::take(&mut course.inserted);
             if zone.is_empty() {
                 break;
@@ -198,28 +197,55 @@ impl Repair {
         self.complex.is_alive(tet) && !self.complex.is_locked(tet) && self.complex.quality(tet) < below
     }
 
-    /// Makes the best swap at a tet, or else moves its vertices.
-    fn improve_one(&mut self, tet: TetId, course: &mut Course) {
-        self.weigh_swaps(tet, course);
-        if !self.make_best(course) {
-            self.weigh_moves(tet, course);
+    /// Makes the best swap at each low tet of a zone, the worst first.
+    fn swap_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
+        let below = course.scale.0.below;
+        zone.retain(|&t| self.is_low(t, below));
+        self.sort(zone);
+        for (i, &tet) in zone.iter().enumerate() {
+            if self.is_low(tet, below) {
+                self.watch.go_on("improving tets", i, zone.len())?;
+                self.weigh_swaps(tet, course);
+                self.make_best(course);
+            }
         }
+        Ok(())
+    }
+
+    /// Moves each vertex of the low tets of a zone, and of those that were inserted, once where that is better: that of the worst tet first.
+    fn move_low(&mut self, zone: &mut Vec<TetId>, course: &mut Course) -> Result<()> {
+        zone.extend_from_slice(&course.inserted);
+        zone.retain(|&t| self.is_low(t, course.scale.0.below));
+        self.sort(zone);
+        let mut is_listed = vec![false; self.complex.n_vertex_slots()];
+        let mut vertices: Vec<VertexId> = zone.iter().flat_map(|&t| self.complex.vertices(t)).collect();
+        vertices.retain(|v| !std::mem::replace(&mut is_listed[v.index()], true));
+        vertices
+            .retain(|&v| self.complex.hold(v) == Hold::Free && !course.settled.has_vertex(&self.changes, v));
+        for (i, &vertex) in vertices.iter().enumerate() {
+            self.watch.go_on("improving tets", i, vertices.len())?;
+            if self.weigh_move(vertex, course) {
+                self.make_best(course);
+            } else {
+                course.settled.settle_vertex(&self.changes, vertex);
+            }
+        }
+        Ok(())
     }
 
     /// Makes the best change that was found, if there is one and it may be made; forgets it.
-    fn make_best(&mut self, course: &mut Course) -> bool {
-        let Course { scale: (aim, _), found: Found { best, .. }, settled, inserted } = course;
+    fn make_best(&mut self, course: &mut Course) {
+        let Course { scale: (aim, _), found: Found { best, .. }, inserted, .. } = course;
         let n_before = inserted.len();
         let is_made = best.gain.take().is_some() && self.commit_above(&best.change, aim.floor, inserted);
         if is_made {
             let inserted = &inserted[n_before..];
             self.operations.add(best.operation);
-            settled.inserted(&self.complex, inserted);
+            self.changes.inserted(&self.complex, inserted);
             if let Some(rest) = &mut self.rest {
                 rest.follow(&self.complex, best.change.vertex, inserted);
             }
         }
-        is_made
     }
 
     fn weigh_swaps(&mut self, tet: TetId, Course { scale, found, settled, .. }: &mut Course) {
@@ -227,50 +253,44 @@ impl Repair {
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
-            if settled.has_edge(&self.complex, tet, place) {
+            if settled.has_edge(&self.changes, &self.complex, tet, place) {
                 continue;
             }
             if self.surface.is_some() {
                 self.shells[0].walk(&self.complex, tet, edge[0], edge[1]);
                 // Walls change to repair tets, not to improve them.
                 if self.hold_on(edge) != Hold::Free {
-                    settled.settle_edge(&self.complex, &self.shells[0].tets, edge);
+                    settled.settle_edge(&self.changes, &self.complex, &self.shells[0].tets, edge);
                     continue;
                 }
             }
             let is_better = self.edge_removal.propose_for(&self.complex, tet, edge, &mut worth, &mut change)
                 && self.weigh(&mut change, Operation::EdgeRemoval, worth, found);
             if !is_better {
-                settled.settle_edge(&self.complex, self.edge_removal.tets(), edge);
+                settled.settle_edge(&self.changes, &self.complex, self.edge_removal.tets(), edge);
             }
         }
         for facet in 0..4 {
-            if settled.has_facet(&self.complex, tet, facet) {
+            if settled.has_facet(&self.changes, &self.complex, tet, facet) {
                 continue;
             }
-            let bar = self.complex.quality(tet).min(scale.0.floor).next_down();
+            let behind = match self.complex.behind(tet, facet) {
+                Behind::Tet(half) => half,
+                Behind::Wall(_) => {
+                    settled.settle_facet(&self.changes, tet, facet);
+                    continue;
+                }
+            };
+            let worst = self.complex.quality(tet).min(self.complex.quality(behind.tet()));
+            let bar = worst.min(scale.0.floor).next_down();
             let is_better = self.face_removal.propose(&self.complex, tet, facet, bar, &mut change)
                 && self.weigh(&mut change, Operation::FaceRemoval, worth, found);
             if !is_better {
-                settled.settle_facet(tet, facet);
+                settled.settle_facet(&self.changes, tet, facet);
+                settled.settle_facet(&self.changes, behind.tet(), behind.facet());
             }
         }
         self.candidate.proposal = change;
-    }
-
-    /// Moves the vertices of a tet, each where that is better; where tets that change cost something, the one alone that gains most.
-    fn weigh_moves(&mut self, tet: TetId, course: &mut Course) {
-        for vertex in self.complex.vertices(tet) {
-            if self.complex.hold(vertex) != Hold::Free || course.settled.has_vertex(vertex) {
-                continue;
-            }
-            if !self.weigh_move(vertex, course) {
-                course.settled.settle_vertex(vertex);
-            } else if course.scale.0.cost == 0.0 {
-                self.make_best(course);
-            }
-        }
-        self.make_best(course);
     }
 
     fn weigh_move(&mut self, vertex: VertexId, Course { scale, found, .. }: &mut Course) -> bool {
@@ -280,11 +300,12 @@ impl Repair {
         self.star.gather(&self.complex, vertex);
         let star = &self.star.tets;
         worth.set_bars(&self.complex, star);
+        let (least, _) = worth.of_cavity(&self.complex, star);
         let is_better = self.relaxation.propose(
             (&self.complex, rest.as_ref()),
             star,
             vertex,
-            worth.bars[0],
+            [worth.bars[0], least],
             &Anywhere,
             &mut change,
         ) && self.weigh(&mut change, Operation::Smoothing, worth, found);
@@ -302,8 +323,8 @@ impl Repair {
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);
-        let is_kept = |&tet: &TetId| self.complex.is_original(tet) && is_among(&self.kept, tet);
-        if gain <= least || self.adds_low(change, worth.aim.floor) || change.cavity.iter().any(is_kept) {
+        let has_kept = || change.cavity.iter().any(|&t| self.is_kept(t));
+        if gain <= least || self.adds_low(change, worth.aim) || has_kept() {
             return false;
         }
         if best.gain.is_some_and(|known| gain <= known) {
@@ -318,13 +339,18 @@ impl Repair {
         is_allowed
     }
 
-    /// Whether a change leaves more tets below a floor than it found, and the worst no better: beside a tet that walls force others could become bad, too. Where the worst gets better, as in a place that
-    /// walls make narrow for a while, two that are hardly bad are worth more than one that is nearly flat.
-    fn adds_low(&self, change: &Change, floor: f64) -> bool {
-        let is_low = |quality: f64| quality < floor;
-        let n_after = change.fill.iter().filter(|tet| is_low(tet.quality)).count();
-        let n_before = || change.cavity.iter().filter(|&&t| is_low(self.complex.quality(t))).count();
-        n_after > 0 && n_after > n_before() && change.worst() <= self.complex.worst_of(&change.cavity)
+    /// Whether a change leaves more tets below the floor or the limit than it found: beside a tet that walls force others could become bad, too. Two that are hardly bad are worth more than one that is [nearly
+    /// flat](FLAT), as in a place that walls make narrow for a while.
+    fn adds_low(&self, change: &Change, aim: Aim) -> bool {
+        let adds = |bar: f64| {
+            let n_after = change.fill.iter().filter(|tet| tet.quality < bar).count();
+            n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < bar).count()
+        };
+        let eases = || {
+            let worst = self.complex.worst_of(&change.cavity);
+            worst <= FLAT * aim.limit && change.worst() > worst
+        };
+        (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !eases()
     }
 
     /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.

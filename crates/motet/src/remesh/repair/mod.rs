@@ -22,7 +22,7 @@ use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
 use crate::remesh::repair::stages::{FIRST_STAGES, STAGES};
-use crate::remesh::repair::tried::Tried;
+use crate::remesh::repair::tried::{Changes, Tried};
 use crate::remesh::report::{Counts, Operation};
 use crate::remesh::surface::{Crease, Surface};
 
@@ -32,7 +32,10 @@ const WIDER: [f64; 3] = [0.1, 0.15, 0.2];
 /// The targets for the worst tets of [`Repair::best`].
 const BEST: [f64; 4] = [0.25, 0.3, 0.35, 0.4];
 /// A tet from this EAS on is good enough for [`Repair::best`].
-const GOOD: f64 = 0.85;
+const GOOD: f64 = 0.7;
+
+/// Where more than this part of the tets is left below a target it rises no more.
+const MANY: f64 = 0.01;
 
 /// A mesh is hopelessly tangled where a round of all stages leaves more inverted tets than this number, and than this part of all tets, and more than this part of
 /// those that it found. In a cube of 8,000 tets whose vertices were moved at random by up to an edge, the first eight rounds brought 3,736 bad tets down to 789; eighteen more
@@ -66,6 +69,12 @@ pub(super) fn is_among(marks: &[bool], tet: TetId) -> bool {
     marks.get(tet.index()).is_some_and(|is_marked| *is_marked)
 }
 
+/// What is marked in either of two lists; an empty one marks nothing.
+fn either(a: &[bool], b: &[bool]) -> Vec<bool> {
+    let marked = |marks: &[bool], i: usize| marks.get(i).is_some_and(|is_marked| *is_marked);
+    (0..a.len().max(b.len())).map(|i| marked(a, i) || marked(b, i)).collect()
+}
+
 /// What is repaired, and the room that it takes.
 pub(super) struct Repair {
     pub(super) complex: Complex,
@@ -77,7 +86,7 @@ pub(super) struct Repair {
     pub(super) rest: Option<Rest>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
     others: Vec<bool>,
-    /// The tets of the first mesh that improving leaves as they are, by id; empty: there are none.
+    /// The tets of the first mesh that stay as they are, by id; empty: there are none.
     pub(super) kept: Vec<bool>,
     target: f64,
     n_stages: usize,
@@ -91,6 +100,7 @@ pub(super) struct Repair {
     shells: [Shell; 2],
     /// Tets that came and are bad.
     came_bad: Vec<TetId>,
+    changes: Changes,
     /// What this run has tried in vain.
     tried: Tried,
     /// Whether rounds have ended since the mesh is hopelessly tangled.
@@ -125,6 +135,7 @@ impl Repair {
             star: Star::default(),
             shells: Default::default(),
             came_bad: Vec::new(),
+            changes: Changes::new(),
             tried: Tried::nothing(),
             is_hopeless: false,
             watch: watch.clone(),
@@ -215,21 +226,72 @@ impl Repair {
         Ok(self.below(self.target))
     }
 
-    /// Makes all tets as good as they get: on the whole, then the worst, the target rising until it is out of reach everywhere, then on the whole again without a loss for the worst. Worst first
-    /// would leave a mesh whose mean falls short.
+    /// Makes all tets as good as they get.
     pub(super) fn best(&mut self, rounds: usize) -> Result<()> {
-        let usual = self.target;
-        self.improve(Aim { below: GOOD, floor: usual, cost: 0.0 }, self.below(GOOD))?;
-        self.raise_worst(rounds)?;
-        self.improve(Aim { below: GOOD, floor: self.target, cost: 0.0 }, self.below(GOOD))
+        let aim = Aim { below: GOOD, floor: self.target, limit: self.target, cost: 0.0 };
+        self.improve_and_raise(aim, self.below(GOOD), rounds, Self::raise_worst)
     }
 
+    /// The tets of a zone alone, and walls stay.
+    pub(super) fn best_within(&mut self, aim: Aim, zone: Vec<TetId>, rounds: usize) -> Result<()> {
+        self.improve_and_raise(aim, zone, rounds, |repair, rounds| {
+            // What is kept is not called bad.
+            let others = either(&repair.others, &repair.kept);
+            let (others, surface) = (std::mem::replace(&mut repair.others, others), repair.surface.take());
+            if surface.is_some() {
+                repair.complex.keep_surface();
+            }
+            // What held up a repair may be better now.
+            let bad = repair.below(repair.target);
+            let raised = repair.run(bad, rounds).and_then(|_| repair.raise_worst(rounds));
+            if surface.is_some() {
+                repair.complex.adapt_surface();
+            }
+            (repair.others, repair.surface) = (others, surface);
+            raised
+        })
+    }
+
+    /// Makes the tets of a zone as good as they get: on the whole, then the worst, then on the whole again what that has changed, without a loss for the worst. Worst first would leave a mesh whose mean
+    /// falls short.
+    fn improve_and_raise(
+        &mut self,
+        aim: Aim,
+        zone: Vec<TetId>,
+        rounds: usize,
+        raise: impl FnOnce(&mut Self, usize) -> Result<()>,
+    ) -> Result<()> {
+        self.improve(aim, zone)?;
+        let begin = self.changes.now();
+        raise(self, rounds)?;
+        let mut changed = self.below(aim.below);
+        changed.retain(|&t| self.complex.vertices(t).iter().any(|&v| !self.changes.none_since(v, begin)));
+        self.improve(Aim { floor: self.target, ..aim }, changed)
+    }
+
+    /// Whether so many tets are left that it is surfaces that force them: to try all operations for each is in vain.
+    pub(super) fn are_many(&self, n_left: usize) -> bool {
+        n_left as f64 > MANY * self.complex.n_tets() as f64
+    }
+
+    /// Repairs up to a target that rises until it is out of reach, or until more tets than before are below the one that it began with: that is taken back.
     fn raise_worst(&mut self, rounds: usize) -> Result<()> {
+        let usual = self.target;
         for target in BEST {
-            self.target = target.max(self.target);
+            let before = self.target;
+            self.target = target.max(before);
             self.n_stages = FIRST_STAGES;
-            let bad = self.below(self.target);
-            self.run(bad, rounds)?;
+            let (start, operations, n_bad) = (self.complex.mark(), self.operations, self.below(usual).len());
+            let left = self.run(self.below(self.target), rounds)?;
+            if self.below(usual).len() > n_bad {
+                self.complex.undo(start);
+                (self.operations, self.target) = (operations, before);
+                break;
+            }
+            self.complex.forget();
+            if self.are_many(left.len()) {
+                break;
+            }
         }
         Ok(())
     }
@@ -293,18 +355,22 @@ impl Repair {
         may_be && self.complex.quality(tet) < self.target
     }
 
+    fn is_kept(&self, tet: TetId) -> bool {
+        self.complex.is_original(tet) && is_among(&self.kept, tet)
+    }
+
     fn is_other(&self, tet: TetId) -> bool {
         self.complex.is_original(tet) && is_among(&self.others, tet)
     }
 
     /// Makes the best change for one bad tet; whether there was one.
     fn repair(&mut self, tet: TetId) -> bool {
-        if self.tried.knows(&self.complex, tet, self.target) {
+        if self.tried.knows(&self.changes, &self.complex, tet, self.target) {
             return false;
         }
         // Where the surface may change, so may the walls that force it.
         if self.surface.is_none() && is_forced(&self.complex, None, tet, &mut self.shells[0]) {
-            self.tried.in_vain(tet, self.target);
+            self.tried.in_vain(&self.changes, tet, self.target);
             return false;
         }
         let (complex, is_last) = (&self.complex, self.n_stages == STAGES.len());
@@ -317,12 +383,12 @@ impl Repair {
         }
         let Some((operation, came)) = self.candidate.commit(&mut self.complex) else {
             if is_last {
-                self.tried.in_vain(tet, self.target);
+                self.tried.in_vain(&self.changes, tet, self.target);
             }
             return false;
         };
         self.operations.add(operation);
-        self.tried.inserted(&self.complex, came);
+        self.changes.inserted(&self.complex, came);
         let (complex, target) = (&self.complex, self.target);
         self.came_bad.extend(came.iter().copied().filter(|&t| complex.quality(t) < target));
         true
@@ -333,6 +399,9 @@ impl Repair {
     }
 
     fn offer(&mut self, operation: Operation) {
+        if !self.kept.is_empty() && self.candidate.proposal.cavity.iter().any(|&t| self.is_kept(t)) {
+            return;
+        }
         if let Some(sizing) = &mut self.sizing
             && !sizing.field.accepts(&self.complex, &self.candidate.proposal)
         {

@@ -199,7 +199,7 @@ impl Repair {
             if is_good && let Ok(checked) = self.complex.check_against(change, bar) {
                 self.complex.commit(checked, inserted);
                 self.operations.add(Operation::SplitEdge);
-                self.tried.inserted(&self.complex, inserted);
+                self.changes.inserted(&self.complex, inserted);
                 return Some(vertex);
             }
         }
@@ -308,7 +308,7 @@ impl Repair {
         let Ok(checked) = self.complex.check_against(&change, worst.next_down()) else { return false };
         self.complex.commit(checked, came);
         self.operations.add(Operation::Collapse);
-        self.tried.inserted(&self.complex, came);
+        self.changes.inserted(&self.complex, came);
         true
     }
 

@@ -6,24 +6,30 @@ use crate::kernel::Complex;
 
 /// When the tets of each vertex were last changed, by a clock that each change moves on.
 #[derive(Debug)]
-struct Changes {
+pub(super) struct Changes {
     now: u32,
     /// 0: never.
     of_vertex: Vec<u32>,
 }
 
 impl Changes {
-    fn new() -> Self {
+    /// A clock that begins now. It has to be told of all changes from now on.
+    pub(super) fn new() -> Self {
         Self { now: 1, of_vertex: Vec::new() }
     }
 
+    /// The time.
+    pub(super) fn now(&self) -> u32 {
+        self.now
+    }
+
     /// Whether no tet of a vertex has changed since a time, which is not 0.
-    fn none_since(&self, vertex: VertexId, time: u32) -> bool {
+    pub(super) fn none_since(&self, vertex: VertexId, time: u32) -> bool {
         time > 0 && self.of_vertex.get(vertex.index()).is_none_or(|&changed| changed < time)
     }
 
     /// Notes tets that were inserted.
-    fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
+    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
         for v in tets.iter().flat_map(|&t| complex.vertices(t)) {
             *at(&mut self.of_vertex, v.index()) = self.now;
         }
@@ -39,15 +45,14 @@ impl Changes {
 pub(super) struct Tried {
     /// What was asked for when it began: of what else is asked it knows nothing.
     target: f64,
-    changes: Changes,
     /// When each tet was tried in vain; 0: never.
     in_vain: Vec<u32>,
 }
 
 impl Tried {
-    /// A memory that begins now, of tets for which `target` is asked. It has to be told of all that changes from now on.
+    /// A memory that begins now, of tets for which `target` is asked.
     pub(super) fn of(target: f64) -> Self {
-        Self { target, changes: Changes::new(), in_vain: Vec::new() }
+        Self { target, in_vain: Vec::new() }
     }
 
     /// A memory that keeps nothing.
@@ -56,81 +61,71 @@ impl Tried {
     }
 
     /// Whether a tet was tried in vain, and nothing at its vertices has changed since.
-    pub(super) fn knows(&self, complex: &Complex, tet: TetId, target: f64) -> bool {
+    pub(super) fn knows(&self, changes: &Changes, complex: &Complex, tet: TetId, target: f64) -> bool {
         let Some(&time) = self.in_vain.get(tet.index()) else { return false };
-        target == self.target && complex.vertices(tet).into_iter().all(|v| self.changes.none_since(v, time))
+        target == self.target && complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
     }
 
     /// A tet has been tried in vain.
-    pub(super) fn in_vain(&mut self, tet: TetId, target: f64) {
+    pub(super) fn in_vain(&mut self, changes: &Changes, tet: TetId, target: f64) {
         if target == self.target {
-            *at(&mut self.in_vain, tet.index()) = self.changes.now;
+            *at(&mut self.in_vain, tet.index()) = changes.now;
         }
-    }
-
-    /// Notes tets that were inserted.
-    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
-        self.changes.inserted(complex, tets);
     }
 }
 
 /// The edges, facets and vertices at which no change improved the tets: each edge has some five tets that ask for it, each vertex twenty.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Settled {
-    changes: Changes,
     /// When the edges of each tet, and then its facets, were tried in vain; 0: never.
     of_tet: Vec<[u32; 10]>,
     of_vertex: Vec<u32>,
 }
 
 impl Settled {
-    /// A memory that begins now. It has to be told of all that changes from now on.
-    pub(super) fn new() -> Self {
-        Self { changes: Changes::new(), of_tet: Vec::new(), of_vertex: Vec::new() }
-    }
-
     /// Whether an edge of a tet, by its place in [`EDGES`], was tried in vain, and no tet that has it has changed since.
-    pub(super) fn has_edge(&self, complex: &Complex, tet: TetId, edge: usize) -> bool {
+    pub(super) fn has_edge(&self, changes: &Changes, complex: &Complex, tet: TetId, edge: usize) -> bool {
         let time = self.time(tet, edge);
         let vertices = complex.vertices(tet);
-        EDGES[edge].into_iter().any(|i| self.changes.none_since(vertices[i], time))
+        EDGES[edge].into_iter().any(|i| changes.none_since(vertices[i], time))
     }
 
     /// Whether a facet of a tet was tried in vain, and none of the tets at its vertices has changed since.
-    pub(super) fn has_facet(&self, complex: &Complex, tet: TetId, facet: usize) -> bool {
+    pub(super) fn has_facet(&self, changes: &Changes, complex: &Complex, tet: TetId, facet: usize) -> bool {
         let time = self.time(tet, EDGES.len() + facet);
-        complex.vertices(tet).into_iter().all(|v| self.changes.none_since(v, time))
+        complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
     }
 
     /// Whether a vertex was moved in vain, and none of its tets has changed since.
-    pub(super) fn has_vertex(&self, vertex: VertexId) -> bool {
+    pub(super) fn has_vertex(&self, changes: &Changes, vertex: VertexId) -> bool {
         let time = self.of_vertex.get(vertex.index()).copied().unwrap_or(0);
-        self.changes.none_since(vertex, time)
+        changes.none_since(vertex, time)
     }
 
     /// The removal of an edge, which `tets` have, was tried in vain.
-    pub(super) fn settle_edge(&mut self, complex: &Complex, tets: &[TetId], ends: [VertexId; 2]) {
+    pub(super) fn settle_edge(
+        &mut self,
+        changes: &Changes,
+        complex: &Complex,
+        tets: &[TetId],
+        ends: [VertexId; 2],
+    ) {
         for &tet in tets {
             let places = rising(ends.map(|v| complex.place(tet, v)));
             if let Some(edge) = EDGES.iter().position(|edge| *edge == places) {
-                at(&mut self.of_tet, tet.index())[edge] = self.changes.now;
+                at(&mut self.of_tet, tet.index())[edge] = changes.now;
             }
         }
     }
 
     /// The removal of a facet was tried in vain.
-    pub(super) fn settle_facet(&mut self, tet: TetId, facet: usize) {
-        at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = self.changes.now;
+    pub(super) fn settle_facet(&mut self, changes: &Changes, tet: TetId, facet: usize) {
+        at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
     }
 
     /// A vertex was moved in vain.
-    pub(super) fn settle_vertex(&mut self, vertex: VertexId) {
-        *at(&mut self.of_vertex, vertex.index()) = self.changes.now;
-    }
-
-    /// Notes tets that were inserted.
-    pub(super) fn inserted(&mut self, complex: &Complex, tets: &[TetId]) {
-        self.changes.inserted(complex, tets);
+    pub(super) fn settle_vertex(&mut self, changes: &Changes, vertex: VertexId) {
+        *at(&mut self.of_vertex, vertex.index()) = changes.now;
     }
 
     fn time(&self, tet: TetId, place: usize) -> u32 {
