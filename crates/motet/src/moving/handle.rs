@@ -237,8 +237,9 @@ impl MovingMesh {
             Some(now) => self.now = now,
             None => self.now.known.before.clone_from(&self.now.mesh.points),
         }
-        if let Some(left) = left {
-            self.now.left = left;
+        match left {
+            Some(left) => self.now.left = left,
+            None => self.now.forget_good(&shape),
         }
         go_to(&mut self.now.mesh, &points, &self.options.contents);
         let is_complete = fraction == 1.0;

@@ -200,6 +200,13 @@ impl Now {
         found.is_ok_and(|i| AS_LEFT.contains(&(eas / self.left[i].eas)) || eas == self.left[i].eas)
     }
 
+    /// Forgets that tets were left by repair which are bad no longer: if they are bad again they are tried again.
+    pub(super) fn forget_good(&mut self, shape: &Shape) {
+        let mut bad: Vec<CellId> = shape.bad.iter().map(|(cell, _)| *cell).collect();
+        bad.sort_unstable();
+        self.left.retain(|left| bad.binary_search(&left.cell).is_ok());
+    }
+
     /// How many of the bad tets walls force.
     pub(super) fn n_forced(&self, shape: &Shape) -> usize {
         let is_forced = |cell: CellId| {

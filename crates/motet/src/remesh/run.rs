@@ -109,7 +109,7 @@ pub(super) fn remesh_but(
             n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
         });
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
-        left = repair.below(min_eas);
+        left = repair.try_again(min_eas, options.rounds)?;
     }
     report.operations = repair.operations;
     let (complex, sizing) = (repair.complex, repair.sizing);

@@ -23,9 +23,6 @@ use crate::remesh::report::Operation;
 /// 0.678 with 0.02 (7.7 %), 0.684 with 0.01 (8.1 %), 0.686 with 0.005 (8.2 %), 0.680 with 0.002 (8.4 %).
 const LEAST_GAIN: f64 = 0.005;
 
-/// A tet is nearly flat below this part of the limit.
-const FLAT: f64 = 0.5;
-
 /// So often the tets that were changed are looked at again.
 const ROUNDS: usize = 6;
 
@@ -339,17 +336,14 @@ impl Repair {
         is_allowed
     }
 
-    /// Whether a change leaves more tets below the floor or the limit than it found: beside a tet that walls force others could become bad, too. Two that are hardly bad are worth more than one that is [nearly
-    /// flat](FLAT), as in a place that walls make narrow for a while.
+    /// Whether a change leaves more tets below the floor or the limit than it found, and the worst no better: beside a tet that walls force others could become bad, too. Where the worst gets better,
+    /// as in a place that walls make narrow for a while, two that are hardly bad are worth more than one that is nearly flat.
     fn adds_low(&self, change: &Change, aim: Aim) -> bool {
         let adds = |bar: f64| {
             let n_after = change.fill.iter().filter(|tet| tet.quality < bar).count();
             n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < bar).count()
         };
-        let eases = || {
-            let worst = self.complex.worst_of(&change.cavity);
-            worst <= FLAT * aim.limit && change.worst() > worst
-        };
+        let eases = || change.worst() > self.complex.worst_of(&change.cavity);
         (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !eases()
     }
 

@@ -241,9 +241,7 @@ impl Repair {
             if surface.is_some() {
                 repair.complex.keep_surface();
             }
-            // What held up a repair may be better now.
-            let bad = repair.below(repair.target);
-            let raised = repair.run(bad, rounds).and_then(|_| repair.raise_worst(rounds));
+            let raised = repair.raise_worst_of_few(rounds);
             if surface.is_some() {
                 repair.complex.adapt_surface();
             }
@@ -274,26 +272,42 @@ impl Repair {
         n_left as f64 > MANY * self.complex.n_tets() as f64
     }
 
-    /// Repairs up to a target that rises until it is out of reach, or until more tets than before are below the one that it began with: that is taken back.
+    /// Repairs up to a target that rises until it is out of reach everywhere.
     fn raise_worst(&mut self, rounds: usize) -> Result<()> {
+        BEST.into_iter().try_for_each(|target| self.raise_to(target, rounds).map(drop))
+    }
+
+    /// Repairs up to a target that rises while few tets are left below it; where more than before are below the one that it began with, that is taken back.
+    fn raise_worst_of_few(&mut self, rounds: usize) -> Result<()> {
         let usual = self.target;
         for target in BEST {
-            let before = self.target;
-            self.target = target.max(before);
-            self.n_stages = FIRST_STAGES;
-            let (start, operations, n_bad) = (self.complex.mark(), self.operations, self.below(usual).len());
-            let left = self.run(self.below(self.target), rounds)?;
+            let n_bad = self.below(usual).len();
+            let (start, operations, before) = (self.complex.mark(), self.operations, self.target);
+            let n_left = self.raise_to(target, rounds)?;
             if self.below(usual).len() > n_bad {
                 self.complex.undo(start);
                 (self.operations, self.target) = (operations, before);
                 break;
             }
             self.complex.forget();
-            if self.are_many(left.len()) {
+            if self.are_many(n_left) {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Tries once more what is below a target after improving: what held it up may be better now. What is left.
+    pub(super) fn try_again(&mut self, target: f64, rounds: usize) -> Result<Vec<TetId>> {
+        self.target = target;
+        self.run(self.below(target), rounds)
+    }
+
+    /// Repairs up to a higher target, which stays; how many tets are left below it.
+    fn raise_to(&mut self, target: f64, rounds: usize) -> Result<usize> {
+        self.target = target.max(self.target);
+        self.n_stages = FIRST_STAGES;
+        Ok(self.run(self.below(self.target), rounds)?.len())
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
