@@ -14,8 +14,10 @@ use motet::geometry::vector::dot;
 use motet::mesh::check::{check, is_conforming};
 use motet::mesh::history::{On, Origin, Rule, Rules, field_ledger};
 use motet::mesh::shapes::box_grid;
-use motet::mesh::{Boundary, CellKind, Cells, Field, Values};
-use motet::remesh::{Goal, MeshOutcome, Options, SurfaceRule, remesh_mesh};
+use motet::mesh::{Boundary, CellKind, Cells, Field, Qualities, Values};
+use motet::remesh::{
+    Goal, Improve, MeshOutcome, Options, SurfaceRule, has_labels_alone, remesh_labelled, remesh_mesh,
+};
 
 const N: usize = 6;
 const VELOCITY: [[f64; 4]; 3] = [[1.0, 2.0, -3.0, 0.5], [0.1, -0.7, 4.0, -2.0], [3.0, 0.0, 0.2, 1.0]];
@@ -397,6 +399,40 @@ fn a_conforming_mesh_stays_conforming() {
     assert!(is_conforming(&check(&old)));
     let defects = check(&new);
     assert!(is_conforming(&defects), "{defects:?}");
+}
+
+/// A shaken box whose arrays are labels alone.
+fn labelled_box() -> Mesh {
+    let mut mesh = shaken_box(0.35, true);
+    mesh.point_data.clear();
+    mesh.cell_data.retain(|field| ["region", "patch"].contains(&field.name.as_str()));
+    mesh
+}
+
+#[test]
+fn without_a_history_the_mesh_and_its_labels_are_the_same() {
+    let old = labelled_box();
+    assert!(has_labels_alone(&old) && !has_labels_alone(&shaken_box(0.35, true)));
+    let best = Options { goal: Goal::Best, ..Options::default() };
+    let improved = Options { improve: Some(Improve::filled()), ..Options::default() };
+    for options in [Options::default(), adapt(), best, improved] {
+        let whole = remesh_mesh(&old, &options, &Rules::default(), &Threads::single()).unwrap();
+        let (labelled, report) = remesh_labelled(&old, &options, &Threads::single()).unwrap();
+        assert!(report.kept < old.cells.tets().count() && report.kept == whole.report.kept);
+        assert_eq!(labelled, whole.mesh);
+    }
+}
+
+#[test]
+fn a_volume_that_was_filled_is_improved_and_keeps_its_vertices() {
+    let old = labelled_box();
+    let of = |improve| Options { improve, ..Options::default() };
+    let [repaired, improved] = [None, Some(Improve::filled())]
+        .map(|improve| remesh_labelled(&old, &of(improve), &Threads::single()).unwrap());
+    let means =
+        [&repaired, &improved].map(|(mesh, _)| Qualities::of_mesh(mesh, &Threads::single()).unwrap().mean);
+    assert!(means[1] > means[0] + 0.05, "{means:?}");
+    assert_eq!(repaired.0.points.len(), improved.0.points.len());
 }
 
 #[test]
