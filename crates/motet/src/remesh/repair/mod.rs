@@ -71,8 +71,7 @@ pub(super) fn is_among(marks: &[bool], tet: TetId) -> bool {
 
 /// What is marked in either of two lists; an empty one marks nothing.
 fn either(a: &[bool], b: &[bool]) -> Vec<bool> {
-    let marked = |marks: &[bool], i: usize| marks.get(i).is_some_and(|is_marked| *is_marked);
-    (0..a.len().max(b.len())).map(|i| marked(a, i) || marked(b, i)).collect()
+    (0..a.len().max(b.len())).map(TetId::new).map(|tet| is_among(a, tet) || is_among(b, tet)).collect()
 }
 
 /// What is repaired, and the room that it takes.
@@ -101,7 +100,7 @@ pub(super) struct Repair {
     /// Tets that came and are bad.
     came_bad: Vec<TetId>,
     changes: Changes,
-    /// What this run has tried in vain.
+    /// The repairs that failed in this run.
     tried: Tried,
     /// Whether rounds have ended since the mesh is hopelessly tangled.
     is_hopeless: bool,
@@ -305,9 +304,8 @@ impl Repair {
 
     /// Repairs up to a higher target, which stays; how many tets are left below it.
     fn raise_to(&mut self, target: f64, rounds: usize) -> Result<usize> {
-        self.target = target.max(self.target);
         self.n_stages = FIRST_STAGES;
-        Ok(self.run(self.below(self.target), rounds)?.len())
+        Ok(self.try_again(target.max(self.target), rounds)?.len())
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
@@ -384,7 +382,7 @@ impl Repair {
         }
         // Where the surface may change, so may the walls that force it.
         if self.surface.is_none() && is_forced(&self.complex, None, tet, &mut self.shells[0]) {
-            self.tried.in_vain(&self.changes, tet, self.target);
+            self.tried.note_failure(&self.changes, tet, self.target);
             return false;
         }
         let (complex, is_last) = (&self.complex, self.n_stages == STAGES.len());
@@ -397,7 +395,7 @@ impl Repair {
         }
         let Some((operation, came)) = self.candidate.commit(&mut self.complex) else {
             if is_last {
-                self.tried.in_vain(&self.changes, tet, self.target);
+                self.tried.note_failure(&self.changes, tet, self.target);
             }
             return false;
         };

@@ -1,4 +1,4 @@
-//! What has been tried in vain since anything changed at its vertices: it would be tried in vain again.
+//! What has failed since anything changed at its vertices: it would fail again.
 
 use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
@@ -37,7 +37,7 @@ impl Changes {
     }
 }
 
-/// The bad tets that were tried in vain.
+/// The bad tets whose repair failed.
 ///
 /// On a surface whose triangles make thousands of tets bad for good, rounds that change a few others cost next to nothing by it. What it overlooks: a
 /// cavity may reach beyond the tets at the vertices.
@@ -45,14 +45,14 @@ impl Changes {
 pub(super) struct Tried {
     /// What was asked for when it began: of what else is asked it knows nothing.
     target: f64,
-    /// When each tet was tried in vain; 0: never.
-    in_vain: Vec<u32>,
+    /// When the repair of each tet failed; 0: never.
+    failed: Vec<u32>,
 }
 
 impl Tried {
     /// A memory that begins now, of tets for which `target` is asked.
     pub(super) fn of(target: f64) -> Self {
-        Self { target, in_vain: Vec::new() }
+        Self { target, failed: Vec::new() }
     }
 
     /// A memory that keeps nothing.
@@ -60,16 +60,16 @@ impl Tried {
         Self::of(f64::NAN)
     }
 
-    /// Whether a tet was tried in vain, and nothing at its vertices has changed since.
+    /// Whether the repair of a tet failed, and nothing at its vertices has changed since.
     pub(super) fn knows(&self, changes: &Changes, complex: &Complex, tet: TetId, target: f64) -> bool {
-        let Some(&time) = self.in_vain.get(tet.index()) else { return false };
+        let Some(&time) = self.failed.get(tet.index()) else { return false };
         target == self.target && complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
     }
 
-    /// A tet has been tried in vain.
-    pub(super) fn in_vain(&mut self, changes: &Changes, tet: TetId, target: f64) {
+    /// The repair of a tet has failed.
+    pub(super) fn note_failure(&mut self, changes: &Changes, tet: TetId, target: f64) {
         if target == self.target {
-            *at(&mut self.in_vain, tet.index()) = changes.now;
+            *at(&mut self.failed, tet.index()) = changes.now;
         }
     }
 }
@@ -77,32 +77,32 @@ impl Tried {
 /// The edges, facets and vertices at which no change improved the tets: each edge has some five tets that ask for it, each vertex twenty.
 #[derive(Debug, Default)]
 pub(super) struct Settled {
-    /// When the edges of each tet, and then its facets, were tried in vain; 0: never.
+    /// When the edges of each tet, and then its facets, failed; 0: never.
     of_tet: Vec<[u32; 10]>,
     of_vertex: Vec<u32>,
 }
 
 impl Settled {
-    /// Whether an edge of a tet, by its place in [`EDGES`], was tried in vain, and no tet that has it has changed since.
+    /// Whether an edge of a tet, by its place in [`EDGES`], failed, and no tet that has it has changed since.
     pub(super) fn has_edge(&self, changes: &Changes, complex: &Complex, tet: TetId, edge: usize) -> bool {
         let time = self.time(tet, edge);
         let vertices = complex.vertices(tet);
         EDGES[edge].into_iter().any(|i| changes.none_since(vertices[i], time))
     }
 
-    /// Whether a facet of a tet was tried in vain, and none of the tets at its vertices has changed since.
+    /// Whether a facet of a tet failed, and none of the tets at its vertices has changed since.
     pub(super) fn has_facet(&self, changes: &Changes, complex: &Complex, tet: TetId, facet: usize) -> bool {
         let time = self.time(tet, EDGES.len() + facet);
         complex.vertices(tet).into_iter().all(|v| changes.none_since(v, time))
     }
 
-    /// Whether a vertex was moved in vain, and none of its tets has changed since.
+    /// Whether a vertex could not be moved, and none of its tets has changed since.
     pub(super) fn has_vertex(&self, changes: &Changes, vertex: VertexId) -> bool {
         let time = self.of_vertex.get(vertex.index()).copied().unwrap_or(0);
         changes.none_since(vertex, time)
     }
 
-    /// The removal of an edge, which `tets` have, was tried in vain.
+    /// The removal of an edge, which `tets` have, failed.
     pub(super) fn settle_edge(
         &mut self,
         changes: &Changes,
@@ -118,12 +118,12 @@ impl Settled {
         }
     }
 
-    /// The removal of a facet was tried in vain.
+    /// The removal of a facet failed.
     pub(super) fn settle_facet(&mut self, changes: &Changes, tet: TetId, facet: usize) {
         at(&mut self.of_tet, tet.index())[EDGES.len() + facet] = changes.now;
     }
 
-    /// A vertex was moved in vain.
+    /// A vertex could not be moved.
     pub(super) fn settle_vertex(&mut self, changes: &Changes, vertex: VertexId) {
         *at(&mut self.of_vertex, vertex.index()) = changes.now;
     }
