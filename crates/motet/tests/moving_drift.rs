@@ -1,7 +1,8 @@
 //! Over long motions a mesh stays the mesh that it was: its counts, its mean quality, and where a wall comes back the mesh itself.
 
 use motet::base::{Point, Threads, VertexId};
-use motet::geometry::vector::{cross, dot};
+use motet::geometry::rigid::Rigid;
+use motet::geometry::vector::sub;
 use motet::mesh::history::{Rule, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Mesh, Qualities};
@@ -141,18 +142,10 @@ fn a_body_that_tumbles_about_none_of_its_axes_leaves_counts_and_quality_as_they_
     let half = [0.8, 1.6 / 3.0, 0.8 / 3.0];
     let is_body = |p: Point| (0..3).all(|k| p[k].abs() < half[k] + 1e-9);
     let mesh = without(&box_grid([12; 3], [[-1.6; 3], [1.6; 3]]), is_body);
-    // Rodrigues' formula.
-    let axis = [1.0 / 3.0_f64.sqrt(); 3];
-    let tumbled = |p: Point, angle: f64| {
-        let ((s, c), across) = (angle.sin_cos(), cross(axis, p));
-        [0, 1, 2].map(|k| c * p[k] + s * across[k] + (1.0 - c) * dot(axis, p) * axis[k])
-    };
     let advance = |moving: &mut MovingMesh, k: i32| {
-        let angle = f64::from(10 * k).to_radians();
-        let goes = |&p: &Point| {
-            let to = if is_body(p) { tumbled(p, angle) } else { p };
-            [to[0] - p[0], to[1] - p[1], to[2] - p[2]]
-        };
+        let axis = [1.0 / 3.0_f64.sqrt(); 3];
+        let tumble = Rigid { centres: [[0.0; 3]; 2], axis, half_angle: f64::from(5 * k).to_radians() };
+        let goes = |&p: &Point| if is_body(p) { sub(tumble.apply(p), p) } else { [0.0; 3] };
         let displacement: Vec<Point> = moving.driven_places().iter().map(goes).collect();
         moving.advance(f64::from(k), &displacement, &threads()).unwrap()
     };
@@ -166,20 +159,11 @@ const INTERFACE: i32 = 99;
 /// A box whose tets within a bar are a region of their own, with triangles between the two regions.
 fn bar_in_box() -> Mesh {
     let mut mesh = box_grid([12, 12, 6], [[-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]]);
-    let regions: Vec<i32> =
-        mesh.cells.iter().map(|(_, _, vertices)| 1 + i32::from(is_paddle(middle(&mesh, vertices)))).collect();
+    let region = |vertices: &[VertexId]| 1 + i32::from(is_paddle(middle(&mesh, vertices)));
+    let mut regions: Vec<i32> = mesh.cells.iter().map(|(_, _, vertices)| region(vertices)).collect();
     let mut patches = vec![0; mesh.cells.len()];
-    let mut facets = std::collections::BTreeMap::new();
-    for (cell, tet) in mesh.cells.tets() {
-        for skip in 0..4 {
-            let mut facet: Vec<VertexId> = (0..4).filter(|k| *k != skip).map(|k| tet[k]).collect();
-            facet.sort_unstable();
-            *facets.entry(facet).or_insert(0) += if regions[cell.index()] == 2 { 1 } else { 10 };
-        }
-    }
-    let mut regions = regions;
-    for (facet, _) in facets.into_iter().filter(|(_, sides)| *sides == 11) {
-        mesh.cells.push(CellKind::TRIANGLE, <[VertexId; 3]>::try_from(facet).unwrap());
+    for facet in Boundary::of(&without(&mesh, |p| !is_paddle(p)).cells).facets.iter() {
+        mesh.cells.push(CellKind::TRIANGLE, facet.iter().copied());
         regions.push(0);
         patches.push(INTERFACE);
     }

@@ -10,8 +10,8 @@ use motet::geometry::vector::{distance, norm};
 use motet::kernel::{Change, Complex, Fill, HalfFacet, Hold, NewLine, NewWall, Shell, Star, VertexChange};
 use motet::mesh::TetMesh;
 use motet::ops::{
-    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Objective, Relaxation, Smoothing, Track, collapse, defect,
-    split_crossed, split_edge, split_onto,
+    Anywhere, EdgeRemoval, FaceRemoval, Insertion, Objective, Reach, Relaxation, Smoothing, Track, collapse,
+    defect, split_crossed, split_edge, split_onto,
 };
 
 /// The ends of the edge that rings lie round.
@@ -432,7 +432,14 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
         };
         let here = |p: Point| p;
         let none = None::<fn(VertexId) -> Point>;
-        assert!(relaxation.propose((&complex, none), &star.tets, vertex, [0.0; 2], &Anywhere, &mut change));
+        assert!(relaxation.propose(
+            (&complex, none),
+            &star.tets,
+            vertex,
+            Reach::default(),
+            &Anywhere,
+            &mut change
+        ));
         assert_sound(&complex, &change);
         assert!(relaxation.place_at_rest().is_none());
         let VertexChange::Move(_, alone) = change.vertex else { panic!("{:?}", change.vertex) };
@@ -440,7 +447,14 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
 
         let both = |place: Point| sum(place, &here) + sum(place, &stretched);
         let rest = Some(|v: VertexId| stretched(complex.point(v)));
-        assert!(relaxation.propose((&complex, rest), &star.tets, vertex, [0.0; 2], &Anywhere, &mut change));
+        assert!(relaxation.propose(
+            (&complex, rest),
+            &star.tets,
+            vertex,
+            Reach::default(),
+            &Anywhere,
+            &mut change
+        ));
         let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
         // What is linear is found as it is.
         assert!(relaxation.place_at_rest().is_some_and(|at_rest| distance(at_rest, stretched(place)) < 1e-9));

@@ -16,7 +16,7 @@ use motet::mesh::history::{On, Origin, Rule, Rules, field_ledger};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Qualities, Values};
 use motet::remesh::{
-    Goal, Improve, MeshOutcome, Options, SurfaceRule, has_labels_alone, remesh_labelled, remesh_mesh,
+    Goal, Improve, MeshOutcome, Options, SurfaceRule, has_only_labels, remesh_labelled, remesh_mesh,
 };
 
 const N: usize = 6;
@@ -412,7 +412,7 @@ fn labelled_box() -> Mesh {
 #[test]
 fn without_a_history_the_mesh_and_its_labels_are_the_same() {
     let old = labelled_box();
-    assert!(has_labels_alone(&old) && !has_labels_alone(&shaken_box(0.35, true)));
+    assert!(has_only_labels(&old) && !has_only_labels(&shaken_box(0.35, true)));
     let best = Options { goal: Goal::Best, ..Options::default() };
     let improved = Options { improve: Some(Improve::filled()), ..Options::default() };
     for options in [Options::default(), adapt(), best, improved] {

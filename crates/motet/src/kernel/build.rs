@@ -168,7 +168,7 @@ impl Joined {
                     let patch = patches.get(triangle as usize).copied().unwrap_or(0);
                     joined.add_wall(Wall { sides, patch, triangle, is_new: false });
                 }
-                // A triangle that is no facet stays as it is; its vertices are held by whoever hands it over.
+                // A triangle that is no facet, or not the first on its facet, stays as it is; its vertices and edges are held by whoever hands it over.
                 [] => {}
                 _ => {
                     fault.get_or_insert((uses[0], uses.len()));

@@ -29,6 +29,6 @@ pub use edge_removal::EdgeRemoval;
 pub use face_removal::FaceRemoval;
 pub use insertion::Insertion;
 pub use objective::{Objective, WorstAbove};
-pub use relaxation::{Relaxation, defect};
+pub use relaxation::{Reach, Relaxation, defect};
 pub use smoothing::{Anywhere, Smoothing, Track};
 pub use split::{split_crossed, split_edge, split_onto};

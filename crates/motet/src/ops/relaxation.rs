@@ -24,6 +24,15 @@ const SMALLEST_GAIN: f64 = 0.01;
 /// Gradients are differences over this part of the size of the star.
 const DIFFERENCE: f64 = 1e-6;
 
+/// What a move has to reach.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reach {
+    /// No quality is to be below this.
+    pub floor: f64,
+    /// By about this or more the sum of the defects is to be lower.
+    pub gain: f64,
+}
+
 /// Room for the star, used again and again.
 #[derive(Clone, Debug, Default)]
 pub struct Relaxation {
@@ -81,7 +90,7 @@ impl LinearMap {
 }
 
 impl Relaxation {
-    /// Proposes a place on its track for a vertex whose tets are `star` at which the sum of their [defects](defect) is lower, by about `least` or more, and no quality is below `floor`. With a map that says where each
+    /// Proposes a place on its track for a vertex whose tets are `star` that has the [`Reach`]: the sum of their [defects](defect) is lower there, and no quality below the floor. With a map that says where each
     /// vertex is at rest, the sum of their defects there counts as much. `false` when none was found.
     ///
     /// Steps down the gradient; qualities are exact at the end only, and those at rest not even then.
@@ -90,7 +99,7 @@ impl Relaxation {
         (complex, rest): (&Complex, Option<impl Fn(VertexId) -> Point>),
         star: &[TetId],
         vertex: VertexId,
-        [floor, least]: [f64; 2],
+        reach: Reach,
         track: &impl Track,
         change: &mut Change,
     ) -> bool {
@@ -108,8 +117,9 @@ impl Relaxation {
                 return false;
             }
         }
-        let gain = self.descend(complex, star, vertex, [floor - ROUGH_EAS_ERROR, least], track);
-        if gain < least {
+        let floor = reach.floor;
+        let rough = Reach { floor: floor - ROUGH_EAS_ERROR, ..reach };
+        if self.descend(complex, star, vertex, rough, track) < reach.gain {
             return false;
         }
         let before: f64 = star.iter().map(|&t| defect(complex.quality(t))).sum();
@@ -139,13 +149,13 @@ impl Relaxation {
         self.map.map(|map| map.at(self.place))
     }
 
-    /// Moves the vertex downhill, step by step, and leaves where it was. By how much the sum is lower; stops where it cannot be by `least`, if it is convex.
+    /// Moves the vertex downhill, step by step, and leaves where it was. By how much the sum is lower; stops where it cannot be by the gain of the reach, if it is convex.
     fn descend(
         &mut self,
         complex: &Complex,
         star: &[TetId],
         vertex: VertexId,
-        [floor, least]: [f64; 2],
+        reach: Reach,
         track: &impl Track,
     ) -> f64 {
         let start = complex.point(vertex);
@@ -163,12 +173,12 @@ impl Relaxation {
             }
             let mut found = None;
             for _ in 0..=MOST_HALVINGS {
-                if gain + step * steep < least {
+                if gain + step * steep < reach.gain {
                     break;
                 }
                 if let Some(trial) = track.draw(add(place, scale(gradient, -step / steep))) {
                     let lower = self.sum_at(trial);
-                    if lower < sum && self.here.tried.iter().all(|&q| q > floor) {
+                    if lower < sum && self.here.tried.iter().all(|&q| q > reach.floor) {
                         found = Some((trial, lower));
                         break;
                     }

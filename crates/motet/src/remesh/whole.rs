@@ -31,10 +31,7 @@ pub struct MeshOutcome {
 /// # Errors
 /// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when a rule fits no array.
 pub fn remesh_mesh(mesh: &Mesh, options: &Options, rules: &Rules, threads: &Threads) -> Result<MeshOutcome> {
-    options.check()?;
-    let begin = Instant::now();
-    let part = TetPart::of(mesh)?;
-    let taken_out = begin.elapsed().as_secs_f64();
+    let (part, taken_out) = taken_out(mesh, options)?;
     let mut outcome = remesh_part(mesh, &part, options, rules, threads)?;
     outcome.report.seconds.join += taken_out;
     Ok(outcome)
@@ -64,7 +61,7 @@ pub fn remesh_part(
 }
 
 /// Whether all arrays of a mesh are labels of its cells, so that [`remesh_labelled`] keeps everything that it has.
-pub fn has_labels_alone(mesh: &Mesh) -> bool {
+pub fn has_only_labels(mesh: &Mesh) -> bool {
     mesh.point_data.is_empty() && labels(mesh).count() == mesh.cell_data.len()
 }
 
@@ -80,14 +77,11 @@ fn labels(mesh: &Mesh) -> impl Iterator<Item = &Field> {
 /// # Errors
 /// When there is no tet, and when tets do not make a mesh (the place is the first such cell).
 pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Result<(Mesh, Report)> {
-    options.check()?;
-    let begin = Instant::now();
-    let part = TetPart::of(mesh)?;
-    let taken_out = begin.elapsed().as_secs_f64();
+    let (part, taken_out) = taken_out(mesh, options)?;
     let Changed { mut report, extract, joined } = changed(mesh, &part, options, threads)?;
     report.seconds.join += taken_out;
-    let like = joined.like(&part, &extract);
-    let pick = |field: &Field| field.pick(like.iter().map(|cell| cell.index()));
+    let sources = joined.label_sources(&part, &extract);
+    let pick = |field: &Field| field.pick(sources.iter().map(|cell| cell.index()));
     let new = Mesh {
         cell_data: labels(mesh).map(pick).collect(),
         field_data: mesh.field_data.clone(),
@@ -95,6 +89,14 @@ pub fn remesh_labelled(mesh: &Mesh, options: &Options, threads: &Threads) -> Res
         ..Mesh::new(extract.mesh.points, joined.cells)
     };
     Ok((new, report))
+}
+
+/// The tets of a mesh, for options that have been checked, and the seconds that it took.
+fn taken_out(mesh: &Mesh, options: &Options) -> Result<(TetPart, f64)> {
+    options.check()?;
+    let begin = Instant::now();
+    let part = TetPart::of(mesh)?;
+    Ok((part, begin.elapsed().as_secs_f64()))
 }
 
 /// A mesh after remeshing, before its arrays are carried.
@@ -179,24 +181,24 @@ impl Joined {
         joined
     }
 
-    /// For each cell an old one that has its labels: itself, or for a new tet one of its region that was removed, for a new triangle or line the one that it is a part of.
-    fn like(&self, part: &TetPart, extract: &Extract) -> Vec<CellId> {
-        let mut like = self.cell_to_old.clone();
+    /// For each cell the old one that its labels are taken from: itself, or for a new tet one of its region that was removed, for a new triangle or line the one that it is a part of.
+    fn label_sources(&self, part: &TetPart, extract: &Extract) -> Vec<CellId> {
+        let mut sources = self.cell_to_old.clone();
         let removed = extract.gone_tets.iter().map(|t| t.index());
         let of_region: BTreeMap<i32, CellId> =
             removed.map(|t| (part.mesh.regions[t], part.tet_to_cell[t])).collect();
         for (t, cell) in self.tet_to_cell.iter().enumerate() {
-            if like[cell.index()] == CellId::NONE {
-                like[cell.index()] = of_region[&extract.mesh.regions[t]];
+            if sources[cell.index()] == CellId::NONE {
+                sources[cell.index()] = of_region[&extract.mesh.regions[t]];
             }
         }
         for &(cell, t) in &self.new_triangles {
-            like[cell.index()] = part.triangle_to_cell[extract.triangle_to_old[t] as usize];
+            sources[cell.index()] = part.triangle_to_cell[extract.triangle_to_old[t] as usize];
         }
         for &(cell, line) in &self.new_lines {
-            like[cell.index()] = part.line_to_cell[extract.line_to_old[line] as usize];
+            sources[cell.index()] = part.line_to_cell[extract.line_to_old[line] as usize];
         }
-        like
+        sources
     }
 
     fn push_new(&mut self, kind: CellKind, vertices: &[VertexId]) {

@@ -15,6 +15,7 @@ pub(crate) mod refined;
 pub(crate) mod solid_angle;
 pub(crate) mod wreck;
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use motet::Mesh;
@@ -72,7 +73,10 @@ pub(crate) fn random_mesh(n: usize, seed: u64) -> TetMesh {
     let tets = delaunay.tets().to_vec();
     let corners = |t: &[VertexId; 4]| t.map(|v| points[v.index()]);
     let regions = tets.iter().map(|t| if centroid(corners(t))[0] < 0.5 { 3 } else { 7 }).collect();
-    let triangles: Vec<_> = tets.iter().step_by(29).map(|&[a, b, c, _]| [c, a, b]).collect();
+    // Two of these tets may share a facet; a triangle that is there twice would have to be held.
+    let mut facets = BTreeSet::new();
+    let triangles = tets.iter().step_by(29).map(|&[a, b, c, _]| [c, a, b]);
+    let triangles: Vec<_> = triangles.filter(|&[a, b, c]| facets.insert(BTreeSet::from([a, b, c]))).collect();
     let patches = (0..triangles.len() as i32).map(|i| 1 + i % 3).collect();
     TetMesh { points, tets, regions, triangles, patches, ..TetMesh::default() }
 }

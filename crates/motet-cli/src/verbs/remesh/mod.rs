@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use motet::io;
 use motet::mesh::history::field_ledger;
-use motet::remesh::{MeshOutcome, has_labels_alone, remesh_labelled, remesh_mesh};
+use motet::remesh::{MeshOutcome, has_only_labels, remesh_labelled, remesh_mesh};
 
 pub(crate) use args::{RemeshArgs, eas};
 
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RemeshArgs, common: &Common, console: &Console) -> mote
     let rules = args.arrays.rules(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.held = args.held(&old).map_err(|e| e.in_file(&args.mesh))?;
     options.sizes = args.sizes(&old).map_err(|e| e.in_file(&args.mesh))?;
-    let outcome = match args.arrays.history.is_none() && has_labels_alone(&old) {
+    let outcome = match args.arrays.history.is_none() && has_only_labels(&old) {
         true => remesh_labelled(&old, &options, &threads).map(|(mesh, report)| (mesh, None, report)),
         false => remesh_mesh(&old, &options, &rules, &threads)
             .map(|MeshOutcome { mesh, history, report, .. }| (mesh, Some(history), report)),

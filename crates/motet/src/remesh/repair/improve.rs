@@ -13,7 +13,7 @@ use crate::base::{Point, Result, TetId, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
-use crate::ops::{Anywhere, Objective, defect};
+use crate::ops::{Anywhere, Objective, Reach, defect};
 use crate::remesh::given::Rest;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::repair::{Repair, Sizing};
@@ -302,7 +302,7 @@ impl Repair {
             (&self.complex, rest.as_ref()),
             star,
             vertex,
-            [worth.bars[0], least],
+            Reach { floor: worth.bars[0], gain: least },
             &Anywhere,
             &mut change,
         ) && self.weigh(&mut change, Operation::Smoothing, worth, found);
@@ -343,8 +343,8 @@ impl Repair {
             let n_after = change.fill.iter().filter(|tet| tet.quality < bar).count();
             n_after > 0 && n_after > change.cavity.iter().filter(|&&t| self.complex.quality(t) < bar).count()
         };
-        let eases = || change.worst() > self.complex.worst_of(&change.cavity);
-        (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !eases()
+        let raises_worst = || change.worst() > self.complex.worst_of(&change.cavity);
+        (adds(aim.floor) || aim.limit < aim.floor && adds(aim.limit)) && !raises_worst()
     }
 
     /// Makes a change that leaves no tet below a floor, nor the worst of what it touches any worse; adds the tets that were inserted. Whether it was made.

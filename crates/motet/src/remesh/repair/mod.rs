@@ -70,7 +70,7 @@ pub(super) fn is_among(marks: &[bool], tet: TetId) -> bool {
 }
 
 /// What is marked in either of two lists; an empty one marks nothing.
-fn either(a: &[bool], b: &[bool]) -> Vec<bool> {
+fn union(a: &[bool], b: &[bool]) -> Vec<bool> {
     (0..a.len().max(b.len())).map(TetId::new).map(|tet| is_among(a, tet) || is_among(b, tet)).collect()
 }
 
@@ -228,68 +228,55 @@ impl Repair {
     /// Makes all tets as good as they get.
     pub(super) fn best(&mut self, rounds: usize) -> Result<()> {
         let aim = Aim { below: GOOD, floor: self.target, limit: self.target, cost: 0.0 };
-        self.improve_and_raise(aim, self.below(GOOD), rounds, Self::raise_worst)
+        self.improve_and_raise(aim, self.below(GOOD), 1.0, rounds)
     }
 
-    /// The tets of a zone alone, and walls stay.
+    /// Makes the tets of a zone as good as they get where that takes no long search. Walls stay, and what is kept is not called bad.
     pub(super) fn best_within(&mut self, aim: Aim, zone: Vec<TetId>, rounds: usize) -> Result<()> {
-        self.improve_and_raise(aim, zone, rounds, |repair, rounds| {
-            // What is kept is not called bad.
-            let others = either(&repair.others, &repair.kept);
-            let (others, surface) = (std::mem::replace(&mut repair.others, others), repair.surface.take());
-            if surface.is_some() {
-                repair.complex.keep_surface();
-            }
-            let raised = repair.raise_worst_of_few(rounds);
-            if surface.is_some() {
-                repair.complex.adapt_surface();
-            }
-            (repair.others, repair.surface) = (others, surface);
-            raised
-        })
+        let others = union(&self.others, &self.kept);
+        let (others, surface) = (std::mem::replace(&mut self.others, others), self.surface.take());
+        if surface.is_some() {
+            self.complex.keep_surface();
+        }
+        let done = self.improve_and_raise(aim, zone, MANY, rounds);
+        if surface.is_some() {
+            self.complex.adapt_surface();
+        }
+        (self.others, self.surface) = (others, surface);
+        done
     }
 
-    /// Makes the tets of a zone as good as they get: on the whole, then the worst, then on the whole again what that has changed, without a loss for the worst. Worst first would leave a mesh whose mean
-    /// falls short.
-    fn improve_and_raise(
-        &mut self,
-        aim: Aim,
-        zone: Vec<TetId>,
-        rounds: usize,
-        raise: impl FnOnce(&mut Self, usize) -> Result<()>,
-    ) -> Result<()> {
+    /// Makes the tets of a zone better on the whole, then the worst of all, then on the whole again what that has changed, without a loss for the worst. Worst first would leave a mesh whose mean falls
+    /// short.
+    fn improve_and_raise(&mut self, aim: Aim, zone: Vec<TetId>, most_left: f64, rounds: usize) -> Result<()> {
         self.improve(aim, zone)?;
         let begin = self.changes.now();
-        raise(self, rounds)?;
+        self.raise_worst(most_left, rounds)?;
         let mut changed = self.below(aim.below);
         changed.retain(|&t| self.complex.vertices(t).iter().any(|&v| !self.changes.none_since(v, begin)));
         self.improve(Aim { floor: self.target, ..aim }, changed)
     }
 
-    /// Whether so many tets are left that it is surfaces that force them: to try all operations for each is in vain.
+    /// Whether so many tets are left that it is surfaces that force them: trying all operations for each takes long and helps little.
     pub(super) fn are_many(&self, n_left: usize) -> bool {
         n_left as f64 > MANY * self.complex.n_tets() as f64
     }
 
-    /// Repairs up to a target that rises until it is out of reach everywhere.
-    fn raise_worst(&mut self, rounds: usize) -> Result<()> {
-        BEST.into_iter().try_for_each(|target| self.raise_to(target, rounds).map(drop))
-    }
-
-    /// Repairs up to a target that rises while few tets are left below it; where more than before are below the one that it began with, that is taken back.
-    fn raise_worst_of_few(&mut self, rounds: usize) -> Result<()> {
+    /// Repairs up to a target that rises as long as no more than a part of the tets is left below it. Where more than before are below the one that it began with, the last rise is taken back.
+    fn raise_worst(&mut self, most_left: f64, rounds: usize) -> Result<()> {
         let usual = self.target;
         for target in BEST {
             let n_bad = self.below(usual).len();
             let (start, operations, before) = (self.complex.mark(), self.operations, self.target);
-            let n_left = self.raise_to(target, rounds)?;
+            self.n_stages = FIRST_STAGES;
+            let left = self.try_again(target.max(before), rounds)?;
             if self.below(usual).len() > n_bad {
                 self.complex.undo(start);
                 (self.operations, self.target) = (operations, before);
                 break;
             }
             self.complex.forget();
-            if self.are_many(n_left) {
+            if left.len() as f64 > most_left * self.complex.n_tets() as f64 {
                 break;
             }
         }
@@ -300,12 +287,6 @@ impl Repair {
     pub(super) fn try_again(&mut self, target: f64, rounds: usize) -> Result<Vec<TetId>> {
         self.target = target;
         self.run(self.below(target), rounds)
-    }
-
-    /// Repairs up to a higher target, which stays; how many tets are left below it.
-    fn raise_to(&mut self, target: f64, rounds: usize) -> Result<usize> {
-        self.n_stages = FIRST_STAGES;
-        Ok(self.try_again(target.max(self.target), rounds)?.len())
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
