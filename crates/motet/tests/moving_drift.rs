@@ -491,14 +491,14 @@ fn a_mesh_that_need_not_change_comes_back_to_the_bit_and_is_left_alone() {
 #[test]
 fn what_is_improved_has_an_entry_for_each_point() {
     let mesh = box_grid([2; 3], [[-1.0; 3], [1.0; 3]]);
-    let refusal = |density: Option<Density>, rest: Option<Vec<Point>>| {
-        let improve = Improve { below: 0.75, cells: Some(Vec::new()), density, rest, ..Improve::filled() };
+    let refusal = |density: Option<Density>, pose: Option<Vec<Point>>| {
+        let improve = Improve { below: 0.75, cells: Some(Vec::new()), density, pose, ..Improve::filled() };
         let options = motet::remesh::Options { improve: Some(improve), ..Default::default() };
         remesh_mesh(&mesh, &options, &Rules::default(), &threads()).unwrap_err().to_string()
     };
     let sizes = Density { sizes: vec![1.0; 26], free_vertices: None };
     assert!(refusal(Some(sizes), None).contains("26 sizes for 27 points"));
-    assert!(refusal(None, Some(vec![[0.0; 3]; 28])).contains("28 places at rest for 27 points"));
+    assert!(refusal(None, Some(vec![[0.0; 3]; 28])).contains("28 places of the other pose for 27 points"));
 }
 
 #[test]

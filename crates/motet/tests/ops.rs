@@ -415,7 +415,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
 }
 
 #[test]
-fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
+fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_another_pose() {
     let vertex = VertexId(18);
     let mut numbers = Numbers(11);
     let (mut star, mut relaxation, mut change) = (Star::default(), Relaxation::default(), dirty());
@@ -423,7 +423,7 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
         let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
         let complex = Complex::new(&ball_round(start)).unwrap();
         star.gather(&complex, vertex);
-        // At rest all is stretched and sheared.
+        // In the other pose all is stretched and sheared.
         let stretched = |[x, y, z]: Point| [0.6 * x + 0.3 * y, y, 1.5 * z];
         let sum = |place: Point, moved: &dyn Fn(Point) -> Point| -> f64 {
             let at = |v: VertexId| if v == vertex { place } else { complex.point(v) };
@@ -441,14 +441,14 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
             &mut change
         ));
         assert_sound(&complex, &change);
-        assert!(relaxation.place_at_rest().is_none());
+        assert!(relaxation.place_in_pose().is_none());
         let VertexChange::Move(_, alone) = change.vertex else { panic!("{:?}", change.vertex) };
         assert!(sum(alone, &here) < sum(start, &here));
 
         let both = |place: Point| sum(place, &here) + sum(place, &stretched);
-        let rest = Some(|v: VertexId| stretched(complex.point(v)));
+        let pose = Some(|v: VertexId| stretched(complex.point(v)));
         assert!(relaxation.propose(
-            (&complex, rest),
+            (&complex, pose),
             &star.tets,
             vertex,
             Reach::default(),
@@ -457,7 +457,7 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_at_rest() {
         ));
         let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
         // What is linear is found as it is.
-        assert!(relaxation.place_at_rest().is_some_and(|at_rest| distance(at_rest, stretched(place)) < 1e-9));
+        assert!(relaxation.place_in_pose().is_some_and(|in_pose| distance(in_pose, stretched(place)) < 1e-9));
         assert!(both(place) < both(start) && both(place) < both(alone) + 0.02 * both(start));
     }
 }

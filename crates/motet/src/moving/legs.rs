@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::base::{CellId, Point, Result, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
-use crate::geometry::vector::{add, scale, sub};
+use crate::geometry::vector::{add, norm, scale, sub};
 use crate::mesh::history::Origin;
 use crate::moving::first::Returns;
 use crate::moving::now::{BEFORE, Known, LeftBad, Now};
@@ -22,6 +22,9 @@ const LEAST: f64 = 1.0 / 4096.0;
 
 /// So often a repair is made once more with tets held that it is not to replace.
 const MOST_HELD: usize = 8;
+
+/// As far as this many edge lengths of its own a vertex is taken to go on straight in the next step.
+const FARTHEST_AHEAD: f64 = 0.5;
 
 /// A tet of the first mesh is as it was at first while its EAS is no more than this below what it was.
 const AS_AT_FIRST: f64 = 0.005;
@@ -237,7 +240,7 @@ impl Way<'_> {
         let mut repair = remesh::Options {
             min_eas: (usual.min_eas + options.margin).min(1.0),
             only: self.worth_repair(now, shape, effort),
-            improve: self.improve(now, usual, effort),
+            improve: self.improve(now, before, usual, effort),
             goal: if matches!(effort, Effort::Usual | Effort::Margin) { usual.goal } else { Goal::Best },
             ..usual.clone()
         };
@@ -287,7 +290,15 @@ impl Way<'_> {
     }
 
     /// What is improved beside the bad tets: those that are not as they were at first. A mesh of sizes of its own has no other density to keep.
-    fn improve(&self, now: &Now, usual: &remesh::Options, effort: Effort) -> Option<Improve> {
+    ///
+    /// `before`: where the vertices were as the step began.
+    fn improve(
+        &self,
+        now: &Now,
+        before: &[Point],
+        usual: &remesh::Options,
+        effort: Effort,
+    ) -> Option<Improve> {
         let below = self.options.improve_below;
         if below == 0.0 || effort == Effort::Margin {
             return None;
@@ -301,15 +312,29 @@ impl Way<'_> {
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
         let density = usual.sizes.is_none().then_some(density);
+        // The mesh is hardly another one after the next step: what a change gains counts twice there, and so does what it costs.
+        let (pose, cost) = match rest {
+            Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
+            None => (self.ahead(now, before), 2.0 * Improve::FEW_CHANGES),
+        };
         Some(Improve {
             below,
             cells: Some(cells),
             keeps_others: false,
             raises_worst: false,
             density,
-            rest: rest.cloned(),
-            cost: Improve::FEW_CHANGES,
+            pose: Some(pose),
+            cost,
         })
+    }
+
+    /// Where the vertices will be after the next step if they go on straight as they went in this one; less far where one would go farther than [`FARTHEST_AHEAD`], since walls turn.
+    fn ahead(&self, now: &Now, before: &[Point]) -> Vec<Point> {
+        let ways: Vec<Point> = self.points.iter().zip(before).map(|(&to, &from)| sub(to, from)).collect();
+        let lengths = ways.iter().zip(&now.known.size).filter(|(_, size)| **size > 0.0);
+        let farthest = lengths.map(|(&way, size)| norm(way) / size).fold(0.0, f64::max);
+        let part = (FARTHEST_AHEAD / farthest).min(1.0);
+        self.points.iter().zip(ways).map(|(&to, way)| add(to, scale(way, part))).collect()
     }
 
     /// The same mesh, that moves on from where [`Self::points`] has the vertices.

@@ -37,8 +37,8 @@ pub struct Reach {
 #[derive(Clone, Debug, Default)]
 pub struct Relaxation {
     here: View,
-    at_rest: View,
-    /// How the vertex moves at rest; `None`: that does not count.
+    in_pose: View,
+    /// How the vertex moves in the other pose; `None`: that does not count.
     map: Option<LinearMap>,
     /// Where the vertex was in turn.
     places: Vec<Point>,
@@ -91,12 +91,12 @@ impl LinearMap {
 
 impl Relaxation {
     /// Proposes a place on its track for a vertex whose tets are `star` that has the [`Reach`]: the sum of their [defects](defect) is lower there, and no quality below the floor. With a map that says where each
-    /// vertex is at rest, the sum of their defects there counts as much. `false` when none was found.
+    /// vertex is in the other pose, the sum of their defects there counts as much. `false` when none was found.
     ///
-    /// Steps down the gradient; qualities are exact at the end only, and those at rest not even then.
+    /// Steps down the gradient; qualities are exact at the end only, and those in the other pose not even then.
     pub fn propose(
         &mut self,
-        (complex, rest): (&Complex, Option<impl Fn(VertexId) -> Point>),
+        (complex, pose): (&Complex, Option<impl Fn(VertexId) -> Point>),
         star: &[TetId],
         vertex: VertexId,
         reach: Reach,
@@ -106,12 +106,12 @@ impl Relaxation {
         change.clear();
         self.here.star.set(star.iter().map(|&t| (complex.corners(t), complex.place(t, vertex))));
         self.map = None;
-        if let Some(rest) = rest {
-            let corners = |t: TetId| complex.vertices(t).map(&rest);
-            self.at_rest.star.set(star.iter().map(|&t| (corners(t), complex.place(t, vertex))));
-            let [from, to] = [complex.point(vertex), rest(vertex)];
+        if let Some(pose) = pose {
+            let corners = |t: TetId| complex.vertices(t).map(&pose);
+            self.in_pose.star.set(star.iter().map(|&t| (corners(t), complex.place(t, vertex))));
+            let [from, to] = [complex.point(vertex), pose(vertex)];
             let others = star.iter().flat_map(|&t| complex.vertices(t)).filter(|&v| v != vertex);
-            let edges = others.map(|v| [sub(complex.point(v), from), sub(rest(v), to)]);
+            let edges = others.map(|v| [sub(complex.point(v), from), sub(pose(v), to)]);
             self.map = LinearMap::of(from, to, edges);
             if self.map.is_none() {
                 return false;
@@ -144,8 +144,8 @@ impl Relaxation {
         false
     }
 
-    /// About where the vertex of the last proposal is to be at rest: as the linear map that is nearest to the star's has it. `None` where that does not count.
-    pub fn place_at_rest(&self) -> Option<Point> {
+    /// About where the vertex of the last proposal is to be in the other pose: as the linear map that is nearest to the star's has it. `None` where that does not count.
+    pub fn place_in_pose(&self) -> Option<Point> {
         self.map.map(|map| map.at(self.place))
     }
 
@@ -198,15 +198,15 @@ impl Relaxation {
     }
 
     fn take_tried(&mut self) {
-        for view in [&mut self.here, &mut self.at_rest] {
+        for view in [&mut self.here, &mut self.in_pose] {
             std::mem::swap(&mut view.qualities, &mut view.tried);
         }
     }
 
-    /// The sum with the vertex elsewhere; the qualities are left in `tried`. At rest tets need not be valid, and one that is not is as bad as another.
+    /// The sum with the vertex elsewhere; the qualities are left in `tried`. In the other pose tets need not be valid, and one that is not is as bad as another.
     fn sum_at(&mut self, place: Point) -> f64 {
         let here = self.here.sum_at(place, f64::NEG_INFINITY);
-        here + self.map.map_or(0.0, |map| self.at_rest.sum_at(map.at(place), 0.0))
+        here + self.map.map_or(0.0, |map| self.in_pose.sum_at(map.at(place), 0.0))
     }
 
     fn gradient(&mut self, place: Point, step: f64) -> Point {
@@ -215,8 +215,8 @@ impl Relaxation {
             let mut beside = place;
             beside[axis] += step;
             self.sum_at(beside);
-            let at_rest = self.map.map_or(0.0, |_| self.at_rest.rise(0.0));
-            gradient[axis] = (self.here.rise(f64::NEG_INFINITY) + at_rest) / step;
+            let in_pose = self.map.map_or(0.0, |_| self.in_pose.rise(0.0));
+            gradient[axis] = (self.here.rise(f64::NEG_INFINITY) + in_pose) / step;
         }
         gradient
     }

@@ -50,9 +50,9 @@ fn swapped([a, b, c, d]: [f64; 4]) -> [f64; 4] {
     [a, b, d, c]
 }
 
-/// The mesh when the walls are at rest: there, too, it is to be good.
+/// The mesh in another pose, with its vertices at other places: when the walls are at rest, or after the next step. There, too, it is to be good.
 #[derive(Debug)]
-pub(super) struct Rest {
+pub(super) struct Pose {
     given: Arc<Given>,
     /// Where each vertex is as it was given.
     of_given: Vec<Point>,
@@ -62,8 +62,8 @@ pub(super) struct Rest {
     qualities: Vec<Cell<f64>>,
 }
 
-impl Rest {
-    /// `of_given`: where each vertex that was given is at rest.
+impl Pose {
+    /// `of_given`: where each vertex that was given is in the other pose.
     pub(super) fn new(given: Arc<Given>, of_given: Vec<Point>) -> Self {
         Self { given, points: of_given.clone(), of_given, qualities: Vec::new() }
     }
@@ -85,13 +85,13 @@ impl Rest {
         inserted.iter().for_each(|tet| self.qualities[tet.index()].set(f64::NAN));
     }
 
-    /// Where a vertex is at rest.
+    /// Where a vertex is in the other pose.
     #[inline]
     pub(super) fn point(&self, vertex: VertexId) -> Point {
         self.points[vertex.index()]
     }
 
-    /// EAS of a tet at rest.
+    /// EAS of a tet in the other pose.
     #[inline]
     pub(super) fn quality(&self, complex: &Complex, tet: TetId) -> f64 {
         let known = &self.qualities[tet.index()];
@@ -101,7 +101,7 @@ impl Rest {
         known.get()
     }
 
-    /// Where a vertex belongs at rest: one that was inserted or has moved goes with its place in the mesh that was given.
+    /// Where a vertex belongs in the other pose: one that was inserted or has moved goes with its place in the mesh that was given.
     fn place(&self, complex: &Complex, vertex: VertexId) -> Point {
         let place = complex.point(vertex);
         if self.given.points().get(vertex.index()) == Some(&place) {

@@ -111,9 +111,9 @@ pub struct Improve {
     pub raises_worst: bool,
     /// How many vertices are to be kept; `None`: as many as repair leaves.
     pub density: Option<Density>,
-    /// Where each point of the mesh is when the walls are at rest, for walls that come back: there tets are to be good as much as where they are.
-    pub rest: Option<Vec<Point>>,
-    /// By how much more a change has to lower the sum of the squares of what EAS lacks of 1, for each tet that nothing has changed yet: 0 where it does not matter how many tets change.
+    /// Another pose: where each point of the mesh is when the walls are at rest, for walls that come back, or will be after the next step, for walls that go on. There tets are to be good as much as where they are.
+    pub pose: Option<Vec<Point>>,
+    /// By how much more a change has to lower the sum, over both poses, of the squares of what EAS lacks of 1, for each tet that nothing has changed yet: 0 where it does not matter how many tets change.
     pub cost: f64,
 }
 
@@ -133,7 +133,7 @@ impl Improve {
             keeps_others: false,
             raises_worst: false,
             density: None,
-            rest: None,
+            pose: None,
             cost: 0.0,
         }
     }
@@ -141,8 +141,8 @@ impl Improve {
     /// Refuses arrays that are not about the points of a mesh of so many.
     pub(super) fn check(&self, n_points: usize) -> Result<()> {
         let sizes = self.density.as_ref().map(|density| ("sizes", density.sizes.len()));
-        let rest = self.rest.as_ref().map(|rest| ("places at rest", rest.len()));
-        match sizes.into_iter().chain(rest).find(|(_, n)| *n != n_points) {
+        let pose = self.pose.as_ref().map(|pose| ("places of the other pose", pose.len()));
+        match sizes.into_iter().chain(pose).find(|(_, n)| *n != n_points) {
             None => Ok(()),
             Some((what, n)) => Err(Error::input(format!("{n} {what} for {n_points} points"))
                 .remedy("give one for each point of the mesh")),

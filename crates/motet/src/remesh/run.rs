@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::base::{CellId, Point, Result, TetId, Threads};
 use crate::kernel::{Complex, Extract};
 use crate::mesh::{OrientedTets, TetMesh, bounds, largest_extent};
-use crate::remesh::given::{Given, Rest};
+use crate::remesh::given::{Given, Pose};
 use crate::remesh::held::{Required, hold};
 use crate::remesh::left::explain;
 use crate::remesh::lengths::Lengths;
@@ -77,8 +77,8 @@ pub(super) fn remesh_but(
     let lengths_before = field.as_mut().map(|field| Lengths::of(&complex, field));
     let mut repair = Repair::new(complex, surface, others, min_eas, threads.watch());
     repair.operations.add_many(Operation::Peeling, n_peeled);
-    let rest = options.improve.as_ref().and_then(|improve| improve.rest.clone());
-    repair.rest = rest.map(|rest| Rest::new(given.clone(), rest));
+    let pose = options.improve.as_ref().and_then(|improve| improve.pose.clone());
+    repair.pose = pose.map(|pose| Pose::new(given.clone(), pose));
     let mut left = match (field, most_tets) {
         (Some(field), Some(most_tets)) => {
             repair.bring_to_sizes(Sizing { field, splits, most_tets }, options.rounds)?

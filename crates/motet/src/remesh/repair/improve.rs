@@ -14,7 +14,7 @@ use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 use crate::kernel::{Behind, Change, Complex, Fill, Hold, VertexChange};
 use crate::ops::{Anywhere, Objective, Reach, defect};
-use crate::remesh::given::Rest;
+use crate::remesh::given::Pose;
 use crate::remesh::repair::tried::Settled;
 use crate::remesh::repair::{Repair, Sizing};
 use crate::remesh::report::Operation;
@@ -45,25 +45,25 @@ struct Worth<'a> {
     aim: Aim,
     /// The mean cost of the mesh.
     mean: f64,
-    /// The mesh at rest, where walls come back.
-    rest: Option<&'a Rest>,
-    /// No tet may be as bad as this, where it is and at rest.
+    /// The mesh in the other pose, where there is one.
+    pose: Option<&'a Pose>,
+    /// No tet may be as bad as this, where it is and in the other pose.
     bars: [f64; 2],
 }
 
 impl<'a> Worth<'a> {
-    fn new((aim, mean): (Aim, f64), rest: Option<&'a Rest>) -> Self {
-        Self { aim, mean, rest, bars: [f64::NEG_INFINITY; 2] }
+    fn new((aim, mean): (Aim, f64), pose: Option<&'a Pose>) -> Self {
+        Self { aim, mean, pose, bars: [f64::NEG_INFINITY; 2] }
     }
 
     /// Of a tet as it is.
     fn of_tet(&self, complex: &Complex, tet: TetId) -> f64 {
-        self.of(complex.quality(tet), self.rest.map(|rest| rest.quality(complex, tet)))
+        self.of(complex.quality(tet), self.pose.map(|pose| pose.quality(complex, tet)))
     }
 
-    /// Of a tet of these qualities where it is and at rest: the sum of its defects. Where walls slid past each other tets need not be valid at rest, and one is as bad as another.
-    fn of(&self, here: f64, at_rest: Option<f64>) -> f64 {
-        defect(here) + at_rest.map_or(0.0, |quality| defect(quality.max(0.0)))
+    /// Of a tet of these qualities where it is and in the other pose: the sum of its defects. Where walls slid past each other tets need not be valid in the other pose, and one is as bad as another.
+    fn of(&self, here: f64, in_pose: Option<f64>) -> f64 {
+        defect(here) + in_pose.map_or(0.0, |quality| defect(quality.max(0.0)))
     }
 
     /// What a change has to lower the cost of a cavity by, each tet's less the mean, and that cost.
@@ -74,7 +74,7 @@ impl<'a> Worth<'a> {
         (least, sum - self.mean * cavity.len() as f64)
     }
 
-    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be at rest.
+    /// The cost of the fill of a change, each tet's less the mean; infinite where a tet may not come. `moved`: a vertex that moves, and where it will be in the other pose.
     fn of_fill(&self, change: &Change, moved: Option<(VertexId, Point)>) -> f64 {
         let of = |tet: &Fill| self.of_new(tet.vertices, tet.quality, moved) - self.mean;
         change.fill.iter().map(of).sum()
@@ -85,24 +85,24 @@ impl<'a> Worth<'a> {
         if quality <= self.bars[0] {
             return f64::INFINITY;
         }
-        let at_rest = self.rest.map(|rest| {
+        let in_pose = self.pose.map(|pose| {
             eas(vertices.map(|v| match moved {
                 Some((moved, place)) if moved == v => place,
-                _ => rest.point(v),
+                _ => pose.point(v),
             }))
         });
-        match at_rest {
-            Some(at_rest) if at_rest <= self.bars[1] => f64::INFINITY,
-            _ => self.of(quality, at_rest),
+        match in_pose {
+            Some(in_pose) if in_pose <= self.bars[1] => f64::INFINITY,
+            _ => self.of(quality, in_pose),
         }
     }
 
     /// Sets the limits for what comes in place of a cavity.
     fn set_bars(&mut self, complex: &Complex, cavity: &[TetId]) {
         let bar = |worst: f64| worst.min(self.aim.floor).next_down();
-        let worst_at_rest =
-            |rest: &Rest| cavity.iter().map(|&t| rest.quality(complex, t)).fold(f64::INFINITY, f64::min);
-        self.bars = [bar(complex.worst_of(cavity)), bar(self.rest.map_or(f64::NEG_INFINITY, worst_at_rest))];
+        let worst_in_pose =
+            |pose: &Pose| cavity.iter().map(|&t| pose.quality(complex, t)).fold(f64::INFINITY, f64::min);
+        self.bars = [bar(complex.worst_of(cavity)), bar(self.pose.map_or(f64::NEG_INFINITY, worst_in_pose))];
     }
 }
 
@@ -156,8 +156,8 @@ struct Course {
 impl Repair {
     /// Swaps and moves the tets of a zone, the worst first, then those that were inserted, as long as they get better on the whole.
     pub(in crate::remesh) fn improve(&mut self, aim: Aim, mut zone: Vec<TetId>) -> Result<()> {
-        if let Some(rest) = &mut self.rest {
-            rest.update(&self.complex);
+        if let Some(pose) = &mut self.pose {
+            pose.update(&self.complex);
         }
         let scale = (aim, self.mean_cost(aim));
         let found = Found { best: Best::default(), sizing: self.sizing.take() };
@@ -185,7 +185,7 @@ impl Repair {
     }
 
     fn mean_cost(&self, aim: Aim) -> f64 {
-        let worth = Worth::new((aim, 0.0), self.rest.as_ref());
+        let worth = Worth::new((aim, 0.0), self.pose.as_ref());
         let sum: f64 = self.complex.tets().map(|t| worth.of_tet(&self.complex, t)).sum();
         sum / self.complex.n_tets().max(1) as f64
     }
@@ -239,14 +239,14 @@ impl Repair {
             let inserted = &inserted[n_before..];
             self.operations.add(best.operation);
             self.changes.inserted(&self.complex, inserted);
-            if let Some(rest) = &mut self.rest {
-                rest.follow(&self.complex, best.change.vertex, inserted);
+            if let Some(pose) = &mut self.pose {
+                pose.follow(&self.complex, best.change.vertex, inserted);
             }
         }
     }
 
     fn weigh_swaps(&mut self, tet: TetId, Course { scale, found, settled, .. }: &mut Course) {
-        let mut worth = Worth::new(*scale, self.rest.as_ref());
+        let mut worth = Worth::new(*scale, self.pose.as_ref());
         let vertices = self.complex.vertices(tet);
         let mut change = std::mem::take(&mut self.candidate.proposal);
         for (place, edge) in EDGES.map(|e| e.map(|i| vertices[i])).into_iter().enumerate() {
@@ -291,15 +291,15 @@ impl Repair {
     }
 
     fn weigh_move(&mut self, vertex: VertexId, Course { scale, found, .. }: &mut Course) -> bool {
-        let mut worth = Worth::new(*scale, self.rest.as_ref());
-        let rest = self.rest.as_ref().map(|rest| |v: VertexId| rest.point(v));
+        let mut worth = Worth::new(*scale, self.pose.as_ref());
+        let pose = self.pose.as_ref().map(|pose| |v: VertexId| pose.point(v));
         let mut change = std::mem::take(&mut self.candidate.proposal);
         self.star.gather(&self.complex, vertex);
         let star = &self.star.tets;
         worth.set_bars(&self.complex, star);
         let (least, _) = worth.of_cavity(&self.complex, star);
         let is_better = self.relaxation.propose(
-            (&self.complex, rest.as_ref()),
+            (&self.complex, pose.as_ref()),
             star,
             vertex,
             Reach { floor: worth.bars[0], gain: least },
@@ -316,7 +316,7 @@ impl Repair {
         worth.set_bars(&self.complex, &change.cavity);
         let (least, before) = worth.of_cavity(&self.complex, &change.cavity);
         let moved = match change.vertex {
-            VertexChange::Move(vertex, _) => self.relaxation.place_at_rest().map(|place| (vertex, place)),
+            VertexChange::Move(vertex, _) => self.relaxation.place_in_pose().map(|place| (vertex, place)),
             _ => None,
         };
         let gain = before - worth.of_fill(change, moved);

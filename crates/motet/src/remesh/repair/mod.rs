@@ -17,7 +17,7 @@ pub(super) use sizing::Sizing;
 use crate::base::{Result, TetId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
-use crate::remesh::given::Rest;
+use crate::remesh::given::Pose;
 use crate::remesh::left::{forced, is_forced};
 use crate::remesh::options::SurfaceRule;
 use crate::remesh::repair::candidate::Candidate;
@@ -82,7 +82,7 @@ pub(super) struct Repair {
     /// Where sizes are asked for.
     pub(super) sizing: Option<Sizing>,
     /// Where walls come back.
-    pub(super) rest: Option<Rest>,
+    pub(super) pose: Option<Pose>,
     /// The tets of the first mesh that are not to be called bad, by id; empty: there are none.
     others: Vec<bool>,
     /// The tets of the first mesh that stay as they are, by id; empty: there are none.
@@ -120,7 +120,7 @@ impl Repair {
             operations: Counts::default(),
             surface,
             sizing: None,
-            rest: None,
+            pose: None,
             others,
             kept: Vec::new(),
             target,
