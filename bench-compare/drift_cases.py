@@ -126,6 +126,7 @@ def ventricle(folder):
 METHOD = 'method = "{}"\nsmooth = 2\n'
 BODIES = METHOD.format("bodies")
 SHIFT = BODIES + '[[motion.move]]\npatch = "sphere"\nshift = [3, 0, 0]\nin_time = '
+INSIDE = 'inside = ["interface"]\n'
 FOLLOW = 'surfaces = "{}.pvd"\nmatch = "{}"\nsmooth = 2\n'
 BEND = """method = "guided"
 smooth = 4
@@ -145,7 +146,7 @@ IN_CHANNEL = {"half": [0, 0, 0], "radius": 0.5, "low": [-1.5, -1, -1], "high": [
 def cases(options):
     """All cases, as long as the options say."""
     turns, cycles = options.turns or TURNS, lambda usual: options.cycles or usual
-    paddle = {"patch": "paddle", **Z}
+    paddle, bar = {"patch": "paddle", **Z}, {"patch": "interface", **Z, "centre": [0, 0, 2]}
     return [
         Case("paddle", "a paddle turns in a box", 72, turns, BODIES, fill_paddle, turn=paddle, body=IN_BOX),
         Case("paddle-delaunay", "the same by another method", 72, turns, METHOD.format("delaunay"), fill_paddle, turn=paddle),
@@ -153,8 +154,8 @@ def cases(options):
         Case("channel-back", "there and back", 120, cycles(10), SHIFT + "[[0, 0], [0.5, 1], [1, 0]]\n", fill_sphere),
         Case("ellipsoid", "an ellipsoid tumbles in a ball about none of its axes", 72, turns, BODIES, fill_egg,
              turn={"patch": "egg", "axis": [1, 1, 1], "centre": [0, 0, 0]}),
-        Case("bar", "a bar, meshed too, turns in a cup", 30, options.turns or 6, 'smooth = 2\ninside = ["interface"]\n', fill_cup,
-             turn={"patch": "interface", **Z, "centre": [0, 0, 2]}),
+        Case("bar", "a bar, meshed too, turns in a cup", 30, options.turns or 6, 'smooth = 2\n' + INSIDE, fill_cup, turn=bar),
+        Case("bar-bodies", "the same by another method", 30, options.turns or 6, BODIES + INSIDE, fill_cup, turn=bar),
         Case("tube", "a tube is squeezed to a tenth of its width", 16, cycles(20), FOLLOW.format("walls", "position"),
              measured_walls(TUBE, 1.745, squeezed, 16)),
         Case("flap", "a flap beats to both sides, nearly to the walls", 24, cycles(20), BEND, fill_flap),

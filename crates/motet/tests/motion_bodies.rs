@@ -5,8 +5,8 @@ use motet::base::{Point, Threads, VertexId};
 use motet::geometry::tet::volume;
 use motet::geometry::vector::{add, distance, norm, sub};
 use motet::mesh::shapes::{box_grid, sphere_in_box};
-use motet::mesh::{Boundary, CellKind, Cells};
-use motet::motion::{Elastic, Extent, FacetSet, Method, Mover, Options, Prescribed, RigidLayer};
+use motet::mesh::{Boundary, CellKind, Cells, Field};
+use motet::motion::{Elastic, Extent, FacetSet, Method, Mover, Options, Prescribed, RigidLayer, Strain};
 
 fn bodies(sets: Vec<FacetSet>) -> Options {
     Options { method: Method::Bodies(sets), ..Options::default() }
@@ -161,6 +161,48 @@ fn a_rigid_layer_turns_with_its_body() {
     let options = Options { rigid_layer: Some(layer), ..bodies(vec![sphere]) };
     let moved = step(&mover(&mesh, &options), turned(90.0, [0.5, 0.0, 0.0]), &Threads::single());
     assert_eq!(n_inverted(&mesh, &moved), 0);
+}
+
+/// A box of which the tets within a smaller one are a region of their own, the vertices between the two, and whether a place is of the smaller one.
+fn solid_in_fluid() -> (Mesh, Vec<VertexId>, impl Fn(Point) -> bool) {
+    let is_solid = |p: Point| (0..3).all(|k| p[k].abs() < 1.01 - 0.25 * k as f64);
+    let mut mesh = box_grid([16; 3], [[-2.0; 3], [2.0; 3]]);
+    let middle = |vertices: &[VertexId]| {
+        let sum = vertices.iter().fold([0.0; 3], |sum, v| add(sum, mesh.points[v.index()]));
+        sum.map(|x| x / vertices.len() as f64)
+    };
+    let regions: Vec<i32> =
+        mesh.cells.iter().map(|(_, _, vertices)| 1 + i32::from(is_solid(middle(vertices)))).collect();
+    let mut is_of = vec![[false; 2]; mesh.points.len()];
+    for (cell, tet) in mesh.cells.tets() {
+        tet.iter().for_each(|v| is_of[v.index()][regions[cell.index()] as usize - 1] = true);
+    }
+    let between = (0..is_of.len()).filter(|&v| is_of[v] == [true; 2]).map(VertexId::new).collect();
+    mesh.set_cell_field(Field::scalars("region", regions));
+    (mesh, between, is_solid)
+}
+
+#[test]
+fn an_interface_that_is_moved_is_a_body_and_what_it_encloses_goes_along_rigidly() {
+    let (mesh, between, is_solid) = solid_in_fluid();
+    let turn = Prescribed::Turn { axis: [1.0, 2.0, -0.5], angle: 0.3, centre: [0.1, 0.0, 0.0] };
+    let named = FacetSet { name: "solid".into(), vertices: between.clone(), ..FacetSet::default() };
+    for (sets, strain) in
+        [(Vec::new(), Strain::Even), (Vec::new(), Strain::Band), (vec![named], Strain::Band)]
+    {
+        let options = Options { also_moved: between.clone(), strain, ..bodies(sets) };
+        let moved = step(
+            &mover(&mesh, &options),
+            |p| if is_solid(p) { turn.apply(p, 1.0) } else { p },
+            &Threads::single(),
+        );
+        assert_eq!(n_inverted(&mesh, &moved), 0);
+        let solid = mesh.points.iter().zip(&moved).filter(|(p, _)| is_solid(**p));
+        assert!(solid.clone().count() > 2 * between.len() / 3);
+        // Even shares are solved for.
+        let nearly = if strain == Strain::Even { 1e-6 } else { 1e-12 };
+        solid.for_each(|(&p, &q)| assert!(distance(q, turn.apply(p, 1.0)) < nearly, "{strain:?}"));
+    }
 }
 
 #[test]

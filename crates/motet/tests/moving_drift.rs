@@ -2,7 +2,7 @@
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::rigid::Rigid;
-use motet::geometry::vector::sub;
+use motet::geometry::vector::{distance, sub};
 use motet::mesh::history::{Rule, Rules};
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{Boundary, CellKind, Cells, Field, Mesh, Qualities};
@@ -86,14 +86,14 @@ fn turn_on(n_steps: i32, options: Options, limits: &Limits) {
     });
 }
 
-/// Moves a body in so many steps, and checks counts and qualities after each.
+/// Moves a body in so many steps, checks counts and qualities after each, and returns the mesh.
 fn advance_and_check(
     mesh: &Mesh,
     n_steps: i32,
     options: Options,
     limits: &Limits,
     advance: impl Fn(&mut MovingMesh, i32) -> Step,
-) {
+) -> MovingMesh {
     let first = quality(mesh);
     let n_walls = Boundary::of(&mesh.cells).vertices.len();
     let mut moving = MovingMesh::new(mesh, options, &threads()).unwrap();
@@ -109,6 +109,7 @@ fn advance_and_check(
     }
     assert_eq!(quality(moving.mesh()), moving.certify(&threads()).unwrap().quality);
     assert_eq!(Boundary::of(&moving.mesh().cells).vertices.len(), n_walls);
+    moving
 }
 
 #[test]
@@ -180,6 +181,29 @@ fn a_bar_that_is_meshed_too_turns_and_leaves_counts_and_quality_as_they_were() {
     advance_and_check(&bar_in_box(), 36, Options { motion, ..Options::default() }, &limits, |moving, k| {
         turn(moving, f64::from(k), f64::from(10 * k).to_radians())
     });
+}
+
+#[test]
+fn a_bar_that_is_meshed_too_and_turns_as_a_body_keeps_its_tets() {
+    let mesh = bar_in_box();
+    let tets_of_bar = |mesh: &Mesh| -> Vec<[Point; 4]> {
+        let regions = mesh.regions().unwrap().ids.clone();
+        let of_bar = mesh.cells.tets().filter(|(cell, _)| regions[cell.index()] == 2);
+        of_bar.map(|(_, tet)| tet.map(|v| mesh.points[v.index()])).collect()
+    };
+    let first = tets_of_bar(&mesh);
+    let motion =
+        Motion { inside: vec![INTERFACE], ..options(Method::Bodies(Vec::new()), Strain::Band).motion };
+    let limits = Limits { vertices: 0.02, tets: 0.06, mean: 0.06 };
+    let moving =
+        advance_and_check(&mesh, 36, Options { motion, ..Options::default() }, &limits, |moving, k| {
+            turn(moving, f64::from(k), f64::from(10 * k).to_radians())
+        });
+    // After a whole turn they are where they were.
+    let last = tets_of_bar(moving.mesh());
+    assert_eq!(last.len(), first.len());
+    let is_same = |(a, b): (&[Point; 4], &[Point; 4])| (0..4).all(|i| distance(a[i], b[i]) < 1e-9);
+    assert!(first.iter().zip(&last).all(is_same));
 }
 
 #[test]

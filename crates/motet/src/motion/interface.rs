@@ -58,24 +58,38 @@ impl Interface {
     }
 }
 
-fn between_regions(mesh: &Mesh) -> Vec<Interface> {
-    let Some(regions) = mesh.regions() else { return Vec::new() };
+/// Labelled facets, those on the boundary too, and facets between two regions.
+pub(crate) fn for_each_wall_facet(mesh: &Mesh, mut see: impl FnMut(&[VertexId])) {
+    let of_patches = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
+    of_patches.for_each(|(.., vertices)| see(vertices));
+    for_each_between(mesh, |_, vertices| see(vertices));
+}
+
+/// Facets between two regions, with their labels, the lower first.
+fn for_each_between(mesh: &Mesh, mut see: impl FnMut([i32; 2], &[VertexId])) {
+    let Some(regions) = mesh.regions() else { return };
     let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
     let mut of_volumes = volumes.map(|(cell, ..)| regions.ids[cell.index()]);
     let first = of_volumes.next();
     if of_volumes.all(|region| Some(region) == first) {
-        return Vec::new();
+        return;
     }
     let facets = Facets::of(&mesh.cells);
-    let mut vertices: BTreeMap<[i32; 2], Vec<VertexId>> = BTreeMap::new();
     facets.for_each_shared(|uses| {
         if let [a, b] = uses {
             let [x, y] = [a, b].map(|facet| regions.ids[facet.cell.index()]);
             if x != y {
-                vertices.entry([x.min(y), x.max(y)]).or_default().extend(facets.vertices(*a).1);
+                let facet: Vec<VertexId> = facets.vertices(*a).1.collect();
+                see([x.min(y), x.max(y)], &facet);
             }
         }
     });
+}
+
+fn between_regions(mesh: &Mesh) -> Vec<Interface> {
+    let Some(regions) = mesh.regions() else { return Vec::new() };
+    let mut vertices: BTreeMap<[i32; 2], Vec<VertexId>> = BTreeMap::new();
+    for_each_between(mesh, |labels, facet| vertices.entry(labels).or_default().extend(facet));
     let of = |([x, y], mut vertices): ([i32; 2], Vec<VertexId>)| {
         vertices.sort_unstable();
         vertices.dedup();

@@ -157,7 +157,7 @@ impl Mover {
             method: options.method.clone(),
             strain: options.strain,
             bodies: match &options.method {
-                Method::Bodies(sets) => bodies::vertices(sets, &boundary, &mesh.points)?,
+                Method::Bodies(sets) => bodies::vertices(sets, mesh, &boundary, &options.also_moved)?,
                 _ => Vec::new(),
             },
             map: Map::Graph(Spread::default()),

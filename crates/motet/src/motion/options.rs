@@ -13,7 +13,8 @@ pub enum Method {
     /// By weights in the Delaunay graph of the nodes (Liu, Qin, Xia 2006).
     #[default]
     Delaunay,
-    /// As rigid bodies carry them along: the patches, each a body; where there is none, each part of the boundary that hangs together is one, but for the outer one.
+    /// As rigid bodies carry them along: the patches, each a body; where there is none, each part of the walls that hangs together is one, but for the outer one. Walls are the boundary and
+    /// facets inside whose vertices are [moved](Options::also_moved), such as those between fluid and solid: what they enclose goes along rigidly.
     /// A body's motion is the rigid one that fits its vertices best, a turn of at most half a circle; the rest is done by the graph.
     Bodies(Vec<FacetSet>),
     /// By the graph with some vertices inside as nodes, each with a rotation beside its displacement, that of the walls near it: for walls that bend. Two small linear systems a step.

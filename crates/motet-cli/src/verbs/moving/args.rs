@@ -112,8 +112,8 @@ pub(crate) struct MoveArgs {
     /// set up; facets of the boundary must not cross or touch each other
     #[arg(long, help_heading = "Volume")]
     pub(crate) within_walls: bool,
-    /// Patches of which each is a rigid body, for `--method bodies` [default: each part of the boundary that
-    /// hangs together, but for the outer one]. Repeatable
+    /// Patches of which each is a rigid body, for `--method bodies`; one inside, such as that between fluid and solid, takes
+    /// along what it encloses [default: each part of the walls that hangs together, but for the outer one]. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Volume")]
     pub(crate) body: Vec<String>,
     /// Then move the vertices of bad tets, and no others, to where their tets are better: so many

@@ -20,9 +20,10 @@ use crate::base::four::Wide;
 use crate::base::four::{Four, Plain};
 use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
 use crate::geometry::vector::{add, distance, norm, sub};
-use crate::mesh::{Boundary, bounds};
+use crate::mesh::{Boundary, Mesh, bounds};
 use crate::motion::bodies::fields::Fields;
 use crate::motion::bodies::rigid::Rigid;
+use crate::motion::interface::for_each_wall_facet;
 use crate::motion::nodes::Nodes;
 use crate::motion::options::{FacetSet, Strain};
 use crate::motion::spread::Spread;
@@ -165,19 +166,23 @@ impl<F: Four> NullaryFnOnce for Carry<'_, F> {
     }
 }
 
-/// The vertices of each body: those of the sets, or where there is none, of each part of the boundary that hangs together, but for the part of the largest extent.
+/// The vertices of each body: those of the sets, or where there is none, of each part of the walls that hangs together, but for the part of the largest extent. Walls are the boundary, and
+/// facets inside whose vertices the caller moves (`also_moved`): such as those between fluid and solid.
 ///
 /// # Errors
-/// When a set has fewer than three vertices or shares one with another; when the boundary is all in one piece.
+/// When a set has fewer than three vertices, one that nobody moves, or shares one with another; when the walls are all in one piece.
 pub(crate) fn vertices(
     sets: &[FacetSet],
+    mesh: &Mesh,
     boundary: &Boundary,
-    points: &[Point],
+    also_moved: &[VertexId],
 ) -> Result<Vec<Vec<VertexId>>> {
+    let mut is_moved = vec![false; mesh.points.len()];
+    boundary.vertices.iter().chain(also_moved).for_each(|v| is_moved[v.index()] = true);
     if sets.is_empty() {
-        return inner_parts(boundary, points);
+        return inner_parts(mesh, boundary, &is_moved);
     }
-    let mut owner = vec![None; points.len()];
+    let mut owner = vec![None; mesh.points.len()];
     for (i, set) in sets.iter().enumerate() {
         if set.vertices.len() < 3 {
             return Err(Error::options(format!("the body {} has {} vertices", set.name, set.vertices.len()))
@@ -191,41 +196,49 @@ pub(crate) fn vertices(
                 ))
                 .remedy("what hangs together moves together: name both as one body, or only one of them"));
             }
-            if boundary.vertices.binary_search(&v).is_err() {
+            if !is_moved[v.index()] {
                 return Err(Error::options(format!("the body {} has a vertex inside the volume", set.name))
                     .at(format!("vertex {v}"))
-                    .remedy("name patches of the boundary"));
+                    .remedy("name patches of the boundary, or of those inside that are moved"));
             }
         }
     }
     Ok(sets.iter().map(|set| set.vertices.clone()).collect())
 }
 
-fn inner_parts(boundary: &Boundary, points: &[Point]) -> Result<Vec<Vec<VertexId>>> {
-    let mut sets = Sets::new(points.len());
-    for facet in boundary.facets.iter() {
-        facet.windows(2).for_each(|pair| sets.join(pair[0].0, pair[1].0));
+fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Vec<Vec<VertexId>>> {
+    let mut sets = Sets::new(is_moved.len());
+    let mut join = |facet: &[VertexId]| facet.windows(2).for_each(|pair| sets.join(pair[0].0, pair[1].0));
+    boundary.facets.iter().for_each(&mut join);
+    let n_moved = is_moved.iter().filter(|moved| **moved).count();
+    if n_moved > boundary.vertices.len() {
+        for_each_wall_facet(mesh, |facet| {
+            if facet.iter().all(|v| is_moved[v.index()]) {
+                join(facet);
+            }
+        });
     }
-    let mut parts: Vec<(u32, Vec<VertexId>)> = Vec::new();
+    let mut parts: Vec<Vec<VertexId>> = Vec::new();
     let mut place = std::collections::HashMap::new();
-    for &v in &boundary.vertices {
-        let root = sets.root(v.0);
-        let at = *place.entry(root).or_insert_with(|| {
-            parts.push((root, Vec::new()));
+    for v in (0..is_moved.len()).filter(|&v| is_moved[v]).map(VertexId::new) {
+        let at = *place.entry(sets.root(v.0)).or_insert_with(|| {
+            parts.push(Vec::new());
             parts.len() - 1
         });
-        parts[at].1.push(v);
+        parts[at].push(v);
     }
+    // Vertices that the caller moves one by one are no body.
+    parts.retain(|part| part.len() >= 3);
     let extent = |part: &Vec<VertexId>| {
-        let places: Vec<Point> = part.iter().map(|v| points[v.index()]).collect();
+        let places: Vec<Point> = part.iter().map(|v| mesh.points[v.index()]).collect();
         bounds(&places).map_or(0.0, |[low, high]| distance(low, high))
     };
-    let extents: Vec<f64> = parts.iter().map(|(_, part)| extent(part)).collect();
+    let extents: Vec<f64> = parts.iter().map(extent).collect();
     let outer = (1..parts.len()).fold(0, |i, j| if extents[j] > extents[i] { j } else { i });
     if parts.len() < 2 {
         return Err(Error::options("the boundary is all in one piece: no part of it is a body inside")
-            .remedy("name the patches that move as bodies, or use another method"));
+            .remedy("name the patches that move as bodies, move a patch inside, or use another method"));
     }
     parts.remove(outer);
-    Ok(parts.into_iter().map(|(_, part)| part).collect())
+    Ok(parts)
 }
