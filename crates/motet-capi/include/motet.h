@@ -151,7 +151,7 @@ typedef struct motet_mover_options {
     double factor_gib;         /* a factor of it is kept where it takes no more gibibytes; default 0 */
     const char *const *slide;  /* names (or labels written out) of flat patches whose vertices slide in their plane; default none */
     int64_t n_slide;
-    const char *const *bodies; /* of patches that are rigid bodies; default none: all parts of the boundary but the outer one */
+    const char *const *bodies; /* of patches that are rigid bodies; default none: all parts of the walls but the outer one, the boundary and interfaces that are moved */
     int64_t n_bodies;
     const char *const *wall;   /* of patches that have the rigid layer; default none: all of the boundary that does not slide */
     int64_t n_wall;

@@ -86,7 +86,8 @@ class Mover(NotPickled):
         ``delaunay``: weights in the graph of the boundary, the cheapest. ``bodies``: rigid bodies carry along what is round them, for parts that turn
         or shift far. ``guided``: nodes inside with rotations, for walls that bend. The others are there to compare with.
     bodies : sequence of patches
-        The rigid bodies of ``method="bodies"``; where none is named, each part of the boundary that hangs together is one, but for the outer one.
+        The rigid bodies of ``method="bodies"``; where none is named, each part of the walls that hangs together is one, but for the outer one. Walls are
+        the boundary, and interfaces inside that are moved: what one encloses goes along rigidly.
     within_walls : bool
         Whether the graph keeps within the walls, so that no vertex follows the wall of another lumen or the far side of a flap.
     smooth : int
