@@ -99,7 +99,7 @@ def panel(mesh, words):
     plotter.add_mesh(poly(mesh, patch_triangles(mesh, "sphere")), color="#b9c6d2", **EDGES)
     bad = np.count_nonzero(drawn["EAS"] < BAD)
     centre = 0.5 * (LOW + HIGH) + (0.05, 0.0, 0.12)
-    return seen_straight(plotter, centre, (-4.0, -40.0, 9.0), (0.0, 0.0, 1.0), 2.5), f"{words}: {bad or 'no'} bad tets"
+    return seen_straight(plotter, centre, (-4.0, -40.0, 9.0), (0.0, 0.0, 1.0), 2.5), f"{words}: {bad or 'no'} bad tet{'' if bad == 1 else 's'}"
 
 
 def main():
