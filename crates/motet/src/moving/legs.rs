@@ -23,7 +23,7 @@ const LEAST: f64 = 1.0 / 4096.0;
 /// So often a repair is made once more with tets held that it is not to replace.
 const MOST_HELD: usize = 8;
 
-/// As far as this many edge lengths of its own a vertex is taken to go on straight in the next step.
+/// No vertex is extrapolated to the next step farther than this part of the mean length of its edges.
 const FARTHEST_AHEAD: f64 = 0.5;
 
 /// A tet of the first mesh is as it was at first while its EAS is no more than this below what it was.
@@ -312,7 +312,7 @@ impl Way<'_> {
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
         let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
         let density = usual.sizes.is_none().then_some(density);
-        // The mesh is hardly another one after the next step: what a change gains counts twice there, and so does what it costs.
+        // The mesh ahead is nearly the mesh as it is: a gain counts twice, and so must the cost.
         let (pose, cost) = match rest {
             Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
             None => (self.ahead(now, before), 2.0 * Improve::FEW_CHANGES),
@@ -328,7 +328,7 @@ impl Way<'_> {
         })
     }
 
-    /// Where the vertices will be after the next step if they go on straight as they went in this one; less far where one would go farther than [`FARTHEST_AHEAD`], since walls turn.
+    /// Where the vertices will be after the next step if they go on straight as in this one; all of them less far where one would go farther than [`FARTHEST_AHEAD`], since walls turn.
     fn ahead(&self, now: &Now, before: &[Point]) -> Vec<Point> {
         let ways: Vec<Point> = self.points.iter().zip(before).map(|(&to, &from)| sub(to, from)).collect();
         let lengths = ways.iter().zip(&now.known.size).filter(|(_, size)| **size > 0.0);

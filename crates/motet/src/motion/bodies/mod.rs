@@ -186,7 +186,7 @@ pub(crate) fn vertices(
     for (i, set) in sets.iter().enumerate() {
         if set.vertices.len() < 3 {
             return Err(Error::options(format!("the body {} has {} vertices", set.name, set.vertices.len()))
-                .remedy("name patches of the boundary, each with facets"));
+                .remedy("name patches with facets"));
         }
         for &v in &set.vertices {
             if let Some(other) = owner[v.index()].replace(i).filter(|other| *other != i) {
@@ -199,7 +199,7 @@ pub(crate) fn vertices(
             if !is_moved[v.index()] {
                 return Err(Error::options(format!("the body {} has a vertex inside the volume", set.name))
                     .at(format!("vertex {v}"))
-                    .remedy("name patches of the boundary, or of those inside that are moved"));
+                    .remedy("name patches of the boundary, or inside ones whose vertices are moved, too"));
             }
         }
     }
@@ -210,6 +210,7 @@ fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Ve
     let mut sets = Sets::new(is_moved.len());
     let mut join = |facet: &[VertexId]| facet.windows(2).for_each(|pair| sets.join(pair[0].0, pair[1].0));
     boundary.facets.iter().for_each(&mut join);
+    // Where the boundary alone is moved, no facet inside is a wall.
     let n_moved = is_moved.iter().filter(|moved| **moved).count();
     if n_moved > boundary.vertices.len() {
         for_each_wall_facet(mesh, |facet| {
@@ -236,7 +237,7 @@ fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Ve
     let extents: Vec<f64> = parts.iter().map(extent).collect();
     let outer = (1..parts.len()).fold(0, |i, j| if extents[j] > extents[i] { j } else { i });
     if parts.len() < 2 {
-        return Err(Error::options("the boundary is all in one piece: no part of it is a body inside")
+        return Err(Error::options("the walls are all in one piece: no part of them is a body inside")
             .remedy("name the patches that move as bodies, move a patch inside, or use another method"));
     }
     parts.remove(outer);

@@ -259,7 +259,12 @@ impl Repair {
 
     /// Whether so many tets are left that it is surfaces that force them: trying all operations for each takes long and helps little.
     pub(super) fn are_many(&self, n_left: usize) -> bool {
-        n_left as f64 > MANY * self.complex.n_tets() as f64
+        self.is_more(n_left, MANY)
+    }
+
+    /// Whether so many tets are more than a part of all.
+    fn is_more(&self, n: usize, part: f64) -> bool {
+        n as f64 > part * self.complex.n_tets() as f64
     }
 
     /// Repairs up to a target that rises as long as no more than a part of the tets is left below it. Where more than before are below the one that it began with, the last rise is taken back.
@@ -276,7 +281,7 @@ impl Repair {
                 break;
             }
             self.complex.forget();
-            if left.len() as f64 > most_left * self.complex.n_tets() as f64 {
+            if self.is_more(left.len(), most_left) {
                 break;
             }
         }
