@@ -70,6 +70,13 @@ pub fn distance(a: Point, b: Point) -> f64 {
     norm(sub(a, b))
 }
 
+/// `|a - b|^2`
+#[inline(always)]
+pub fn distance_squared(a: Point, b: Point) -> f64 {
+    let d = sub(a, b);
+    dot(d, d)
+}
+
 /// The part of `v` at right angles to `along`, projected twice: once leaves errors of the size of `v`, which may be more than
 /// the part itself ("twice is enough", Kahan in Parlett 1980, *The symmetric eigenvalue problem*, 6-9). NaN where `along` has no length.
 #[inline(always)]

@@ -31,9 +31,9 @@ impl MovingMesh {
             );
         }
         let gaps = self.gaps_here(threads)?;
-        let Self { now, options, .. } = &*self;
+        let Self { now, options, wall, .. } = &*self;
         let mut part = TetPart::of(&now.mesh)?;
-        let mut sizes = now.known.first_size.clone();
+        let mut sizes = self.sizes.first.at_vertices((now, &now.mesh.points), wall, options, threads);
         if let Some(gaps) = gaps {
             sizes.iter_mut().zip(gaps).for_each(|(size, gap)| *size = size.min(gap.max(smallest)));
         }

@@ -14,6 +14,7 @@ use crate::moving::legs::Way;
 use crate::moving::now::{InFirst, Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::{Shape, Tets};
+use crate::moving::sizes::lengths;
 use crate::moving::step::{Change, Why};
 use crate::moving::wall::NO_NODE;
 use crate::spatial::trace::between;
@@ -46,6 +47,8 @@ pub(super) struct FirstMesh {
     pub(super) known: Known,
     /// Bad tets that repair left, cells rising.
     pub(super) left: Vec<LeftBad>,
+    /// How long edges are at each vertex.
+    lengths: Vec<f64>,
     mean_eas: f64,
     n_bad: usize,
 }
@@ -102,13 +105,13 @@ impl FirstMesh {
         let tets = Tets::of(&mesh);
         let mean_eas = tets.qualities(&mesh.points, threads).mean;
         let n_bad = tets.shape(&mesh.points, options.limit(), threads).bad.len();
-        Self { mesh, known, left, mean_eas, n_bad }
+        Self { lengths: lengths(&mesh), mesh, known, left, mean_eas, n_bad }
     }
 
     /// Whether displacements of the nodes leave the walls about where they were at first.
     fn has_walls_at(&self, displacement: &[Point]) -> bool {
-        let nodes = self.known.node.iter().zip(&self.known.first_size).filter(|(node, _)| **node != NO_NODE);
-        nodes.into_iter().all(|(&node, size)| norm(displacement[node as usize]) <= BACK * size)
+        let nodes = self.known.node.iter().zip(&self.lengths).filter(|(node, _)| **node != NO_NODE);
+        nodes.into_iter().all(|(&node, length)| norm(displacement[node as usize]) <= BACK * length)
     }
 
     /// What another mesh has lost against this one, 1: enough to put this one back.

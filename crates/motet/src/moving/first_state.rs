@@ -18,8 +18,6 @@ const OFFSETS: &str = "moving:first_mesh_offsets";
 const VERTICES: &str = "moving:first_mesh_vertices";
 const FIRST: &str = "moving:first_mesh_first";
 const NODE: &str = "moving:first_mesh_node";
-const SIZE: &str = "moving:first_mesh_size";
-const FIRST_SIZE: &str = "moving:first_mesh_first_size";
 const FIRST_EAS: &str = "moving:first_mesh_first_eas";
 /// Before the names of its bad tets that repair left.
 const LEFT: &str = "moving:first_mesh_left";
@@ -50,8 +48,6 @@ impl Returns {
             Field::scalars(VERTICES, numbers(mesh.cells.connectivity().items())),
             Field::vectors(FIRST, &known.first),
             Field::scalars(NODE, known.node.clone()),
-            Field::scalars(SIZE, known.size.clone()),
-            Field::scalars(FIRST_SIZE, known.first_size.clone()),
             Field::scalars(FIRST_EAS, known.first_eas.clone()),
         ]);
         file.field_data.extend(LeftBad::to_fields(left, LEFT));
@@ -103,8 +99,6 @@ fn first_mesh(taken: &Taken, mesh: &Mesh) -> Result<(Mesh, Known)> {
     let known = Known {
         first: taken.vectors(FIRST)?,
         node: taken.ids(NODE)?,
-        size: taken.floats(SIZE)?,
-        first_size: taken.floats(FIRST_SIZE)?,
         first_eas: taken.floats(FIRST_EAS)?,
         in_first: InFirst::same(&first),
         ..Known::default()
@@ -118,8 +112,6 @@ fn check_known(known: &Known, first: &Mesh, n_nodes: usize) -> Result<()> {
     let all = [
         (FIRST, known.first.len() == n_points),
         (NODE, known.node.len() == n_points && known.node.iter().all(is_node)),
-        (SIZE, known.size.len() == n_points),
-        (FIRST_SIZE, known.first_size.len() == n_points),
         (FIRST_EAS, known.first_eas.len() == first.cells.len()),
     ];
     all.iter().find(|(_, is_right)| !is_right).map_or(Ok(()), |(name, _)| Err(no_state(name)))

@@ -17,6 +17,7 @@ use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{InFirst, Known, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
+use crate::moving::sizes::{Remembered, Sizes};
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
 use crate::moving::wall::Wall;
 use crate::moving::watch::Watch;
@@ -37,6 +38,8 @@ pub struct MovingMesh {
     pub(super) forgotten: Option<usize>,
     /// How walls have come back, and the first mesh.
     pub(super) returns: Returns,
+    /// How long edges are to be.
+    pub(super) sizes: Sizes,
     watch: Option<Watch>,
     pub(super) hold: Option<Hold>,
     /// What the last step stopped.
@@ -67,7 +70,7 @@ impl MovingMesh {
         let mut known = Known::at_first(mesh, mover.boundary());
         known.rest = options.returns.then(|| mesh.points.clone());
         let now = Now::of(mesh.clone(), mover, known, Vec::new(), &wall, threads)?;
-        let mut moving = Self::of(options, wall, now, Clock::default(), threads)?;
+        let mut moving = Self::of(options, wall, now, Sizes::at_first(mesh), Clock::default(), threads)?;
         moving.remember_first(threads);
         moving.measure_gaps(threads)?;
         Ok(moving)
@@ -77,6 +80,7 @@ impl MovingMesh {
         options: Options,
         wall: Wall,
         now: Now,
+        sizes: Sizes,
         clock: Clock,
         threads: &Threads,
     ) -> Result<Self> {
@@ -90,6 +94,7 @@ impl MovingMesh {
             changes: VecDeque::new(),
             forgotten: None,
             returns: Returns::default(),
+            sizes,
             watch,
             hold,
             held: Held::default(),
@@ -314,6 +319,7 @@ impl MovingMesh {
             options: &self.options,
             wall: &self.wall,
             returns: &self.returns,
+            sizes: &self.sizes.now,
             displacement,
             times: [self.clock.time, time],
             n_free: self.clock.n_free,
@@ -385,7 +391,7 @@ impl MovingMesh {
         let change = Change { operations, ..Change::new(when, counts, shape, history, points_before) };
         self.now = now;
         self.clock.n_free = None;
-        self.now.known.size_anew(&self.now.mesh);
+        self.sizes.now = Arc::new(Remembered::anew(&self.now, &self.options, threads));
         // The first mesh is no longer the one that is wanted.
         (self.returns.first, self.now.known.in_first) = (None, InFirst::default());
         self.remember(std::slice::from_ref(&change));

@@ -11,6 +11,7 @@ use crate::moving::first::Returns;
 use crate::moving::now::{BEFORE, Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
+use crate::moving::sizes::Remembered;
 use crate::moving::step::{Change, Seconds, Why};
 use crate::moving::wall::Wall;
 use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
@@ -38,6 +39,8 @@ pub(super) struct Way<'a> {
     pub(super) wall: &'a Wall,
     /// How walls have come back so far.
     pub(super) returns: &'a Returns,
+    /// How long edges are to be.
+    pub(super) sizes: &'a Remembered,
     /// Of the nodes of the wall, from where they were at first.
     pub(super) displacement: &'a [Point],
     /// From when to when.
@@ -310,28 +313,28 @@ impl Way<'_> {
         let first = &now.known.first_eas;
         let is_as_at_first = |&(cell, eas): &(CellId, f64)| eas >= first[cell.index()] - AS_AT_FIRST;
         let cells = low.into_iter().filter(|low| !is_as_at_first(low)).map(|(cell, _)| cell).collect();
-        let density = Density { sizes: now.known.size.clone(), free_vertices: self.n_free };
-        let density = usual.sizes.is_none().then_some(density);
+        let sizes = self.sizes.at_vertices((now, &self.points), self.wall, self.options, self.threads);
         // The mesh ahead is nearly the mesh as it is: a gain counts twice, and so must the cost.
         let (pose, cost) = match rest {
             Some(rest) => (rest.clone(), Improve::FEW_CHANGES),
-            None => (self.ahead(now, before), 2.0 * Improve::FEW_CHANGES),
+            None => (self.ahead(before, &sizes), 2.0 * Improve::FEW_CHANGES),
         };
+        let density = Density { sizes, free_vertices: self.n_free };
         Some(Improve {
             below,
             cells: Some(cells),
             keeps_others: false,
             raises_worst: false,
-            density,
+            density: usual.sizes.is_none().then_some(density),
             pose: Some(pose),
             cost,
         })
     }
 
     /// Where the vertices will be after the next step if they go on straight as in this one; all of them less far where one would go farther than [`FARTHEST_AHEAD`], since walls turn.
-    fn ahead(&self, now: &Now, before: &[Point]) -> Vec<Point> {
+    fn ahead(&self, before: &[Point], sizes: &[f64]) -> Vec<Point> {
         let ways: Vec<Point> = self.points.iter().zip(before).map(|(&to, &from)| sub(to, from)).collect();
-        let lengths = ways.iter().zip(&now.known.size).filter(|(_, size)| **size > 0.0);
+        let lengths = ways.iter().zip(sizes).filter(|(_, size)| **size > 0.0);
         let farthest = lengths.map(|(&way, size)| norm(way) / size).fold(0.0, f64::max);
         let part = (FARTHEST_AHEAD / farthest).min(1.0);
         self.points.iter().zip(ways).map(|(&to, way)| add(to, scale(way, part))).collect()

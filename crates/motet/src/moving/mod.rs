@@ -68,6 +68,7 @@ mod now;
 mod options;
 mod script;
 mod shapes;
+mod sizes;
 mod state;
 mod step;
 mod swept;

@@ -6,7 +6,7 @@ use crate::base::{CellId, Error, Id, Point, Result, Threads, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::vector::{add, sub};
 use crate::mesh::history::{History, Rule, Rules};
-use crate::mesh::{Field, Mesh, mean_edge_lengths};
+use crate::mesh::{Field, Mesh};
 use crate::motion::Mover;
 use crate::moving::contents::{go_to, hand_over};
 use crate::moving::options::Options;
@@ -53,10 +53,6 @@ pub(super) struct Known {
     pub(super) before: Vec<Point>,
     /// The node of the wall that it is, or [`NO_NODE`].
     pub(super) node: Vec<u32>,
-    /// How long edges were there at first, or after the last refinement.
-    pub(super) size: Vec<f64>,
-    /// How long edges were there at first.
-    pub(super) first_size: Vec<f64>,
     /// Of each cell that is a tet of the first mesh the EAS that it had then, of others no number.
     pub(super) first_eas: Vec<f64>,
     /// What it is in the first mesh, where that may be put back.
@@ -101,33 +97,20 @@ impl Known {
     pub(super) fn at_first(mesh: &Mesh, driven: &[VertexId]) -> Self {
         let mut node = vec![NO_NODE; mesh.points.len()];
         (0..).zip(driven).for_each(|(number, v)| node[v.index()] = number);
-        let size = lengths(mesh);
         Self {
             first: mesh.points.clone(),
             rest: None,
             before: mesh.points.clone(),
             node,
-            size: size.clone(),
-            first_size: size,
             first_eas: first_eas(mesh),
             in_first: InFirst::default(),
         }
-    }
-
-    /// Edges are to be as long as they are now.
-    pub(super) fn size_anew(&mut self, mesh: &Mesh) {
-        self.size = lengths(mesh);
     }
 }
 
 /// The EAS of each cell that is a tet, of others no number.
 fn first_eas(mesh: &Mesh) -> Vec<f64> {
     mesh.tet_field("eas", eas).values.to_f64().unwrap_or_default()
-}
-
-/// How long edges are at each vertex of tets.
-fn lengths(mesh: &Mesh) -> Vec<f64> {
-    mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet))
 }
 
 impl Now {
@@ -233,10 +216,6 @@ impl Now {
             mesh.set_point_field(Field::vectors(name, values));
             rules.points.insert(name.to_owned(), Rule::Linear);
         }
-        for (name, values) in [(SIZE, &self.known.size), (FIRST_SIZE, &self.known.first_size)] {
-            mesh.set_point_field(Field::scalars(name, values.clone()));
-            rules.points.insert(name.to_owned(), Rule::Linear);
-        }
         // A rule may name an array that the user has taken off since.
         rules.points.retain(|name, _| mesh.point_field(name).is_some());
         rules.cells.retain(|name, _| mesh.cell_field(name).is_some());
@@ -252,8 +231,6 @@ impl Now {
         };
         let (first, before) = (take(FIRST)?.to_vectors()?, take(BEFORE)?.to_vectors()?);
         let rest = self.known.rest.as_ref().map(|_| take(REST)?.to_vectors()).transpose()?;
-        let [size, first_size] =
-            [take(SIZE)?, take(FIRST_SIZE)?].map(|field| field.values.to_f64().unwrap_or_default());
         let node = |old: &VertexId| match *old == VertexId::NONE {
             true => NO_NODE,
             false => self.known.node[old.index()],
@@ -268,8 +245,6 @@ impl Now {
             first,
             rest,
             before,
-            size,
-            first_size,
             node: history.vertices.kept().iter().map(node).collect(),
         })
     }
@@ -279,7 +254,5 @@ impl Now {
 pub(super) const FIRST: &str = "moving:first";
 pub(super) const REST: &str = "moving:rest";
 pub(super) const BEFORE: &str = "moving:before";
-pub(super) const SIZE: &str = "moving:size";
-pub(super) const FIRST_SIZE: &str = "moving:first_size";
 /// Arrays of a state.
 pub(super) const FIRST_EAS: &str = "moving:first_eas";

@@ -3,6 +3,7 @@
 //! The file is a VTU that ParaView opens as it is. What is beside the mesh stands in arrays whose names begin with `moving:`; they are taken off when it is read.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::base::{CellId, Error, Point, Result, Threads, VertexId};
 use crate::io::{self, Compression, WriteOptions};
@@ -11,8 +12,9 @@ use crate::motion::Mover;
 use crate::moving::described::differences;
 use crate::moving::first::Returns;
 use crate::moving::handle::{Clock, MovingMesh};
-use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, FIRST_SIZE, Known, LeftBad, Now, REST, SIZE};
+use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, Known, LeftBad, Now, REST};
 use crate::moving::options::Options;
+use crate::moving::sizes::{Remembered, Sizes};
 use crate::moving::wall::Wall;
 
 const PREFIX: &str = "moving:";
@@ -23,6 +25,9 @@ const TRIANGLES: &str = "moving:wall_triangles";
 const BODY: &str = "moving:wall_body";
 const HELD: &str = "moving:wall_held";
 const LEFT: &str = "moving:left";
+/// Places, and how long edges are to be there: at first, and after the last refinement.
+const SIZES: [[&str; 2]; 2] =
+    [["moving:size_places", "moving:sizes"], ["moving:refined_size_places", "moving:refined_sizes"]];
 const CLOCK: &str = "moving:clock";
 const OPTIONS: &str = "moving:options";
 const POINT_ARRAYS: &str = "moving:point_arrays";
@@ -48,9 +53,6 @@ impl MovingMesh {
         }
         file.set_point_field(Field::vectors(REFERENCE, mover.reference()));
         file.set_point_field(Field::scalars(NODE, known.node.clone()));
-        for (name, sizes) in [(SIZE, &known.size), (FIRST_SIZE, &known.first_size)] {
-            file.set_point_field(Field::scalars(name, sizes.clone()));
-        }
         file.set_cell_field(Field::scalars(FIRST_EAS, known.first_eas.clone()));
         let triangles: Vec<u32> = self.wall.triangles.as_flattened().iter().map(|v| v.0).collect();
         file.field_data.extend([
@@ -59,6 +61,7 @@ impl MovingMesh {
             Field::scalars(CLOCK, vec![clock.step as f64, clock.time, clock.dt, n_free]),
         ]);
         file.field_data.extend(LeftBad::to_fields(left, LEFT));
+        self.sizes.put_on(&mut file);
         self.returns.put_on(&mut file, &known.in_first);
         file.field_data.extend([
             text(OPTIONS, &self.options.described()?),
@@ -115,14 +118,13 @@ impl MovingMesh {
                 None => Vec::new(),
             },
         };
+        let sizes = Sizes::taken(&taken)?;
         let (returns, in_first) = Returns::taken(&taken, &mesh, wall.places.len(), &options, threads)?;
         let known = Known {
             first: taken.vectors(FIRST)?,
             rest: options.returns.then(|| taken.vectors(REST)).transpose()?,
             before: taken.vectors(BEFORE)?,
             node: taken.ids(NODE)?,
-            size: taken.floats(SIZE)?,
-            first_size: taken.floats(FIRST_SIZE)?,
             first_eas: taken.floats(FIRST_EAS)?,
             in_first,
         };
@@ -133,7 +135,7 @@ impl MovingMesh {
         mesh.points = here;
         let now = Now::of(mesh, mover, known, left, &wall, threads)?;
         let forgotten = Some(clock.step);
-        let mut moving = Self::of(options, wall, now, clock, threads)?;
+        let mut moving = Self::of(options, wall, now, sizes, clock, threads)?;
         (moving.forgotten, moving.returns) = (forgotten, returns);
         if let Some(hold) = &mut moving.hold {
             hold.last = taken.vectors(HELD)?;
@@ -208,6 +210,34 @@ impl Taken {
         Ok(all
             .map(|((cell, eas), forced)| LeftBad { cell: CellId(cell), eas, is_forced: forced != 0.0 })
             .collect())
+    }
+}
+
+impl Sizes {
+    fn put_on(&self, file: &mut Mesh) {
+        let Self { first, now } = self;
+        let is_refined = !Arc::ptr_eq(first, now);
+        for ([places, sizes], remembered) in SIZES.into_iter().zip([Some(first), is_refined.then_some(now)]) {
+            if let Some(remembered) = remembered {
+                file.field_data.push(Field::vectors(places, &remembered.places));
+                file.field_data.push(Field::scalars(sizes, remembered.sizes.clone()));
+            }
+        }
+    }
+
+    fn taken(taken: &Taken) -> Result<Self> {
+        let of = |[places, sizes]: [&str; 2]| -> Result<Arc<Remembered>> {
+            let remembered = Remembered::new(taken.vectors(places)?, taken.floats(sizes)?);
+            let is_size = |size: &f64| (0.0..f64::INFINITY).contains(size);
+            let is_right = remembered.places.len() == remembered.sizes.len();
+            match is_right && remembered.sizes.iter().all(is_size) {
+                true => Ok(Arc::new(remembered)),
+                false => Err(no_state(sizes)),
+            }
+        };
+        let first = of(SIZES[0])?;
+        let now = if taken.has(SIZES[1][0]) { of(SIZES[1])? } else { first.clone() };
+        Ok(Self { first, now })
     }
 }
 

@@ -34,15 +34,10 @@ impl Wall {
     /// # Errors
     /// When a patch that is to be kept apart is not there, or is not driven.
     pub(super) fn of(mesh: &Mesh, driven: &[VertexId], options: &Options) -> Result<Self> {
-        let Options { motion, watch, .. } = options;
-        let mut triangles = Surface::boundary_of(mesh).triangles;
-        for &label in &motion.inside {
-            triangles.extend(FacetSet::of_patch(mesh, label).triangles());
-        }
         let node = |v: VertexId| driven.binary_search(&v).ok().map(VertexId::new);
         let nodes = |t: &[VertexId; 3]| Some([node(t[0])?, node(t[1])?, node(t[2])?]);
-        let triangles: Vec<_> = triangles.iter().filter_map(nodes).collect();
-        let held = watch.as_ref().filter(|watch| watch.hold.is_some());
+        let triangles: Vec<_> = wall_triangles(mesh, options).iter().filter_map(nodes).collect();
+        let held = options.watch.as_ref().filter(|watch| watch.hold.is_some());
         let mut body = vec![NO_BODY; if held.is_some() { triangles.len() } else { 0 }];
         let place: HashMap<_, _> = triangles.iter().map(|t| rising(*t)).zip(0..).collect();
         for (k, held) in (0..).zip(held.map_or(Ok(Vec::new()), |watch| watch.bodies(mesh))?) {
@@ -83,6 +78,15 @@ impl Wall {
         };
         Ok(Drive { node: driven.iter().map(|v| node[v.index()]).collect(), carrier })
     }
+}
+
+/// The triangles of the boundary, and of the patches inside that move.
+pub(super) fn wall_triangles(mesh: &Mesh, options: &Options) -> Vec<[VertexId; 3]> {
+    let mut triangles = Surface::boundary_of(mesh).triangles;
+    for &label in &options.motion.inside {
+        triangles.extend(FacetSet::of_patch(mesh, label).triangles());
+    }
+    triangles
 }
 
 fn not_driven(name: &str) -> Error {

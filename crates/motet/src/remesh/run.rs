@@ -108,8 +108,9 @@ pub(super) fn remesh_but(
             field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), || given.clone(), LONG),
             n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
         });
+        let vertices_left = repair.vertices_of(&left);
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;
-        left = repair.try_again(min_eas, options.rounds)?;
+        left = repair.try_again_at(&vertices_left, min_eas, options.rounds)?;
     }
     report.operations = repair.operations;
     let (complex, sizing) = (repair.complex, repair.sizing);

@@ -14,7 +14,7 @@ pub(super) use density::Density;
 pub(super) use improve::Aim;
 pub(super) use sizing::Sizing;
 
-use crate::base::{Result, TetId, Watch};
+use crate::base::{Result, TetId, VertexId, Watch};
 use crate::kernel::{Complex, Shell, Star};
 use crate::ops::{EdgeRemoval, FaceRemoval, Insertion, Relaxation, Smoothing};
 use crate::remesh::given::Pose;
@@ -171,8 +171,14 @@ impl Repair {
             let is_worth =
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
+            // What walls force gets no better, whatever lies round it.
+            let forced = forced(&self.complex, self.surface.as_ref(), &bad);
+            let unforced: Vec<TetId> = bad.iter().copied().filter(|tet| !forced.contains(tet)).collect();
+            if unforced.is_empty() {
+                break;
+            }
             before = Some(bad.len());
-            self.improve_around(&bad, self.target + more)?;
+            self.improve_around(&unforced, self.target + more)?;
         }
         self.tried = Tried::nothing();
         bad.append(&mut self.came_bad);
@@ -292,6 +298,29 @@ impl Repair {
     pub(super) fn try_again(&mut self, target: f64, rounds: usize) -> Result<Vec<TetId>> {
         self.target = target;
         self.run(self.below(target), rounds)
+    }
+
+    /// The vertices of some tets, which may change before they are [tried again](Self::try_again_at).
+    pub(super) fn vertices_of(&self, tets: &[TetId]) -> Vec<VertexId> {
+        let mut vertices: Vec<_> = tets.iter().flat_map(|&tet| self.complex.vertices(tet)).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        vertices
+    }
+
+    /// Tries once more what is below a target and has an edge of such vertices after improving: what held it up may be better now. What is left below the target anywhere.
+    pub(super) fn try_again_at(
+        &mut self,
+        vertices: &[VertexId],
+        target: f64,
+        rounds: usize,
+    ) -> Result<Vec<TetId>> {
+        self.target = target;
+        let is_near = |v: &VertexId| vertices.binary_search(v).is_ok();
+        let mut again = self.below(target);
+        again.retain(|&tet| self.complex.vertices(tet).iter().filter(|v| is_near(v)).count() >= 2);
+        self.run(again, rounds)?;
+        Ok(self.below(target))
     }
 
     /// Repairs each bad tet once, and leaves in the list those that are bad then; whether anything was done.
