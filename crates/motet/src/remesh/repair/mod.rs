@@ -172,8 +172,9 @@ impl Repair {
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
             // What walls force gets no better, whatever lies round it.
-            let forced = forced(&self.complex, self.surface.as_ref(), &bad);
-            let unforced: Vec<TetId> = bad.iter().copied().filter(|tet| !forced.contains(tet)).collect();
+            let (complex, surface, shell) = (&self.complex, self.surface.as_ref(), &mut self.shells[0]);
+            let is_unforced = |tet: &TetId| !is_forced(complex, surface, *tet, shell);
+            let unforced: Vec<TetId> = bad.iter().copied().filter(is_unforced).collect();
             if unforced.is_empty() {
                 break;
             }
