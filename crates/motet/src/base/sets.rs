@@ -1,5 +1,7 @@
 //! Which numbers hang together: disjoint sets.
 
+use crate::base::VertexId;
+
 /// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each
 /// known by its smallest.
 pub(crate) struct Sets {
@@ -18,6 +20,18 @@ impl Sets {
             i = above;
         }
         i
+    }
+
+    /// The root of each number.
+    pub(crate) fn roots(mut self) -> Vec<u32> {
+        (0..self.parents.len() as u32).map(|i| self.root(i)).collect()
+    }
+
+    /// Joins the vertices of each list, such as a facet, with each other.
+    pub(crate) fn join_all<'a>(&mut self, lists: impl IntoIterator<Item = &'a [VertexId]>) {
+        for list in lists {
+            list.windows(2).for_each(|pair| self.join(pair[0].0, pair[1].0));
+        }
     }
 
     pub(crate) fn join(&mut self, i: u32, j: u32) {

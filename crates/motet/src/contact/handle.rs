@@ -248,7 +248,7 @@ fn joined(points: &[Point], bodies: &[Body], threads: &Threads) -> Vec<VertexId>
     let all = threads.each(bodies.iter().collect(), |body| mesh::seams(points, &body.triangles));
     let mut sets = Sets::new(points.len());
     all.iter().flatten().for_each(|[v, first]| sets.join(v.0, first.0));
-    (0..points.len() as u32).map(|v| VertexId(sets.root(v))).collect()
+    sets.roots().into_iter().map(VertexId).collect()
 }
 
 fn check(bodies: &[Body], options: &Options) -> Result<()> {

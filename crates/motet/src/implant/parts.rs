@@ -41,7 +41,7 @@ impl<'a> Parts<'a> {
             }
         }
         let mut largest: BTreeMap<u32, (f64, Point)> = BTreeMap::new();
-        let roots: Vec<u32> = (0..pieces.len() as u32).map(|i| sets.root(i)).collect();
+        let roots = sets.roots();
         for (root, (t, _)) in roots.iter().zip(pieces) {
             let corners = t.map(|v| cut.points[v.index()]);
             let known = largest.entry(*root).or_default();

@@ -17,7 +17,7 @@ use crate::moving::legs::{Reached, Way};
 use crate::moving::now::{InFirst, Known, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
-use crate::moving::sizes::{Remembered, Sizes};
+use crate::moving::sizes::{SizeMap, Sizes};
 use crate::moving::step::{Change, Seconds, Step, Why, WorstTet};
 use crate::moving::wall::Wall;
 use crate::moving::watch::Watch;
@@ -391,7 +391,7 @@ impl MovingMesh {
         let change = Change { operations, ..Change::new(when, counts, shape, history, points_before) };
         self.now = now;
         self.clock.n_free = None;
-        self.sizes.now = Arc::new(Remembered::anew(&self.now, &self.options, threads));
+        self.sizes.now = Arc::new(SizeMap::anew(&self.now, &self.options, threads));
         // The first mesh is no longer the one that is wanted.
         (self.returns.first, self.now.known.in_first) = (None, InFirst::default());
         self.remember(std::slice::from_ref(&change));

@@ -11,7 +11,7 @@ use crate::moving::first::Returns;
 use crate::moving::now::{BEFORE, Known, LeftBad, Now};
 use crate::moving::options::Options;
 use crate::moving::shapes::Shape;
-use crate::moving::sizes::Remembered;
+use crate::moving::sizes::SizeMap;
 use crate::moving::step::{Change, Seconds, Why};
 use crate::moving::wall::Wall;
 use crate::remesh::{self, Density, Goal, Improve, MeshOutcome, remesh_mesh};
@@ -40,7 +40,7 @@ pub(super) struct Way<'a> {
     /// How walls have come back so far.
     pub(super) returns: &'a Returns,
     /// How long edges are to be.
-    pub(super) sizes: &'a Remembered,
+    pub(super) sizes: &'a SizeMap,
     /// Of the nodes of the wall, from where they were at first.
     pub(super) displacement: &'a [Point],
     /// From when to when.

@@ -1,8 +1,9 @@
 //! The lengths that edges had, remembered beside the walls: near a body they go with the body, whatever has become of the mesh.
 //!
-//! A size that a vertex carries is lost with the vertex, and mixed where one is inserted between others: while a body with fine edges turned once, a fifth more vertices came. So sizes
-//! are asked of the place. A place belongs to the wall nearest to it; taken back with that wall to where it was at first, it has the size that the mesh had there.
+//! A size that a vertex carries is lost with the vertex, and mixed where one is inserted between others: while a body with fine edges turned once, a fifth more vertices were inserted than
+//! removed. So the size is a function of the place. A place belongs to the wall nearest to it; pulled back with that wall to where it was at first, it has the size that the mesh had there.
 
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use crate::base::{Point, Sets, Threads, VertexId};
@@ -15,54 +16,54 @@ use crate::moving::options::Options;
 use crate::moving::wall::{NO_NODE, Wall, wall_triangles};
 use crate::spatial::{BoxTree, NearestTriangle};
 
-/// The lengths of edges at first, and those that edges are to have now: the same but where the mesh was refined since.
+/// The lengths of edges at first, and those that edges are to have now: the same unless the mesh has been refined.
 #[derive(Clone, Debug)]
 pub(super) struct Sizes {
-    pub(super) first: Arc<Remembered>,
-    pub(super) now: Arc<Remembered>,
+    pub(super) first: Arc<SizeMap>,
+    pub(super) now: Arc<SizeMap>,
 }
 
 impl Sizes {
     /// Of a mesh in its first place.
     pub(super) fn at_first(mesh: &Mesh) -> Self {
-        let first = Arc::new(Remembered::new(mesh.points.clone(), lengths(mesh)));
+        let first = Arc::new(SizeMap::new(mesh.points.clone(), lengths(mesh)));
         Self { now: first.clone(), first }
     }
 }
 
-/// How long edges are at each vertex of tets; 0 at others.
+/// The mean length of the edges at each vertex of tets; 0 at others.
 pub(super) fn lengths(mesh: &Mesh) -> Vec<f64> {
     mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet))
 }
 
 /// Sizes at places.
 #[derive(Clone, Debug)]
-pub(super) struct Remembered {
+pub(super) struct SizeMap {
     /// With the walls where they were at first.
     pub(super) places: Vec<Point>,
     /// 0: none.
     pub(super) sizes: Vec<f64>,
-    /// By part of the walls; made when it is asked for first.
+    /// Made when it is needed for the first time.
     parts: OnceLock<Parts>,
 }
 
-/// Which place belongs to which part of the walls: those that hang together are one.
+/// The places by connected part of the walls: each belongs to the part nearest to it.
 #[derive(Clone, Debug)]
 struct Parts {
-    /// The part of each node.
+    /// The part of each node, by a node of it.
     of_node: Vec<u32>,
-    near: Vec<Near>,
+    regions: BTreeMap<u32, Region>,
 }
 
 /// What belongs to one part of the walls.
 #[derive(Clone, Debug)]
-struct Near {
+struct Region {
     places: Vec<Point>,
     sizes: Vec<f64>,
     tree: BoxTree,
 }
 
-impl Near {
+impl Region {
     fn new(known: Vec<(Point, f64)>) -> Self {
         let (places, sizes): (Vec<Point>, Vec<f64>) = known.into_iter().unzip();
         let boxes: Vec<_> = places.iter().map(|&p| [p, p]).collect();
@@ -89,49 +90,42 @@ impl Near {
 }
 
 impl Parts {
-    fn of(remembered: &Remembered, wall: &Wall, threads: &Threads) -> Self {
+    fn of(map: &SizeMap, wall: &Wall, threads: &Threads) -> Self {
         let mut sets = Sets::new(wall.places.len());
-        join(&mut sets, &wall.triangles);
-        let mut number = vec![u32::MAX; wall.places.len()];
-        let mut n_parts = 0;
-        let mut of = |root: u32| {
-            let number = &mut number[root as usize];
-            if *number == u32::MAX {
-                (*number, n_parts) = (n_parts, n_parts + 1);
-            }
-            *number
-        };
-        let of_node: Vec<u32> = (0..wall.places.len() as u32).map(|node| of(sets.root(node))).collect();
-        let mut known = vec![Vec::new(); (n_parts as usize).max(1)];
+        sets.join_all(wall.triangles.iter().map(|t| t.as_slice()));
+        let of_node = sets.roots();
         let tree = NearestTriangle::new(&wall.places, &wall.triangles, threads);
-        let nearest = tree.closest_all(&remembered.places, None, threads);
-        for ((place, size), nearest) in remembered.places.iter().zip(&remembered.sizes).zip(nearest) {
-            let part = nearest.map_or(0, |nearest| of_node[wall.triangles[nearest.triangle][0].index()]);
+        let nearest = tree.closest_all(&map.places, None, threads);
+        let mut known: BTreeMap<u32, Vec<_>> = BTreeMap::new();
+        for ((place, size), nearest) in map.places.iter().zip(&map.sizes).zip(nearest) {
+            let part =
+                nearest.map_or(NO_NODE, |nearest| of_node[wall.triangles[nearest.triangle][0].index()]);
             if *size > 0.0 {
-                known[part as usize].push((*place, *size));
+                known.entry(part).or_default().push((*place, *size));
             }
         }
-        Self { of_node, near: known.into_iter().map(Near::new).collect() }
+        let regions = known.into_iter().map(|(part, known)| (part, Region::new(known))).collect();
+        Self { of_node, regions }
     }
 
-    /// The size at a place that belongs to a part; where that has none, or is not known, of whatever is nearest.
-    fn at(&self, part: Option<u32>, p: Point) -> f64 {
-        let of_part = part.and_then(|part| self.near[part as usize].at(p));
-        let nearest = || self.near.iter().filter_map(|near| near.at(p)).min_by(|a, b| a.0.total_cmp(&b.0));
-        of_part.or_else(nearest).map_or(0.0, |(_, size)| size)
+    /// The size at a place that belongs to the part of a node; where nothing is known of that part, of whatever is nearest.
+    fn at(&self, node: u32, p: Point) -> f64 {
+        let region = self.of_node.get(node as usize).and_then(|part| self.regions.get(part));
+        let nearest =
+            || self.regions.values().filter_map(|region| region.at(p)).min_by(|a, b| a.0.total_cmp(&b.0));
+        region.and_then(|region| region.at(p)).or_else(nearest).map_or(0.0, |(_, size)| size)
     }
 }
 
-impl Remembered {
+impl SizeMap {
     pub(super) fn new(places: Vec<Point>, sizes: Vec<f64>) -> Self {
         Self { places, sizes, parts: OnceLock::new() }
     }
 
     /// Of a mesh as it is, wherever its walls are.
     pub(super) fn anew(now: &Now, options: &Options, threads: &Threads) -> Self {
-        let points = &now.mesh.points;
-        let back = WayBack::of(now, points, options, threads);
-        Self::new(back.places.into_iter().map(|(_, place)| place).collect(), lengths(&now.mesh))
+        let places = pulled_back(now, &now.mesh.points, options, threads);
+        Self::new(places.into_iter().map(|(_, place)| place).collect(), lengths(&now.mesh))
     }
 
     /// The size at each vertex of a mesh whose vertices are at `points`; 0 where none is known anywhere.
@@ -143,58 +137,34 @@ impl Remembered {
         threads: &Threads,
     ) -> Vec<f64> {
         let parts = self.parts.get_or_init(|| Parts::of(self, wall, threads));
-        let WayBack { node, places } = WayBack::of(now, points, options, threads);
-        let part = |component: u32| node.get(component as usize).filter(|node| **node != NO_NODE);
-        threads.map(places.len(), |v| {
-            let (component, place) = places[v];
-            parts.at(part(component).map(|node| parts.of_node[*node as usize]), place)
-        })
+        let places = pulled_back(now, points, options, threads);
+        threads.map(places.len(), |v| parts.at(places[v].0, places[v].1))
     }
 }
 
-/// Where vertices were when walls were at first: each as if it were fixed to the wall nearest to it.
-struct WayBack {
-    /// By the first vertex of what hangs together: a node of it, or [`NO_NODE`].
-    node: Vec<u32>,
-    /// Of each vertex: what hangs together with the wall nearest to it, and its place.
-    places: Vec<(u32, Point)>,
-}
-
-/// Stands for no wall.
-const NO_WALL: u32 = u32::MAX;
-
-impl WayBack {
-    fn of(now: &Now, points: &[Point], options: &Options, threads: &Threads) -> Self {
-        let first = &now.known.first;
-        let mut triangles = wall_triangles(&now.mesh, options);
-        let mut is_driven = vec![false; points.len()];
-        now.mover.boundary().iter().for_each(|v| is_driven[v.index()] = true);
-        let area = |t: &[_; 3]| area_vector(t.map(|v: VertexId| points[v.index()]));
-        triangles.retain(|t| t.iter().all(|v| is_driven[v.index()]) && area(t) != [0.0; 3]);
-        let mut sets = Sets::new(points.len());
-        join(&mut sets, &triangles);
-        let mut node = vec![NO_NODE; points.len()];
-        for (v, &its) in (0..).zip(&now.known.node).filter(|(_, node)| **node != NO_NODE) {
-            node[sets.root(v) as usize] = its;
-        }
-        let back: Vec<Rigid> =
-            triangles.iter().map(|t| Rigid::fit(&t.map(|v| (points[v.index()], first[v.index()])))).collect();
-        let component: Vec<u32> = triangles.iter().map(|t| sets.root(t[0].0)).collect();
-        let tree = NearestTriangle::new(points, &triangles, threads);
-        let nearest = tree.closest_all(points, None, threads);
-        let places = threads.map(points.len(), |v| match nearest[v] {
-            Some(nearest) => (component[nearest.triangle], back[nearest.triangle].apply(points[v])),
-            None => (NO_WALL, first[v]),
-        });
-        Self { node, places }
+/// Where the vertices of a mesh were when walls were at first, each as if it were fixed to the wall triangle nearest to it; with a node of the part of the walls that it is of, or [`NO_NODE`].
+fn pulled_back(now: &Now, points: &[Point], options: &Options, threads: &Threads) -> Vec<(u32, Point)> {
+    let first = &now.known.first;
+    let mut is_driven = vec![false; points.len()];
+    now.mover.boundary().iter().for_each(|v| is_driven[v.index()] = true);
+    let has_area = |t: &[VertexId; 3]| area_vector(t.map(|v| points[v.index()])) != [0.0; 3];
+    let mut triangles = wall_triangles(&now.mesh, options);
+    triangles.retain(|t| t.iter().all(|v| is_driven[v.index()]) && has_area(t));
+    let mut sets = Sets::new(points.len());
+    sets.join_all(triangles.iter().map(|t| t.as_slice()));
+    let roots = sets.roots();
+    let mut node = vec![NO_NODE; points.len()];
+    for (root, its) in roots.iter().zip(&now.known.node).filter(|(_, its)| **its != NO_NODE) {
+        node[*root as usize] = *its;
     }
-}
-
-fn join(sets: &mut Sets, triangles: &[[VertexId; 3]]) {
-    for [a, b, c] in triangles {
-        sets.join(a.0, b.0);
-        sets.join(a.0, c.0);
-    }
+    let back = |t: &[VertexId; 3]| Rigid::fit(&t.map(|v| (points[v.index()], first[v.index()])));
+    let back: Vec<Rigid> = triangles.iter().map(back).collect();
+    let tree = NearestTriangle::new(points, &triangles, threads);
+    let nearest = tree.closest_all(points, None, threads);
+    threads.map(points.len(), |v| match nearest[v].map(|nearest| nearest.triangle) {
+        Some(t) => (node[roots[triangles[t][0].index()] as usize], back[t].apply(points[v])),
+        None => (NO_NODE, first[v]),
+    })
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::moving::first::Returns;
 use crate::moving::handle::{Clock, MovingMesh};
 use crate::moving::now::{BEFORE, FIRST, FIRST_EAS, Known, LeftBad, Now, REST};
 use crate::moving::options::Options;
-use crate::moving::sizes::{Remembered, Sizes};
+use crate::moving::sizes::{SizeMap, Sizes};
 use crate::moving::wall::Wall;
 
 const PREFIX: &str = "moving:";
@@ -217,21 +217,21 @@ impl Sizes {
     fn put_on(&self, file: &mut Mesh) {
         let Self { first, now } = self;
         let is_refined = !Arc::ptr_eq(first, now);
-        for ([places, sizes], remembered) in SIZES.into_iter().zip([Some(first), is_refined.then_some(now)]) {
-            if let Some(remembered) = remembered {
-                file.field_data.push(Field::vectors(places, &remembered.places));
-                file.field_data.push(Field::scalars(sizes, remembered.sizes.clone()));
+        for ([places, sizes], map) in SIZES.into_iter().zip([Some(first), is_refined.then_some(now)]) {
+            if let Some(map) = map {
+                file.field_data.push(Field::vectors(places, &map.places));
+                file.field_data.push(Field::scalars(sizes, map.sizes.clone()));
             }
         }
     }
 
     fn taken(taken: &Taken) -> Result<Self> {
-        let of = |[places, sizes]: [&str; 2]| -> Result<Arc<Remembered>> {
-            let remembered = Remembered::new(taken.vectors(places)?, taken.floats(sizes)?);
+        let of = |[places, sizes]: [&str; 2]| -> Result<Arc<SizeMap>> {
+            let map = SizeMap::new(taken.vectors(places)?, taken.floats(sizes)?);
             let is_size = |size: &f64| (0.0..f64::INFINITY).contains(size);
-            let is_right = remembered.places.len() == remembered.sizes.len();
-            match is_right && remembered.sizes.iter().all(is_size) {
-                true => Ok(Arc::new(remembered)),
+            let is_right = map.places.len() == map.sizes.len();
+            match is_right && map.sizes.iter().all(is_size) {
+                true => Ok(Arc::new(map)),
                 false => Err(no_state(sizes)),
             }
         };

@@ -25,7 +25,7 @@ pub(crate) fn joint(
         open.chunk_by(|x, y| x.0 == y.0)
             .for_each(|at_edge| at_edge[1..].iter().for_each(|other| sets.join(at_edge[0].1, other.1)));
     }
-    (0..roles.len() as u32).map(|s| sets.root(s)).collect()
+    sets.roots()
 }
 
 #[cfg(test)]

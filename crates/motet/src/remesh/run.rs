@@ -14,7 +14,7 @@ use crate::remesh::lengths::Lengths;
 use crate::remesh::options::{Goal, Improve, Options, SurfaceRule};
 use crate::remesh::repair::{Aim, Density, Repair, Sizing, is_among, passes};
 use crate::remesh::report::{Operation, Report, SizesReport, State};
-use crate::remesh::sizes::{LONG, SizeField, Sizes};
+use crate::remesh::sizes::{LONG, SizeField};
 use crate::remesh::surface::{Crease, Surface};
 
 /// A mesh after remeshing, where each part of it was before, and what was done.
@@ -104,9 +104,9 @@ pub(super) fn remesh_but(
         left = repair.below(min_eas);
     }
     if let Some(improve) = options.improve.as_ref().filter(|_| !repair.is_hopeless()) {
-        let density = improve.density.as_ref().map(|density| Density {
-            field: SizeField::new(&Sizes::Vertices(density.sizes.clone()), || given.clone(), LONG),
-            n_free: density.free_vertices.unwrap_or(report.before.free_vertices),
+        let density = improve.density.as_ref().map(|density| {
+            let n_free = density.free_vertices.unwrap_or(report.before.free_vertices);
+            Density::new(&density.sizes, &given, n_free)
         });
         let vertices_left = repair.vertices_of(&left);
         improve_near(&mut repair, improve, density, options, mesh.tets.len())?;

@@ -66,7 +66,7 @@ fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
             sets.join(x.1, y.1);
         }
     }
-    let roots: Vec<usize> = (0..n as u32).map(|t| sets.root(t) as usize).collect();
+    let roots: Vec<usize> = sets.roots().into_iter().map(|root| root as usize).collect();
     let members = Csr::from_pairs(n, || roots.iter().copied().zip(0..));
     let (mut closed, mut open) = (Vec::new(), Vec::new());
     for triangles in members.iter().filter(|list| !list.is_empty()) {

@@ -96,7 +96,7 @@ impl Old {
                 }
             }
         }
-        let roots: Vec<usize> = (0..n as u32).map(|v| sets.root(v) as usize).collect();
+        let roots: Vec<usize> = sets.roots().into_iter().map(|root| root as usize).collect();
         let asked: Vec<usize> = (0..n).filter(|&v| roots[v] == v).collect();
         let answers = threads.map(asked.len(), |i| self.winding(lattice.points[asked[i]]));
         let mut windings = vec![0.0; n];

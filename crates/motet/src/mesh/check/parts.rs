@@ -11,9 +11,7 @@ pub(super) fn defects(mesh: &Mesh) -> Vec<Defect> {
     let Some(dim) = mesh.cells.dim() else { return vec![defect] };
     let cells = || mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(dim));
     let mut vertices = Sets::new(mesh.points.len());
-    for (_, _, cell) in cells() {
-        cell.iter().skip(1).for_each(|v| vertices.join(cell[0].0, v.0));
-    }
+    vertices.join_all(cells().map(|(_, _, cell)| cell));
     let mut seen = vec![false; mesh.points.len()];
     for (id, _, cell) in cells() {
         let Some(first) = cell.first() else { continue };

@@ -96,5 +96,5 @@ fn roots(points: &[Point], sheet: &Sheet) -> Vec<usize> {
             sets.join(i, j);
         }
     }
-    (0..triangles.len() as u32).map(|i| sets.root(i) as usize).collect()
+    sets.roots().into_iter().map(|root| root as usize).collect()
 }

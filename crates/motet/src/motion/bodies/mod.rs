@@ -208,14 +208,13 @@ pub(crate) fn vertices(
 
 fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Vec<Vec<VertexId>>> {
     let mut sets = Sets::new(is_moved.len());
-    let mut join = |facet: &[VertexId]| facet.windows(2).for_each(|pair| sets.join(pair[0].0, pair[1].0));
-    boundary.facets.iter().for_each(&mut join);
+    sets.join_all(boundary.facets.iter());
     // Where the boundary alone is moved, no facet inside is a wall.
     let n_moved = is_moved.iter().filter(|moved| **moved).count();
     if n_moved > boundary.vertices.len() {
         for_each_wall_facet(mesh, |facet| {
             if facet.iter().all(|v| is_moved[v.index()]) {
-                join(facet);
+                sets.join_all([facet]);
             }
         });
     }

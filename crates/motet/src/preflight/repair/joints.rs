@@ -83,7 +83,7 @@ impl Parts {
                 open.push(same[0]);
             }
         }
-        let part_of: Vec<u32> = (0..triangles.len() as u32).map(|t| sets.root(t)).collect();
+        let part_of = sets.roots();
         let mut is_faulty = vec![false; triangles.len()];
         for pair in own_crossings(points, triangles, threads) {
             let [i, j] = pair.map(|t| t as usize);
