@@ -171,9 +171,9 @@ impl Repair {
             let is_worth =
                 before.is_none_or(|before: usize| before.saturating_sub(bad.len()) >= bad.len() / 100);
             let Some(more) = asked.next().filter(|_| is_worth) else { break };
-            // What walls force gets no better, whatever lies round it.
-            let (complex, surface, shell) = (&self.complex, self.surface.as_ref(), &mut self.shells[0]);
-            let is_unforced = |tet: &TetId| !is_forced(complex, surface, *tet, shell);
+            // What walls that stay force gets no better, whatever lies round it.
+            let (complex, stays, shell) = (&self.complex, self.surface.is_none(), &mut self.shells[0]);
+            let is_unforced = |tet: &TetId| !(stays && is_forced(complex, None, *tet, shell));
             let unforced: Vec<TetId> = bad.iter().copied().filter(is_unforced).collect();
             if unforced.is_empty() {
                 break;
