@@ -1,23 +1,15 @@
-"""Draws the pictures of the README.
+"""Draws the picture of docs/remesh.md, and has what the other scripts that draw share.
 
     ./test --setup                                        (once: the Python packages)
-    target/venv/bin/python -c "from motet import shapes; shapes.sphere_in_box(16, 20).save('target/box.vtu')"
-    cargo run --release -- move target/box.vtu -o target/sphere/moved.pvd --translate sphere=3,0,0
-    target/venv/bin/python docs/pictures.py target/sphere (writes docs/demo.png)
-
-A cut through the box at the first and at the last step: the cells behind the plane y = 0, coloured by their
-equi-angle quality.
-
     cargo run --release -p motet --example remesh_cases sphere target/moved.vtu
     cargo run --release -- remesh target/moved.vtu -o target/repaired.vtu --history target/history.json
     target/venv/bin/python docs/pictures.py target/moved.vtu target/repaired.vtu target/history.json
 
-The bad tets of a mesh and the tets that came in their place (writes docs/remesh.png).
+The bad tets of a mesh and the tets that replace them, in a cut through it (writes docs/remesh.png).
 """
 import json
 import sys
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pyvista as pv
@@ -36,14 +28,6 @@ RANGE = (0.0, 0.8)
 # Red is bad (below 0.2), sand is fair, blue-green is good; pale enough that the edges stay visible.
 QUALITY = LinearSegmentedColormap.from_list("quality", [
     (0.0, "#7d0a2a"), (0.25, "#e0583f"), (0.4, "#f6d58e"), (0.6, "#b9dfc0"), (0.8, "#5fb3b3"), (1.0, "#17607a")])
-
-
-def series(folder):
-    """The files of the folder's .pvd, in order."""
-    index = next(folder.glob("*.pvd"), None)
-    if index is None:
-        sys.exit(f"{folder} holds no .pvd; {__doc__}")
-    return [folder / entry.get("file") for entry in ElementTree.parse(index).iter("DataSet")]
 
 
 def tets(path):
@@ -110,21 +94,6 @@ def save_sheet(pictures, path, columns=None, bar=None):
     if bar:
         bar(draw, sheet.width // 2 - 180, sheet.height - foot + 6, 360)
     save(sheet, path)
-
-
-def panel(mesh):
-    """One cut, seen from the front."""
-    plotter = lit(mesh)
-    behind = mesh.extract_cells(mesh.cell_centers().points[:, 1] > 0.0)
-    plotter.add_mesh(behind, scalars="EAS", cmap=QUALITY, clim=RANGE, show_edges=True, edge_color=INK, line_width=1.0,
-                     edge_opacity=0.35, ambient=0.6, diffuse=0.45, specular=0.0, show_scalar_bar=False)
-    plotter.add_mesh(ball(mesh), color="#e8ecf0", smooth_shading=True, ambient=0.3, diffuse=0.75, specular=0.12,
-                     specular_power=8)
-    centre, size = np.array(mesh.center), mesh.length / np.sqrt(3.0)
-    plotter.camera_position = [centre + size * np.array([-0.5, -2.2, 0.62]), centre + size * np.array([0.01, 0.1, -0.02]),
-                               (0.0, 0.0, 1.0)]
-    plotter.camera.view_angle = 27.5
-    return shot(plotter)
 
 
 CUT_PANEL = (550, 430)
@@ -199,25 +168,7 @@ def scale_of(colours, limits, ticks, name):
 colour_bar = scale_of(QUALITY, RANGE, (0.0, 0.2, 0.4, 0.6, 0.8), "EAS")
 
 
-def main():
-    if len(sys.argv) == 4:
-        return draw_repair(*sys.argv[1:])
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    files = series(Path(sys.argv[1]))
-    chosen = [0, len(files) - 1]
-    width, height = PANEL
-    sheet = Image.new("RGB", (2 * width, height + 96), "white")
-    draw = ImageDraw.Draw(sheet)
-    for column, i in enumerate(chosen):
-        mesh = tets(files[i])
-        sheet.paste(panel(mesh), (column * width, 0))
-        bad = np.count_nonzero(mesh["EAS"] < 0.2)
-        draw.text((column * width + width // 2, height + 6), f"step {i}: worst {mesh['EAS'].min():.2f}, {bad:,} of {mesh.n_cells:,} below 0.2",
-                  fill=INK, font=font(17), anchor="ma")
-    colour_bar(draw, width - 180, height + 44, 360)
-    save(sheet, HERE / "demo.png")
-
-
 if __name__ == "__main__":
-    main()
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    draw_repair(*sys.argv[1:])
