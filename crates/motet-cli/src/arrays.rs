@@ -64,7 +64,7 @@ impl ArrayArgs {
 
 /// Writes a history as one JSON object.
 fn write_history(file: &Path, history: &History) -> Result<()> {
-    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, &e.into()))?;
+    let json = serde_json::to_vec(history).map_err(|e| Error::io(file, e.into()))?;
     io::replace(file, &json).map(drop)
 }
 

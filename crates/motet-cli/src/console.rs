@@ -131,7 +131,7 @@ impl Console {
         }
         match self.failed.take().filter(|e| e.kind() != ErrorKind::BrokenPipe) {
             None => Ok(()),
-            Some(e) => Err(Error::output("standard output", &e)),
+            Some(e) => Err(Error::output("standard output", e)),
         }
     }
 

@@ -9,7 +9,7 @@ use motet::{Error, ErrorKind, Result, io};
 pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>, what: &str) -> Result<()> {
     if io::can_write_series(output) {
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(output, &e))?;
+        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::io(output, e))?;
     } else {
         io::can_write(output)?;
     }

@@ -125,7 +125,7 @@ pub(crate) fn read_lines(path: &Path) -> Result<Log> {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>> {
-    let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
     if bytes.trim_ascii().is_empty() {
         return Err(Error::input("is empty, but JSON is expected")
             .in_file(path)

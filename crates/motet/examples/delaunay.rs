@@ -64,7 +64,7 @@ fn run(call: &Call) -> Result<()> {
     let tets = triangulation.as_ref().map_or(&[][..], |t| t.tets());
     if let Some(out) = &call.tets {
         let bytes: Vec<u8> = tets.iter().flatten().flat_map(|v| (v.index() as u32).to_le_bytes()).collect();
-        std::fs::write(out, bytes).map_err(|e| Error::io(out, &e))?;
+        std::fs::write(out, bytes).map_err(|e| Error::io(out, e))?;
     }
     println!(
         "{}",
@@ -79,7 +79,7 @@ fn run(call: &Call) -> Result<()> {
 }
 
 fn read(file: &str) -> Result<Vec<Point>> {
-    let bytes = std::fs::read(file).map_err(|e| Error::io(file, &e))?;
+    let bytes = std::fs::read(file).map_err(|e| Error::io(file, e))?;
     let values: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
     Ok(values.as_chunks::<3>().0.to_vec())
 }

@@ -49,12 +49,13 @@ struct Parts {
     place: Option<String>,
     what: String,
     remedy: Option<String>,
+    source: Option<std::io::Error>,
 }
 
 impl Error {
     /// An error of the given kind; `what` says what was expected and what came.
     pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
-        Self(Box::new(Parts { kind, file: None, place: None, what: what.into(), remedy: None }))
+        Self(Box::new(Parts { kind, file: None, place: None, what: what.into(), remedy: None, source: None }))
     }
 
     /// Data that cannot be read, or are not what the operation needs.
@@ -67,15 +68,21 @@ impl Error {
         Self::new(ErrorKind::Options, what)
     }
 
-    /// The operating system's word on a file.
-    pub fn io(file: impl AsRef<Path>, source: &std::io::Error) -> Self {
-        Self::new(ErrorKind::Io, source.to_string()).in_file(file)
+    /// A file that the operating system refused to read or to create; `source` is its error.
+    ///
+    /// ```
+    /// use std::error::Error;
+    /// let error = motet::io::read("missing.vtu").unwrap_err();
+    /// assert!(error.source().unwrap().is::<std::io::Error>());
+    /// ```
+    pub fn io(file: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::new(ErrorKind::Io, source.to_string()).in_file(file).because(source)
     }
 
-    /// The operating system's word on a file that is written.
-    pub fn output(file: impl AsRef<Path>, source: &std::io::Error) -> Self {
+    /// A file that the operating system refused to write; `source` is its error.
+    pub fn output(file: impl AsRef<Path>, source: std::io::Error) -> Self {
         let error = Self::new(ErrorKind::Output, format!("cannot be written: {source}")).in_file(file);
-        match source.kind() {
+        let error = match source.kind() {
             std::io::ErrorKind::StorageFull | std::io::ErrorKind::QuotaExceeded => {
                 error.remedy("make room, or write elsewhere")
             }
@@ -83,7 +90,13 @@ impl Error {
                 error.remedy("change its rights, or write elsewhere")
             }
             _ => error,
-        }
+        };
+        error.because(source)
+    }
+
+    fn because(mut self, source: std::io::Error) -> Self {
+        self.0.source = Some(source);
+        self
     }
 
     /// Adds the place within the file or the mesh: a line, an element, a cell. The innermost place stays.
@@ -149,7 +162,11 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {}
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source.as_ref().map(|source| source as _)
+    }
+}
 
 /// Text that a terminal shows as it is: control characters, which could move its cursor or change its colours, are
 /// written as escapes, `\u{1b}` for the one that begins such sequences.

@@ -26,21 +26,21 @@ impl OutputLock {
     pub fn take(output: &Path) -> Result<Self> {
         let name = output.file_name().unwrap_or_default().to_string_lossy();
         let path = folder_of(output).join(format!("{DRAFT}{name}.lock"));
-        let failed = |e: &std::io::Error| Error::output(&path, e);
+        let failed = |e: std::io::Error| Error::output(&path, e);
         for _ in 0..TRIES {
             let open = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-            let mut file = open.map_err(|e| failed(&e))?;
+            let mut file = open.map_err(failed)?;
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => return Err(busy(output, &mut file)),
                 Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => {
                     return Ok(Self { path, file: None });
                 }
-                Err(TryLockError::Error(e)) => return Err(failed(&e)),
+                Err(TryLockError::Error(e)) => return Err(failed(e)),
             }
             if is_at(&file, &path) {
-                file.set_len(0).map_err(|e| failed(&e))?;
-                writeln!(file, "{}", std::process::id()).map_err(|e| failed(&e))?;
+                file.set_len(0).map_err(failed)?;
+                writeln!(file, "{}", std::process::id()).map_err(failed)?;
                 return Ok(Self { path, file: Some(file) });
             }
         }

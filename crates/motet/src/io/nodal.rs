@@ -44,7 +44,7 @@ impl NodalSeries {
     /// comes twice, less or more than its first line announces. Names the line.
     pub fn read(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+        let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
         let remedy = "the file is damaged, or holds no values over time of nodes: write it again";
         Self::parse(&bytes).map_err(|e| e.in_file(path).remedy(remedy))
     }

@@ -14,7 +14,7 @@ pub(super) fn read_file(format: &Format, path: &Path, notes: &Notes) -> Result<M
     }
     let bytes = match format.is_folder() {
         true => Vec::new(),
-        false => std::fs::read(path).map_err(|e| Error::io(path, &e))?,
+        false => std::fs::read(path).map_err(|e| Error::io(path, e))?,
     };
     read_as(format, &Input { path, bytes: &bytes, notes })
 }
@@ -67,6 +67,6 @@ pub(super) fn read_beside(path: &Path) -> Result<Option<Vec<u8>>> {
     match std::fs::read(path) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(Error::io(path, &e)),
+        Err(e) => Err(Error::io(path, e)),
     }
 }

@@ -31,7 +31,7 @@ pub fn replace_all(files: &[(PathBuf, &[u8])]) -> Result<Vec<String>> {
     let written: Vec<(&Path, Draft)> = files
         .iter()
         .map(|(path, bytes)| {
-            let failed = |e: std::io::Error| Error::output(path, &e);
+            let failed = |e: std::io::Error| Error::output(path, e);
             let mut draft = Draft::new(path)?;
             draft.sink().write_all(bytes).map_err(failed)?;
             Ok((path.as_path(), draft))
@@ -56,7 +56,7 @@ pub(super) fn replace_with<T>(
 
 /// Writes a folder of files beside `path`, then renames it into place. Nothing stands at `path`, or an empty folder.
 pub(super) fn replace_folder(path: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
-    let failed = |e: std::io::Error| Error::output(path, &e);
+    let failed = |e: std::io::Error| Error::output(path, e);
     let place = if path.is_dir() { path.canonicalize().map_err(failed)? } else { followed(path)? };
     let folder = tempfile::Builder::new().prefix(".motet-").tempdir_in(folder_of(&place)).map_err(failed)?;
     // Inside a folder that is its owner's alone; the one that is renamed has the rights that the user's umask says.
@@ -83,14 +83,14 @@ enum Draft {
 
 impl Draft {
     fn new(path: &Path) -> Result<Self> {
-        let failed = |e: &std::io::Error| Error::output(path, e);
+        let failed = |e: std::io::Error| Error::output(path, e);
         let place = followed(path)?;
         let old = match place.metadata() {
             Err(e) if e.kind() == ErrorKind::NotFound => None,
-            Err(e) => return Err(failed(&e)),
+            Err(e) => return Err(failed(e)),
             Ok(old) => {
                 // What may not be written is not replaced either.
-                let file = OpenOptions::new().write(true).open(&place).map_err(|e| failed(&e))?;
+                let file = OpenOptions::new().write(true).open(&place).map_err(failed)?;
                 if !old.is_file() {
                     return Ok(Self::Into(file));
                 }
@@ -103,7 +103,7 @@ impl Draft {
         // As any program creates a file: readable for whom the user's umask says.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let file = builder.tempfile_in(folder_of(&place)).map_err(|e| failed(&e))?;
+        let file = builder.tempfile_in(folder_of(&place)).map_err(failed)?;
         Ok(Self::Beside(file, place, old))
     }
 
@@ -118,9 +118,9 @@ impl Draft {
     fn persist(self, path: &Path) -> Result<Option<String>> {
         let Self::Beside(file, place, old) = self else { return Ok(None) };
         if let Some(old) = &old {
-            keep_rights(file.as_file(), old).map_err(|e| Error::output(path, &e))?;
+            keep_rights(file.as_file(), old).map_err(|e| Error::output(path, e))?;
         }
-        file.persist(&place).map_err(|e| Error::output(path, &e.error))?;
+        file.persist(&place).map_err(|e| Error::output(path, e.error))?;
         Ok(old.as_deref().map_or(1, hard_links).checked_sub(1).filter(|&n| n > 0).map(|n| {
             format!(
                 "{}: {n} other hard link(s) of the file that was there keep its old content",
@@ -167,7 +167,7 @@ pub fn remove_drafts(folder: &Path, is_own: impl Fn(&str) -> bool) {
 /// # Errors
 /// When the system refuses.
 pub fn sync(path: &Path) -> Result<()> {
-    let failed = |e: std::io::Error| Error::output(path, &e);
+    let failed = |e: std::io::Error| Error::output(path, e);
     // Some systems sync only what may be written.
     OpenOptions::new().write(true).open(path).and_then(|file| file.sync_all()).map_err(failed)?;
     sync_folder(folder_of(path)).map_err(failed)
@@ -178,7 +178,7 @@ pub fn sync(path: &Path) -> Result<()> {
 /// # Errors
 /// When the system refuses.
 pub fn settle(from: &Path, to: &Path) -> Result<()> {
-    let failed = |e: std::io::Error| Error::output(to, &e);
+    let failed = |e: std::io::Error| Error::output(to, e);
     OpenOptions::new().write(true).open(from).and_then(|file| file.sync_all()).map_err(failed)?;
     std::fs::rename(from, to).map_err(failed)?;
     sync_folder(folder_of(to)).map_err(failed)

@@ -46,7 +46,7 @@ pub fn read_series(path: impl AsRef<Path>) -> Result<Vec<(f64, PathBuf)>> {
     if !can_write_series(path) && vtkhdf::is_transient(path) {
         return vtkhdf::times(path).map_err(|e| e.in_file(path));
     }
-    let bytes = std::fs::read(path).map_err(|e| Error::io(path, &e))?;
+    let bytes = std::fs::read(path).map_err(|e| Error::io(path, e))?;
     let told = |e: Error| e.in_file(path).remedy("the file is damaged, or no PVD file: write it again");
     let frames = parse_series(&bytes).map_err(told)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -181,7 +181,7 @@ impl SeriesWriter {
     /// # Errors
     /// When there is no such series, or it has fewer frames.
     pub fn go_on_after(&mut self, n: usize) -> Result<()> {
-        let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, &e))?;
+        let bytes = std::fs::read(&self.path).map_err(|e| Error::io(&self.path, e))?;
         let mut frames = parse_series(&bytes).map_err(|e| e.in_file(&self.path))?;
         if frames.len() < n {
             return Err(Error::input(format!("has {} frames, expected {n} at least", frames.len()))

@@ -62,11 +62,11 @@ const CALLS: [(&str, &[&str]); 6] = [
 
 pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result<Outcome> {
     let begin = Instant::now();
-    std::fs::create_dir_all(&args.folder).map_err(|e| Error::io(&args.folder, &e))?;
+    std::fs::create_dir_all(&args.folder).map_err(|e| Error::io(&args.folder, e))?;
     shapes::write(&args.folder)?;
     for (name, text) in [("aneurysm.toml", ANEURYSM), ("dissection.toml", DISSECTION)] {
         let file = args.folder.join(name);
-        std::fs::write(&file, text).map_err(|e| Error::io(&file, &e))?;
+        std::fs::write(&file, text).map_err(|e| Error::io(&file, e))?;
     }
     let (mut cycles, mut took) = (Vec::new(), Vec::new());
     let mut not_reached = Vec::new();

@@ -235,7 +235,7 @@ impl Job {
     /// # Errors
     /// When it cannot be read, or says what no job can; with the line.
     pub(super) fn read(file: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, &e))?;
+        let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
         let job = toml::from_str(&text).map_err(|e| off(&text, &e).in_file(file))?;
         let mut job = Self { file: file.to_owned(), ..job };
         if let (None, Some(series)) = (job.time.steps, &job.motion.surfaces) {

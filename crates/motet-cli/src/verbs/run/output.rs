@@ -37,7 +37,7 @@ impl Output {
     pub(super) fn new(job: &Job) -> Result<Self> {
         let series_file = job.path(&job.output);
         let folder = series_file.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::output(&series_file, &e))?;
+        folder.map_or(Ok(()), std::fs::create_dir_all).map_err(|e| Error::output(&series_file, e))?;
         let mut series = SeriesWriter::new(&series_file, WriteOptions::default());
         let is_locked = series.lock()?;
         let name = series_file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -94,7 +94,7 @@ impl Output {
                 .in_file(file)
                 .remedy(remedy));
         }
-        let text = std::fs::read_to_string(&self.log).map_err(|e| Error::io(&self.log, &e).remedy(remedy))?;
+        let text = std::fs::read_to_string(&self.log).map_err(|e| Error::io(&self.log, e).remedy(remedy))?;
         let is_of_step = |(k, line): (usize, &str)| {
             let line: Option<Value> =
                 line.strip_suffix('\n').and_then(|line| serde_json::from_str(line).ok());
@@ -121,7 +121,7 @@ impl Output {
     /// The first frame; what an earlier run has left goes.
     pub(super) fn first(&mut self, record: &Record, moving: &MovingMesh, step: &Step) -> Result<()> {
         if self.state.is_file() {
-            std::fs::remove_file(&self.state).map_err(|e| Error::output(&self.state, &e))?;
+            std::fs::remove_file(&self.state).map_err(|e| Error::output(&self.state, e))?;
         }
         record::write(&self.record, record)?;
         for file in [&self.log, &self.times] {
@@ -135,7 +135,7 @@ impl Output {
         let is_due = step.step.is_multiple_of(self.every) || !step.complete;
         let file =
             is_due.then(|| self.series.add(step.time, &frame(moving))).transpose()?.map(|(file, _)| file);
-        let mut line = serde_json::to_value(step).map_err(|e| Error::io(&self.log, &e.into()))?;
+        let mut line = serde_json::to_value(step).map_err(|e| Error::io(&self.log, e.into()))?;
         let seconds = line.as_object_mut().and_then(|line| line.remove("seconds")).unwrap_or(Value::Null);
         if let (Some(line), Some(file)) = (line.as_object_mut(), &file) {
             line.insert("file".into(), json!(file.file_name().map(|name| name.to_string_lossy())));
@@ -171,10 +171,10 @@ fn is_own(name: &str, of: &str) -> bool {
 }
 
 fn append(file: &Path, line: &Value) -> Result<()> {
-    let told = |e: &std::io::Error| Error::output(file, e);
-    let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(|e| told(&e))?;
+    let told = |e: std::io::Error| Error::output(file, e);
+    let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(told)?;
     // One write a line: a run that is killed leaves whole lines, or a last one that resuming cuts off.
-    out.write_all(format!("{line}\n").as_bytes()).map_err(|e| told(&e))
+    out.write_all(format!("{line}\n").as_bytes()).map_err(told)
 }
 
 /// The mesh with what the step says of it as arrays.

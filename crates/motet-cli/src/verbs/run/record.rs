@@ -23,7 +23,7 @@ pub(super) type Record = BTreeMap<String, String>;
 /// When a file that it names cannot be read.
 pub(super) fn of(job: &Job) -> Result<Record> {
     let mut record = Record::new();
-    let said = serde_json::to_value(job).map_err(|e| Error::io(&job.file, &e.into()))?;
+    let said = serde_json::to_value(job).map_err(|e| Error::io(&job.file, e.into()))?;
     flatten("", &said, &mut record);
     for key in ["output", "time.periods"] {
         record.remove(key);
@@ -94,7 +94,7 @@ fn content(path: &Path) -> Result<String> {
     for file in series.into_iter().map(|(_, file)| file).chain([path.to_owned()]) {
         // A step of a file with several is all of it.
         files_of(&io::file_of(&file), &mut |file| {
-            std::fs::read(file).map(|bytes| sum.add(&bytes)).map_err(|e| Error::io(file, &e))
+            std::fs::read(file).map(|bytes| sum.add(&bytes)).map_err(|e| Error::io(file, e))
         })?;
     }
     Ok(format!("{} bytes with sum {:016x}", sum.n_bytes, sum.state))
@@ -105,7 +105,7 @@ fn files_of(path: &Path, of: &mut impl FnMut(&Path) -> Result<()>) -> Result<()>
         return of(path);
     }
     let entries = std::fs::read_dir(path).and_then(|all| all.map(|e| Ok(e?.path())).collect());
-    let mut entries: Vec<PathBuf> = entries.map_err(|e| Error::io(path, &e))?;
+    let mut entries: Vec<PathBuf> = entries.map_err(|e| Error::io(path, e))?;
     entries.sort();
     entries.iter().try_for_each(|entry| files_of(entry, of))
 }

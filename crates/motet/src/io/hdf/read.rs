@@ -29,7 +29,7 @@ pub(in crate::io) fn open(bytes: &[u8]) -> Result<Group> {
 
 /// The root of a file that stays where it is: what is asked for is read, and no more.
 pub(in crate::io) fn open_in_place(path: &Path) -> Result<Group> {
-    let told = |e: std::io::Error| Error::io(path, &e);
+    let told = |e: std::io::Error| Error::io(path, e);
     let size = std::fs::metadata(path).map_err(told)?.len();
     let file = guarded("/", || File::open_streaming(path))?;
     Group::new(guarded("/", || Ok(file.root()))?, String::new(), Rc::new(Room::of(size)))

@@ -37,7 +37,7 @@ fn find(folder: &Path, name: &str) -> Option<PathBuf> {
 /// Where a file of the mesh is, and its bytes, unpacked; `None` where there is none.
 pub(super) fn load(folder: &Path, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>> {
     let Some(path) = find(folder, name) else { return Ok(None) };
-    let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, &e))?;
+    let bytes = std::fs::read(&path).map_err(|e| Error::io(&path, e))?;
     if !gzip::is_packed(&bytes) {
         return Ok(Some((path, bytes)));
     }

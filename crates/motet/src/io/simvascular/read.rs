@@ -116,8 +116,8 @@ fn files(folder: &Path, ending: &str) -> Result<Vec<(String, PathBuf)>> {
         return Ok(Vec::new());
     }
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, &e))? {
-        let path = entry.map_err(|e| Error::io(folder, &e))?.path();
+    for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))? {
+        let path = entry.map_err(|e| Error::io(folder, e))?.path();
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
             && let Some(stem) = path.file_stem()
         {

@@ -83,7 +83,7 @@ impl Reader<'_> {
 
     fn part(&self, name: &str, path: &Path, depth: usize, parts: &mut Vec<Part>) -> Result<()> {
         let bytes = std::fs::read(path).map_err(|e| {
-            Error::io(path, &e)
+            Error::io(path, e)
                 .remedy(format!("{} names it: keep its files together", self.input.path.display()))
         })?;
         self.room.add_file(&path.to_string_lossy(), bytes.len() as u64);
