@@ -1,4 +1,4 @@
-//! How a call is read: the verbs, and the words that all of them know.
+//! The command-line call: its verbs, and the options common to all of them.
 
 use clap::{Args, Parser, Subcommand};
 use motet::base::Threads;
@@ -43,17 +43,17 @@ pub(crate) enum Verb {
     Demo(demo::DemoArgs),
 }
 
-/// The words that every verb knows.
+/// Options common to all verbs.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Everywhere")]
 pub(crate) struct Common {
-    /// Print one JSON object on standard output, all else on standard error
+    /// Print one JSON object on standard output and everything else on standard error
     #[arg(long, global = true)]
     pub(crate) json: bool,
-    /// Threads to use; 0 = one for each core. Results do not depend on it
+    /// Number of threads; 0 = one per core. Results do not depend on it
     #[arg(long, global = true, value_name = "N", default_value_t = 0)]
     threads: usize,
-    /// Print nothing but errors (and the JSON object)
+    /// Print only errors (and the JSON object)
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     pub(crate) quiet: bool,
     /// Print more: what is read, found and written, with times
@@ -62,7 +62,7 @@ pub(crate) struct Common {
 }
 
 impl Common {
-    /// The threads that the call asks for.
+    /// The threads that the call requests.
     pub(crate) fn threads(&self) -> motet::Result<Threads> {
         Threads::new(self.threads)
     }

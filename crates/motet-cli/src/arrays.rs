@@ -1,4 +1,5 @@
-//! What becomes of arrays in verbs that change a mesh, and the quality and the history that they write with it.
+//! Options for verbs that change a mesh: how arrays are carried, and the quality array and history written
+//! with the result.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -10,11 +11,11 @@ use motet::{Error, Mesh, Result, io};
 
 use crate::verbs::convert::WritingArgs;
 
-/// What becomes of arrays, and what is to come with the mesh.
+/// How arrays are carried, and what is written along with the mesh.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Arrays")]
 pub(crate) struct ArrayArgs {
-    /// What becomes of an array where the mesh changes. Repeatable
+    /// How to carry an array where the mesh changes. Repeatable
     #[arg(long, value_name = "ARRAY=mean|linear|inherit|drop", value_parser = carry)]
     carry: Vec<(String, Carry)>,
     /// Add the cell array `eas`
@@ -25,15 +26,16 @@ pub(crate) struct ArrayArgs {
     pub(crate) history: Option<PathBuf>,
 }
 
-/// What writing came to.
+/// The result of writing a mesh.
 pub(crate) struct Written {
-    /// What the format cannot hold, a sentence each.
+    /// What the format cannot hold, one sentence each.
     pub(crate) lost: Vec<String>,
     pub(crate) seconds: f64,
 }
 
 impl ArrayArgs {
-    /// The rules that `--carry` gives for the arrays of `mesh`; an array that is both on points and on cells gets its rule on both.
+    /// The rules that `--carry` gives for the arrays of `mesh`; a rule applies to the point array and to the
+    /// cell array of its name.
     pub(crate) fn rules(&self, mesh: &Mesh) -> Result<Rules> {
         let mut rules = Rules::default();
         for (name, carry) in &self.carry {
@@ -42,7 +44,7 @@ impl ArrayArgs {
         Ok(rules)
     }
 
-    /// Writes the mesh, with the quality of its tets if that is asked for, and its history if that is.
+    /// Writes the mesh, with the quality of its tets and its history where requested.
     pub(crate) fn write(
         &self,
         mesh: &mut Mesh,
@@ -68,7 +70,7 @@ fn write_history(file: &Path, history: &History) -> Result<()> {
     io::replace(file, &json).map(drop)
 }
 
-/// `ARRAY=mean|linear|inherit|drop`
+/// Parses `ARRAY=mean|linear|inherit|drop`.
 fn carry(text: &str) -> Result<(String, Carry), String> {
     let (name, rule) = text.rsplit_once('=').filter(|(name, _)| !name.is_empty()).unwrap_or_default();
     let carry = match rule {

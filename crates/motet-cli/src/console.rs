@@ -1,4 +1,4 @@
-//! How the user is spoken to: results on standard output, all else on standard error.
+//! Output for the user: results on standard output, everything else on standard error.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -14,8 +14,8 @@ use crate::args::Common;
 use crate::exit::Outcome;
 use crate::progress::Meter;
 
-/// Where words go, and how many. A closed pipe is no failure: the words are dropped. Any other failure of standard output
-/// is kept until [`finish`](Console::finish) tells it.
+/// Writes to the terminal, as verbosely as the call requests. A closed pipe is not a failure: the text is
+/// dropped. Any other failure of standard output is kept until [`finish`](Console::finish) returns it.
 pub(crate) struct Console {
     json: bool,
     quiet: bool,
@@ -31,7 +31,8 @@ struct Concluded<'a, R: Serialize> {
     not_reached: Option<&'a str>,
 }
 
-/// Lines as they are, all other control characters as escapes: names of files reach the terminal as names.
+/// Keeps newlines and tabs and escapes all other control characters, so that file names cannot control the
+/// terminal.
 fn lines(text: &impl Display) -> String {
     let text = text.to_string();
     let kept = |c: char| matches!(c, '\n' | '\t');
@@ -53,12 +54,13 @@ impl Console {
         Self { quiet: common.quiet, verbose: common.verbose, ..Self::plain(common.json) }
     }
 
-    /// One for a call that could not be read.
+    /// A console for a call that could not be parsed.
     pub(crate) fn plain(json: bool) -> Self {
         Self { json, quiet: false, verbose: false, failed: Rc::default() }
     }
 
-    /// The same, but for the objects of single results: where one object at the end stands for all.
+    /// This console without the JSON objects of single results, for a verb that prints one object for all of
+    /// them at the end.
     pub(crate) fn without_reports(&self) -> Self {
         Self {
             quiet: self.quiet || self.json,
@@ -68,22 +70,22 @@ impl Console {
         }
     }
 
-    /// The result for people, on standard output; nothing where JSON is asked for.
+    /// Prints a result for people on standard output; nothing where JSON is requested.
     pub(crate) fn say(&self, text: impl Display) {
         if !self.json && !self.quiet {
             self.put(format!("{}\n", lines(&text)).as_bytes());
         }
     }
 
-    /// Whether the user wants to know everything.
+    /// Whether `--verbose` was given.
     pub(crate) fn is_verbose(&self) -> bool {
         self.verbose
     }
 
-    /// The result for programs: one JSON object on standard output, where asked for.
+    /// Prints a result for programs, one JSON object on standard output, where requested.
     pub(crate) fn report(&self, report: &impl Serialize) {
         if self.json {
-            // The whole object, or nothing of it.
+            // Serialize first: print the whole object or nothing.
             match serde_json::to_vec_pretty(report) {
                 Ok(mut text) => {
                     text.push(b'\n');
@@ -94,17 +96,19 @@ impl Console {
         }
     }
 
-    /// The result of a verb that can reach less than was requested: one JSON object, with the reason as `not_reached`, `null` where all was reached.
+    /// Prints the result of a verb that may reach less than was requested: one JSON object, with the reason
+    /// as `not_reached`, `null` where everything was reached.
     pub(crate) fn conclude(&self, report: &impl Serialize, outcome: &Outcome) {
         self.report(&Concluded { report, not_reached: outcome.not_reached() });
     }
 
-    /// Why the requested result was not reached, on standard error, also where little is said: it explains the exit status.
+    /// Prints why the requested result was not reached, on standard error, even with `--quiet`: it explains
+    /// the exit status.
     pub(crate) fn not_reached(&self, why: &str) {
         let _ = writeln!(io::stderr(), "not reached: {}; what was reached is written", lines(&why));
     }
 
-    /// What the call's own description says, on standard output.
+    /// Prints the help text of the call on standard output.
     pub(crate) fn help(&self, help: &clap::Error) {
         if let Err(e) = help.print() {
             self.keep(e);
@@ -121,7 +125,7 @@ impl Console {
         self.failed.borrow_mut().get_or_insert(error);
     }
 
-    /// Hands on what still waits for standard output.
+    /// Flushes standard output.
     ///
     /// # Errors
     /// The first failure of standard output, unless a reader has closed it.
@@ -135,26 +139,27 @@ impl Console {
         }
     }
 
-    /// What the user should know, on standard error.
+    /// Prints a warning on standard error.
     pub(crate) fn warn(&self, text: impl Display) {
         if !self.quiet {
             let _ = writeln!(io::stderr(), "warning: {}", lines(&text));
         }
     }
 
-    /// What only a curious user wants to know, on standard error.
+    /// Prints details on standard error with `--verbose`.
     pub(crate) fn detail(&self, text: impl Display) {
         if self.verbose {
             let _ = writeln!(io::stderr(), "{}", lines(&text));
         }
     }
 
-    /// What went wrong, on standard error.
+    /// Prints an error on standard error.
     pub(crate) fn error(&self, text: impl Display) {
         let _ = writeln!(io::stderr(), "error: {}", lines(&text));
     }
 
-    /// A line on standard error that follows the work; invisible where that is no terminal. `steps`: how many equal ones the verb makes.
+    /// A progress line on standard error; invisible where that is no terminal. `steps`: the number of equal
+    /// steps that the verb makes.
     pub(crate) fn meter(&self, verb: &'static str, steps: Option<usize>) -> Meter {
         Meter::new(verb, steps, self.quiet)
     }

@@ -1,4 +1,4 @@
-//! How outcomes become exit statuses: the contract that scripts rely on.
+//! Exit statuses of outcomes and errors: the contract that scripts rely on.
 
 use motet::{Error, ErrorKind};
 use serde_json::json;
@@ -6,17 +6,17 @@ use serde_json::json;
 use crate::console::Console;
 use crate::words::shown;
 
-/// What a verb came to, where nothing failed.
+/// The outcome of a verb that did not fail.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// All that was requested.
+    /// Everything that was requested.
     Done,
-    /// Less than was requested, and why; what was reached is written and reported.
+    /// Less than was requested, with the reason; what was reached is written and reported.
     NotReached(String),
 }
 
 impl Outcome {
-    /// The outcome by the reason why the requested result was not reached: `None` where it was.
+    /// The outcome for the reason why the requested result was not reached; `None` means that it was.
     pub(crate) fn of(not_reached: Option<String>) -> Self {
         not_reached.map_or(Self::Done, Self::NotReached)
     }
@@ -44,7 +44,7 @@ fn of_kind(kind: ErrorKind) -> u8 {
     }
 }
 
-/// The status of a verb that ran; an error is printed first.
+/// The exit status of a verb that ran. Prints the reason or the error first.
 pub(crate) fn status(outcome: motet::Result<Outcome>, console: &Console) -> u8 {
     let code = match outcome {
         Ok(Outcome::Done) => DONE,
@@ -79,12 +79,12 @@ fn described(error: &Error, code: u8) -> serde_json::Value {
     })
 }
 
-/// The status of a call that could not be read, or that only asked for help.
+/// The exit status of a call that could not be parsed, or that only requested help.
 pub(crate) fn misread(misread: &clap::Error, json: bool) -> u8 {
     let code = u8::try_from(misread.exit_code()).unwrap_or(ELSE);
     let console = Console::plain(json);
     if code == DONE {
-        // Help and versions: for people even where JSON is asked for.
+        // Help and versions are for people, even where JSON is requested.
         console.help(misread);
     } else {
         let what = misread.to_string();

@@ -1,9 +1,8 @@
-//! The command line of motet: words in, calls of the library, words out.
+//! The command line of motet: arguments in, calls of the library, text or JSON out.
 //!
-//! It holds no algorithm. One file a verb lies in `verbs/`; what they share is
-//! here: how the call is read (`args`, `words`), how the user is spoken to (`console`,
-//! `progress`, `table`), how failures become exit statuses (`exit`), what outputs are refused
-//! (`outputs`), what becomes of arrays (`arrays`).
+//! It holds no algorithm. Each verb has its file in `verbs/`; what they share is here: parsing of the call
+//! (`args`, `words`), output for the user (`console`, `progress`, `table`), exit statuses (`exit`), checks of
+//! output paths (`outputs`), and how arrays are carried (`arrays`).
 
 mod args;
 mod arrays;
@@ -23,7 +22,7 @@ use clap::Parser as _;
 use crate::args::{Call, Verb};
 use crate::console::Console;
 
-/// Runs the command line with these words, the name of the program first; the exit status.
+/// Runs the command line with these arguments, the name of the program first, and returns the exit status.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     let call = match Call::try_parse_from(&words) {

@@ -1,4 +1,4 @@
-//! The program `motet`: the words of the call in, the exit status out.
+//! The program `motet`: arguments in, exit status out.
 
 use std::process::ExitCode;
 

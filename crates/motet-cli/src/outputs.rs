@@ -1,11 +1,11 @@
-//! Outputs are looked at before any work, so that nothing is worked out in vain.
+//! Checks of output paths before any work, so that a bad path does not waste a long computation.
 
 use std::path::Path;
 
 use motet::{Error, ErrorKind, Result, io};
 
-/// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names. A series is many files: its folder
-/// is made where there is none.
+/// Refuses an output that cannot be written, or that would overwrite one of the inputs, which `what` names.
+/// For a series, which is many files, the folder is created if missing.
 pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path>, what: &str) -> Result<()> {
     if io::can_write_series(output) {
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -21,13 +21,15 @@ pub(crate) fn check<'a>(output: &Path, inputs: impl IntoIterator<Item = &'a Path
     }
 }
 
-/// Refuses an output that cannot be written, and a place for the history that would overwrite a mesh or lies in no folder.
+/// Refuses an output that cannot be written, and a history file that would overwrite a mesh or whose folder
+/// does not exist.
 pub(crate) fn check_with_history(output: &Path, mesh: &Path, history: Option<&Path>) -> Result<()> {
     io::can_write(output)?;
     history.map_or(Ok(()), |history| check_beside(history, [output, mesh], "history"))
 }
 
-/// Refuses a place for what is written beside a result, which `what` names: one that would overwrite one of the `others`, or lies in no folder.
+/// Refuses a file to be written beside a result (`what` names it) that would overwrite one of the `others` or
+/// whose folder does not exist.
 pub(crate) fn check_beside<'a>(
     path: &Path,
     others: impl IntoIterator<Item = &'a Path>,

@@ -1,4 +1,5 @@
-//! How far a verb has come, on a terminal: the stage, how much of it is done where that is known, and how long the rest of it takes.
+//! Progress of a verb on a terminal: the stage, how much of it is done where known, and the time it still
+//! takes.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread::{self, JoinHandle};
@@ -7,12 +8,13 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use motet::base::{Progress, Watch};
 
-/// How often the line is drawn anew.
+/// How often the line is redrawn.
 const EVERY: Duration = Duration::from_millis(200);
-/// No estimate before this: the first parts of a stage say little of the others.
+/// No estimate before this: the first parts of a stage say little about the others.
 const SOONEST: Duration = Duration::from_secs(1);
 
-/// A line on standard error that follows the work, until it is dropped. Where standard error is no terminal there is no line, and nothing that follows.
+/// A progress line on standard error, drawn by a thread of its own until dropped. Where standard error is no
+/// terminal, there is neither line nor thread.
 pub(crate) struct Meter {
     bar: ProgressBar,
     watch: Watch,
@@ -20,7 +22,8 @@ pub(crate) struct Meter {
 }
 
 impl Meter {
-    /// For a verb that makes a number of equal steps, such as frames, or of one that does not (`None`).
+    /// The progress line of a verb that makes `steps` equal steps, such as frames, or has no such steps
+    /// (`None`).
     pub(crate) fn new(verb: &'static str, steps: Option<usize>, is_hidden: bool) -> Self {
         let bar = if is_hidden { ProgressBar::hidden() } else { ProgressBar::no_length() };
         if bar.is_hidden() {
@@ -33,22 +36,22 @@ impl Meter {
         Self { bar, watch, follower }
     }
 
-    /// What the library says how far it is.
+    /// The handle through which the library reports its progress.
     pub(crate) fn watch(&self) -> &Watch {
         &self.watch
     }
 
-    /// A stage of the verb itself, such as reading a file.
+    /// Begins a stage of the verb itself, such as reading a file.
     pub(crate) fn stage(&self, name: &'static str) {
         self.watch.tell(name, 0, 0);
     }
 
-    /// Another of the steps is done.
+    /// Counts one more step as done.
     pub(crate) fn step(&self) {
         self.bar.inc(1);
     }
 
-    /// Does something with the line out of the way, such as printing.
+    /// Calls `call` with the line hidden, for instance to print.
     pub(crate) fn suspend<T>(&self, call: impl FnOnce() -> T) -> T {
         self.bar.suspend(call)
     }
@@ -58,14 +61,14 @@ impl Drop for Meter {
     fn drop(&mut self) {
         if let Some((done, follower)) = self.follower.take() {
             drop(done);
-            // It only draws: what became of it changes nothing.
+            // The thread only draws; its result does not matter.
             let _ = follower.join();
         }
         self.bar.finish_and_clear();
     }
 }
 
-/// The line as the thread that draws it has it.
+/// The state of the thread that draws the line.
 struct Line {
     bar: ProgressBar,
     watch: Watch,
@@ -105,11 +108,11 @@ impl Line {
     }
 }
 
-/// One thing that goes on, and since when.
+/// One activity and when it began.
 #[derive(Default)]
 struct Pace {
     now: Progress,
-    /// How much of it was done when it began, and when that was.
+    /// How much was done when it began, and the time then.
     first: usize,
     began: Duration,
 }
@@ -119,7 +122,7 @@ impl Pace {
         Self { now, ..Self::default() }
     }
 
-    /// How far it is `at` this time. A stage that comes again begins anew.
+    /// Takes the progress at time `at`. A stage that starts over begins anew.
     fn take(&mut self, now: Progress, at: Duration) {
         if now.stage != self.now.stage || now.done < self.now.done {
             (self.first, self.began) = (now.done, at);
@@ -127,7 +130,8 @@ impl Pace {
         self.now = now;
     }
 
-    /// How long the rest takes at the speed so far; `None` where it is not known how much there is, or too early to say.
+    /// How long the rest takes at the speed so far; `None` where the amount is unknown or it is too early to
+    /// say.
     fn left(&self, at: Duration) -> Option<Duration> {
         let took = at.saturating_sub(self.began);
         let (made, rest) = (self.now.done - self.first, self.now.of.saturating_sub(self.now.done));
@@ -135,7 +139,7 @@ impl Pace {
         is_known.then(|| took.mul_f64(rest as f64 / made as f64))
     }
 
-    /// The stage and how much of it is done.
+    /// The stage, and how much of it is done.
     fn part(&self) -> String {
         match self.now {
             Progress { stage, done, of } if of > 0 => format!("{stage}, {done} of {of}"),
@@ -172,7 +176,7 @@ mod tests {
         let mut pace = Pace::default();
         pace.take(Progress { stage: "reading", done: 0, of: 0 }, seconds(0));
         assert_eq!((pace.left(seconds(50)), pace.text(seconds(50)).as_str()), (None, "reading"));
-        // The 50 seconds before say nothing of this stage.
+        // The 50 seconds before say nothing about this stage.
         pace.take(Progress { stage: "repairing", done: 0, of: 40 }, seconds(50));
         assert_eq!(pace.text(seconds(60)), "repairing, 0 of 40");
         pace.take(Progress { stage: "repairing", done: 10, of: 40 }, seconds(60));
@@ -180,7 +184,7 @@ mod tests {
         assert_eq!(pace.text(seconds(60)), "repairing, 10 of 40, 30 s left");
         pace.take(Progress { stage: "repairing", done: 40, of: 40 }, seconds(90));
         assert_eq!(pace.left(seconds(90)), None);
-        // Another round of the same.
+        // The same stage again, a second round.
         pace.take(Progress { stage: "repairing", done: 2, of: 10 }, seconds(100));
         pace.take(Progress { stage: "repairing", done: 6, of: 10 }, seconds(104));
         assert_eq!(pace.left(seconds(104)), Some(seconds(4)));

@@ -1,13 +1,13 @@
-//! How good all tets of a mesh are together, as every verb prints it.
+//! Tables of the quality of all tets of a mesh, as every verb prints them.
 
 use motet::mesh::Qualities;
 
 use crate::table::{Table, short};
 
-/// What the columns of [`row`] are.
+/// The column headings of [`row`].
 pub(crate) const HEAD: [&str; 6] = ["worst EAS", "1 % below", "5 % below", "median", "mean", "mean ratio"];
 
-/// The distribution of the EAS of all tets and the mean of their mean ratios; dashes where there is no tet.
+/// The distribution of the EAS of all tets and the mean of their mean ratios; dashes where there are no tets.
 pub(crate) fn row(quality: Option<&Qualities>) -> [String; 6] {
     let Some(Qualities { worst, p1, p5, median, mean, mean_ratio }) = quality else {
         return HEAD.map(|_| "-".into());
@@ -15,7 +15,7 @@ pub(crate) fn row(quality: Option<&Qualities>) -> [String; 6] {
     [worst, p1, p5, median, mean, mean_ratio].map(|x| short(*x))
 }
 
-/// A row for each mesh, or each time of a mesh.
+/// A table with a row for each mesh, or each time of a mesh.
 pub(crate) fn table<S: Into<String>>(rows: impl IntoIterator<Item = (S, Option<Qualities>)>) -> Table {
     let mut table = Table::new(["quality of all tets"].into_iter().chain(HEAD));
     for (name, quality) in rows {

@@ -1,8 +1,8 @@
-//! Plain tables for people: columns lined up, numbers to the right.
+//! Plain tables for people: aligned columns, numbers to the right.
 
 use std::fmt;
 
-/// A table; every row has as many cells as the head.
+/// A table; every row has as many cells as the header.
 pub(crate) struct Table {
     rows: Vec<Vec<String>>,
 }
@@ -37,7 +37,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// A number in few signs, as people read it.
+/// A number in few digits, for people.
 pub(crate) fn short(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 {
@@ -50,13 +50,13 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
-/// A time as it was given, but for rounding.
+/// A time as given, apart from rounding.
 pub(crate) fn time(t: f64) -> String {
     let rounded = (t * 1e6).round() / 1e6;
     if rounded == 0.0 { short(t) } else { rounded.to_string() }
 }
 
-/// A count with its thousands apart.
+/// A count with its thousands separated.
 pub(crate) fn count(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
@@ -74,7 +74,7 @@ pub(crate) fn counted(n: usize, noun: &str) -> String {
     format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
 }
 
-/// A time span in the unit that suits it.
+/// A duration in a suitable unit.
 pub(crate) fn seconds(s: f64) -> String {
     match s {
         s if s >= 1.0 => format!("{s:.2} s"),

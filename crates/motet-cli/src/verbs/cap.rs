@@ -1,4 +1,4 @@
-//! `motet cap`: open rims of a surface closed, or of every frame of one that moves.
+//! `motet cap`: closes the open rims of a surface, or of every frame of a moving one.
 
 use std::path::{Path, PathBuf};
 
@@ -14,10 +14,10 @@ use crate::table::{count, counted, short};
 use crate::verbs::convert::WritingArgs;
 use crate::words::shown;
 
-/// Close the open rims of a surface, or of every frame of one that moves
+/// Close the open rims of a surface, or of every frame of a moving one
 ///
-/// Each rim gets a cap of triangles about as long as the rim's edges: a patch `cap_1`, `cap_2`, ..., the longest rim first. Caps of all frames have the
-/// same triangles, and follow the rims.
+/// Each rim gets a cap of triangles about as long as the rim's edges: a patch `cap_1`, `cap_2`, ..., the
+/// longest rim first. The caps of all frames have the same triangles, and follow the rims.
 #[derive(Debug, Args)]
 #[command(override_usage = "motet cap SURFACE... -o OUT [OPTIONS]")]
 #[command(after_help = "\
@@ -31,17 +31,18 @@ Examples:
 Exit status 3: the surface has no open rim, rims touch, or frames have different numbers of \
 points; nothing is written.")]
 pub(crate) struct CapArgs {
-    /// A surface, several that are frames of one, or a series
+    /// A surface, several files that are frames of one, or a series
     #[arg(value_name = "SURFACE", required = true)]
     surfaces: Vec<PathBuf>,
-    /// Where the result goes: a .pvd for frames, any mesh format for one surface
+    /// Output file: a .pvd for frames, any mesh format for one surface
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
-    /// Move the vertices of each rim onto the rim's plane, so that caps are flat and can slide (`motet move --slide`);
-    /// else the surface stays to the bit, and a cap is as flat as its rim. The report says how far rims are off
+    /// Move the vertices of each rim onto the rim's plane, so that caps are flat and can slide (`motet move
+    /// --slide`); otherwise the surface stays to the bit, and a cap is as flat as its rim. The report says
+    /// how far rims are off
     #[arg(long)]
     flatten: bool,
-    /// How long the frames take together, where they are files: the first follows the last
+    /// Duration of one period, for frames given as files; after the last frame the first follows again
     #[arg(long, value_name = "TIME", default_value_t = 1.0, value_parser = crate::words::positive)]
     period: f64,
 
@@ -69,7 +70,7 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     let options = args.writing.options();
     let lost = match is_series {
         true => {
-            // All of them first: where one does not fit, nothing is written.
+            // Close all frames first: where one does not fit, nothing is written.
             let meshes = frames.iter().map(|(time, file)| Ok((*time, closed(file)?)));
             let meshes = meshes.collect::<Result<Vec<_>>>()?;
             io::write_series(&args.output, meshes.into_iter().map(Ok), &options)?
@@ -109,22 +110,23 @@ pub(crate) fn run(args: &CapArgs, console: &Console) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
+/// Rims that deviate from their plane by less than this part of their radius count as flat: the rounding of
+/// files in single precision.
 const FLAT: f64 = 1e-6;
 
-/// A frame closed, and how flat its rims were.
+/// Closes a frame; also returns the planes of its rims.
 fn close(args: &CapArgs, caps: &Caps, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
     match args.flatten {
         true => {
             let (flat, planes) = caps.flatten(frame)?;
             Ok((caps.close(&flat)?, planes))
         }
-        // A rim without area has no plane, but a cap.
+        // A rim without area has no plane but still gets a cap.
         false => Ok((caps.close(frame)?, caps.planes(frame).unwrap_or_default())),
     }
 }
 
-/// Of each rim the frame in which it is farthest off its plane.
+/// Keeps, for each rim, the frame in which it is farthest from its plane.
 fn keep_worst(worst: &mut Vec<RimPlane>, found: Vec<RimPlane>) {
     if worst.len() < found.len() {
         *worst = found;
@@ -137,7 +139,7 @@ fn keep_worst(worst: &mut Vec<RimPlane>, found: Vec<RimPlane>) {
     }
 }
 
-/// The frames and their times.
+/// The frames: times and files.
 fn frames(args: &CapArgs) -> Result<Vec<(f64, PathBuf)>> {
     match args.surfaces.as_slice() {
         [one] if io::is_series(one) => io::read_series(one),

@@ -1,4 +1,4 @@
-//! `motet convert`: one format in, another out.
+//! `motet convert`: reads one format and writes another.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -45,10 +45,10 @@ pub(crate) struct WritingArgs {
     /// Shorthand for --encoding ascii
     #[arg(long, conflicts_with = "encoding")]
     ascii: bool,
-    /// How numbers are laid down, where the format leaves the choice [default: binary]
+    /// How numbers are written, where the format leaves the choice [default: binary]
     #[arg(long, value_name = "HOW")]
     encoding: Option<EncodingWord>,
-    /// How blocks are compressed, where the format can
+    /// How blocks are compressed, where the format supports it
     #[arg(long, value_name = "HOW", default_value = "zlib")]
     compression: CompressionWord,
     /// The format's own version, such as 2.2 or 4.1 for .msh [default: the format's newest]
@@ -58,7 +58,7 @@ pub(crate) struct WritingArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum EncodingWord {
-    /// Text, with as many digits as bring every number back bit for bit
+    /// Text, with enough digits to restore every number bit for bit
     Ascii,
     /// Base64 inside the elements (XML formats); binary elsewhere
     Base64,
@@ -68,9 +68,9 @@ enum EncodingWord {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum CompressionWord {
-    /// Not at all
+    /// No compression
     None,
-    /// Which every reader knows
+    /// Known to every reader
     Zlib,
     /// Faster, larger
     Lz4,
@@ -96,7 +96,7 @@ impl WritingArgs {
     }
 }
 
-/// A series into a file of another kind.
+/// Converts a series into a series of another format.
 fn series(args: &ConvertArgs, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(&args.input)?;
     let meter = console.meter("converting", Some(frames.len()));

@@ -1,4 +1,4 @@
-//! The words of `motet contact`, as its help shows them.
+//! Arguments of `motet contact`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -12,9 +12,9 @@ use crate::words::positive;
 /// Measure how far apart surfaces are, where, and when they will touch
 ///
 /// Finds for every vertex the exact distance to the nearest other surface, and for every pair of surfaces the
-/// nearest places, on edges and faces too. OUT holds all surfaces, with the cell array `body` (1, 2 ..)
-/// and the point arrays gap, gap_normal, closest_body, closest_cell, warning, time_to_contact.
-/// Where nothing is within reach, gap is NaN and closest_body 0.
+/// nearest places, including those on edges and faces. OUT holds all surfaces, with the cell array `body` (1,
+/// 2 ..) and the point arrays gap, gap_normal, closest_body, closest_cell, warning, time_to_contact. Where
+/// nothing is within reach, gap is NaN and closest_body 0.
 #[derive(Debug, Args)]
 #[command(override_usage = "\
 motet contact A B [C ..] -o OUT [--warn D] [OPTIONS]
@@ -45,51 +45,56 @@ pub(crate) struct ContactArgs {
     /// Surfaces, meshes or series
     #[arg(value_name = "SURFACE", required = true)]
     pub(crate) surfaces: Vec<PathBuf>,
-    /// Where the surfaces go with their gaps: .vtp, .vtu, .vtk; a .pvd for a series
+    /// Output file for the surfaces with their gaps: .vtp, .vtu, .vtk; a .pvd for a series
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Warn of what is nearer than this
+    /// Warn where a gap is smaller than this
     #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) warn: Option<f64>,
-    /// Patches of the one mesh that is given, by name or number
+    /// Patches of the one given mesh, by name or number
     #[arg(long, value_name = "P,Q", value_delimiter = ',', help_heading = "Gaps")]
     pub(crate) patches: Vec<String>,
     /// Measure each surface against itself as well, neighbours left out
     #[arg(long = "self", help_heading = "Gaps")]
     pub(crate) own: bool,
-    /// Look no farther than this [default: no limit; for --self 4 D, or a tenth of the size]
+    /// Search no farther than this [default: no limit; for --self 4 D, or a tenth of the size]
     #[arg(long, value_name = "D", help_heading = "Gaps", value_parser = positive)]
     pub(crate) within: Option<f64>,
-    /// The surface of this name (of its file or patch) is the wall of a room that the others are in: negative outside. Repeatable
-    /// [default: closed surfaces that enclose most of another one in the first frame]
+    /// The surface of this name (of its file or patch) is the wall of a room that the others are in: gaps are
+    /// negative outside. Repeatable [default: closed surfaces that enclose most of another one in the first
+    /// frame]
     #[arg(long, value_name = "NAME", help_heading = "Gaps")]
     pub(crate) room: Vec<String>,
-    /// No surface is a room: what lies inside a closed one is where it must not be
+    /// No surface is a room: gaps are negative inside closed surfaces
     #[arg(long, conflicts_with = "room", help_heading = "Gaps")]
     pub(crate) no_room: bool,
     /// Count only places that face each other through free space, not through the thickness of a body
     #[arg(long, help_heading = "Gaps")]
     pub(crate) facing: bool,
-    /// Along one surface, count places as a gap from this many times farther along it than across
+    /// Within one surface, places count as a gap where the way along the surface is at least this many times
+    /// the distance across
     #[arg(long, value_name = "N", default_value_t = 3.0, help_heading = "Gaps", value_parser = positive)]
     pub(crate) fold: f64,
     /// How distances are found
     #[arg(long, value_name = "HOW", default_value = "exact", help_heading = "Gaps")]
     pub(crate) method: Method,
 
-    /// Write the Delaunay tets that span the gaps, with the arrays kind (22, 31 ..) and distance, to seal or to make porous
+    /// Write the Delaunay tets that span the gaps, with the arrays kind (22, 31 ..) and distance, for sealing
+    /// gaps or making them porous
     #[arg(long, value_name = "FILE", help_heading = "Gaps")]
     pub(crate) gap_tets: Option<PathBuf>,
 
-    /// Look ahead: a vector point array, velocities of the vertices; those of surfaces without it are 0
+    /// Look ahead: a vector point array with the velocities of the vertices; surfaces without it have
+    /// velocity 0
     #[arg(long, value_name = "ARRAY", help_heading = "Looking ahead")]
     pub(crate) velocity: Option<String>,
-    /// How far ahead, in time [default: as far as they go; in a series without velocities the next frame]
+    /// How far to look ahead, in time [default: no limit; in a series without velocities, up to the next
+    /// frame]
     #[arg(long, value_name = "T", help_heading = "Looking ahead", value_parser = positive)]
     pub(crate) horizon: Option<f64>,
 
-    /// Exit status 4 where something warns, for scripts
+    /// Exit with status 4 where there is a warning, for scripts
     #[arg(long, requires = "warn")]
     pub(crate) fail_on_warning: bool,
     #[command(flatten)]
@@ -101,8 +106,9 @@ pub(crate) struct ContactArgs {
 pub(crate) enum Method {
     /// Over all triangles, by a tree of boxes
     Exact,
-    /// By the Delaunay tets between the surfaces (Moyle and Ventikos 2008): an upper bound. The exact
-    /// gaps are found as well: the array gap_error is what it is too large by, all but gap and warning are exact
+    /// By the Delaunay tets between the surfaces (Moyle and Ventikos 2008): an upper bound. The exact gaps
+    /// are computed as well: the array gap_error is the overestimate, and all arrays but gap and warning are
+    /// exact
     Delaunay,
 }
 
@@ -117,7 +123,7 @@ impl ContactArgs {
         }
     }
 
-    /// Refuses words that do not go together.
+    /// Refuses options that contradict each other.
     pub(crate) fn check(&self) -> Result<()> {
         if self.horizon.is_some() && self.velocity.is_none() {
             return Err(Error::options("--horizon goes with --velocity")

@@ -1,4 +1,4 @@
-//! Gaps by the Delaunay tets that span them, beside the exact ones.
+//! Gaps by the Delaunay tets that span them, compared with the exact ones.
 
 use std::time::Instant;
 
@@ -9,22 +9,22 @@ use motet::mesh::{CellKind, Cells, Field};
 use motet::{Mesh, Result};
 use serde::Serialize;
 
-/// How good the Delaunay tets' answer is, over all vertices that have a gap in both.
+/// How accurate the gaps by Delaunay tets are, over all vertices that have a gap by both methods.
 #[derive(Debug, Serialize)]
 pub(crate) struct Beside {
     pub(crate) gap_tets: usize,
     /// The least gap by Delaunay tets.
     pub(crate) least: Option<f64>,
-    /// Vertices that were compared; the others have no gap in one of the two.
+    /// Number of vertices compared; the others have no gap by one of the two methods.
     pub(crate) compared: usize,
-    /// The share of them that is exact to 1e-12 of itself.
+    /// The share of the compared vertices whose gaps agree to a relative 1e-12.
     pub(crate) exact: f64,
     pub(crate) largest_over: f64,
     pub(crate) largest_under: f64,
     pub(crate) seconds: f64,
 }
 
-/// The tets that span the gaps of a contact.
+/// The Delaunay tets that span the gaps of a contact, and the seconds that they took.
 pub(crate) fn between(contact: &Contact, threads: &Threads) -> Result<(Between, f64)> {
     let begin = Instant::now();
     let ids = 0..contact.n_bodies() as u32;
@@ -35,7 +35,7 @@ pub(crate) fn between(contact: &Contact, threads: &Threads) -> Result<(Between, 
     Ok((between, begin.elapsed().as_secs_f64()))
 }
 
-/// Puts the gaps of the tets in place of the exact ones. Also says by how much each is too large.
+/// Replaces the exact gaps by those of the tets. Also returns the error of each.
 pub(crate) fn replace(
     gaps: &mut Gaps,
     between: &Between,
@@ -63,7 +63,7 @@ pub(crate) fn replace(
                 told.largest_over = told.largest_over.max(error);
                 told.largest_under = told.largest_under.max(-error);
             }
-            // No way through free space leads from where a vertex must not be: there the exact depth stays.
+            // No path through free space starts where a vertex must not be: there the exact depth stays.
             if found.is_finite() || body.gap[i] > 0.0 {
                 body.gap[i] = found.copysign(body.gap[i]);
             }
@@ -74,7 +74,7 @@ pub(crate) fn replace(
     (told, errors)
 }
 
-/// The gap tets as a mesh: those with four vertices. Also how many more there are, which are flat.
+/// The gap tets with four vertices as a mesh, and the number of the others, which are flat.
 pub(crate) fn tets(contact: &Contact, between: &Between) -> (Mesh, usize) {
     let tets = || between.tets.iter().filter(|tet| !tet.vertices.contains(&VertexId::NONE));
     let mut used: Vec<VertexId> = tets().flat_map(|tet| tet.vertices).collect();
@@ -111,7 +111,7 @@ pub(crate) fn tets(contact: &Contact, between: &Between) -> (Mesh, usize) {
     (mesh, n_flat)
 }
 
-/// Whether a tet is numbered the wrong way round.
+/// Whether a tet has the wrong orientation.
 fn is_turned([a, b, c, d]: [Point; 4]) -> bool {
     orient3d(a, b, c, d) < 0
 }

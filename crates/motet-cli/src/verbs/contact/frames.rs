@@ -1,4 +1,4 @@
-//! What is measured, frame by frame: the surfaces of the call as bodies over one list of points.
+//! The surfaces to measure, frame by frame, as bodies that share one list of points.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::words::stem;
 #[derive(Debug, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) points: Vec<Point>,
-    /// The velocity of each point, where asked for.
+    /// The velocity of each point, where requested.
     pub(crate) velocity: Option<Vec<Point>>,
     pub(crate) bodies: Vec<Body>,
     /// Where each body comes from.
@@ -25,16 +25,16 @@ pub(crate) struct Frame {
 #[derive(Debug, PartialEq)]
 pub(crate) struct Source {
     pub(crate) file: PathBuf,
-    /// Its first point in the list of all.
+    /// Index of the body's first point in the list of all points.
     pub(crate) first_point: usize,
-    /// The cell of the file that each triangle is of.
+    /// The cell of the file that each triangle comes from.
     pub(crate) cells: Vec<CellId>,
 }
 
-/// The surfaces of a call: a list of files for each.
+/// The surfaces of a call, with a list of files for each.
 pub(crate) struct Frames<'a> {
     args: &'a ContactArgs,
-    /// When each frame is; one frame at 0 where nothing is a series.
+    /// The time of each frame; one frame at 0 where no surface is a series.
     pub(crate) times: Vec<f64>,
     files: Vec<Vec<PathBuf>>,
 }
@@ -68,7 +68,7 @@ impl<'a> Frames<'a> {
         Ok(Self { args, times, files })
     }
 
-    /// Frame `k`.
+    /// Reads frame `k`.
     pub(crate) fn read(&self, k: usize, console: &Console) -> Result<Frame> {
         let velocity = self.args.velocity.as_ref().map(|_| Vec::new());
         let mut frame = Frame { points: Vec::new(), velocity, bodies: Vec::new(), sources: Vec::new() };
@@ -102,7 +102,7 @@ impl<'a> Frames<'a> {
 }
 
 impl Frame {
-    /// Whether the bodies have the same triangles, so that only points moved.
+    /// Whether this frame has the same triangles as the other, so that only points have moved.
     pub(crate) fn is_moved_of(&self, other: &Self) -> bool {
         let same = |body: &Body, other: &Body| body.name == other.name && body.triangles == other.triangles;
         self.points.len() == other.points.len()
@@ -110,7 +110,7 @@ impl Frame {
             && self.bodies.iter().zip(&other.bodies).all(|(body, other)| same(body, other))
     }
 
-    /// Keeps what was found to be a room in an earlier frame, whose surfaces are the same under the same names but have other triangles.
+    /// Keeps the rooms found in an earlier frame that has the same surface names but other triangles.
     pub(crate) fn keep_rooms(&mut self, earlier: &Contact) {
         let ids = 0..earlier.n_bodies() as u32;
         if ids.clone().map(|id| earlier.name(id)).eq(self.bodies.iter().map(|body| body.name.as_str())) {

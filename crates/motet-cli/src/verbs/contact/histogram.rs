@@ -1,28 +1,28 @@
-//! How gaps are spread, in a few lines of text.
+//! A histogram of gaps, in a few lines of text.
 
 use std::fmt;
 
 use crate::table::{Table, count, short};
 
-/// Bins from the least to the largest gap.
+/// Number of bins from the least to the largest gap.
 const BINS: usize = 10;
 
-/// The longest bar.
+/// Length of the longest bar.
 const WIDTH: usize = 40;
 
-/// Above this ratio of the largest to the least gap bins grow by a factor each.
+/// If the largest gap exceeds the least by this factor, bins are spaced geometrically.
 const WIDE: f64 = 30.0;
 
 /// Counts of gaps by size.
 pub(crate) struct Histogram {
-    /// Where each bin begins, and where the last one ends.
+    /// The lower limit of each bin, then the upper limit of the last.
     limits: Vec<f64>,
     counts: Vec<usize>,
     warn: Option<f64>,
 }
 
 impl Histogram {
-    /// `None` where there is nothing to show.
+    /// The histogram of some gaps; `None` where there is nothing to show.
     pub(crate) fn of(gaps: &[f64], warn: Option<f64>) -> Option<Self> {
         let low = gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let high = gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -90,7 +90,7 @@ pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Res
     Ok(outcome)
 }
 
-/// The handle of the frame before, where only points moved; else a new one.
+/// The contact of the previous frame with its points moved, where only points differ; otherwise a new one.
 fn prepared(
     last: Option<(Contact, Frame)>,
     frame: &mut Frame,
@@ -112,7 +112,7 @@ fn prepared(
     Contact::new(frame.points.clone(), frame.bodies.clone(), args.options(), threads).map_err(told)
 }
 
-/// The gaps by Delaunay tets and the tets themselves, where they are asked for.
+/// The gaps by Delaunay tets and the tets themselves, where requested.
 fn by_delaunay(
     contact: &Contact,
     gaps: &mut Gaps,
@@ -137,7 +137,7 @@ fn by_delaunay(
     Ok(is_asked.then(|| delaunay::replace(gaps, &between, seconds, args.warn)))
 }
 
-/// By velocities where there are any, else to the next frame where there is one that fits.
+/// Looks ahead by velocities where given, otherwise to the next frame where it fits.
 fn look_ahead(
     contact: &Contact,
     frame: &Frame,

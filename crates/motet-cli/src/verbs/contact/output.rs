@@ -7,7 +7,8 @@ use motet::mesh::{CellKind, Cells, Field, Values};
 
 use super::frames::Frame;
 
-/// Points of each body by themselves, one after the other; triangles in the order of the bodies.
+/// The mesh of all bodies: the points of each body separately, one body after another; triangles in the order
+/// of the bodies.
 pub(crate) fn mesh(frame: &Frame, gaps: &Gaps, ahead: Option<&Ahead>) -> Mesh {
     let (mut points, mut cells) = (Vec::new(), Vec::new());
     let (mut body_of, mut cell_of, mut point_of) = (Vec::new(), Vec::new(), Vec::new());
@@ -22,7 +23,7 @@ pub(crate) fn mesh(frame: &Frame, gaps: &Gaps, ahead: Option<&Ahead>) -> Mesh {
         cell_of.extend(source.cells.iter().map(|cell| cell.index() as i64));
         body_of.resize(cells.len() / 3, id);
     }
-    // Triangles by threes: no other number comes.
+    // Cannot fail: there are three vertices per triangle.
     let cells = Cells::uniform(CellKind::TRIANGLE, cells).unwrap_or_default();
     let mut mesh = Mesh::new(points, cells);
     let finite = |x: f64| if x.is_finite() { x } else { f64::NAN };
@@ -55,7 +56,7 @@ pub(crate) fn mesh(frame: &Frame, gaps: &Gaps, ahead: Option<&Ahead>) -> Mesh {
     mesh
 }
 
-/// Adds how much each gap is too large.
+/// Adds the array of the error of each gap.
 pub(crate) fn add_errors(mesh: &mut Mesh, errors: Vec<f64>) {
     let finite = errors.into_iter().map(|error| if error.is_finite() { error } else { f64::NAN });
     mesh.set_point_field(Field::scalars("gap_error", finite.collect::<Vec<f64>>()));

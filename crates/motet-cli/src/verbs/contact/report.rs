@@ -1,4 +1,4 @@
-//! What contact reports to programs: an object; what people are told of it is in `words`.
+//! The report of `motet contact` for programs; the output for people is in `words`.
 
 use std::path::PathBuf;
 
@@ -12,15 +12,15 @@ use super::delaunay::Beside;
 use super::frames::Frame;
 use crate::words;
 
-/// All that was found.
+/// All results of `motet contact`.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     #[serde(serialize_with = "words::paths")]
     pub(super) output: PathBuf,
     pub(super) warn: Option<f64>,
-    /// Whether something warns in any frame.
+    /// Whether there is a warning in any frame.
     pub(super) warning: bool,
-    /// The time of the first frame that warns, and of the first in which something touches.
+    /// The times of the first frame with a warning and of the first in which surfaces touch.
     pub(super) first_warning: Option<f64>,
     pub(super) first_touch: Option<f64>,
     pub(super) bodies: Vec<BodyFacts>,
@@ -57,7 +57,7 @@ pub(super) struct BodyFacts {
 pub(super) struct InRoom {
     pub(super) room: String,
     pub(super) surface: String,
-    /// The part of its area that is inside in the first frame; null where the room was told.
+    /// The part of its area that is inside in the first frame; null where the room was given.
     pub(super) share: Option<f64>,
 }
 
@@ -70,12 +70,12 @@ pub(super) struct Step {
     /// The least gap of all; 0 where surfaces meet, null where nothing is within reach.
     pub(super) least: Option<f64>,
     pub(super) warning: bool,
-    /// By body: gaps of its vertices.
+    /// Gaps of the vertices, by body.
     pub(super) gaps: Vec<Spread>,
     pub(super) pairs: Vec<Pair>,
     pub(super) warned: Vec<Group>,
     pub(super) first_contact: Option<First>,
-    /// How good the answer by Delaunay tets is, where that was asked for.
+    /// How accurate the gaps by Delaunay tets are, where requested.
     pub(super) delaunay: Option<Beside>,
     #[serde(skip)]
     pub(super) all: Vec<f64>,
@@ -83,7 +83,7 @@ pub(super) struct Step {
     pub(super) looked_ahead: bool,
 }
 
-/// The gaps of one body's vertices that have one.
+/// Statistics of the gaps of one body, over the vertices that have one.
 #[derive(Debug, Serialize)]
 pub(super) struct Spread {
     pub(super) body: String,
@@ -100,36 +100,37 @@ pub(super) struct Pair {
     /// Null where nothing is within reach.
     pub(super) distance: Option<f64>,
     pub(super) points: Option<[Point; 2]>,
-    /// The cell of each file.
+    /// The cells of the nearest places, each an index in its file.
     pub(super) cells: Option<[usize; 2]>,
     pub(super) features: Option<[&'static str; 2]>,
-    /// Cells of the files that meet.
+    /// Pairs of cells of the files that meet.
     pub(super) crossings: Vec<[usize; 2]>,
-    /// Vertices of each that are where the other does not let them be.
+    /// Vertices of each body that are where the other one does not permit them.
     pub(super) wrong: [usize; 2],
     pub(super) depth: f64,
-    /// Triangles of each nearer than the warning distance.
+    /// Triangles of each body nearer than the warning distance.
     pub(super) warned_triangles: [usize; 2],
 }
 
-/// Connected vertices that warn.
+/// Connected vertices with warnings.
 #[derive(Debug, Serialize)]
 pub(super) struct Group {
     pub(super) body: String,
-    /// The body that the nearest of them is near to.
+    /// The body nearest to the vertex with the least gap.
     pub(super) near: Option<String>,
     pub(super) vertices: usize,
-    /// Null where triangles at the vertices are near enough to warn, but none of the vertices is within reach.
+    /// The least gap; null where triangles at the vertices are near enough to warn, but none of the vertices
+    /// is within reach.
     pub(super) gap: Option<f64>,
-    /// The point of its file.
+    /// The vertex with the least gap, as a point of its file.
     pub(super) point: usize,
     pub(super) place: Point,
 }
 
-/// The first contact, if vertices go on straight.
+/// The first contact if vertices keep their velocities.
 #[derive(Debug, Serialize)]
 pub(super) struct First {
-    /// From the time of the frame; nothing touches before.
+    /// Time from the frame to the contact; nothing touches before.
     pub(super) after: f64,
     pub(super) bodies: [String; 2],
     pub(super) cells: [usize; 2],
@@ -231,7 +232,7 @@ impl Step {
         }
     }
 
-    /// With what is known of the answer by Delaunay tets.
+    /// Adds the accuracy of the gaps by Delaunay tets.
     pub(super) fn beside(mut self, delaunay: Option<Beside>) -> Self {
         self.delaunay = delaunay;
         self

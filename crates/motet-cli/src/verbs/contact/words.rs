@@ -1,4 +1,4 @@
-//! What contact says to people: tables, a histogram, the places that warn.
+//! Output of `motet contact` for people: tables, a histogram, places with warnings.
 
 use super::delaunay::Beside;
 use super::histogram::Histogram;
@@ -7,7 +7,7 @@ use crate::console::Console;
 use crate::exit::Outcome;
 use crate::table::{Table, count, seconds, short, time as time_of};
 
-/// How many groups of warned vertices are told where nobody asks for all.
+/// How many groups of vertices with warnings are listed without `--verbose`.
 const FIRST: usize = 10;
 
 impl Report {
@@ -60,7 +60,7 @@ impl Report {
         }
     }
 
-    /// Says what was taken for a room, and why.
+    /// Prints which surfaces were taken for rooms, and why.
     fn tell_rooms(&self, console: &Console) {
         for body in self.bodies.iter().filter(|body| body.room && !body.closed) {
             console.warn(format_args!(
@@ -79,7 +79,7 @@ impl Report {
     }
 }
 
-/// The part in percent, rounded down: 100 is all of it.
+/// A part in percent, rounded down: only the whole gives 100.
 fn percent(part: f64) -> String {
     format!("{}", (1000.0 * part).floor() / 10.0)
 }

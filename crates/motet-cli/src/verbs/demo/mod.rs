@@ -1,4 +1,4 @@
-//! `motet demo`: the whole story on built-in geometry, by the very calls that a user would make.
+//! `motet demo`: a tour on built-in geometry, with the same calls that a user would make.
 
 mod shapes;
 
@@ -17,10 +17,10 @@ use crate::table::{Table, count, seconds, short};
 use crate::verbs::{implant, meshing, report, run};
 use crate::words::shown;
 
-/// See it work: a coiled aneurysm that pulsates beside a stent, and a flap that beats in a dissection
+/// See motet at work: a coiled aneurysm that pulsates beside a stent, and a flap that beats in a dissection
 ///
-/// Fills vessels, puts devices into them, and keeps the meshes good for a cycle: moved, repaired, watched, refined. Each call is one that
-/// you could make yourself, and is shown.
+/// Fills vessels, puts devices into them, and keeps the meshes good for a cycle: moved, repaired, watched,
+/// refined. Each call is one that you could make yourself, and is shown.
 #[derive(Debug, Args)]
 pub(crate) struct DemoArgs {
     /// Where the files go
@@ -31,7 +31,8 @@ pub(crate) struct DemoArgs {
 const ANEURYSM: &str = include_str!("aneurysm.toml");
 const DISSECTION: &str = include_str!("dissection.toml");
 
-/// Each call, without the program's name; files lie in the folder of the demo.
+/// A description and the arguments of each call, without the program's name; files lie in the folder of the
+/// demo.
 const CALLS: [(&str, &[&str]); 6] = [
     ("a vessel with an aneurysm is filled", &["mesh", "aneurysm.vtp", "-o", "vessel.vtu", "--size", "auto"]),
     (
@@ -84,7 +85,7 @@ pub(crate) fn run(args: &DemoArgs, common: &Common, console: &Console) -> Result
     Ok(outcome)
 }
 
-/// The words of a call, files in their folder.
+/// The arguments of a call, with files in their folder.
 fn call(folder: &Path, words: &[&str]) -> Vec<String> {
     let is_file = |word: &str| {
         [".vtp", ".vtu", ".toml", ".pvd", ".jsonl", ".html"].iter().any(|ending| word.ends_with(ending))
@@ -96,20 +97,20 @@ fn call(folder: &Path, words: &[&str]) -> Vec<String> {
     std::iter::once("motet".to_owned()).chain(words.iter().map(word)).collect()
 }
 
-/// As a shell would have them.
+/// The call as typed in a shell.
 fn as_typed(call: &[String]) -> String {
     let word = |word: &String| if word.contains(' ') { format!("\"{word}\"") } else { word.clone() };
     call.iter().map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// Makes a call; reports of runs are kept.
+/// Makes a call and keeps the reports of runs.
 fn make(
     call: &[String],
     common: &Common,
     console: &Console,
     cycles: &mut Vec<run::Report>,
 ) -> Result<Outcome> {
-    // One object at the end is enough: those of the single calls are left out.
+    // One object at the end is enough; those of the single calls are left out.
     let quiet = console.without_reports();
     match Call::try_parse_from(call).map(|call| call.verb) {
         Ok(Verb::Mesh(args)) => meshing::run(&args, common, &quiet),
@@ -126,7 +127,7 @@ fn make(
     }
 }
 
-/// A table of both cycles, and where to look.
+/// Prints a table of both cycles, and which files to open.
 fn tell(
     args: &DemoArgs,
     cycles: &[run::Report],

@@ -1,4 +1,4 @@
-//! The surfaces that the demo begins with.
+//! The surfaces that the demo starts from.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub(super) fn write(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Loops in the sac, their axis along its own.
+/// A coil in the sac, coaxial with it.
 fn coil(aneurysm: &Aneurysm) -> Result<Mesh> {
     let coil = Coil { centre: [0.0; 3], radius: 0.75, pitch: 0.45, turns: 2.5, wire_radius: 0.1 };
     let mut loops = coil.mesh(48, 8)?;
@@ -33,9 +33,9 @@ fn coil(aneurysm: &Aneurysm) -> Result<Mesh> {
     Ok(loops)
 }
 
-/// A stent on its way: in the vessel at the neck, not yet opened.
+/// A stent in delivery: in the vessel at the neck, not yet expanded.
 fn stent(aneurysm: &Aneurysm) -> Result<Mesh> {
-    // The axis of the vessel is a part of a circle, its middle in the origin.
+    // The axis of the vessel is a circular arc with its midpoint at the origin.
     let bend = aneurysm.length / aneurysm.bend_deg.to_radians();
     let on_axis = |i: i32| {
         let angle = aneurysm.bend_deg.to_radians() * (f64::from(i) / 100.0 - 0.5) * 0.25;
@@ -47,7 +47,7 @@ fn stent(aneurysm: &Aneurysm) -> Result<Mesh> {
         rings: 5,
         crowns: 4,
         strut_width: 0.12,
-        // Thicker or wider ones have narrower triangles, which force bad tets.
+        // Thicker or wider struts have narrower triangles, which force bad tets.
         thickness: 0.1,
         ..Stent::default()
     };
@@ -56,7 +56,7 @@ fn stent(aneurysm: &Aneurysm) -> Result<Mesh> {
     Ok(stent)
 }
 
-/// Some patches of a surface, as one of their own.
+/// Some patches of a surface, as a surface of their own.
 fn patches(mesh: &Mesh, names: &[&str]) -> Result<Mesh> {
     let surface = Surface::of(mesh);
     let labels = names.iter().map(|name| mesh.find_patch(name)).collect::<Result<Vec<_>>>()?;
