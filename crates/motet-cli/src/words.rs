@@ -1,16 +1,16 @@
-//! Words that several verbs know: numbers, lists of them, what stands before an equals sign, and names of files.
+//! Parsers that several verbs share: numbers, lists of them, `NAME=rest`, and names of files.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Serialize, Serializer};
 
-/// One number.
+/// Parses a finite number.
 pub(crate) fn number(word: &str) -> Result<f64, String> {
     let number = word.trim().parse().ok().filter(|x: &f64| x.is_finite());
     number.ok_or_else(|| format!("`{word}` is no finite number"))
 }
 
-/// One number above 0.
+/// Parses a number above 0.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if x > 0.0 => Ok(x),
@@ -18,7 +18,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// One number from 0 to below 1.
+/// Parses a number from 0 to below 1.
 pub(crate) fn part(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if (0.0..1.0).contains(&x) => Ok(x),
@@ -26,7 +26,7 @@ pub(crate) fn part(text: &str) -> Result<f64, String> {
     }
 }
 
-/// One number from 0 on.
+/// Parses a number of at least 0.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     match number(text) {
         Ok(x) if x >= 0.0 => Ok(x),
@@ -34,36 +34,38 @@ pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Numbers with commas, semicolons or space between.
+/// Parses numbers separated by commas, semicolons or white space.
 pub(crate) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     let words = text.split([',', ';', ' ', '\n', '\t']).filter(|word| !word.is_empty());
     words.map(number).collect()
 }
 
-/// `NAME=rest`, parted at the last `=`, since numbers hold none and names might; `example` is what is expected.
+/// Parses `NAME=rest`, split at the last `=`, since numbers contain none and names might; `example` describes
+/// the expected text.
 pub(crate) fn named<'a>(text: &'a str, example: &str) -> Result<(&'a str, &'a str), String> {
     let parts = text.rsplit_once('=').filter(|(name, _)| !name.is_empty());
     parts.ok_or_else(|| format!("{example} is expected"))
 }
 
-/// The file's name without its ending.
+/// The file's name without its extension.
 pub(crate) fn stem(file: &Path) -> Option<String> {
     file.file_stem().map(|stem| stem.to_string_lossy().into_owned())
 }
 
-/// A path as text, for JSON: what is no Unicode in it becomes U+FFFD.
+/// A path as text, for JSON: what is not Unicode in it becomes U+FFFD.
 pub(crate) fn shown(path: impl AsRef<Path>) -> String {
     path.as_ref().to_string_lossy().into_owned()
 }
 
-/// One path, several, or perhaps one, as [`shown`]: serde itself refuses a path that is no Unicode.
+/// Serializes one path, several, or an optional one, as [`shown`]: serde itself refuses a path that is not
+/// Unicode.
 pub(crate) fn paths<S: Serializer>(paths: &impl Paths, serializer: S) -> Result<S::Ok, S::Error> {
     paths.texts().serialize(serializer)
 }
 
-/// What [`paths`] takes.
+/// The arguments that [`paths`] takes.
 pub(crate) trait Paths {
-    /// The paths as texts, as [`shown`] writes each.
+    /// The paths as text, each as [`shown`] writes it.
     fn texts(&self) -> impl Serialize;
 }
 

@@ -1,4 +1,4 @@
-//! `motet info`: what a mesh is, how good it is, and what is wrong with it.
+//! `motet info`: the content, quality and defects of a mesh.
 
 use std::path::{Path, PathBuf};
 
@@ -17,11 +17,10 @@ use crate::quality;
 use crate::table::{Table, count, short, time as time_of};
 use crate::words::{self, shown};
 
-/// Report what a mesh holds, its quality and its defects
+/// Report the content, quality and defects of a mesh
 ///
-/// Volumes, surfaces, curves, whatever the file holds. Defects are listed with counts, ids
-/// and places; a mesh that has some is no failure (exit status 0). Of a .pvd, times and files
-/// are listed.
+/// Works for volumes, surfaces, curves, whatever the file holds. Defects are listed with counts, ids and
+/// places; a mesh with defects is not a failure (exit status 0). For a .pvd, times and files are listed.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Quality of tets: EAS is the equi-angle quality: 1 for a regular tet, 0 for a flat one, negative \
@@ -74,7 +73,7 @@ pub(crate) fn run(args: &InfoArgs, console: &Console) -> motet::Result<Outcome> 
     Ok(Outcome::Done)
 }
 
-/// The mesh with an array for each measure.
+/// Adds a cell array for each quality measure.
 fn measured(mut mesh: Mesh) -> Mesh {
     let tets = OrientedTets::of_linear(&mesh);
     let field = |name: &str, measure: &dyn Fn([Point; 4]) -> f64| tets.field(&mesh, name, measure);
@@ -100,7 +99,7 @@ struct Report<'a> {
     passed_over: &'a [String],
 }
 
-/// Names of the arrays, and how many components each has.
+/// Names of the arrays, with their numbers of components.
 #[derive(Serialize)]
 struct Arrays<'a> {
     point: Vec<(&'a str, usize)>,
@@ -160,7 +159,7 @@ impl Report<'_> {
         }
     }
 
-    /// Lengths of edges and shape of triangles of a surface.
+    /// Prints the edge lengths and the shape of the triangles of a surface.
     fn tell_triangles(&self, console: &Console) {
         let Some(triangles) = &self.summary.triangles else { return };
         let [least, median, largest] = triangles.edges.map(short);
@@ -281,7 +280,7 @@ fn histogram(counts: &[usize; 11]) -> String {
         } else {
             format!("{:.1} - {:.1}", (i - 1) as f64 / 10.0, i as f64 / 10.0)
         };
-        // What is there shows, be it ever so few.
+        // A nonzero count always shows, however small.
         let bar = "#".repeat((n * LONGEST).div_ceil(most));
         format!("  {range:<9} {:>11} {bar}", count(*n)).trim_end().to_string()
     };
@@ -293,7 +292,7 @@ fn yes_or_no(is: bool) -> &'static str {
     if is { "yes" } else { "no" }
 }
 
-/// Times and files, and whether each file is there.
+/// Lists the times and files of a series; an error where a file is missing.
 fn series(path: &Path, console: &Console) -> motet::Result<Outcome> {
     let frames = io::read_series(path)?;
     if let Some((_, file)) = frames.iter().find(|(_, file)| !io::file_of(file).exists()) {

@@ -1,4 +1,4 @@
-//! One file a verb.
+//! The verbs, one file or folder each.
 
 pub(crate) mod cap;
 pub(crate) mod contact;

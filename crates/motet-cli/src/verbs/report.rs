@@ -10,8 +10,9 @@ use crate::exit::Outcome;
 
 /// Write one HTML page with pictures, charts and tables of meshes, series and logs
 ///
-/// The page works without a network and without anything beside it: a view to turn, cut, colour and play; quality over time; a table of every
-/// frame. JSON files become charts and tables: what a verb prints with --json, and logs with an object a line (.jsonl), whatever their keys.
+/// The page is one file that works offline: a view to turn, cut, colour and play; quality over time; a table
+/// of every frame. JSON files become charts and tables: what a verb prints with --json, and logs with an
+/// object per line (.jsonl), whatever their keys.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 The budget goes to the surfaces of meshes first, then to their insides. Where an inside does not \
@@ -28,10 +29,10 @@ pub(crate) struct ReportArgs {
     /// Meshes and series in any format that motet reads, reports (.json), logs (.jsonl)
     #[arg(value_name = "OUT", required = true)]
     inputs: Vec<PathBuf>,
-    /// The page
+    /// Output file
     #[arg(short, long, value_name = "REPORT.html")]
     output: PathBuf,
-    /// What stands over the page [default: the names of the inputs]
+    /// Title of the page [default: the names of the inputs]
     #[arg(long, value_name = "T")]
     title: Option<String>,
     /// How many megabytes of the page meshes may take

@@ -1,4 +1,4 @@
-//! The words of `motet implant`, as its help shows them.
+//! Arguments of `motet implant`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -14,8 +14,9 @@ use crate::words::{named, not_negative, numbers, positive};
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
 ///
-/// Tets of the host that lie in a device or near it are replaced. Every triangle of the device's surface is a facet of the new mesh, so what flows round
-/// it and what is in it share their vertices. Farther away everything stays as it is, to the bit. Regions, patches and all arrays are carried over.
+/// Tets of the host that lie in a device or near it are replaced. Every triangle of the device's surface
+/// becomes a facet of the new mesh, so that the tets inside and outside it share their vertices. Farther away
+/// everything stays as it is, to the bit. Regions, patches and all arrays are carried over.
 #[derive(Debug, Args)]
 #[command(override_usage = "motet implant HOST DEVICE... -o OUT [OPTIONS]")]
 #[command(after_help = "\
@@ -47,61 +48,61 @@ outside of the host or encloses it; nothing is written. 4: a triangle of a devic
 pieces only, or a bad tet is left that no angle of a surface forces; the mesh is written, and \
 the report says what is left and why.")]
 pub(crate) struct ImplantArgs {
-    /// The mesh file (or folder) of the host, of tets
+    /// Mesh file (or folder) of the host, which consists of tets
     #[arg(value_name = "HOST")]
     pub(crate) host: PathBuf,
-    /// Files of devices, closed surfaces or tets
+    /// Files of devices: closed surfaces, or tets
     #[arg(value_name = "DEVICE", required = true)]
     pub(crate) devices: Vec<PathBuf>,
-    /// Where the result goes, in any mesh format
+    /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Leave the room in devices out of the mesh
+    /// Leave the space inside devices out of the mesh
     #[arg(long, help_heading = "Devices")]
     pub(crate) hollow: bool,
-    /// Fill devices with new tets, also those that have some
+    /// Fill devices with new tets, even those that consist of tets
     #[arg(long, conflicts_with = "hollow", help_heading = "Devices")]
     pub(crate) fill: bool,
 
     /// What the surface of a device becomes
     #[arg(long, value_name = "HOW", default_value = "match", help_heading = "Devices")]
     interface: Interface,
-    /// How far a new surface may be from the old one, with --interface conform [default: a fifth of the radius
-    /// of a wire as thick as the device]
+    /// How far a new surface may be from the old one, with --interface conform [default: a fifth of the
+    /// radius of a wire as thick as the device]
     #[arg(long, value_name = "D", value_parser = positive, help_heading = "Devices")]
     tolerance: Option<f64>,
 
-    /// What becomes of what lies outside of the host, where a device goes through its boundary
+    /// What to do with the part of a device outside the host, where the device crosses its boundary
     #[arg(long, value_name = "WHAT", default_value = "cut", help_heading = "Devices")]
     outside: Outside,
-    /// How far surfaces may stray where a device meets a wall, so that no narrow triangles stay there; 0: not at all [default: a twentieth
-    /// of the device's edges]
+    /// How far surfaces may stray where a device meets a wall, to avoid narrow triangles there; 0: not at all
+    /// [default: a twentieth of the device's edges]
     #[arg(long, value_name = "D", value_parser = not_negative, help_heading = "Devices")]
     stray: Option<f64>,
 
-    /// What of the host is refined before it is carved
+    /// What to refine in the host before carving
     #[arg(long, value_name = "WHAT", default_value = "walls", help_heading = "Room")]
     adapt: Adapt,
-    /// How long edges of the host are to be beside the devices where it is refined, and those of new surfaces [default:
-    /// as those of the devices, and as --tolerance asks]
+    /// Length of edges beside the devices where the host is refined, and of edges of new surfaces [default:
+    /// that of the devices' edges, and as --tolerance requires]
     #[arg(long, value_name = "H", value_parser = positive, help_heading = "Room")]
     size: Option<f64>,
-    /// How much edges grow per unit of distance from the devices, at most 0.7
+    /// How much edge lengths grow per unit of distance from the devices, at most 0.7
     #[arg(long, value_name = "G", default_value_t = 0.5, value_parser = positive, help_heading = "Room")]
     growth: f64,
-    /// Replace what is nearer to a device than so many edges
+    /// Replace tets nearer to a device than this many edges
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = positive, help_heading = "Room")]
     carve: f64,
-    /// Keep what is farther from all devices than so many edges to the bit
+    /// Keep everything farther from all devices than this many edges, to the bit
     #[arg(long, value_name = "N", default_value_t = 3.0, value_parser = positive, help_heading = "Room")]
     reach: f64,
-    /// Repair tets below this EAS, within --reach
+    /// Repair tets below this EAS within --reach
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Room")]
     min_eas: f64,
 
-    /// What an array of the host begins with in the devices, a number for each component; without the word what the host had there.
-    /// Repeatable
+    /// Initial value of a host array in the devices, a number for each component [default: what the host had
+    /// there]. Repeatable
     #[arg(long, value_name = "ARRAY=X[,Y,Z]", value_parser = start, help_heading = "Arrays")]
     value: Vec<(String, Vec<f64>)>,
 
@@ -113,17 +114,18 @@ pub(crate) struct ImplantArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Interface {
-    /// Each of its triangles is a facet of the mesh
+    /// Each triangle of the device is a facet of the mesh
     Match,
-    /// A new surface is made near it, within --tolerance: for devices that touch or cross themselves, have open ends or bad triangles
+    /// A new surface is made near it, within --tolerance: for devices that touch or cross themselves, have
+    /// open ends or bad triangles
     Conform,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Outside {
-    /// It is cut off, and the wall bounds the device there
+    /// It is cut off, and the host's wall bounds the device there
     Cut,
-    /// It is kept, and the wall ends at the device
+    /// It is kept, and the host's wall ends at the device
     Keep,
 }
 
@@ -133,19 +135,22 @@ enum Adapt {
     None,
     /// Walls nearer to a device than half of their edges, which cannot be carved
     Walls,
-    /// All that is near, by --size and --growth: for fields that are to keep their values in parts of the tets that they lay on
+    /// Everything near, by --size and --growth: for fields whose values vary within tets and are to be kept
+    /// in their parts
     All,
 }
 
-/// `ARRAY=X[,Y,Z]`
+/// Parses `ARRAY=X[,Y,Z]`.
 fn start(text: &str) -> Result<(String, Vec<f64>), String> {
     let (name, value) = named(text, "ARRAY=X[,Y,Z]")?;
     Ok((name.to_owned(), numbers(value)?))
 }
 
 impl ImplantArgs {
+    /// Options for the library.
+    ///
     /// # Errors
-    /// When words contradict each other.
+    /// When options contradict each other.
     pub(super) fn options(&self) -> motet::Result<Options> {
         let interface = match (self.interface, self.tolerance) {
             (Interface::Match, None) => implant::Interface::Match,

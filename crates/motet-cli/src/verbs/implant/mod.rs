@@ -1,4 +1,4 @@
-//! `motet implant`: devices put into a mesh, one conforming mesh out.
+//! `motet implant`: puts devices into a mesh and writes one conforming mesh.
 
 mod args;
 mod report;
@@ -50,14 +50,14 @@ pub(crate) fn run(args: &ImplantArgs, common: &Common, console: &Console) -> mot
     Ok(outcome)
 }
 
-/// The devices of the call.
+/// Reads the devices of the call.
 fn read(args: &ImplantArgs, taken: &LabelNames, console: &Console) -> motet::Result<Vec<Device>> {
     let mut names = Names::of(taken);
     let inside = inside(args.hollow, args.fill);
     args.devices.iter().map(|file| names.device(file, inside, console)).collect()
 }
 
-/// What is asked for of the inside of a device; `None`: as it is by itself.
+/// What the call requests for the inside of devices; `None` leaves the choice to each device.
 pub(crate) fn inside(hollow: bool, fill: bool) -> Option<Inside> {
     match (hollow, fill) {
         (true, _) => Some(Inside::Hollow),
@@ -66,7 +66,7 @@ pub(crate) fn inside(hollow: bool, fill: bool) -> Option<Inside> {
     }
 }
 
-/// Names of regions and patches that are taken.
+/// Names of regions and patches that are in use.
 pub(crate) struct Names(BTreeSet<String>);
 
 impl Names {
@@ -74,7 +74,7 @@ impl Names {
         Self(names.regions.values().chain(names.patches.values()).cloned().collect())
     }
 
-    /// Reads a device, and gives it a name of its own, after its file.
+    /// Reads a device and gives it a unique name after its file.
     pub(crate) fn device(
         &mut self,
         file: &Path,
@@ -91,7 +91,7 @@ impl Names {
     }
 }
 
-/// An error that names a device is one of its file, any other of the host's.
+/// Adds to an error the file that it concerns: that of the device it names, otherwise that of the host.
 pub(crate) fn in_its_file(error: Error, host: &Path, files: &[PathBuf], devices: &[Device]) -> Error {
     let named = devices.iter().position(|device| error.what().contains(&format!("`{}`", device.name)));
     error.in_file(named.map_or(host, |k| &files[k]))

@@ -1,4 +1,4 @@
-//! What implanting reports: to people a few lines, to programs an object.
+//! The report of `motet implant`: a few lines for people, an object for programs.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
-/// All that implanting came to.
+/// All results of `motet implant`.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     #[serde(serialize_with = "words::paths")]
@@ -24,18 +24,19 @@ pub(super) struct Report {
     devices: Vec<PathBuf>,
     #[serde(serialize_with = "words::paths")]
     output: PathBuf,
-    /// Where the history went, if anywhere.
+    /// Where the history was written, if it was.
     #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
-    /// Whether the mesh is valid, every triangle of the devices a facet, and no bad tet left but those that surfaces force.
+    /// Whether the mesh is valid, every triangle of the devices is a facet, and the only bad tets left are
+    /// those that surfaces force.
     complete: bool,
-    /// Whether the mesh conforms, and no tet is inverted.
+    /// Whether the mesh conforms and no tet is inverted.
     valid: bool,
-    /// How far volumes are from what they should be, as a part; the largest.
+    /// The largest relative deviation of a volume from its expected value.
     volume_deviation: f64,
     /// Bad tets that no angle of a surface forces.
     unforced: usize,
-    /// How good all tets are: of the host, and of the mesh.
+    /// Quality of all tets, of the host and of the new mesh.
     quality: [Option<Qualities>; 2],
     report: implant::Report,
     seconds: Seconds,
@@ -48,11 +49,11 @@ struct Seconds {
     total: f64,
 }
 
-/// How many of the bad tets that are left are told where nobody asks for all.
+/// How many of the remaining bad tets are listed without `--verbose`.
 const FIRST: usize = 10;
 
 impl Report {
-    /// `quality`: of the host, and of the mesh; `seconds`: to read, to write, and all.
+    /// `quality`: of the host and of the new mesh; seconds: for reading, for writing, and in total.
     pub(super) fn new(
         args: &ImplantArgs,
         report: implant::Report,
@@ -189,7 +190,7 @@ impl Report {
     }
 }
 
-/// What a device has to do with walls of the host.
+/// Describes how a device meets walls of the host; `None` where it does not.
 fn at_walls(device: &implant::DeviceReport) -> Option<String> {
     let (at, outside) = (device.triangles_at_walls, device.triangles_outside);
     if at + outside == 0 && device.contact_patch.is_none() {

@@ -1,4 +1,4 @@
-//! The words of `motet mesh`, as its help shows them.
+//! Arguments of `motet mesh`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -13,10 +13,10 @@ use super::words::{self, Size};
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
-/// Fill closed surfaces with tets: every triangle is a facet of the mesh
+/// Fill closed surfaces with tets: every triangle becomes a facet of the mesh
 ///
-/// Surfaces may be nested, side by side, or share triangles: what each of them encloses is a region of its own. They are checked first,
-/// exactly: all that prevents filling is reported, with ids and places.
+/// Surfaces may be nested, side by side, or share triangles: what each of them encloses is a region of its
+/// own. They are checked first, exactly: everything that prevents filling is reported, with ids and places.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Triangles keep their patches. Points at one place, within a file or between files, are merged. \
@@ -52,71 +52,75 @@ Exit status 3: a surface cannot be filled; nothing is written but the culprits. 
 there in pieces only, a tet has no volume in the digits of its coordinates, bad tets are left, \
 or no layer had room; the mesh is written.")]
 pub(crate) struct MeshArgs {
-    /// Surface files: each closed, or together with others that end at the same edges
+    /// Surface files: each closed, or closed together with others that end at the same edges
     #[arg(value_name = "SURFACE", required = true)]
     pub(crate) surfaces: Vec<PathBuf>,
-    /// Where the result goes, in any mesh format
+    /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
-    /// Put points inside so that edges are about so long, in units of the surface; and repair bad tets.
-    /// auto: as long as those of the surface, and growing inwards
+    /// Put points inside so that edges have about this length, in units of the surface, and repair bad tets.
+    /// auto: the length of the surface's edges, growing inwards
     #[arg(long, value_name = "H|auto", value_parser = words::size)]
     pub(crate) size: Option<Size>,
-    /// Whether the triangles of the surface are divided to --size H in their own planes, creases kept. auto: where most of them are
-    /// far coarser, or narrow. divide: all of them. keep: none, so that every triangle is a facet of the mesh
+    /// Whether to divide triangles of the surface to --size H within their planes, creases kept. auto: where
+    /// most of them are far coarser, or narrow. divide: all of them. keep: none, so that every triangle is a
+    /// facet of the mesh
     #[arg(long, value_name = "RULE", default_value = "auto", value_parser = ["auto", "divide", "keep"])]
     pub(crate) surface: String,
-    /// Sizes grow from the surface inwards, by G per unit of distance, up to --size; at most 0.7 [default: 0.3
-    /// with --size auto or --size-array]
+    /// Let sizes grow from the surface inwards, by G per unit of distance, up to --size; at most 0.7
+    /// [default: 0.3 with --size auto or --size-array]
     #[arg(long, value_name = "G", value_parser = positive)]
     pub(crate) growth: Option<f64>,
-    /// Sizes at the surface by an array of its points or cells, growing inwards, up to --size
+    /// Take sizes at the surface from an array of its points or cells, growing inwards, up to --size
     #[arg(long, value_name = "NAME")]
     pub(crate) size_array: Option<String>,
-    /// Name the region that holds a place. Repeatable
+    /// Name the region that contains a place. Repeatable
     #[arg(long, value_name = "X,Y,Z=NAME", value_parser = words::seed, allow_hyphen_values = true)]
     pub(crate) seed: Vec<Seed>,
-    /// Leave out what the surfaces enclose round a place. Repeatable
+    /// Leave out the region around a place. Repeatable
     #[arg(long, value_name = "X,Y,Z", value_parser = words::place, allow_hyphen_values = true)]
     pub(crate) hole: Vec<Point>,
-    /// Leave out what closed surfaces turned inward enclose, such as the cavity of a hollow body. With --repair such surfaces stay
-    /// turned inward
+    /// Leave out what closed surfaces turned inward enclose, such as the cavity of a hollow body. With
+    /// --repair such surfaces stay turned inward
     #[arg(long)]
     pub(crate) voids: bool,
-    /// Repair tets below this EAS, the surface kept [default: 0.2 with sizes]
+    /// Repair tets below this EAS, keeping the surface [default: 0.2 with sizes]
     #[arg(long, value_name = "EAS")]
     pub(crate) min_eas: Option<f64>,
     /// A surface that may end inside the others, such as a flap. Repeatable
     #[arg(long, value_name = "SURFACE")]
     pub(crate) membrane: Vec<PathBuf>,
-    /// Thin layers on walls: how many, the first one's thickness, how many times as thick each next one is. On one patch, or on all that is
-    /// neither a cap (flat, with a sharp crease round it) nor named. Where there is no room they are thinner, or none. Repeatable
+    /// Put thin layers on walls: their number, the thickness of the first, and the ratio of each thickness to
+    /// the one before. They go on one patch, or on all that are neither caps (flat, with a sharp crease all
+    /// around) nor named. Where there is no space they are thinner, or absent. Repeatable
     #[arg(long, value_name = "[PATCH=]N,FIRST,GROWTH", value_parser = layers)]
     pub(crate) layers: Vec<LayersWord>,
-    /// The --layers without a patch go on this one alone, and on others named so. Repeatable
+    /// Put the --layers without a patch only on this one, and on others named so. Repeatable
     #[arg(long, value_name = "PATCH", requires = "layers")]
     pub(crate) layers_on: Vec<String>,
-    /// Leave layers as wedges and pyramids, not divided into tets: for formats that hold these, such as VTU, VTK and MSH
+    /// Keep layers as wedges and pyramids instead of dividing them into tets: for formats that hold these,
+    /// such as VTU, VTK and MSH
     #[arg(long, requires = "layers")]
     pub(crate) keep_prisms: bool,
-    /// Mend first: divide edges at vertices on them (T-junctions) and faces that lie on each other alike, drop triangles without area and
-    /// those that are there twice, turn all outward, close small holes
+    /// Repair the surfaces first: divide edges at vertices on them (T-junctions), divide faces that lie on
+    /// each other alike, drop triangles without area and duplicates, turn all outward, close small holes
     #[arg(long)]
     pub(crate) repair: bool,
-    /// Divide surfaces that go through each other along the lines where they do, and those that touch: each room between them is a
-    /// region. Alone, or with --repair
+    /// Divide surfaces that cross along the lines where they do, and those that touch: each space between
+    /// them is a region. Alone, or with --repair
     #[arg(long)]
     pub(crate) cut: bool,
-    /// Close holes of at most so many edges
+    /// Close holes of at most this many edges
     #[arg(long, value_name = "N", default_value_t = 32, requires = "repair")]
     pub(crate) hole_edges: usize,
     /// Merge points nearer than this, in units of the surface
     #[arg(long, value_name = "DISTANCE", requires = "repair")]
     pub(crate) merge: Option<f64>,
-    /// Let points stay on edges of the surface: triangles are then in pieces, the tets Delaunay as far as triangles allow
+    /// Allow points on edges of the surface: its triangles are then in pieces, and the tets are Delaunay as
+    /// far as the triangles allow
     #[arg(long)]
     pub(crate) delaunay: bool,
-    /// Where what is wrong goes, as a surface to look at
+    /// Write what is wrong to this file, as a surface to inspect
     #[arg(long, value_name = "FILE")]
     pub(crate) culprits: Option<PathBuf>,
     #[command(flatten)]
@@ -124,10 +128,10 @@ pub(crate) struct MeshArgs {
 }
 
 impl MeshArgs {
-    /// What the call asks for; `at_points` are sizes by its array.
+    /// What the call requests; `at_points` are the sizes from its array, one per point.
     ///
     /// # Errors
-    /// When layers are asked for on a patch that is not there, or twice.
+    /// When layers are requested twice for a patch, or for one that does not exist.
     pub(super) fn options(&self, at_points: Option<Vec<f64>>, surfaces: &Surfaces) -> motet::Result<Options> {
         let largest = match self.size {
             Some(Size::Length(h)) => Some(h),

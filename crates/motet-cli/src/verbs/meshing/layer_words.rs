@@ -1,4 +1,4 @@
-//! The words of `motet mesh` for layers.
+//! Arguments of `motet mesh` for layers.
 
 use motet::Error;
 use motet::meshing::Surfaces;
@@ -6,7 +6,7 @@ use motet::meshing::layers::{Layers, Stack};
 
 use crate::words::number;
 
-/// `[PATCH=]N,FIRST,GROWTH`
+/// A parsed `[PATCH=]N,FIRST,GROWTH`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LayersWord {
     pub(crate) patch: Option<String>,
@@ -14,7 +14,7 @@ pub(crate) struct LayersWord {
 }
 
 pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
-    // Parted at the last equals sign, since numbers hold none and names might.
+    // Split at the last equals sign, since numbers contain none and names might.
     let (patch, numbers) = match text.rsplit_once('=') {
         Some((patch, numbers)) if !patch.is_empty() => (Some(patch.to_string()), numbers),
         Some(_) => return Err("[PATCH=]N,FIRST,GROWTH is expected, such as wall=5,0.02,1.2".into()),
@@ -30,10 +30,10 @@ pub(crate) fn layers(text: &str) -> Result<LayersWord, String> {
     Ok(LayersWord { patch, stack })
 }
 
-/// What the words ask for; `None` where there is none.
+/// The layers that the arguments request; `None` where there are none.
 ///
 /// # Errors
-/// When a patch is not there, or has layers twice.
+/// When a patch does not exist, or is given layers twice.
 pub(super) fn stacks(
     words: &[LayersWord],
     on: &[String],

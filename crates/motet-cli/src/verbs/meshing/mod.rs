@@ -87,7 +87,7 @@ pub(crate) fn run(args: &MeshArgs, common: &Common, console: &Console) -> motet:
     Ok(outcome)
 }
 
-/// The surfaces, and the sizes at their points by the array that the call names.
+/// Reads the surfaces, and the sizes at their points from the array that the call names.
 fn read(args: &MeshArgs, console: &Console) -> motet::Result<(Surfaces, Option<Vec<f64>>)> {
     let mut meshes: Vec<(Mesh, Role, String)> = Vec::new();
     let mut sizes = Vec::new();
@@ -107,7 +107,7 @@ fn read(args: &MeshArgs, console: &Console) -> motet::Result<(Surfaces, Option<V
     Ok((surfaces, sizes))
 }
 
-/// Says all that is wrong; the error is the first of it.
+/// Reports every fault; returns the first as the error.
 fn refused(
     args: &MeshArgs,
     surfaces: &Surfaces,

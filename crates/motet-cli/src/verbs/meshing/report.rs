@@ -1,4 +1,4 @@
-//! What meshing reports: to people a few lines, to programs an object.
+//! The report of `motet mesh`: a few lines for people, an object for programs.
 
 use std::path::PathBuf;
 
@@ -15,24 +15,24 @@ use crate::quality;
 use crate::table::{count, seconds, short};
 use crate::words;
 
-/// All that meshing came to.
+/// All results of `motet mesh`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report<'a> {
     #[serde(serialize_with = "words::paths")]
     surfaces: Vec<PathBuf>,
     #[serde(serialize_with = "words::paths")]
     output: PathBuf,
-    /// Whether the mesh is what was asked for.
+    /// Whether the mesh is as requested.
     complete: bool,
     repairs: &'a [Repair],
     preflight: &'a Preflight,
     /// `null` where the surfaces were refused.
     filled: Option<meshing::Report>,
-    /// `null` where nothing was asked to be improved.
+    /// `null` where no improvement was requested.
     improved: Option<remesh::Report>,
-    /// `null` where no layers were asked for.
+    /// `null` where no layers were requested.
     layers: Option<meshing::layers::Report>,
-    /// How good all tets of the mesh are; `null` where the surfaces were refused.
+    /// Quality of all tets of the mesh; `null` where the surfaces were refused.
     quality: Option<Qualities>,
     seconds: Seconds,
 }
@@ -46,7 +46,7 @@ struct Seconds {
     total: f64,
 }
 
-/// Faults told one by one, and regions.
+/// The maximum number of faults, and of regions, that are listed.
 const TOLD: usize = 20;
 
 impl<'a> Report<'a> {
@@ -108,7 +108,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Where triangles were divided, by kind: how many places, and the first of them.
+    /// Prints where triangles were divided, by kind: how many places, and the first of them.
     fn tell_divided(&self, console: &Console) {
         for (kind, what) in [
             (RepairKind::TJunction, "vertices on edges (T-junctions): the edges are divided there"),

@@ -1,11 +1,11 @@
-//! The words of `motet mesh`: how each is written, and what it means.
+//! Arguments of `motet mesh`: the syntax and meaning of each.
 
 use motet::base::Point;
 use motet::meshing::Seed;
 
 use crate::words::{numbers, positive};
 
-/// `H` or `auto`
+/// A parsed `H` or `auto`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Size {
     Length(f64),
@@ -19,13 +19,13 @@ pub(super) fn size(text: &str) -> Result<Size, String> {
     }
 }
 
-/// `X,Y,Z`
+/// Parses `X,Y,Z`.
 pub(super) fn place(text: &str) -> Result<Point, String> {
     let numbers = numbers(text)?;
     <[f64; 3]>::try_from(numbers).map_err(|other| format!("X,Y,Z has 3 numbers, this {}", other.len()))
 }
 
-/// `X,Y,Z=NAME`, parted at the first `=`, since numbers hold none.
+/// Parses `X,Y,Z=NAME`, split at the first `=`, since numbers contain none.
 pub(super) fn seed(text: &str) -> Result<Seed, String> {
     match text.split_once('=') {
         Some((at, name)) if !name.trim().is_empty() => {

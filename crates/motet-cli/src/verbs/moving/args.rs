@@ -1,4 +1,4 @@
-//! The words of `motet move`, as its help shows them.
+//! Arguments of `motet move`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -11,10 +11,10 @@ use crate::words::positive;
 
 /// Move the boundary of a mesh, and let the volume follow
 ///
-/// The boundary takes the prescribed motion; every vertex inside follows at the cost of
-/// a weighted sum (Delaunay graph mapping). Boundary vertices that nothing moves stay.
-/// Where the motion would turn a cell inside out, it is done in smaller parts. The
-/// result is certified step by step: worst quality and where, bad and inverted cells.
+/// The boundary takes the prescribed motion; every vertex inside follows at the cost of a weighted sum
+/// (Delaunay graph mapping). Boundary vertices without a prescribed motion stay. Where the motion would turn
+/// a cell inside out, it is done in smaller parts. The result is certified step by step: worst quality and
+/// where, bad and inverted cells.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("motion").required(true).multiple(true)
     .args(["displacement", "translate", "rotate", "affine"]))]
@@ -42,43 +42,43 @@ pub(crate) struct MoveArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
-    /// Where the result goes: a .pvd for a series (OUT_0000.vtu and so on beside it, in a folder
-    /// that is made if need be), any mesh format for the last state
+    /// Output file: a .pvd for a series (OUT_0000.vtu and so on beside it, in a folder that is created if
+    /// missing), any mesh format for the last state
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// A vector point array of MESH (its values on the boundary; those inside on interfaces of regions and on
-    /// patches inside, where it moves them), or a displaced surface, or a
-    /// .pvd series of them (points matched by GlobalNodeID, else by position), or a .dat file of
-    /// displacements over time, as svMultiPhysics has them (nodes by GlobalNodeID)
+    /// A vector point array of MESH (its values on the boundary, and inside on interfaces of regions and on
+    /// patches that it moves); or a displaced surface; or a .pvd series of them (points matched by
+    /// GlobalNodeID, else by position); or a .dat file of displacements over time, as used by svMultiPhysics
+    /// (nodes by GlobalNodeID)
     #[arg(long, value_name = "ARRAY|FILE", help_heading = "Motion",
         conflicts_with_all = ["translate", "rotate", "affine"])]
     pub(crate) displacement: Option<String>,
-    /// How the points of displaced surfaces are found in MESH
+    /// How to find the points of displaced surfaces in MESH
     #[arg(long = "match", value_name = "HOW", default_value = "id", help_heading = "Motion")]
     pub(crate) matching: Match,
     /// Shift a patch. Patches that share vertices must move them alike. Repeatable
     #[arg(long, value_name = "PATCH=dx,dy,dz", value_parser = words::translate, help_heading = "Motion",
         conflicts_with = "affine")]
     pub(crate) translate: Vec<Translate>,
-    /// Turn a patch about an axis; without a centre about the middle of its bounding box. A patch
-    /// that is also shifted is turned first. Beyond some 60 degrees cells become flat. Repeatable
+    /// Rotate a patch about an axis, by default through the centre of its bounding box. A patch that is also
+    /// shifted is rotated first. Beyond some 60 degrees cells become flat. Repeatable
     #[arg(long, value_name = "PATCH=ax,ay,az,deg[,cx,cy,cz]", value_parser = words::rotate, help_heading = "Motion",
         conflicts_with = "affine")]
     pub(crate) rotate: Vec<Rotate>,
-    /// Map the whole boundary by the 3x4 matrix [A|b], row after row: x' = A x + b
+    /// Map the whole boundary by the 3x4 matrix [A|b], row by row: x' = A x + b
     #[arg(long, value_name = "A11,A12,..,A34", value_parser = words::affine, allow_hyphen_values = true, help_heading = "Motion")]
     pub(crate) affine: Option<[[f64; 4]; 3]>,
-    /// Parts of equal size in which the motion is done and written [default: 10 for a .pvd, else 1;
-    /// for a series of surfaces one each]
+    /// Number of equal parts in which the motion is done and written [default: 10 for a .pvd, else 1; for a
+    /// series of surfaces one part each]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), help_heading = "Motion")]
     pub(crate) steps: Option<u32>,
-    /// Seconds from one step to the next: adds the point array `velocity`, and times to the series.
-    /// For a series of surfaces its own times count
+    /// Seconds from one step to the next: adds the point array `velocity`, and times to the series. A series
+    /// of surfaces brings its own times
     #[arg(long, value_name = "SECONDS", value_parser = positive, help_heading = "Motion")]
     pub(crate) dt: Option<f64>,
 
-    /// Also write where the vertices of a patch went at all steps, as a .dat file that svMultiPhysics
+    /// Also write the positions of the vertices of a patch at all steps, as a .dat file that svMultiPhysics
     /// reads (temporal and spatial values). Repeatable
     #[arg(long, value_name = "PATCH=FILE", value_parser = words::patch_file, help_heading = "Motion")]
     pub(crate) nodal: Vec<PatchFile>,
@@ -86,17 +86,18 @@ pub(crate) struct MoveArgs {
     #[arg(long, help_heading = "Motion")]
     pub(crate) quality: bool,
 
-    /// Give a name to the part of the boundary that a surface file holds. Repeatable
+    /// Name the part of the boundary that a surface file holds. Repeatable
     #[arg(long, value_name = "NAME=FILE", value_parser = words::patch_file, help_heading = "Boundary")]
     pub(crate) patch: Vec<PatchFile>,
-    /// Keep a patch in place, also where it meets one that moves. Repeatable
+    /// Keep a patch in place, even where it meets one that moves. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) fixed: Vec<String>,
-    /// Let a flat patch slide in its plane, following its rim; where two meet, vertices slide along their
-    /// line, where three meet, they stay. Repeatable
+    /// Let a flat patch slide in its plane, following its rim; where two such patches meet, vertices slide
+    /// along their line; where three meet, they stay. Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Boundary")]
     pub(crate) slide: Vec<String>,
-    /// How far vertices of such a patch may be off its plane, as a part of its radius; they stay as far off
+    /// How far vertices of a sliding patch may be off its plane, as a part of its radius; they keep that
+    /// distance
     #[arg(long, value_name = "PART", value_parser = crate::words::part, default_value_t = SlideTolerance::default().0,
         help_heading = "Boundary")]
     pub(crate) slide_tolerance: f64,
@@ -104,34 +105,35 @@ pub(crate) struct MoveArgs {
     /// How the volume follows
     #[arg(long, value_name = "METHOD", default_value = "delaunay", help_heading = "Volume")]
     pub(crate) method: Method,
-    /// For `--method auto`: no cell may have an EAS (or scaled Jacobian) below this [default: half of the worst as the
-    /// mesh came, at most 0.1]
+    /// With `--method auto`: no cell may have an EAS (or scaled Jacobian) below this [default: half of the
+    /// worst of the input mesh, at most 0.1]
     #[arg(long, value_name = "EAS", value_parser = positive, help_heading = "Volume")]
     pub(crate) least: Option<f64>,
-    /// Keep the graph within the walls: no vertex follows the wall of another branch, or the far side of a flap. Slower to
-    /// set up; facets of the boundary must not cross or touch each other
+    /// Keep the graph within the walls, so that no vertex follows the wall of another branch, or the far side
+    /// of a flap. Setup takes longer; facets of the boundary must not cross or touch each other
     #[arg(long, help_heading = "Volume")]
     pub(crate) within_walls: bool,
-    /// Patches of which each is a rigid body, for `--method bodies`; one inside, such as that between fluid and solid, takes
-    /// along what it encloses [default: each part of the walls that hangs together, but for the outer one]. Repeatable
+    /// Patches that each form a rigid body, for `--method bodies`; a patch inside, such as that between fluid
+    /// and solid, carries what it encloses [default: each connected part of the walls except the outer one].
+    /// Repeatable
     #[arg(long, value_name = "PATCH", help_heading = "Volume")]
     pub(crate) body: Vec<String>,
-    /// Then move the vertices of bad tets, and no others, to where their tets are better: so many
-    /// sweeps over them, 2 are enough
+    /// Afterwards move the vertices of bad tets, and no others, to where their tets are better: the number of
+    /// sweeps; 2 are enough
     #[arg(long, value_name = "SWEEPS", value_parser = clap::value_parser!(u8), default_value_t = 0, help_heading = "Volume")]
     pub(crate) smooth: u8,
-    /// Solve the system of a method that has one to this residual, as a part of the first
+    /// Relative residual to which a method with a linear system solves it
     #[arg(long, value_name = "RESIDUAL", value_parser = positive, default_value_t = 1e-6, help_heading = "Volume")]
     pub(crate) residual: f64,
-    /// Keep a factor of the matrix of such a system from step to step, where it takes no more
-    /// than so many GiB: a step is shorter, setting up longer
+    /// Keep a factorisation of such a system's matrix from step to step, if it takes at most this many GiB:
+    /// steps are faster, setup takes longer
     #[arg(long, value_name = "GIB", value_parser = positive, help_heading = "Volume")]
     pub(crate) factor: Option<f64>,
-    /// Move all within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
+    /// Move everything within this distance of the moving boundary rigidly with it, such as 0.2, or 3layers
     /// for layers of cells
     #[arg(long, value_name = "DISTANCE|Nlayers", value_parser = words::layer, help_heading = "Volume")]
     pub(crate) rigid_layer: Option<Extent>,
-    /// Patches that have the rigid layer [default: those that move]. Repeatable
+    /// Patches that have the rigid layer [default: the moving ones]. Repeatable
     #[arg(long, value_name = "PATCH", requires = "rigid_layer", help_heading = "Volume")]
     pub(crate) rigid_layer_at: Vec<String>,
 
@@ -143,19 +145,20 @@ pub(crate) struct MoveArgs {
 pub(crate) enum Method {
     /// Weights in the Delaunay graph of the boundary vertices (Liu, Qin, Xia 2006)
     Delaunay,
-    /// The graph, and rigid bodies that carry along what is round them: for parts that turn, or shift far
+    /// The graph, and rigid bodies that carry what is around them: for parts that rotate, or shift far
     Bodies,
     /// The graph, whose nodes turn with the walls near them: for walls that bend
     Guided,
-    /// The cheapest of the three above and `elastic` that keeps the worst cell at `--least`: tried on all steps first
+    /// The cheapest of the three above and `elastic` that keeps the worst cell above `--least`: all steps are
+    /// tried first
     Auto,
-    /// An elastic body, stiff where cells are small: a linear system a step, to compare with
+    /// An elastic body, stiff where cells are small: one linear system per step, for comparison
     Elastic,
-    /// A Laplace equation for each coordinate, stiff at the wall that moves: as well
+    /// A Laplace equation for each coordinate, stiff at the moving wall: for comparison
     Laplace,
-    /// The mean of the rigid motions of all boundary vertices, weighted by distance: as well
+    /// The mean of the rigid motions of all boundary vertices, weighted by distance: for comparison
     Idw,
-    /// Radial basis functions of compact support: as well
+    /// Radial basis functions of compact support: for comparison
     Rbf,
 }
 
@@ -163,6 +166,6 @@ pub(crate) enum Method {
 pub(crate) enum Match {
     /// By their GlobalNodeID (from 1) or vtkOriginalPointIds (from 0), by position where they have none
     Id,
-    /// By position: for surfaces whose ids are those of another mesh. The first must lie undisplaced
+    /// By position: for surfaces whose ids are those of another mesh. The first one must be undisplaced
     Position,
 }

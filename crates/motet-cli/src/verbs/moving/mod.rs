@@ -103,7 +103,7 @@ fn options(
     })
 }
 
-/// Puts the chosen method into the options.
+/// Chooses a method by trying all steps, and puts it into the options.
 fn choose(
     args: &MoveArgs,
     (mesh, boundary, patches): (&Mesh, &Boundary, &Patches<'_>),
@@ -112,7 +112,7 @@ fn choose(
     console: &Console,
 ) -> motet::Result<Chosen> {
     let frames = || {
-        // Frames come in order: each method gets a plan of its own.
+        // Frames are read in order, so each method needs a plan of its own.
         let mut plan = Plan::new(mesh, boundary, patches, args, console)?;
         Ok((plan.first..plan.times.len()).map(move |k| plan.displacements(k)))
     };
@@ -123,7 +123,7 @@ fn choose(
     Ok(chosen)
 }
 
-/// A Laplace equation is stiff where the rigid layer would be.
+/// The requested method; a Laplace equation is stiff at the facets that would have the rigid layer.
 fn method(
     args: &MoveArgs,
     bodies: Vec<FacetSet>,
@@ -150,7 +150,7 @@ fn method(
     let [delaunay, bodies, guided, elastic, laplace, idw, rbf] = motion::Method::all(words);
     Ok(match args.method {
         Method::Delaunay => delaunay,
-        // To choose, the graph comes first; bodies are kept for their turn.
+        // The choice starts with the graph; bodies are tried in their turn.
         Method::Bodies | Method::Auto => bodies,
         Method::Guided => guided,
         Method::Elastic => elastic,
@@ -160,7 +160,8 @@ fn method(
     })
 }
 
-/// The facets that have the rigid layer: of the patches named, else all that move and do not slide.
+/// The facets that have the rigid layer: those of the named patches, otherwise all that move and do not
+/// slide.
 fn wall(
     args: &MoveArgs,
     boundary: &Boundary,
@@ -181,7 +182,7 @@ fn wall(
     Ok(FacetSet::joined(named).unwrap_or_default())
 }
 
-/// Goes through the frames; one that is not reached is the last.
+/// Processes the frames in order; stops after one that is not reached.
 fn frames(
     plan: &mut Plan<'_>,
     mover: &mut Mover,
@@ -221,7 +222,7 @@ fn frames(
     Ok(())
 }
 
-/// By backward difference; none in the first frame, where nothing is behind.
+/// The velocities by backward difference; zero in the first frame, which has no predecessor.
 fn velocity(before: &(f64, Vec<Point>), time: f64, points: &[Point]) -> motet::Result<Vec<Point>> {
     if time > before.0 {
         mesh_velocity(&before.1, points, time - before.0)
@@ -230,7 +231,7 @@ fn velocity(before: &(f64, Vec<Point>), time: f64, points: &[Point]) -> motet::R
     }
 }
 
-/// What a certificate says of inverted cells, those that came so apart.
+/// The number of inverted cells of a certificate, with those of the input mesh in parentheses.
 pub(crate) fn inverted(certificate: &Certificate) -> String {
     match certificate.inverted_before {
         0 => certificate.inverted.to_string(),

@@ -1,4 +1,4 @@
-//! Parts of the boundary, by the words that the call uses for them.
+//! Parts of the boundary, by the names that the call uses for them.
 
 use motet::mesh::Labels;
 use motet::motion::{FacetSet, match_patch};
@@ -6,7 +6,7 @@ use motet::{Error, Mesh, io};
 
 use super::words::PatchFile;
 
-/// The patches of a mesh: those labelled in it, and those that surface files name.
+/// The patches of a mesh: those labelled in it, and those that surface files define.
 pub(crate) struct Patches<'a> {
     mesh: &'a Mesh,
     labels: Option<Labels>,
@@ -28,8 +28,7 @@ impl<'a> Patches<'a> {
         Ok(Self { mesh, labels: mesh.patches(), from_files })
     }
 
-    /// The patch that `word` means: a name given on the call, else a name or a
-    /// number of the mesh's own.
+    /// The patch that `word` means: one named by the call, otherwise the mesh's own, by name or number.
     pub(crate) fn find(&self, word: &str) -> motet::Result<FacetSet> {
         if let Some(facets) = self.from_files.iter().find(|facets| facets.name == word) {
             return Ok(facets.clone());

@@ -1,4 +1,4 @@
-//! The asked motion as a list of frames: a time each, and where the boundary is then.
+//! The requested motion as a list of frames: a time and the displacements of the boundary for each.
 
 use std::path::{Path, PathBuf};
 
@@ -14,28 +14,28 @@ use super::patches::Patches;
 use crate::console::Console;
 use crate::table::short;
 
-/// Steps in which a motion is done for a series, where the call does not say.
+/// Number of steps of a motion written as a series, by default.
 const SERIES_STEPS: u32 = 10;
 
 /// The frames of a motion, in order.
 pub(crate) struct Plan<'a> {
     mesh: &'a Mesh,
-    /// The vertices that displacements are given for, rising: the boundary, and
-    /// vertices inside that the call names.
+    /// The vertices with given displacements, ascending: the boundary, and vertices inside that the call
+    /// names.
     pub(crate) nodes: Vec<VertexId>,
-    /// Those of them that slide in no patch: inside, kept in place, or of a patch that the call moves.
+    /// The nodes that do not slide: those inside, kept in place, or on a patch that the call moves.
     pub(crate) driven: Vec<VertexId>,
     /// Interfaces inside that an array moves.
     pub(crate) interfaces: Vec<Interface>,
-    /// Points inside to which an array gives a displacement that nothing uses.
+    /// Number of points inside whose displacement in the array is not used.
     pub(crate) unused: usize,
-    /// Those of the nodes that move: where a rigid layer goes.
+    /// The nodes that move: where a rigid layer goes.
     pub(crate) moving: Vec<VertexId>,
-    /// When each frame is.
+    /// The time of each frame.
     pub(crate) times: Vec<f64>,
-    /// The first frame that is asked for: a mesh alone needs none of how it came.
+    /// The first frame to be computed: for a single output mesh, the last one only.
     pub(crate) first: usize,
-    /// Whether the times are those of the world, so that there are velocities.
+    /// Whether the times are physical, so that there are velocities.
     pub(crate) timed: bool,
     fixed: Vec<VertexId>,
     source: Source<'a>,
@@ -43,15 +43,15 @@ pub(crate) struct Plan<'a> {
 
 /// Where the frames come from.
 enum Source<'a> {
-    /// Parts of one motion, beginning with none of it.
+    /// Fractions of one motion, from the reference state on.
     Parts(BoundaryMotion),
     /// A surface for each frame.
     Surfaces { motion: SurfaceMotion<'a>, files: Vec<PathBuf> },
-    /// The displacements of these vertices for each frame.
+    /// The displacements of these vertices in each frame.
     Nodal { vertices: Vec<VertexId>, series: NodalSeries },
 }
 
-/// Whether a path is that of the displacements of nodes over time, by its ending.
+/// Whether a path names a file of nodal displacements over time, by its extension.
 fn is_nodal(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("dat"))
 }
@@ -78,7 +78,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The displacement of each node in frame `k`. Frames are to be asked for in order.
+    /// The displacement of each node in frame `k`. Frames must be requested in order.
     pub(crate) fn displacements(&mut self, k: usize) -> motet::Result<Vec<Point>> {
         let points = &self.mesh.points;
         match &mut self.source {
@@ -98,7 +98,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// The displacement of each node where some are told.
+    /// The displacement of each node, given those of the nodes in `moved`.
     fn all_nodes(&self, moved: &[(VertexId, Point)]) -> Vec<Point> {
         let mut all = BoundaryMotion::still(&self.nodes);
         all.hold(&self.fixed);
@@ -107,7 +107,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// What the call asks for, on its way to a plan.
+/// The request from which a plan is made.
 struct Asked<'a, 'c> {
     mesh: &'a Mesh,
     boundary: &'a Boundary,
@@ -117,7 +117,7 @@ struct Asked<'a, 'c> {
 }
 
 impl<'a> Asked<'a, '_> {
-    /// `--displacement FILE.pvd`
+    /// The plan for `--displacement FILE.pvd`.
     fn series(self, pvd: &Path) -> motet::Result<Plan<'a>> {
         self.refuse_steps()?;
         let frames = io::read_series(pvd)?;
@@ -129,7 +129,7 @@ impl<'a> Asked<'a, '_> {
         Ok(self.in_time(&motion, own_times, pvd, source))
     }
 
-    /// `--displacement FILE.dat`
+    /// The plan for `--displacement FILE.dat`.
     fn nodal(self, file: &Path) -> motet::Result<Plan<'a>> {
         self.refuse_steps()?;
         let series = NodalSeries::read(file)?;
@@ -140,7 +140,7 @@ impl<'a> Asked<'a, '_> {
         Ok(self.in_time(&motion, series.times.clone(), file, Source::Nodal { vertices, series }))
     }
 
-    /// Where each time is a step.
+    /// Refuses `--steps` for a series, each time of which is a step.
     fn refuse_steps(&self) -> motet::Result<()> {
         match self.args.steps {
             None => Ok(()),
@@ -149,7 +149,7 @@ impl<'a> Asked<'a, '_> {
         }
     }
 
-    /// A step for each time of a series, whose first is `motion`.
+    /// A plan with a step for each time of a series, whose first is `motion`.
     fn in_time(self, motion: &BoundaryMotion, own: Vec<f64>, file: &Path, source: Source<'a>) -> Plan<'a> {
         let times = match self.args.dt {
             Some(dt) => (0..own.len()).map(|k| k as f64 * dt).collect(),
@@ -166,7 +166,7 @@ impl<'a> Asked<'a, '_> {
         Plan { mesh, nodes, driven, interfaces, unused, moving, times, first: 0, timed, fixed, source }
     }
 
-    /// `--displacement FILE`
+    /// The plan for `--displacement FILE`, a surface.
     fn surface(self, file: &Path) -> motet::Result<Plan<'a>> {
         let moved = self.read_surface(file)?;
         let mut motion = self.still(moved.iter().map(|(v, _)| *v));
@@ -200,7 +200,8 @@ impl<'a> Asked<'a, '_> {
         }
     }
 
-    /// `--displacement ARRAY`: its values on the boundary, and on interfaces inside that it moves.
+    /// The plan for `--displacement ARRAY`: its values on the boundary, and on interfaces inside that it
+    /// moves.
     fn array(self, word: &str) -> motet::Result<Plan<'a>> {
         let Some(field) = self.mesh.point_field(word) else {
             let vectors = self.mesh.point_data.iter().filter(|f| f.components == 3);
@@ -229,7 +230,7 @@ impl<'a> Asked<'a, '_> {
         Ok(Plan { interfaces, unused, ..self.parts(motion, &inside) })
     }
 
-    /// `--affine`, `--rotate` and `--translate`
+    /// The plan for `--affine`, `--rotate` and `--translate`.
     fn words(self, patches: &Patches<'_>) -> motet::Result<Plan<'a>> {
         if let Some(rows) = self.args.affine {
             let mut motion = self.still([]);
@@ -258,7 +259,7 @@ impl<'a> Asked<'a, '_> {
         Ok(self.parts(motion, &moved))
     }
 
-    /// What a patch does: its turns, then its shifts.
+    /// The motion of a patch: its rotations, then its shifts.
     fn motion_of(&self, word: &str, vertices: &[VertexId]) -> Prescribed {
         let turns = self.args.rotate.iter().filter(|turn| turn.patch == word).map(|turn| Prescribed::Turn {
             axis: turn.axis,
@@ -269,7 +270,7 @@ impl<'a> Asked<'a, '_> {
         Prescribed::sequence(turns.chain(shifts.map(|shift| Prescribed::Shift(shift.by))).collect())
     }
 
-    /// Nothing moves yet, of the boundary and of the `named` vertices inside.
+    /// A motion without displacements, of the boundary and of the `named` vertices inside.
     fn still(&self, named: impl IntoIterator<Item = VertexId>) -> BoundaryMotion {
         let mut nodes = self.boundary.vertices.clone();
         nodes.extend(named);
@@ -281,7 +282,7 @@ impl<'a> Asked<'a, '_> {
         motion
     }
 
-    /// The nodes that slide in no patch; `moved` are those that the call moves.
+    /// The nodes that do not slide; `moved` are those that the call moves.
     fn driven(&self, nodes: &[VertexId], moved: impl IntoIterator<Item = VertexId>) -> Vec<VertexId> {
         let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();
         let inside = nodes.iter().copied().filter(is_inside);
@@ -291,7 +292,8 @@ impl<'a> Asked<'a, '_> {
         driven
     }
 
-    /// Those of `told` that are on interfaces of which a vertex inside is told, too: they move with these, up to their rims on patches that slide.
+    /// The vertices of `told` on interfaces that also have a vertex of `told` inside the mesh: they move with
+    /// it, up to the rims of the interfaces on sliding patches.
     fn on_interfaces(&self, told: &[VertexId]) -> Vec<VertexId> {
         let is_told = |v: &VertexId| told.binary_search(v).is_ok();
         let is_inside = |v: &VertexId| self.boundary.vertices.binary_search(v).is_err();
@@ -303,7 +305,7 @@ impl<'a> Asked<'a, '_> {
         moved.flat_map(|interface| interface.vertices).filter(is_told).collect()
     }
 
-    /// `moved` slide in no patch.
+    /// A plan that makes `motion` in equal parts. The vertices in `moved` do not slide.
     fn parts(self, motion: BoundaryMotion, moved: &[VertexId]) -> Plan<'a> {
         let is_series = io::can_write_series(&self.args.output);
         let default = if is_series { SERIES_STEPS } else { 1 };

@@ -1,4 +1,4 @@
-//! What a motion reports: to people a table, to programs an object.
+//! The report of `motet move`: a table for people, an object for programs.
 
 use std::path::PathBuf;
 
@@ -19,44 +19,45 @@ use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
 
-/// What is off its plane by less than this part of its radius is flat: the rounding of files in single precision.
+/// Patches that deviate from their plane by less than this part of their radius count as flat: the rounding
+/// of files in single precision.
 const FLAT: f64 = 1e-6;
 
-/// A mesh is closed where vertices are nearer to their facets than this part of its size.
+/// Vertices nearer to their facets than this part of the mesh's size leave it closed.
 const ROUNDING: f64 = 1e-9;
 
-/// All that a motion came to.
+/// All results of `motet move`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
     #[serde(serialize_with = "words::paths")]
     mesh: PathBuf,
     #[serde(serialize_with = "words::paths")]
     output: PathBuf,
-    /// Whether all that was asked was reached.
+    /// Whether everything requested was reached.
     complete: bool,
     points: usize,
     cells: usize,
-    /// Vertices that are where they were, as a share of all.
+    /// Vertices that did not move, as a share of all.
     untouched: f64,
-    /// How the method was chosen, if that was asked for.
+    /// How the method was chosen, if a choice was requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) choice: Option<Chosen>,
     setup: Setup,
     /// The planes that patches slide in.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     sliding: Vec<SlidingPlane>,
-    /// Interfaces inside that an array moves, and how many vertices each has.
+    /// Interfaces inside that an array moves, with the number of vertices of each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     interfaces: Vec<MovedInterface>,
-    /// Points inside to which an array gives a displacement that is not used.
+    /// Number of points inside whose displacement in the array is not used.
     unused_inside: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     hanging: Option<Hanging>,
     #[serde(skip)]
     hanging_vertices: Vec<HangingVertex>,
-    /// The mesh as it came.
+    /// The certificate of the input mesh.
     before: Certificate,
-    /// The last step.
+    /// The certificate of the last step.
     after: Certificate,
     steps: Vec<Step>,
     pub(crate) seconds: Stages,
@@ -69,17 +70,17 @@ struct MovedInterface {
     vertices: usize,
 }
 
-/// Vertices that lie on facets of which they are no corner: what is on both sides counts as boundary.
+/// Vertices that lie on facets of which they are not corners: what is on both sides counts as boundary.
 #[derive(Debug, Serialize)]
 struct Hanging {
     vertices: usize,
     /// The first of them, and where it was.
     first: VertexId,
     place: Point,
-    /// The largest distance of one from the place on its facet where it was, and which.
+    /// The largest distance of such a vertex from its former place on its facet, and which vertex.
     opening: f64,
     opens_at: VertexId,
-    /// An opening up to here is rounding.
+    /// An opening of up to this is rounding.
     #[serde(skip)]
     rounding: f64,
 }
@@ -88,7 +89,7 @@ struct Hanging {
 #[derive(Debug, Serialize)]
 pub(crate) struct Chosen {
     pub(crate) method: &'static str,
-    /// No cell was to be worse.
+    /// The lower bound for the worst cell.
     pub(crate) least: f64,
     pub(crate) tried: Vec<Tried>,
 }
@@ -120,7 +121,7 @@ impl Chosen {
 pub(crate) struct Step {
     pub(crate) step: usize,
     pub(crate) time: f64,
-    /// Where it was written, if it was.
+    /// The file it was written to, if any.
     #[serde(serialize_with = "words::paths")]
     pub(crate) file: Option<PathBuf>,
     #[serde(flatten)]
@@ -161,7 +162,7 @@ impl Report {
         }
     }
 
-    /// Looks for vertices that hang on facets.
+    /// Searches for hanging vertices.
     pub(crate) fn find_hanging(&mut self, mesh: &Mesh, boundary: &Boundary) {
         self.hanging_vertices = hanging_vertices(mesh, boundary);
         self.hanging = self.hanging_vertices.first().map(|hanging| Hanging {
@@ -174,7 +175,7 @@ impl Report {
         });
     }
 
-    /// How far vertices that hung on facets are from these.
+    /// Measures how far hanging vertices have left their facets, with the vertices at `points`.
     pub(crate) fn measure_openings(&mut self, points: &[Point]) {
         let Some(hanging) = &mut self.hanging else { return };
         for vertex in &self.hanging_vertices {
@@ -194,7 +195,7 @@ impl Report {
         self.before = mover.quality(mover.reference(), threads);
     }
 
-    /// Warns of a mesh that is not sound from the start.
+    /// Warns of an input mesh with defects.
     pub(crate) fn warn(&self, console: &Console) {
         if self.before.inverted > 0 {
             console.warn(format_args!(
@@ -287,13 +288,13 @@ impl Report {
         ));
     }
 
-    /// Why the motion did not go all its way.
+    /// Why the motion was not completed.
     pub(super) fn not_reached(&self) -> Option<String> {
         let last = self.steps.last()?;
         last.certificate.not_reached().map(|why| format!("step {}: {why}", last.step))
     }
 
-    /// How good all tets are: as the mesh came, and after each step that was written or is the last.
+    /// Quality of all tets: of the input mesh, and after each step that was written or is the last.
     fn quality_table(&self) -> Table {
         let last = self.steps.len().saturating_sub(1);
         let reported = self.steps.iter().enumerate().filter(|(k, step)| *k == last || step.file.is_some());
@@ -302,7 +303,7 @@ impl Report {
         quality::table([("as it came".to_owned(), self.before.quality.distribution)].into_iter().chain(steps))
     }
 
-    /// Planes that are flat within the tolerance, but not flat.
+    /// Lists planes that are flat within the tolerance, but not exactly.
     fn say_planes(&self, console: &Console) {
         for plane in self.sliding.iter().filter(|plane| plane.deviation > FLAT * plane.radius) {
             console.say(format_args!(
@@ -315,7 +316,7 @@ impl Report {
         }
     }
 
-    /// What a caller may not have meant.
+    /// Warns of results that the caller may not have intended.
     fn warn_of_what_came(&self, console: &Console) {
         let leaving =
             self.steps.iter().filter_map(|step| Some((step, step.certificate.leaves_plane.as_ref()?)));
@@ -351,7 +352,7 @@ impl Report {
     }
 }
 
-/// The steps of a motion, a row each, after one for the mesh as it came.
+/// A table with a row for the input mesh and one for each step.
 fn step_table(before: &Certificate, steps: &[Step]) -> Table {
     let other = before.quality.worst_eas.is_none();
     let measure = if other { "worst scaled Jacobian" } else { "worst EAS" };

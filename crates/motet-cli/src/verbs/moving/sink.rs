@@ -1,4 +1,4 @@
-//! Where the frames of a motion are written.
+//! Writes the frames of a motion.
 
 use std::path::{Path, PathBuf};
 
@@ -13,22 +13,22 @@ use motet::motion::node_ids;
 use super::args::MoveArgs;
 use super::patches::Patches;
 
-/// Where frames go: each into a series, or the last into one file.
+/// Destination of frames: each into a series, or the last into one file.
 pub(super) struct Sink<'a> {
     path: &'a Path,
     options: WriteOptions,
     reference: &'a Mesh,
-    /// The mesh as it is written, everything of the input kept.
+    /// The mesh to write, with everything of the input kept.
     mesh: Mesh,
     series: Option<SeriesWriter>,
     with_quality: bool,
-    /// The last file could not hold these.
+    /// What the last file could not hold.
     pub(super) lost: Vec<String>,
     nodal: Vec<Nodal<'a>>,
     times: Vec<f64>,
 }
 
-/// Where the vertices of a patch went.
+/// The positions over time of the vertices of a patch.
 struct Nodal<'a> {
     path: &'a Path,
     vertices: Vec<VertexId>,
@@ -57,7 +57,7 @@ impl<'a> Sink<'a> {
         })
     }
 
-    /// Takes a frame, and returns its file where it was written.
+    /// Takes a frame; returns its file if it was written.
     pub(super) fn take(
         &mut self,
         time: f64,
@@ -95,7 +95,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// Writes what is written once all is done.
+    /// Writes the files that need all frames.
     pub(super) fn end(&self) -> motet::Result<()> {
         let ids = node_ids(self.reference);
         self.nodal.iter().try_for_each(|nodal| {
@@ -104,7 +104,7 @@ impl<'a> Sink<'a> {
         })
     }
 
-    /// How many vertices are not where they were.
+    /// Number of vertices that have moved.
     pub(super) fn moved(&self) -> usize {
         self.mesh.points.iter().zip(&self.reference.points).filter(|(a, b)| a != b).count()
     }

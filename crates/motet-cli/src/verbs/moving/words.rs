@@ -1,4 +1,4 @@
-//! The words of `motet move`: how each is written, and what it means.
+//! Arguments of `motet move`: the syntax and meaning of each.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,14 @@ use motet::motion::Extent;
 
 use crate::words::{named, number, numbers};
 
-/// `PATCH=dx,dy,dz`
+/// A parsed `PATCH=dx,dy,dz`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Translate {
     pub(crate) patch: String,
     pub(crate) by: Point,
 }
 
-/// `PATCH=ax,ay,az,deg[,cx,cy,cz]`
+/// A parsed `PATCH=ax,ay,az,deg[,cx,cy,cz]`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rotate {
     pub(crate) patch: String,
@@ -23,7 +23,7 @@ pub(crate) struct Rotate {
     pub(crate) centre: Option<Point>,
 }
 
-/// `NAME=FILE`
+/// A parsed `NAME=FILE`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PatchFile {
     pub(crate) name: String,
@@ -68,7 +68,8 @@ pub(crate) fn patch_file(text: &str) -> Result<PatchFile, String> {
     }
 }
 
-/// A distance, or layers of cells such as `3layers`: how thick the layer is that moves rigidly with the wall.
+/// Parses the thickness of the layer that moves rigidly with the wall: a distance, or layers of cells such as
+/// `3layers`.
 pub(crate) fn layer(text: &str) -> Result<Extent, String> {
     let expected = "a distance such as 0.2, or cell layers such as 3layers, is expected";
     if let Some(n) = text.strip_suffix("layers").or_else(|| text.strip_suffix("layer")) {

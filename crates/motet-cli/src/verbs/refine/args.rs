@@ -1,4 +1,4 @@
-//! The words of `motet refine`, as its help shows them.
+//! Arguments of `motet refine`, as its help shows them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,11 +11,12 @@ use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
-/// Divide tets where criteria ask for it, many generations deep, without loss of shape; and coarsen again
+/// Divide tets where criteria request it, many generations deep, without loss of shape; and coarsen again
 ///
-/// Every tet that a criterion marks is divided into eight; tets beside them are divided or cut so that all fit.
-/// Pieces that were cut are never divided themselves, so shapes stay as good as they were, however often.
-/// The file remembers what was divided: a later call goes on from there, and --coarsen takes it back.
+/// Every tet that a criterion marks is divided into eight; tets beside them are divided or cut so that all
+/// fit. Pieces that were cut are never divided themselves, so shapes stay as good as they were, however
+/// often. The file remembers what was divided: a later call continues from there, and --coarsen takes it
+/// back.
 #[derive(Debug, Args)]
 #[command(group = ArgGroup::new("what").required(true).multiple(true).args([
     "all", "near", "near_size", "within_box", "ball", "region", "patch", "size", "conditions", "gradient",
@@ -51,84 +52,89 @@ pub(crate) struct RefineArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
-    /// Where the result goes, in any mesh format
+    /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// Everything
+    /// Divide everything
     #[arg(long, help_heading = "What to divide, by place")]
     pub(crate) all: bool,
-    /// Tets within a distance of a surface (a file of one, or a mesh: its boundary). Repeatable
+    /// Divide tets within a distance of a surface (a surface file, or a mesh: its boundary). Repeatable
     #[arg(long, value_name = "SURFACE=DISTANCE", value_parser = words::near, help_heading = "What to divide, by place")]
     pub(crate) near: Vec<Near>,
-    /// Until no edge is longer than H at a surface, and GROWTH [default: 0.5] more per unit of distance
+    /// Divide until no edge is longer than H at a surface, plus GROWTH [default: 0.5] per unit of distance
     /// from it. Repeatable
     #[arg(long, value_name = "SURFACE=H[,GROWTH]", value_parser = words::near_size, help_heading = "What to divide, by place")]
     pub(crate) near_size: Vec<NearSize>,
-    /// Tets whose centre is in a box. Repeatable
+    /// Divide tets whose centre is in a box. Repeatable
     #[arg(long = "box", value_name = "X0,Y0,Z0,X1,Y1,Z1", value_parser = words::in_box, allow_hyphen_values = true, help_heading = "What to divide, by place")]
     pub(crate) within_box: Vec<Criterion>,
-    /// Tets with a place in a ball. Repeatable
+    /// Divide tets that overlap a ball. Repeatable
     #[arg(long, value_name = "X,Y,Z,R", value_parser = words::ball, allow_hyphen_values = true, help_heading = "What to divide, by place")]
     pub(crate) ball: Vec<Criterion>,
-    /// Tets of a region, by name or number. Repeatable
+    /// Divide tets of a region, by name or number. Repeatable
     #[arg(long, value_name = "REGION", value_parser = words::region, help_heading = "What to divide, by place")]
     pub(crate) region: Vec<Criterion>,
-    /// Tets that touch a patch, or lie within a distance of it. Repeatable
+    /// Divide tets that touch a patch, or lie within a distance of it. Repeatable
     #[arg(long, value_name = "PATCH[=DISTANCE]", value_parser = words::patch, help_heading = "What to divide, by place")]
     pub(crate) patch: Vec<Criterion>,
 
-    /// Until no edge is longer than this, or than an array on points or cells says. Repeatable
+    /// Divide until no edge is longer than this, or than the value of an array on points or cells. Repeatable
     #[arg(long, value_name = "H|ARRAY", value_parser = words::size, help_heading = "What to divide, by arrays")]
     pub(crate) size: Vec<Criterion>,
-    /// Tets where an array is so, on cells or at one of their points: > >= < <= == !=. Repeatable
+    /// Divide tets where an array satisfies a condition, on cells or at one of their points: > >= < <= == !=.
+    /// Repeatable
     #[arg(long = "where", value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "What to divide, by arrays")]
     pub(crate) conditions: Vec<Condition>,
-    /// Tets through which an array changes by more than this: gradient times longest edge. Repeatable
+    /// Divide tets through which an array changes by more than this: gradient times longest edge. Repeatable
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::gradient, help_heading = "What to divide, by arrays")]
     pub(crate) gradient: Vec<Criterion>,
-    /// Tets with most of the error, told by jumps of the gradient (Kelly): as few as have this share of
-    /// it, such as 0.5. Repeatable
+    /// Divide the fewest tets that hold this share of the error, such as 0.5, estimated by jumps of the
+    /// gradient (Kelly). Repeatable
     #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::jump, help_heading = "What to divide, by arrays")]
     pub(crate) jump: Vec<Criterion>,
-    /// The same, told by a recovered gradient (Zienkiewicz and Zhu). Repeatable
+    /// Divide the fewest tets that hold this share of the error, estimated by a recovered gradient
+    /// (Zienkiewicz and Zhu). Repeatable
     #[arg(long, value_name = "ARRAY=SHARE|Ntets", value_parser = words::recovery, help_heading = "What to divide, by arrays")]
     pub(crate) recovery: Vec<Criterion>,
-    /// Until edges are short enough for how much arrays bend (second derivatives), so that errors are
-    /// at most ERROR, or P percent of the range of each array. Repeatable
+    /// Divide until edges are short enough for the second derivatives of arrays, so that errors are at most
+    /// ERROR, or P percent of the range of each array. Repeatable
     #[arg(long, value_name = "ARRAY[,ARRAY]=ERROR|P%|Ntets", value_parser = words::hessian, help_heading = "What to divide, by arrays")]
     pub(crate) hessian: Vec<HessianSizes>,
-    /// Tets where the vorticity of a velocity is above this. Repeatable
+    /// Divide tets where the vorticity of a velocity is above this. Repeatable
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::vorticity, help_heading = "What to divide, by arrays")]
     pub(crate) vorticity: Vec<Criterion>,
-    /// Tets where Q of a velocity is above this: it turns more than it shears. Repeatable
+    /// Divide tets where Q of a velocity is above this: it rotates more than it shears. Repeatable
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::q, help_heading = "What to divide, by arrays")]
     pub(crate) q: Vec<Criterion>,
 
-    /// At most so often [default: once; for sizes as often as it takes]; so many divisions back where --coarsen stands alone
+    /// Divide at most this many times [default: once; for sizes as often as it takes]; where --coarsen stands
+    /// alone, take back this many divisions
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20), help_heading = "How far")]
     generations: Option<u32>,
-    /// No tet is divided more often than this since the first mesh, earlier calls included
+    /// Divide no tet more often than this since the first mesh, earlier calls included
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=20), help_heading = "How far")]
     limit_generation: Option<u8>,
-    /// No tet is divided whose parts would have no edge as long as this
+    /// Divide no tet whose parts would have no edge as long as this
     #[arg(long, value_name = "H", value_parser = positive, help_heading = "How far")]
     smallest: Option<f64>,
-    /// Divide only so many that there are about N tets; the largest wishes and tets first
+    /// Divide only until there are about N tets; the tets with the largest wishes, and the largest tets,
+    /// first
     #[arg(long, value_name = "N", help_heading = "How far")]
     at_most: Option<usize>,
 
     /// Take back divisions where no criterion marks
     #[arg(long, help_heading = "Back")]
     coarsen: bool,
-    /// Take back divisions where an array is so on all eight parts, and no criterion marks. Repeatable
+    /// Take back divisions where an array satisfies a condition on all eight parts, and no criterion marks.
+    /// Repeatable
     #[arg(long, value_name = "ARRAY>VALUE", value_parser = words::condition, help_heading = "Back")]
     coarsen_where: Vec<Condition>,
-    /// Begin anew: the mesh as it is now is the first one, whatever the file remembers
+    /// Start over: take the mesh as it is now for the first one, whatever the file remembers
     #[arg(long, conflicts_with_all = ["coarsen", "coarsen_where"], help_heading = "Back")]
     pub(crate) forget: bool,
 
-    /// The true surface: new points of the boundary are put on it
+    /// The true surface: new points of the boundary are projected onto it
     #[arg(long, value_name = "FILE", help_heading = "Boundary")]
     pub(crate) surface: Option<PathBuf>,
 
@@ -139,7 +145,7 @@ pub(crate) struct RefineArgs {
 }
 
 impl RefineArgs {
-    /// How the mesh is to be.
+    /// The refinement that the call requests.
     pub(super) fn wanted(&self, criteria: Vec<Criterion>, surface: Option<Arc<Target>>) -> Wanted {
         Wanted {
             criteria,
@@ -156,7 +162,7 @@ impl RefineArgs {
         }
     }
 
-    /// The smallest size that the call gives.
+    /// The value of `--smallest`, by default 0.
     pub(super) fn smallest(&self) -> f64 {
         self.smallest.unwrap_or(0.0)
     }

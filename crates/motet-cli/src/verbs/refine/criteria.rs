@@ -1,4 +1,4 @@
-//! What a call marks, as criteria of the library: its surfaces are read here.
+//! The criteria of a call, as criteria of the library: its surfaces are read here.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use super::words::{Near, NearSize};
 /// All criteria of a call.
 ///
 /// # Errors
-/// When a surface cannot be read, or is none.
+/// When a file cannot be read, or is not a surface.
 pub(crate) fn criteria(args: &RefineArgs, threads: &Threads) -> Result<Vec<Criterion>> {
     let mut all: Vec<Criterion> = args.all.then_some(Criterion::All).into_iter().collect();
     for Near { surface, within } in &args.near {
@@ -43,10 +43,10 @@ pub(crate) fn criteria(args: &RefineArgs, threads: &Threads) -> Result<Vec<Crite
     Ok(all)
 }
 
-/// A surface to look at from afar.
+/// Reads a surface from which distances are measured.
 ///
 /// # Errors
-/// When it cannot be read, or is none.
+/// When it cannot be read, or is not a surface.
 pub(crate) fn target(surface: &Path, threads: &Threads) -> Result<Arc<Target>> {
     let mesh = io::read(surface)?;
     Target::of_mesh(&mesh, threads).map(Arc::new).map_err(|e| e.in_file(surface))

@@ -1,4 +1,4 @@
-//! `motet refine`: tets divided where it matters, and taken back where it does not.
+//! `motet refine`: divides tets where it matters, and takes divisions back where it does not.
 
 mod args;
 mod criteria;
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &RefineArgs, common: &Common, console: &Console) -> mote
     Ok(outcome)
 }
 
-/// The remedy in words of the command line.
+/// Replaces the remedy of an error about the memory by the option of the command line.
 fn hint(error: Error) -> Error {
     let is_memory =
         error.what().contains("refinement does not fit") || error.what().contains("remembers how");

@@ -1,4 +1,4 @@
-//! What a refinement reports: to people a table, to programs an object.
+//! The report of `motet refine`: a table for people, an object for programs.
 
 use std::path::PathBuf;
 
@@ -13,7 +13,7 @@ use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
-/// All that a refinement came to.
+/// All results of `motet refine`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
     #[serde(serialize_with = "words::paths")]
@@ -22,25 +22,26 @@ pub(crate) struct Report {
     output: PathBuf,
     #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
-    /// Whether all edges are as short as was asked for.
+    /// Whether all edges are as short as requested.
     complete: bool,
-    /// What ended the division before that.
+    /// The reason why division ended before that.
     stopped_by: Option<Stop>,
-    /// The mesh as it came, then after each generation.
+    /// The input mesh, then the mesh after each generation.
     steps: Vec<Step>,
-    /// Tets of the first mesh.
+    /// Number of tets of the first mesh.
     first_tets: usize,
     /// The worst EAS of the first mesh.
     first_worst_eas: f64,
-    /// Tets worse than was to be kept, and the tets of the first mesh that they lie in.
+    /// Number of tets worse than the bound, and of the tets of the first mesh that contain them.
     left: usize,
     left_roots: usize,
-    /// How many tets are of each generation.
+    /// Number of tets of each generation.
     generations: Vec<usize>,
     on_surface: Option<Surface>,
-    /// By how much new tets took more or less than the volume of old ones, at most in a step, as a part of what changed.
+    /// The largest difference in a step between the volumes of new and old tets, relative to the volume that
+    /// changed.
     volume_deviation: f64,
-    /// Bytes for each tet that the memory takes beside the mesh.
+    /// Bytes per tet that the memory takes in addition to the mesh.
     memory_per_tet: f64,
     seconds: Seconds,
 }
@@ -61,7 +62,7 @@ struct Seconds {
 }
 
 impl Report {
-    /// `seconds`: to read, to write, and all.
+    /// `done`: what was reached; seconds: for reading, for writing, and in total.
     pub(super) fn new(
         args: &RefineArgs,
         mesh: &MeshRefinement,

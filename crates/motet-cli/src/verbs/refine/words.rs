@@ -1,4 +1,4 @@
-//! The words of `motet refine`: how each is written, and what it means.
+//! Arguments of `motet refine`: the syntax and meaning of each.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,14 @@ use motet::refine::{Aim, Amount, Condition, Criterion, Estimator, HessianSizes, 
 
 use crate::words::{named, number, numbers, positive};
 
-/// `SURFACE=DISTANCE`
+/// A parsed `SURFACE=DISTANCE`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Near {
     pub(crate) surface: PathBuf,
     pub(crate) within: f64,
 }
 
-/// `SURFACE=H[,GROWTH]`
+/// A parsed `SURFACE=H[,GROWTH]`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NearSize {
     pub(crate) surface: PathBuf,
@@ -22,7 +22,7 @@ pub(crate) struct NearSize {
     pub(crate) growth: f64,
 }
 
-/// How much longer edges are per unit of distance from a surface, where the call does not say.
+/// How much edge lengths grow per unit of distance from a surface, by default.
 const GROWTH: f64 = 0.5;
 
 pub(crate) fn near(text: &str) -> Result<Near, String> {
@@ -68,7 +68,7 @@ pub(crate) fn region(text: &str) -> Result<Criterion, String> {
     }
 }
 
-/// `PATCH` or `PATCH=DISTANCE`; what is no number behind the last `=` is part of the name.
+/// Parses `PATCH` or `PATCH=DISTANCE`; if what follows the last `=` is not a number, it is part of the name.
 pub(crate) fn patch(text: &str) -> Result<Criterion, String> {
     let example = "PATCH or PATCH=DISTANCE";
     let (patch, within) = match named(text, example).map(|(name, rest)| (name, number(rest))) {
@@ -108,7 +108,7 @@ pub(crate) fn q(text: &str) -> Result<Criterion, String> {
     Ok(Criterion::Q { array, above })
 }
 
-/// `ARRAY>VALUE`
+/// Parses `ARRAY>VALUE`.
 fn threshold(text: &str) -> Result<(String, f64), String> {
     match condition(text) {
         Ok(Condition { array, relation: Relation::Above, value }) => Ok((array, value)),
@@ -133,7 +133,7 @@ fn estimate(text: &str, by: Estimator) -> Result<Criterion, String> {
     checked(Criterion::Estimate { array: array.into(), by, amount })
 }
 
-/// `ARRAY[,ARRAY]=ERROR`, `=P%` or `=Ntets`
+/// Parses `ARRAY[,ARRAY]=ERROR`, `=P%` or `=Ntets`.
 pub(crate) fn hessian(text: &str) -> Result<HessianSizes, String> {
     let expected = "ARRAY[,ARRAY]=ERROR, =P% or =Ntets, such as p,velocity=2%,";
     let (arrays, aim) = named(text, expected)?;
@@ -150,7 +150,7 @@ pub(crate) fn hessian(text: &str) -> Result<HessianSizes, String> {
     checked(Criterion::Hessian(sizes.clone())).map(|_| sizes)
 }
 
-/// `Ntets`; `None` where it does not end so.
+/// Parses `Ntets`; `None` for text without this ending.
 fn tets(text: &str) -> Result<Option<usize>, String> {
     let Some(n) = text.strip_suffix("tets") else { return Ok(None) };
     match n.trim().parse() {

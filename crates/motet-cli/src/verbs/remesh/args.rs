@@ -1,4 +1,4 @@
-//! The words of `motet remesh`, as its help shows them.
+//! Arguments of `motet remesh`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -11,12 +11,12 @@ use crate::arrays::ArrayArgs;
 use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
 
-/// Find the bad tets of a mesh and repair them, and only them
+/// Find the bad tets of a mesh and repair them, leaving the others alone
 ///
-/// A tet is bad when its equi-angle quality (EAS: 1 regular, 0 flat, negative inverted) is below
-/// --min-eas. Each is repaired where it is: edges and facets swapped, edges split and collapsed,
-/// vertices moved and inserted; a change that does not raise the worst quality of what it touches is
-/// not made. All else stays as it is, to the bit. Regions, patches and all arrays are carried over.
+/// A tet is bad when its equi-angle quality (EAS: 1 regular, 0 flat, negative inverted) is below --min-eas.
+/// Each is repaired in place: edges and facets are swapped, edges split and collapsed, vertices moved and
+/// inserted; a change is made only if it raises the worst quality of the tets it touches. Everything else
+/// stays as it is, to the bit. Regions, patches and all arrays are carried over.
 #[derive(Debug, Args)]
 #[command(override_usage = "motet remesh MESH -o OUT [OPTIONS]")]
 #[command(after_help = "\
@@ -53,38 +53,38 @@ pub(crate) struct RemeshArgs {
     /// The mesh file (or folder)
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
-    /// Where the result goes, in any mesh format
+    /// Output file, in any mesh format
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
 
-    /// A tet below this EAS is bad
+    /// Tets below this EAS are bad
     #[arg(long, value_name = "EAS", default_value_t = 0.2, value_parser = eas, help_heading = "Repair")]
     pub(crate) min_eas: f64,
-    /// A tet with a dihedral angle below this is bad, too: --min-eas is raised to the EAS that makes
-    /// sure of it, 0.014 a degree
+    /// Tets with a dihedral angle below this are bad, too: --min-eas is raised to the EAS that guarantees it,
+    /// 0.014 per degree
     #[arg(long, value_name = "DEG", value_parser = degrees, help_heading = "Repair")]
     pub(crate) min_dihedral: Option<f64>,
-    /// What may happen to the boundary, to interfaces of regions and to surface cells
+    /// What may change on the boundary, on interfaces of regions and on surface cells
     #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
     pub(crate) surface: Surface,
     /// How far an adapting surface may stray from where it was, in units of the mesh [default: a
     /// thousandth of the largest extent]
     #[arg(long, value_name = "D", value_parser = positive, help_heading = "Repair")]
     distance: Option<f64>,
-    /// Bring edges to this length, or each to what a point array says there
+    /// Bring edges to this length, or to the value of a point array
     #[arg(long, value_name = "H|ARRAY", value_parser = sizes, help_heading = "Repair")]
     sizes: Option<Asked>,
-    /// Keep the tets of this region, or the triangles of this patch, and their vertices as they are, to
-    /// the bit; a name or a number, may be repeated
+    /// Keep the tets of this region, or the triangles of this patch, and their vertices as they are, to the
+    /// bit; by name or number. Repeatable
     #[arg(long, value_name = "NAME", help_heading = "Repair")]
     hold: Vec<String>,
-    /// How far to go
+    /// When to stop
     #[arg(long, value_name = "GOAL", default_value = "repair", help_heading = "Repair")]
     pub(crate) goal: Goal,
-    /// What becomes of the thin tets of boundary layers at walls, which count as bad by their angles
+    /// What to do with the thin tets of boundary layers at walls, whose angles would count as bad
     #[arg(long, value_name = "RULE", default_value = "keep", help_heading = "Repair")]
     layers: Layers,
-    /// At most so many rounds over the bad tets
+    /// Maximum number of rounds over the bad tets
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=10_000), help_heading = "Repair")]
     rounds: u32,
 
@@ -96,19 +96,19 @@ pub(crate) struct RemeshArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Surface {
-    /// Nothing: it stays to the bit
+    /// Nothing: surfaces stay to the bit
     Keep,
-    /// It may change within --distance; creases, corners and borders of patches stay
+    /// They may change within --distance; creases, corners and borders of patches stay
     Adapt,
-    /// The same, but creases and corners may change, too, within --distance, where nothing else helps
+    /// They may change within --distance; so may creases and corners where nothing else helps
     Loose,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Goal {
-    /// No bad tet left, as few tets touched as can be
+    /// When no bad tet is left, with as few tets touched as possible
     Repair,
-    /// The worst tets as good as they get, everywhere
+    /// When the worst tets everywhere are as good as they get
     Best,
 }
 
@@ -116,15 +116,15 @@ pub(crate) enum Goal {
 enum Layers {
     /// They stay as they are and count as good
     Keep,
-    /// They are repaired as any bad tet is
+    /// They are repaired like any bad tet
     Repair,
 }
 
-/// The sizes that are asked for.
+/// The requested sizes.
 #[derive(Clone, Debug, PartialEq)]
 enum Asked {
     Length(f64),
-    /// A point array.
+    /// Name of a point array.
     Array(String),
 }
 
@@ -155,12 +155,12 @@ impl RemeshArgs {
         })
     }
 
-    /// What the call holds, of the regions and patches of a mesh.
+    /// The regions and patches of a mesh that the call holds.
     pub(crate) fn held(&self, mesh: &Mesh) -> motet::Result<Held> {
         Held::of_names(mesh, &self.hold)
     }
 
-    /// The sizes that the call asks for, of a mesh that may have an array of them.
+    /// The sizes that the call requests, possibly from an array of the mesh.
     pub(crate) fn sizes(&self, mesh: &Mesh) -> motet::Result<Option<Sizes>> {
         let name = match &self.sizes {
             None => return Ok(None),

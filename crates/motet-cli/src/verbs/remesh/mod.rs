@@ -1,4 +1,4 @@
-//! `motet remesh`: bad tets found and repaired, all else as it came.
+//! `motet remesh`: finds and repairs bad tets, and leaves everything else unchanged.
 
 mod args;
 mod report;

@@ -1,4 +1,4 @@
-//! What a remeshing reports: to people tables, to programs an object.
+//! The report of `motet remesh`: tables for people, an object for programs.
 
 use std::path::PathBuf;
 
@@ -18,38 +18,39 @@ use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;
 
-/// How many of the bad tets that are left are told where nobody asks for all.
+/// How many of the remaining bad tets are listed without `--verbose`.
 const FIRST: usize = 10;
 
-/// All that a remeshing came to.
+/// All results of `motet remesh`.
 #[derive(Debug, Serialize)]
 pub(crate) struct Report {
     #[serde(serialize_with = "words::paths")]
     mesh: PathBuf,
     #[serde(serialize_with = "words::paths")]
     output: PathBuf,
-    /// Where the history went, if anywhere.
+    /// Where the history was written, if it was.
     #[serde(serialize_with = "words::paths")]
     history: Option<PathBuf>,
-    /// Whether nothing bad is left.
+    /// Whether no bad tet is left.
     complete: bool,
     min_eas: f64,
     before: State,
     after: State,
     /// How often each operation was made.
     operations: Counts,
-    /// Tets that are as they came, to the bit.
+    /// Number of tets that are unchanged, to the bit.
     kept: usize,
-    /// The same as a share of the tets that came.
+    /// Unchanged tets as a share of the input tets.
     untouched: f64,
-    /// Tets of boundary layers that would count as bad, and stayed.
+    /// Tets of boundary layers that would count as bad, and were kept.
     layers: usize,
-    /// Tets that are held and would count as bad, and stayed.
+    /// Held tets that would count as bad, and were kept.
     held: usize,
-    /// Edges beside the sizes that were asked for; null where none were.
+    /// Edges compared with the requested sizes; null where none were requested.
     sizes: Option<SizesReport>,
     left: Vec<Left>,
-    /// How well the volumes of old and new tets fit; `null` where no array was carried and no history was written.
+    /// How well the volumes of old and new tets agree; `null` where no array was carried and no history was
+    /// written.
     volumes: Option<Ledger>,
     /// How well arrays of real numbers were carried.
     fields: Vec<FieldLedger>,
@@ -60,7 +61,7 @@ pub(crate) struct Report {
     surface_is_kept: bool,
 }
 
-/// A mesh before or after.
+/// The state of a mesh before or after.
 #[derive(Debug, Serialize)]
 struct State {
     points: usize,
@@ -69,11 +70,11 @@ struct State {
     bad: usize,
     /// Thin tets of boundary layers, which are not bad.
     layers: usize,
-    /// How many of the bad are of each type.
+    /// Number of bad tets of each type.
     types: Value,
     inverted: usize,
     worst_eas: Option<Worst>,
-    /// Of all tets, those of boundary layers among them; null where there is none.
+    /// Quality of all tets, including those of boundary layers; null where there are none.
     quality: Option<Qualities>,
 }
 
@@ -84,7 +85,7 @@ struct Worst {
     place: Point,
 }
 
-/// A bad tet that is left.
+/// A bad tet that could not be repaired.
 #[derive(Debug, Serialize)]
 struct Left {
     cell: u32,
@@ -270,7 +271,8 @@ impl Report {
         table
     }
 
-    /// Arrays of real numbers: how they were carried, between which values they lie, and how far their integrals went.
+    /// A table of the arrays of real numbers: how each was carried, its range, and the deviation of its
+    /// integral.
     fn field_table(&self) -> Table {
         let mut table = Table::new(["array", "on", "carried", "before", "after", "integral off by"]);
         let range =
@@ -299,7 +301,7 @@ impl Report {
         table
     }
 
-    /// Edges beside their sizes.
+    /// A table of edges compared with their sizes.
     fn size_table(sizes: &SizesReport) -> Table {
         let mut table = Table::new(["edges, beside their sizes", "before", "after"]);
         let mut row = |what: &str, of: &dyn Fn(&Lengths) -> String| {
@@ -340,7 +342,7 @@ impl Report {
         }
     }
 
-    /// Why the requested result was not reached, and what might help.
+    /// Why the requested result was not reached, with advice.
     pub(super) fn not_reached(&self, report: &remesh::Report) -> Option<String> {
         let is_held = |left: &&Left| !matches!(left.reason, Reason::NothingHelps);
         let n_held = self.left.iter().filter(is_held).count();
@@ -373,7 +375,7 @@ fn place(p: Point) -> String {
     p.map(short).join(", ")
 }
 
-/// Rounded down, so that only all is 100.
+/// A share in percent, rounded down, so that only the whole gives 100.
 fn percent(share: f64) -> String {
     let floored = (share * 1e4).floor() / 1e2;
     floored.to_string()

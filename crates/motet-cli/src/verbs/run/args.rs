@@ -1,4 +1,4 @@
-//! The words of `motet run`, as its help shows them.
+//! Arguments of `motet run`, as its help shows them.
 
 use std::path::PathBuf;
 
@@ -6,8 +6,8 @@ use clap::Args;
 
 /// Keep a mesh good through cycles of its walls: moved, repaired, refined, watched, arrays carried
 ///
-/// The job file says what moves, and how; what becomes bad is repaired on the way. Each step is certified, and written to a series
-/// whose meshes may differ from step to step; ParaView plays it.
+/// The job file says what moves, and how; tets that become bad are repaired on the way. Each step is
+/// certified, and written to a series whose meshes may differ from step to step; ParaView plays it.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A job, in TOML; names of files are relative to it. All but `mesh` and `output` is optional:
@@ -78,10 +78,11 @@ pub(crate) struct RunArgs {
     /// The job file
     #[arg(value_name = "JOB.toml")]
     pub(crate) job: PathBuf,
-    /// Go on after the last step that an earlier run of the job has saved; start where there is none
+    /// Continue after the last step that an earlier run of the job has saved; start from the beginning where
+    /// there is none
     #[arg(long)]
     pub(crate) resume: bool,
-    /// End after this step
+    /// Stop after this step
     #[arg(long, value_name = "STEP")]
     pub(crate) until: Option<usize>,
 }

@@ -1,4 +1,4 @@
-//! What a run begins with: the mesh with its devices, what its walls do, how it is kept good.
+//! The start of a run: the mesh with its devices, the motion of its walls, and how it is kept good.
 
 use std::path::PathBuf;
 
@@ -21,13 +21,13 @@ use crate::verbs::implant::{Names, in_its_file, inside};
 use crate::verbs::moving;
 use crate::verbs::refine::{target, words};
 
-/// All that a run begins with.
+/// Everything that a run starts with.
 pub(super) struct Begin {
-    /// In its first place.
+    /// The mesh in its first position.
     pub(super) mesh: Mesh,
     pub(super) script: Script,
     pub(super) options: Options,
-    /// What is refined, and after every how many steps.
+    /// What to refine, and after every how many steps.
     pub(super) refining: Vec<(usize, Wanted)>,
 }
 
@@ -46,10 +46,10 @@ impl Begin {
     }
 }
 
-/// A body that goes farther than so many edges does not leave the tets round it as they were, whether it comes back or not.
+/// A body that moves farther than this many edges changes the tets around it, whether it comes back or not.
 const FAR: f64 = 3.0;
 
-/// Whether a wall goes on and does not come back, or a rigid body goes far.
+/// Whether a wall moves on without coming back, or a rigid body moves far.
 fn goes_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
     if job.motion.moves.iter().any(|part| part.in_time.is_ramp()) {
         return true;
@@ -66,7 +66,8 @@ fn goes_on(job: &Job, mesh: &Mesh, motion: &Motion, script: &Script) -> bool {
     })
 }
 
-/// The mesh, devices put into it: those that keep their triangles together, since they may lie in each other, then those that get a new surface.
+/// The mesh with devices put into it: first together those that keep their triangles, since they may be
+/// nested, then those that get a new surface.
 fn with_devices(job: &Job, threads: &Threads, console: &Console) -> Result<Mesh> {
     let mut mesh = read(job, &job.mesh, console)?;
     let matching: Vec<&job::Device> = job.device.iter().filter(|device| device.conform.is_none()).collect();
@@ -123,7 +124,7 @@ fn options(job: &Job, mesh: &Mesh, motion: Motion, returns: bool) -> Result<Opti
         rules,
         contents: job.contents.clone(),
         watch: watching(job, mesh)?,
-        // Histories are for those who hold the handle.
+        // Histories are only for callers of the library.
         remembered: 1,
     })
 }
@@ -155,7 +156,7 @@ fn motion(job: &Job, mesh: &Mesh) -> Result<Motion> {
     })
 }
 
-/// Where bodies put the strain: as the job says, else in a band where one goes on.
+/// Where bodies put the strain: as the job says; by default in a band where a body moves on.
 fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
     let is_of_bodies = matches!(method, Method::Bodies(_));
     match &job.motion.strain {
@@ -169,7 +170,7 @@ fn strain(job: &Job, method: &Method, goes_on: bool) -> Result<Strain> {
     }
 }
 
-/// A number, or a word as on the command line of `motet move`.
+/// An extent from a number, or from a word as on the command line of `motet move`.
 fn extent(layer: &Layer) -> Result<Extent> {
     let word = match layer {
         Layer::Distance(distance) => distance.to_string(),
@@ -191,7 +192,8 @@ fn watching(job: &Job, mesh: &Mesh) -> Result<Option<Watching>> {
     Ok(Some(Watching { patches: asked.patches.clone(), options, horizon, hold }))
 }
 
-/// What an entry of `refine` asks for, and after every how many steps: once, before the first, where it does not say.
+/// The refinement that an entry of `refine` requests, and after every how many steps: by default once, before
+/// the first.
 fn wanted(job: &Job, asked: &Refine, threads: &Threads) -> Result<(usize, Wanted)> {
     let mut criteria = Vec::new();
     let off = |what: &str| Error::input(format!("refine: {what}"));

@@ -1,4 +1,4 @@
-//! What the walls of a job do in time.
+//! The motion of the walls of a job over time.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::sub;
@@ -13,7 +13,7 @@ use crate::console::Console;
 /// The script of a job.
 ///
 /// # Errors
-/// When it names what is not there, surfaces do not fit, or a motion means nothing.
+/// When the job names something that does not exist, surfaces do not fit, or a motion is not valid.
 pub(super) fn script(
     job: &Job,
     mesh: &Mesh,
@@ -36,7 +36,7 @@ pub(super) fn script(
     Ok(script)
 }
 
-/// `surfaces`: each is a frame of a period, and the first follows the last.
+/// Adds the motion of `surfaces`: each is a frame of a period, and the first follows the last.
 fn frames(
     job: &Job,
     series: &std::path::Path,
@@ -70,7 +70,8 @@ fn frames(
     script.frames(&driven, frames, true).map(|_| ()).map_err(|e| e.in_file(series))
 }
 
-/// The mesh has triangles of its own: each of its vertices goes with the nearest place of the first surface.
+/// Adds the motion of surfaces with other triangles than the mesh: each vertex of the mesh moves with the
+/// nearest place of the first surface.
 fn nearest(
     job: &Job,
     files: &[std::path::PathBuf],
@@ -106,7 +107,7 @@ fn nearest(
     script.frames(&followers, frames, true).map(|_| ())
 }
 
-/// One `[[motion.move]]`.
+/// Adds the motion of one `[[motion.move]]`.
 fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
     let facets = FacetSet::find(mesh, &asked.patch)?;
     let in_time = in_time(&asked.in_time)?;
@@ -135,7 +136,8 @@ fn obey(asked: &Move, mesh: &Mesh, script: &mut Script) -> Result<()> {
     }
 }
 
-/// Entries that share vertices and move them to different places: the earlier one is obeyed, and the edge between is bent.
+/// Warns of entries that share vertices and move them to different places: the earlier one is obeyed, and the
+/// edge between them is bent.
 fn warn_of_contradiction(asked: &Move, mesh: &Mesh, script: &Script, console: &Console) {
     let contradicted = script.contradicted();
     if let Some(&first) = contradicted.first() {
@@ -181,14 +183,15 @@ fn in_time(course: &Course) -> Result<InTime> {
     })
 }
 
-/// Unit normals of the vertices of a patch: away from the volume where it is on the boundary, however its facets are turned; as they are turned inside.
+/// Unit normals of the vertices of a patch: pointing out of the volume on the boundary, however its facets
+/// are oriented; inside, as the facets are oriented.
 fn outward(mesh: &Mesh, facets: &FacetSet) -> Vec<Point> {
     let own: Vec<_> = facets.triangles().collect();
     let turned = Surface::boundary_of(mesh).turned(&own).unwrap_or(own);
     normals(&FacetSet::of_rings(facets.name.clone(), turned.iter().map(|t| t.as_slice())), &mesh.points)
 }
 
-/// The vertices of patches, rising.
+/// The vertices of patches, ascending.
 fn vertices(mesh: &Mesh, words: &[String]) -> Result<Vec<VertexId>> {
     let sets = words.iter().map(|word| FacetSet::find(mesh, word)).collect::<Result<Vec<_>>>()?;
     Ok(FacetSet::joined(sets).unwrap_or_default().vertices)

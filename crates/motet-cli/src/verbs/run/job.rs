@@ -1,4 +1,4 @@
-//! The job file: what it may say, and what is wrong with it, with its line.
+//! The job file: its keys, and errors in it, reported with the line.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::verbs::refine::words;
 
-/// All that a job file says.
+/// The content of a job file.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Job {
-    /// Where it lies: names of files are relative to it.
+    /// The path of the job file: names of files are relative to it.
     #[serde(skip)]
     pub(super) file: PathBuf,
     pub(super) mesh: PathBuf,
@@ -38,7 +38,7 @@ pub(super) struct Job {
     pub(super) carry: BTreeMap<String, Carry>,
 }
 
-/// How often a step is written, where nobody says.
+/// The default of `every`: each step is written.
 fn one() -> usize {
     1
 }
@@ -65,7 +65,7 @@ pub(super) struct Device {
     pub(super) hollow: bool,
     #[serde(default)]
     pub(super) fill: bool,
-    /// A new surface within so much of the device's.
+    /// Largest distance of a new surface from the device's; without it the triangles are kept.
     pub(super) conform: Option<f64>,
 }
 
@@ -139,7 +139,7 @@ pub(super) struct Bend {
     pub(super) degrees: f64,
 }
 
-/// A name of a course, or a table.
+/// The course of a motion in time: a name, or a table.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(super) enum Course {
@@ -148,7 +148,7 @@ pub(super) enum Course {
 }
 
 impl Course {
-    /// Whether what follows it goes on and stays where it came to.
+    /// Whether what follows this course ends at another place than it started from.
     pub(super) fn is_ramp(&self) -> bool {
         matches!(self, Self::Name(name) if name == "ramp")
     }
@@ -192,7 +192,7 @@ impl Default for Repair {
     }
 }
 
-/// Each word as on the command line of `motet refine`.
+/// An entry of `refine`; each word has the syntax of the command line of `motet refine`.
 #[derive(Debug, Default, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Refine {
@@ -207,7 +207,7 @@ pub(super) struct Refine {
     pub(super) region: Vec<String>,
     pub(super) gradient: Vec<String>,
     pub(super) vorticity: Vec<String>,
-    /// Edges of watched patches no longer than the gap between them.
+    /// Whether to divide edges of watched patches until they are no longer than the gap between them.
     pub(super) gaps: bool,
     pub(super) smallest: Option<f64>,
     pub(super) generations: Option<u32>,
@@ -225,7 +225,7 @@ pub(super) struct Contact {
     #[serde(default)]
     pub(super) own: bool,
     pub(super) horizon: Option<f64>,
-    /// Walls stop at this distance.
+    /// The distance at which walls stop.
     pub(super) hold: Option<f64>,
 }
 
@@ -233,7 +233,7 @@ impl Job {
     /// Reads and checks a job.
     ///
     /// # Errors
-    /// When it cannot be read, or says what no job can; with the line.
+    /// When it cannot be read or is not a valid job; with the line.
     pub(super) fn read(file: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(file).map_err(|e| Error::io(file, e))?;
         let job = toml::from_str(&text).map_err(|e| off(&text, &e).in_file(file))?;
@@ -245,12 +245,12 @@ impl Job {
         Ok(job)
     }
 
-    /// A file that the job names.
+    /// The path of a file that the job names.
     pub(super) fn path(&self, named: &Path) -> PathBuf {
         self.file.parent().unwrap_or(Path::new("")).join(named)
     }
 
-    /// The files that it reads, each with the key that names it.
+    /// The files that the job reads, each with the key that names it.
     pub(super) fn files(&self) -> Vec<(String, PathBuf)> {
         let mut files = vec![("mesh".to_owned(), self.mesh.clone())];
         for (i, device) in self.device.iter().enumerate() {
@@ -268,7 +268,7 @@ impl Job {
         files
     }
 
-    /// An error of kind input, in the job where no other file is named: what it says does not fit what there is.
+    /// The error as one of kind input, in the job file where it names no other file.
     pub(super) fn told(&self, error: Error) -> Error {
         let file = error.file().unwrap_or(&self.file).to_owned();
         let mut told = Error::input(error.what());
@@ -281,17 +281,17 @@ impl Job {
         told.in_file(file)
     }
 
-    /// Steps in a period.
+    /// Number of steps in a period.
     pub(super) fn steps_in_period(&self) -> usize {
         self.time.steps.unwrap_or(STEPS)
     }
 
-    /// Steps in all.
+    /// Total number of steps.
     pub(super) fn n_steps(&self) -> usize {
         self.steps_in_period() * self.time.periods
     }
 
-    /// When step `k` is.
+    /// The time of step `k`.
     pub(super) fn time(&self, k: usize) -> f64 {
         self.time.period * (k as f64 / self.steps_in_period() as f64)
     }
@@ -342,11 +342,11 @@ impl Job {
     }
 }
 
-/// Steps of a period, where nothing says.
+/// Number of steps in a period, by default.
 const STEPS: usize = 20;
 const MOST_STEPS: usize = 100_000_000;
 
-/// What the reader of TOML says, with the line.
+/// The error of the TOML parser, with the line.
 fn off(text: &str, error: &toml::de::Error) -> Error {
     let told = Error::input(error.message().trim().replace('\n', "; "));
     let told = told.remedy("`motet help run` shows a job with all that it may say");

@@ -1,4 +1,4 @@
-//! `motet run`: a mesh kept good through cycles of its walls, as a job file says.
+//! `motet run`: keeps a mesh good through cycles of its walls, as described by a job file.
 
 mod args;
 mod begin;
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<
     Ok(report.outcome())
 }
 
-/// Makes the steps of a job, and says how it went.
+/// Makes the steps of a job and reports the result.
 pub(crate) fn carry_out(args: &RunArgs, common: &Common, console: &Console) -> Result<Report> {
     let begin = Instant::now();
     let threads = common.threads()?;
@@ -57,16 +57,16 @@ pub(crate) fn carry_out(args: &RunArgs, common: &Common, console: &Console) -> R
     Ok(report)
 }
 
-/// A job on its way.
+/// A job in progress.
 struct Run {
     moving: MovingMesh,
     script: Script,
-    /// What is refined, and after every how many steps.
+    /// What to refine, and after every how many steps.
     refining: Vec<(usize, Wanted)>,
 }
 
 impl Run {
-    /// At the first step, or after the last that an earlier run has saved.
+    /// Starts at the first step, or after the last that an earlier run has saved.
     fn begin(
         job: &Job,
         resume: bool,
@@ -124,7 +124,7 @@ impl Run {
         Ok(Step { legs: step.legs, changes: step.changes, seconds: step.seconds, ..after })
     }
 
-    /// Divides and takes back what the job asks for after step `k`; before the first all of it.
+    /// Makes the refinements that are due after step `k`; before the first step, all of them.
     fn refine(&mut self, k: usize, threads: &Threads) -> Result<Vec<Change>> {
         let due = self.refining.iter().filter(|(every, _)| k.is_multiple_of(*every));
         let changes =

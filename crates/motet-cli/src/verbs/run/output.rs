@@ -1,7 +1,8 @@
-//! What a run writes: the series, a line a step, the state to go on from.
+//! Files that a run writes: the series, a line per step, the state from which to resume.
 //!
-//! Lines and meshes are the same bytes however often a run was stopped; what the clock said has a file of its own. One run at a time writes to an output: the lock is the
-//! system's, so that a run that was killed leaves none. All that a state goes on from is on the disk before the state is.
+//! Lines and meshes are the same bytes however often a run was stopped; timings go to a separate file. One
+//! run at a time writes to an output: the lock is the system's, so that a killed run leaves none. Everything
+//! that a state depends on is on the disk before the state is.
 
 use std::fs::OpenOptions;
 use std::io::Write as _;
@@ -17,7 +18,7 @@ use serde_json::{Value, json};
 use super::job::Job;
 use super::record::{self, Record};
 
-/// Where all goes.
+/// The output files of a run.
 pub(super) struct Output {
     pub(super) series_file: PathBuf,
     series: SeriesWriter,
@@ -25,15 +26,17 @@ pub(super) struct Output {
     pub(super) log: PathBuf,
     times: PathBuf,
     state: PathBuf,
-    /// The next state, until it is whole.
+    /// The next state, until it is complete.
     draft: PathBuf,
-    /// Which job it is.
+    /// The record of the job.
     record: PathBuf,
 }
 
 impl Output {
+    /// Prepares the output of a job.
+    ///
     /// # Errors
-    /// When the system refuses its place, or another run writes there.
+    /// When the system refuses access, or another run writes there.
     pub(super) fn new(job: &Job) -> Result<Self> {
         let series_file = job.path(&job.output);
         let folder = series_file.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -61,10 +64,10 @@ impl Output {
         self.state.is_file().then(|| self.state.clone())
     }
 
-    /// Whether the state was made by this job.
+    /// Checks that the state was made by this job.
     ///
     /// # Errors
-    /// When it was made by another, or nothing says by which: names what differs.
+    /// When it was made by another job, or no record exists; the error names the differences.
     pub(super) fn check_record(&self, job: &Job, now: &Record) -> Result<()> {
         let differ = record::differences(&record::read(&self.record)?, now);
         match differ.is_empty() {
@@ -79,10 +82,10 @@ impl Output {
         }
     }
 
-    /// What an earlier run has written up to a step stays, and no more.
+    /// Keeps what an earlier run has written up to a step, and no more.
     ///
     /// # Errors
-    /// When a frame or a line of it is missing.
+    /// When one of its frames or lines is missing.
     pub(super) fn go_on(&mut self, step: usize) -> Result<()> {
         let n_frames = 1 + step / self.every;
         self.series.go_on_after(n_frames)?;
@@ -109,7 +112,7 @@ impl Output {
             .in_file(&self.log)
             .remedy(remedy));
         }
-        // What the clock said is of no account for what follows.
+        // Timings do not matter for what follows.
         for file in [&self.log, &self.times] {
             let text = std::fs::read_to_string(file).unwrap_or_default();
             let lines: String = text.split_inclusive('\n').take(step + 1).collect();
@@ -118,7 +121,7 @@ impl Output {
         Ok(())
     }
 
-    /// The first frame; what an earlier run has left goes.
+    /// Writes the first frame; removes what an earlier run has left.
     pub(super) fn first(&mut self, record: &Record, moving: &MovingMesh, step: &Step) -> Result<()> {
         if self.state.is_file() {
             std::fs::remove_file(&self.state).map_err(|e| Error::output(&self.state, e))?;
@@ -155,12 +158,12 @@ impl Output {
     }
 }
 
-/// The name of a state that is not whole yet.
+/// The file name of an incomplete state.
 fn draft_of(name: &str) -> String {
     format!(".motet-{name}.state.vtu")
 }
 
-/// Whether a run whose output has this name writes files of that one.
+/// Whether a run whose output is named `name` writes the file named `of`.
 fn is_own(name: &str, of: &str) -> bool {
     let is_number = |text: &str| text.len() >= 4 && text.bytes().all(|c| c.is_ascii_digit());
     of == draft_of(name)
@@ -173,17 +176,17 @@ fn is_own(name: &str, of: &str) -> bool {
 fn append(file: &Path, line: &Value) -> Result<()> {
     let told = |e: std::io::Error| Error::output(file, e);
     let mut out = OpenOptions::new().append(true).create(true).open(file).map_err(told)?;
-    // One write a line: a run that is killed leaves whole lines, or a last one that resuming cuts off.
+    // One write per line: a killed run leaves whole lines, or an incomplete last one that resuming cuts off.
     out.write_all(format!("{line}\n").as_bytes()).map_err(told)
 }
 
-/// The mesh with what the step says of it as arrays.
+/// The mesh with the results of the step as arrays.
 fn frame(moving: &MovingMesh) -> Mesh {
     let mut mesh = moving.mesh().clone();
     mesh.set_point_field(Field::vectors("displacement", &moving.displacement()));
     mesh.set_point_field(Field::vectors("velocity", &moving.velocity()));
     if let Some(gaps) = moving.gaps() {
-        // Where nothing is measured there is no number.
+        // NaN where nothing is measured.
         let gap =
             gaps.at_points(mesh.points.len()).into_iter().map(|x| if x.is_finite() { x } else { f64::NAN });
         mesh.set_point_field(Field::scalars("gap", gap.collect::<Vec<_>>()));

@@ -1,7 +1,7 @@
-//! Which job a state was made by: what the job says, and what its files hold.
+//! The record of the job that made a state: the content of the job and of its files.
 //!
-//! A run goes on from a state only with the job that the state was made by. What cannot change the steps that were made is left out: how long the run is to be, and
-//! where files lie.
+//! A run resumes from a state only with the job that made it. What cannot change the steps already made is
+//! left out: the length of the run, and where files lie.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,16 +11,16 @@ use serde_json::{Value, json};
 
 use super::job::Job;
 
-/// So many differences are named.
+/// How many differences are named.
 const MOST: usize = 4;
 
-/// Keys with their values as text. A file's value is what it holds.
+/// Keys with their values as text. The value of a file is a summary of its content.
 pub(super) type Record = BTreeMap<String, String>;
 
 /// The record of a job.
 ///
 /// # Errors
-/// When a file that it names cannot be read.
+/// When a file that the job names cannot be read.
 pub(super) fn of(job: &Job) -> Result<Record> {
     let mut record = Record::new();
     let said = serde_json::to_value(job).map_err(|e| Error::io(&job.file, e.into()))?;
@@ -35,7 +35,7 @@ pub(super) fn of(job: &Job) -> Result<Record> {
     Ok(record)
 }
 
-/// What differs, each by its key, what it was and what it is.
+/// The differences: the key, the old value and the new value of each.
 pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
     let keys = was.keys().chain(is.keys().filter(|key| !was.contains_key(*key)));
     let differ = keys.filter(|key| was.get(*key) != is.get(*key));
@@ -50,10 +50,10 @@ pub(super) fn differences(was: &Record, is: &Record) -> Vec<String> {
     told
 }
 
-/// Reads what [`write`] wrote.
+/// Reads a record that [`write`] wrote.
 ///
 /// # Errors
-/// When it is not there, or is no record.
+/// When it does not exist, or is not a record.
 pub(super) fn read(file: &Path) -> Result<Record> {
     let off = |what: &str| Err(Error::input(what).in_file(file).remedy("leave --resume away to start anew"));
     match std::fs::read(file) {
@@ -72,7 +72,7 @@ pub(super) fn write(file: &Path, record: &Record) -> Result<()> {
     io::sync(file)
 }
 
-/// A leaf a key, keys within keys joined by dots. What a job leaves away is no key.
+/// Adds the leaves of a value, with keys within keys joined by dots. What a job omits gets no key.
 fn flatten(key: &str, value: &Value, record: &mut Record) {
     let within = |name: &str| if key.is_empty() { name.to_owned() } else { format!("{key}.{name}") };
     match value {
@@ -87,12 +87,13 @@ fn flatten(key: &str, value: &Value, record: &mut Record) {
     }
 }
 
-/// What a file holds, or all files of a folder or series: how many bytes, and a sum over them.
+/// A summary of the content of a file, or of all files of a folder or series: the number of bytes, and a
+/// checksum.
 fn content(path: &Path) -> Result<String> {
     let mut sum = Sum::default();
     let series = if io::can_write_series(path) { io::read_series(path)? } else { Vec::new() };
     for file in series.into_iter().map(|(_, file)| file).chain([path.to_owned()]) {
-        // A step of a file with several is all of it.
+        // One step of a file with several stands for the whole file.
         files_of(&io::file_of(&file), &mut |file| {
             std::fs::read(file).map(|bytes| sum.add(&bytes)).map_err(|e| Error::io(file, e))
         })?;
@@ -110,7 +111,7 @@ fn files_of(path: &Path, of: &mut impl FnMut(&Path) -> Result<()>) -> Result<()>
     entries.iter().try_for_each(|entry| files_of(entry, of))
 }
 
-/// FNV-1a (Fowler, Noll and Vo 1991) in 64 bits: tells files apart that were changed, not files that were made to look alike.
+/// FNV-1a (Fowler, Noll and Vo 1991) in 64 bits: detects changed files, but not files forged to look alike.
 struct Sum {
     n_bytes: u64,
     state: u64,

@@ -1,4 +1,4 @@
-//! What a run says: a line a step, and how it went.
+//! The report of `motet run`: a line per step, and the result.
 
 use std::path::PathBuf;
 
@@ -16,7 +16,7 @@ use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;
 
-/// How a run went.
+/// The result of a run.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Report {
     #[serde(serialize_with = "words::paths")]
@@ -25,56 +25,57 @@ pub(crate) struct Report {
     output: PathBuf,
     #[serde(serialize_with = "words::paths")]
     log: PathBuf,
-    /// The step that it went on after; 0 at the begin.
+    /// The step after which the run resumed; 0 for a new run.
     resumed_after: usize,
     /// The last step.
     pub(crate) steps: usize,
     of: usize,
-    /// Whether every step was gone to its end.
+    /// Whether every step was completed.
     complete: bool,
     changes: usize,
     /// Steps in which the mesh changed.
     pub(crate) changed_steps: usize,
-    /// Bad tets that were there when something was repaired.
+    /// Bad tets present when something was repaired.
     pub(crate) repaired: usize,
-    /// The most bad tets that a step had, those that walls force among them; and without these.
+    /// The most bad tets in a step, including those that walls force.
     pub(crate) most_bad: usize,
     most_bad_not_forced: usize,
     pub(crate) most_inverted: usize,
-    /// The most tets of a changed mesh in a step that are flat or inverted where their vertices were as the step began.
+    /// The most tets in a step that are flat or inverted in the changed mesh with its vertices where they
+    /// were as the step began.
     most_inverted_at_start: usize,
-    /// As it came or went on, and of all steps.
+    /// The worst tet when the run started or resumed.
     pub(crate) worst_at_first: Option<WorstTet>,
     pub(crate) worst: Option<WorstTet>,
     worst_at_step: usize,
     points: usize,
-    /// As it came or went on, and at the end.
+    /// Number of tets when the run started or resumed, and at the end.
     pub(crate) tets: [usize; 2],
-    /// How good all tets are: as it came or went on, and at the end.
+    /// Quality of all tets when the run started or resumed, and at the end.
     pub(crate) quality: [Qualities; 2],
     /// The least mean EAS of a step.
     least_mean: f64,
-    /// The part of the cells that changed, all steps together, by the cells of a step.
+    /// The cells that changed, summed over all steps, relative to the cells of a step.
     changed: f64,
     /// Steps in which walls stopped in front of others.
     held_steps: usize,
-    /// Of all steps the vertex that was farthest from its requested place.
+    /// The held vertex of any step that stopped farthest from its requested place.
     farthest_held: Option<Stopped>,
     /// The first patch that had no room to keep its distance.
     cramped: Option<String>,
     pub(crate) least_gap: Option<f64>,
     least_gap_at: Option<f64>,
     first_warned_at: Option<f64>,
-    /// Steps in which something warned.
+    /// Number of steps with a warning.
     pub(crate) warned_steps: usize,
-    /// Where walls take the rim of a sliding patch out of its plane the farthest.
+    /// Where walls take the rim of a sliding patch farthest out of its plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     leaves_plane: Option<LeavesPlane>,
     seconds: Seconds,
     pub(super) seconds_total: f64,
 }
 
-/// A line a step, for people.
+/// Prints a line for a step, for people.
 pub(super) fn line(step: &Step, console: &Console) {
     let worst = step.worst.map_or(f64::NAN, |worst| worst.eas);
     let mut text = format!(
@@ -125,7 +126,7 @@ impl Report {
         }
     }
 
-    /// The run goes on after a step.
+    /// Notes that the run resumes after a step.
     pub(super) fn go_on(&mut self, step: usize) {
         (self.resumed_after, self.steps) = (step, step);
     }
@@ -199,7 +200,7 @@ impl Report {
         }
     }
 
-    /// Whether all was gone, and no tet is bad but those that walls force.
+    /// The outcome: done if every step was completed and the only bad tets are those that walls force.
     pub(crate) fn outcome(&self) -> Outcome {
         let (inverted, bad) = (self.most_inverted, self.most_bad_not_forced);
         Outcome::of(reasons([
