@@ -1,4 +1,4 @@
-//! What changes a mesh: repair, implantation, filling; and what came of it.
+//! Operations that change a mesh (repair, implantation, filling), and their outcomes.
 
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
@@ -19,7 +19,7 @@ use crate::memory::{
 };
 use crate::mesh::{MotetMesh, field, json, on_points};
 
-/// A new mesh, where it came from, and what was done.
+/// A new mesh, its history, and the report.
 pub(crate) struct MotetOutcome {
     mesh: MotetMesh,
     history: Option<History>,
@@ -35,7 +35,7 @@ impl MotetOutcome {
         report: &impl serde::Serialize,
         not_reached: Option<String>,
     ) -> Result<Self> {
-        // A reason is written by this library, so that it holds no zero byte.
+        // Reasons are written by this library and contain no zero byte.
         let not_reached = not_reached.map(|why| CString::new(why).unwrap_or_default());
         Ok(Self { mesh: MotetMesh(mesh), history, report: json(report)?, not_reached })
     }
@@ -127,7 +127,7 @@ pub(crate) unsafe extern "C" fn motet_outcome_free(outcome: *mut MotetOutcome) {
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetRemeshOptions, motet_remesh_options_init {
         min_eas: f64 = 0.2,
         min_dihedral_deg: f64 = 0.0,
@@ -145,7 +145,7 @@ versioned! {
     }
 }
 
-/// What a surface may do, by the numbers of the header.
+/// The surface rule of a number in the header.
 pub(crate) fn surface_rule(rule: i32, distance: f64) -> Result<SurfaceRule> {
     let distance = optional(distance);
     match rule {
@@ -197,7 +197,7 @@ pub(crate) unsafe extern "C" fn motet_remesh(
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetImplantOptions, motet_implant_options_init {
         inside: i32 = 0,
         conform: i32 = 0,
@@ -277,7 +277,7 @@ pub(crate) unsafe extern "C" fn motet_implant(
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetFillOptions, motet_fill_options_init {
         edge_length: f64 = 0.0,
         graded: i32 = 0,
@@ -355,5 +355,5 @@ pub(crate) unsafe extern "C" fn motet_fill(
     })
 }
 
-/// A hole of more edges is no small one.
+/// Holes with more edges than this are not closed as small ones.
 const MOST_HOLE_EDGES: usize = 32;

@@ -1,4 +1,4 @@
-//! How far apart surfaces are, and when they will touch.
+//! Contact: distances between surfaces, and when they will touch.
 
 use motet::base::{Threads, VertexId};
 use motet::contact::{Body, Contact, Options, Room};
@@ -17,7 +17,7 @@ pub(crate) struct MotetContact {
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetContactOptions, motet_contact_options_init {
         warn: f64 = 0.0,
         within: f64 = 0.0,
@@ -128,7 +128,7 @@ pub(crate) unsafe extern "C" fn motet_contact_measure(
                 out[v.index()] = out[v.index()].min(*gap);
             }
         }
-        // SAFETY: the header asks for NULL or a place for a number.
+        // SAFETY: the header requires NULL or a place for a number.
         if let Some(place) = unsafe { least.as_mut() } {
             *place = measured.least();
         }

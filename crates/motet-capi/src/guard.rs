@@ -1,4 +1,5 @@
-//! Statuses and errors. Every call that can fail runs in [`guarded`], where errors get out and panics end.
+//! Statuses and errors. Every call that can fail runs in [`guarded`], which converts errors and catches
+//! panics.
 
 use std::ffi::{CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,7 +13,7 @@ const OPTIONS: i32 = 2;
 const INPUT: i32 = 3;
 const IO: i32 = 4;
 
-/// An error, its parts as C has texts.
+/// An error, its parts as C strings.
 pub(crate) struct MotetError {
     status: i32,
     message: CString,
@@ -51,14 +52,14 @@ impl MotetError {
     }
 }
 
-/// A text for C, which ends at the first zero.
+/// A C string of a text, with zero bytes removed.
 pub(crate) fn text(text: impl Into<Vec<u8>>) -> CString {
     let mut bytes: Vec<u8> = text.into();
     bytes.retain(|&b| b != 0);
     CString::new(bytes).unwrap_or_default()
 }
 
-/// Makes a call: its status, and what went wrong in `error`, unless that is NULL.
+/// Makes a call and returns its status; stores the error, or NULL, in `error` unless that is NULL.
 pub(crate) fn guarded(error: *mut *mut MotetError, call: impl FnOnce() -> Result<()>) -> i32 {
     let failed = match catch_unwind(AssertUnwindSafe(call)) {
         Ok(Ok(())) => None,
@@ -70,14 +71,14 @@ pub(crate) fn guarded(error: *mut *mut MotetError, call: impl FnOnce() -> Result
         }
     };
     let status = failed.as_ref().map_or(OK, |failed| failed.status);
-    // SAFETY: the header asks for NULL or a place for a pointer.
+    // SAFETY: the header requires NULL or a place for a pointer.
     if let Some(place) = unsafe { error.as_mut() } {
         *place = failed.map_or(ptr::null_mut(), |failed| Box::into_raw(Box::new(failed)));
     }
     status
 }
 
-/// What cannot fail but by a fault of ours: `otherwise` then.
+/// Runs a call that fails only by a bug in this library; returns `otherwise` then.
 pub(crate) fn quiet<T>(otherwise: T, call: impl FnOnce() -> Option<T>) -> T {
     catch_unwind(AssertUnwindSafe(call)).ok().flatten().unwrap_or(otherwise)
 }
@@ -87,7 +88,7 @@ macro_rules! parts {
         $(#[unsafe(no_mangle)]
         pub(crate) unsafe extern "C" fn $name(error: *const MotetError) -> *const c_char {
             let of: fn(&MotetError) -> Option<&CString> = $of;
-            // SAFETY: the header asks for NULL or an error that has not been freed.
+            // SAFETY: the header requires NULL or an error that has not been freed.
             unsafe { error.as_ref() }.and_then(of).map_or(ptr::null(), |text| text.as_ptr())
         })*
     };
@@ -103,7 +104,7 @@ parts! {
 
 #[unsafe(no_mangle)]
 pub(crate) unsafe extern "C" fn motet_error_status(error: *const MotetError) -> i32 {
-    // SAFETY: as above.
+    // SAFETY: the header requires NULL or an error that has not been freed.
     unsafe { error.as_ref() }.map_or(OK, |error| error.status)
 }
 

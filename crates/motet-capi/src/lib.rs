@@ -1,10 +1,10 @@
-//! The C library: what `include/motet.h` promises. That header is the reference; here is no second one.
+//! The C library behind `include/motet.h`. That header is the reference; it is not repeated here.
 //!
 //! | file | what it holds |
 //! |---|---|
 //! | `guard` | statuses and errors; a panic stops here |
-//! | `memory` | what comes by pointer: arrays with strides, texts, handles, structs with a size |
-//! | `mesh`, `motion`, `changing`, `refinement`, `contact`, `moving` | the calls, as the header has them in order |
+//! | `memory` | data passed by pointer: arrays with strides, texts, handles, structs with a size |
+//! | `mesh`, `motion`, `changing`, `refinement`, `contact`, `moving` | the calls, in the order of the header |
 
 #![allow(unsafe_code, reason = "what a C program gives is pointers; each is looked at in `memory`, once")]
 #![allow(clippy::missing_safety_doc, reason = "the header says what each call needs")]
@@ -19,7 +19,7 @@ mod motion;
 mod moving;
 mod refinement;
 
-/// The version of this library.
+/// The version of this library as one number, `10000 major + 100 minor + patch`.
 #[unsafe(no_mangle)]
 pub extern "C" fn motet_version() -> i32 {
     let part = |text: &str| text.parse::<i32>().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! What comes by pointer, looked at once: arrays with strides, texts, handles, structs that say their size.
+//! Data passed by pointer, checked once: arrays with strides, texts, handles, structs that state their size.
 
 use std::borrow::Cow;
 use std::ffi::{CStr, c_char};
@@ -11,17 +11,18 @@ fn missing(what: &str) -> Error {
     Error::options(format!("{what} is NULL")).remedy("motet.h says what each call needs")
 }
 
-/// A count that C gives.
+/// A count passed from C.
 pub(crate) fn count(n: i64, what: &str) -> Result<usize> {
     usize::try_from(n).map_err(|_| Error::options(format!("{n} {what}, expected 0 or more")))
 }
 
-/// A number of an option, `None` where it is 0: then it is left to motet. The library judges any other, and refuses those that mean nothing.
+/// A number of an option; `None` for 0, which leaves the choice to motet. All other values are passed on; the
+/// library refuses invalid ones.
 pub(crate) fn optional(x: f64) -> Option<f64> {
     (x != 0.0).then_some(x)
 }
 
-/// Fails where a count is not what it has to be.
+/// Fails where a count differs from the expected one.
 pub(crate) fn expect(n: i64, expected: usize, what: &str) -> Result<()> {
     match usize::try_from(n) == Ok(expected) {
         true => Ok(()),
@@ -29,22 +30,22 @@ pub(crate) fn expect(n: i64, expected: usize, what: &str) -> Result<()> {
     }
 }
 
-/// `n` values.
+/// A slice of `n` values to read.
 pub(crate) fn values<'a, T>(start: *const T, n: usize, what: &str) -> Result<&'a [T]> {
     match (start.is_null(), n) {
         (_, 0) => Ok(&[]),
         (true, _) => Err(missing(what)),
-        // SAFETY: the header asks for so many values behind the pointer.
+        // SAFETY: the header requires that many values behind the pointer.
         (false, _) => Ok(unsafe { slice::from_raw_parts(start, n) }),
     }
 }
 
-/// Room for `n` values.
+/// A slice of `n` values to write.
 pub(crate) fn room<'a, T>(start: *mut T, n: usize, what: &str) -> Result<&'a mut [T]> {
     match (start.is_null(), n) {
         (_, 0) => Ok(&mut []),
         (true, _) => Err(missing(what)),
-        // SAFETY: the header asks for memory for so many values, which nothing else uses during the call.
+        // SAFETY: the header requires memory for that many values, which nothing else uses during the call.
         (false, _) => Ok(unsafe { slice::from_raw_parts_mut(start, n) }),
     }
 }
@@ -57,12 +58,12 @@ fn stride(stride: i64, what: &str) -> Result<usize> {
     }
 }
 
-/// How many doubles `n` rows take.
+/// The number of doubles that `n` rows span.
 fn extent(n: usize, stride: usize) -> usize {
     if n == 0 { 0 } else { (n - 1).saturating_mul(stride).saturating_add(3) }
 }
 
-/// Rows of three; where they lie if they lie end to end, else copied.
+/// Rows of three numbers: borrowed if they are contiguous, copied otherwise.
 pub(crate) fn rows<'a>(start: *const f64, n: i64, step: i64, what: &str) -> Result<Cow<'a, [Point]>> {
     let (n, step) = (count(n, what)?, stride(step, what)?);
     let flat = values(start, extent(n, step), what)?;
@@ -72,7 +73,8 @@ pub(crate) fn rows<'a>(start: *const f64, n: i64, step: i64, what: &str) -> Resu
     })
 }
 
-/// Fills rows of three: where they lie if they lie end to end, else by a copy. Where `fill` fails, strided rows stay as they were.
+/// Fills rows of three numbers: in place if they are contiguous, through a copy otherwise. Where `fill`
+/// fails, strided rows stay unchanged.
 pub(crate) fn fill_rows<T>(
     start: *mut f64,
     n: i64,
@@ -91,7 +93,7 @@ pub(crate) fn fill_rows<T>(
     Ok(done)
 }
 
-/// Fails where rows that are read share memory with rows that are to be written. Rows that were copied do not.
+/// Fails where rows to be read share memory with rows to be written. Copied rows do not.
 pub(crate) fn apart(read: &[Point], written: *mut f64, n: i64, step: i64) -> Result<()> {
     let length = extent(count(n, "rows")?, stride(step, "rows")?);
     let end = written.addr().saturating_add(length.saturating_mul(size_of::<f64>()));
@@ -105,54 +107,54 @@ pub(crate) fn apart(read: &[Point], written: *mut f64, n: i64, step: i64) -> Res
     }
 }
 
-/// A text.
+/// A text passed from C.
 pub(crate) fn text<'a>(start: *const c_char, what: &str) -> Result<&'a str> {
     if start.is_null() {
         return Err(missing(what));
     }
-    // SAFETY: the header asks for a text that ends with a zero.
+    // SAFETY: the header requires a text that ends with a zero.
     let text = unsafe { CStr::from_ptr(start) }.to_str();
     text.map_err(|_| Error::options(format!("{what} is no UTF-8")))
 }
 
-/// Several texts.
+/// Several texts passed from C.
 pub(crate) fn texts<'a>(start: *const *const c_char, n: i64, what: &str) -> Result<Vec<&'a str>> {
     values(start, count(n, what)?, what)?.iter().map(|&one| text(one, what)).collect()
 }
 
-/// Several texts, copied.
+/// Several texts passed from C, copied.
 pub(crate) fn owned(start: *const *const c_char, n: i64, what: &str) -> Result<Vec<String>> {
     Ok(texts(start, n, what)?.into_iter().map(str::to_owned).collect())
 }
 
-/// A handle that is read.
+/// A handle to read from.
 pub(crate) fn handle<'a, T>(handle: *const T, what: &str) -> Result<&'a T> {
-    // SAFETY: the header asks for a handle that was made by this library and has not been freed.
+    // SAFETY: the header requires a handle that was made by this library and has not been freed.
     unsafe { handle.as_ref() }.ok_or_else(|| missing(what))
 }
 
-/// A handle that is changed.
+/// A handle to be changed.
 pub(crate) fn handle_mut<'a, T>(handle: *mut T, what: &str) -> Result<&'a mut T> {
-    // SAFETY: as above, and that nobody else uses it during the call.
+    // SAFETY: as for `handle`; the header also requires that nothing else uses it during the call.
     unsafe { handle.as_mut() }.ok_or_else(|| missing(what))
 }
 
-/// Where a new handle goes: NULL until there is one.
+/// The place for a new handle, set to NULL until there is one.
 pub(crate) fn place<'a, T>(place: *mut *mut T, what: &str) -> Result<&'a mut *mut T> {
     let place = handle_mut(place, what)?;
     *place = std::ptr::null_mut();
     Ok(place)
 }
 
-/// Hands a new thing to the caller.
+/// Moves a new object to the heap and gives its handle to the caller.
 pub(crate) fn give<T>(place: &mut *mut T, thing: T) {
     *place = Box::into_raw(Box::new(thing));
 }
 
-/// Takes a thing back.
+/// Frees the object of a handle; NULL is permitted.
 pub(crate) fn free<T>(handle: *mut T) {
     if !handle.is_null() {
-        // SAFETY: the header asks for a handle that was made by this library and has not been freed.
+        // SAFETY: the header requires a handle that was made by this library and has not been freed.
         drop(unsafe { Box::from_raw(handle) });
     }
 }
@@ -160,13 +162,15 @@ pub(crate) fn free<T>(handle: *mut T) {
 /// A struct whose first member is its size, and whose members may be copied as bytes.
 ///
 /// # Safety
-/// `repr(C)`, and every member means something for any bytes that a C program can put there: numbers and pointers.
+/// The type is `repr(C)`, and every member is valid for any bytes that a C program can store there: numbers
+/// and pointers.
 pub(crate) unsafe trait Versioned: Copy {
-    /// What members are where nobody says otherwise.
+    /// The default values of the members.
     const DEFAULT: Self;
 }
 
-/// A struct of the header: its members with their defaults, and the function that sets them all to these.
+/// Defines a struct of the header: its members with their defaults, and the function that sets all of them to
+/// these.
 macro_rules! versioned {
     ($(#[$doc:meta])* $name:ident, $init:ident { $($member:ident: $type:ty = $default:expr,)* }) => {
         $(#[$doc])*
@@ -177,7 +181,7 @@ macro_rules! versioned {
             $($member: $type,)*
         }
 
-        // SAFETY: the header has numbers and pointers, in this order.
+        // SAFETY: the header declares numbers and pointers, in this order.
         unsafe impl crate::memory::Versioned for $name {
             const DEFAULT: Self = Self { size: size_of::<Self>(), $($member: $default,)* };
         }
@@ -191,7 +195,8 @@ macro_rules! versioned {
 }
 pub(crate) use versioned;
 
-/// What a program gives, which may know fewer members: the others have their defaults. NULL: all have.
+/// Copies a struct given by a program that may know fewer members: the others keep their defaults, as do all
+/// for NULL.
 pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
     let mut all = T::DEFAULT;
     if given.is_null() {
@@ -202,20 +207,20 @@ pub(crate) fn sized<T: Versioned>(given: *const T) -> Result<T> {
     if size < size_of::<usize>() {
         return Err(Error::options("a struct of options without its size").remedy("call its _init first"));
     }
-    // SAFETY: the program says that so many bytes are there; the trait says that they may be copied.
+    // SAFETY: the program guarantees that this many bytes are there; the trait, that they may be copied.
     unsafe {
         given.cast::<u8>().copy_to_nonoverlapping((&raw mut all).cast::<u8>(), size.min(size_of::<T>()));
     }
     Ok(all)
 }
 
-/// Puts a struct where a program has room for it, as far as it knows its members.
+/// Copies a struct to the program, up to the size that the program knows.
 pub(crate) fn put<T: Versioned>(value: &T, place: *mut T, size: usize) {
     if place.is_null() {
         return;
     }
     let n = size.min(size_of::<T>());
-    // SAFETY: the program says that there is room for so many bytes.
+    // SAFETY: the program guarantees space for this many bytes.
     unsafe {
         (&raw const *value).cast::<u8>().copy_to_nonoverlapping(place.cast::<u8>(), n);
         if n >= size_of::<usize>() {
@@ -229,7 +234,7 @@ pub(crate) fn threads(n: i32) -> Result<Threads> {
     Threads::new(n)
 }
 
-/// A vertex by its number.
+/// A vertex by its number, which must be below `n_points`.
 pub(crate) fn vertex(id: i32, n_points: usize, what: &str) -> Result<VertexId> {
     match usize::try_from(id) {
         Ok(v) if v < n_points => Ok(VertexId::new(v)),
@@ -237,7 +242,7 @@ pub(crate) fn vertex(id: i32, n_points: usize, what: &str) -> Result<VertexId> {
     }
 }
 
-/// An id as C has it; -1 for none.
+/// An id as passed to C; -1 for none.
 pub(crate) fn id(v: u32) -> i32 {
     i32::try_from(v).unwrap_or(-1)
 }

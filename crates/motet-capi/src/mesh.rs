@@ -1,4 +1,4 @@
-//! Meshes: made of arrays, read, told of.
+//! Meshes: made from arrays or files, and queried.
 
 use std::ffi::{CString, c_char};
 
@@ -19,13 +19,13 @@ use crate::memory::{
 pub(crate) struct MotetMesh(pub(crate) Mesh);
 
 impl MotetMesh {
-    /// A mesh that is part of something, as C sees one.
+    /// A mesh that is part of another object, as C sees one.
     pub(crate) fn of(mesh: &Mesh) -> *const Self {
         std::ptr::from_ref(mesh).cast()
     }
 }
 
-/// A text that belongs to the caller.
+/// A text that the caller owns.
 pub(crate) struct MotetText(CString);
 
 #[unsafe(no_mangle)]
@@ -139,7 +139,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_name_patch(
     })
 }
 
-/// Whether rows are on points.
+/// Whether rows belong to points; `false` for cells.
 pub(crate) fn on_points(on: i32) -> Result<bool> {
     match on {
         0 => Ok(true),
@@ -171,7 +171,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_set_array(
     })
 }
 
-/// An array as a field.
+/// A field from a C array of `n` rows.
 pub(crate) fn field(name: &str, start: *const f64, n: i64, components: i32) -> Result<Field> {
     let components = usize::try_from(components).ok().filter(|&k| k > 0);
     let components =
@@ -239,7 +239,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_free(mesh: *mut MotetMesh) {
     free(mesh);
 }
 
-/// A number of a mesh; `otherwise` for NULL.
+/// A number computed from a mesh; `otherwise` for NULL.
 fn number<T>(mesh: *const MotetMesh, otherwise: T, of: impl FnOnce(&Mesh) -> T) -> T {
     quiet(otherwise, || handle(mesh, "mesh").ok().map(|mesh| of(&mesh.0)))
 }
@@ -386,7 +386,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_patch_vertices(
     })
 }
 
-/// An array of numbers.
+/// An array of numbers by its name; `None` where there is none.
 fn array<'a>(mesh: &'a Mesh, on: i32, name: &str) -> Result<Option<&'a Field>> {
     let found = if on_points(on)? { mesh.point_field(name) } else { mesh.cell_field(name) };
     Ok(found.filter(|field| !matches!(field.values, Values::Text(_))))
@@ -457,7 +457,7 @@ pub(crate) unsafe extern "C" fn motet_mesh_summary(
     })
 }
 
-/// A report as a text.
+/// A report as JSON text.
 pub(crate) fn json(told: &impl serde::Serialize) -> Result<CString> {
     let text = serde_json::to_string(told);
     text.map(c_text).map_err(|e| Error::input(format!("a report that cannot be written: {e}")))

@@ -1,4 +1,4 @@
-//! Motion: boundary displacement in, volume mesh out.
+//! Motion: boundary displacements in, volume mesh out.
 
 use std::ffi::c_char;
 use std::ptr;
@@ -24,7 +24,7 @@ pub(crate) struct MotetMover {
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetMoverOptions, motet_mover_options_init {
         method: i32 = 0,
         within_walls: i32 = 0,
@@ -80,7 +80,7 @@ impl MotetMoverOptions {
     }
 }
 
-/// How far a rigid layer reaches, if there is one.
+/// The extent of the rigid layer, if there is one.
 pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
     match (optional(distance), cells > 0) {
         (Some(_), true) => {
@@ -92,7 +92,7 @@ pub(crate) fn extent(distance: f64, cells: usize) -> Result<Option<Extent>> {
     }
 }
 
-/// A method by its number: the header has them in this order.
+/// A method by its number in the header.
 pub(crate) fn method(number: i32, words: MethodWords) -> Result<Method> {
     words.check()?;
     let asked = usize::try_from(number).ok().and_then(|k| Method::all(words).into_iter().nth(k));
@@ -193,7 +193,7 @@ pub(crate) unsafe extern "C" fn motet_mover_step(
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetCertificate, motet_certificate_init {
         complete: i32 = 0,
         substeps: i32 = 0,
@@ -266,7 +266,7 @@ pub(crate) unsafe extern "C" fn motet_mover_advance(
     })
 }
 
-/// Points, the nodes that they follow, and the threads.
+/// A point mover and the threads that it uses.
 pub(crate) struct MotetPointMover {
     mover: PointMover,
     threads: Threads,

@@ -1,4 +1,4 @@
-//! The loop: a mesh that moves with its walls, step after step, and stays good.
+//! The loop: a mesh that follows its walls, step by step, and stays good.
 
 use std::ffi::c_char;
 use std::ptr;
@@ -26,7 +26,7 @@ pub(crate) struct MotetMoving {
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetMovingOptions, motet_moving_options_init {
         method: i32 = 0,
         within_walls: i32 = 0,
@@ -191,7 +191,7 @@ pub(crate) unsafe extern "C" fn motet_moving_mesh(moving: *const MotetMoving) ->
     handle(moving, "moving").map_or(ptr::null(), |handle| MotetMesh::of(handle.moving.mesh()))
 }
 
-/// Puts a row for each of some things where the caller has room.
+/// Copies rows of three numbers to the caller's array, which must have as many.
 fn put_rows(all: &[Point], out: *mut f64, n: i64, stride: i64, what: &str) -> Result<()> {
     expect(n, all.len(), what)?;
     fill_rows(out, n, stride, what, |out| {
@@ -200,7 +200,7 @@ fn put_rows(all: &[Point], out: *mut f64, n: i64, stride: i64, what: &str) -> Re
     })
 }
 
-/// What is told of each vertex, or driven vertex, as rows of three.
+/// Defines functions that return a row of three numbers for each vertex or driven vertex.
 macro_rules! rows_out {
     ($($name:ident, $what:literal, $of:expr;)*) => {
         $(#[unsafe(no_mangle)]
@@ -244,7 +244,7 @@ pub(crate) unsafe extern "C" fn motet_moving_set_array(
 }
 
 versioned! {
-    /// As in the header.
+    /// See the header.
     MotetStep, motet_step_init {
         step: i64 = 0,
         time: f64 = 0.0,
@@ -317,9 +317,9 @@ pub(crate) unsafe extern "C" fn motet_moving_advance(
     })
 }
 
-/// Tells how many changes a call has made, unless that is not asked for.
+/// Stores the number of changes of a call, unless `changes` is NULL.
 fn tell(n_changes: usize, changes: *mut i64) {
-    // SAFETY: the header asks for NULL or a place for a number.
+    // SAFETY: the header requires NULL or a place for a number.
     if let Some(place) = unsafe { changes.as_mut() } {
         *place = n_changes as i64;
     }

@@ -1,4 +1,4 @@
-//! Tets divided, step after step, and taken back.
+//! Refinement: tets divided, step after step, and divisions taken back.
 
 use motet::base::{TetId, Threads};
 use motet::mesh::history::{History, Rules};
@@ -66,7 +66,7 @@ pub(crate) unsafe extern "C" fn motet_refinement_generations(
     })
 }
 
-/// Puts what came of a change where the caller wants it.
+/// Stores the outcome of a change, unless `outcome` is NULL.
 fn done(
     refinement: &MeshRefinement,
     history: History,

@@ -1,4 +1,5 @@
-//! What a mesh can be coloured by: its quality, its labels, and every array of numbers on points and cells.
+//! The arrays by which a mesh can be coloured: its quality, its labels, and every array of numbers on points
+//! and cells.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,16 +11,16 @@ use serde::Serialize;
 use crate::codec::{Block, Kind};
 use crate::skin::NONE;
 
-/// Name of the array that is worked out here.
+/// Name of the array that is computed here.
 pub(crate) const EAS: &str = "EAS quality";
-/// More labels than this cannot be told apart by colour.
+/// Above this number, labels cannot be told apart by colour.
 const MOST_LABELS: usize = 64;
-/// What stands for no number among packed values.
+/// The code of a missing value among packed ones.
 const NO_NUMBER: u32 = 65_535;
-/// The largest that a packed value is; beyond, WebGL's numbers end.
+/// Values are clamped to this size, which stays within the range of WebGL's numbers.
 const LARGEST: f64 = 1e37;
 
-/// Where values stand.
+/// Whether values belong to cells or points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Place {
@@ -27,12 +28,12 @@ pub(crate) enum Place {
     Point,
 }
 
-/// What the page knows an array by.
+/// Identifies an array on the page.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub(crate) struct Key {
     pub(crate) name: String,
     pub(crate) on: Place,
-    /// The values are labels, with a colour of its own each.
+    /// Whether the values are labels, each with a colour of its own.
     pub(crate) is_label: bool,
 }
 
@@ -42,12 +43,12 @@ pub(crate) struct Array {
     pub(crate) key: Key,
     pub(crate) names: BTreeMap<i32, String>,
     pub(crate) values: Vec<f64>,
-    /// Which cell of a triangle of the skin has the value: that of volume, or that of surface.
+    /// Whether triangles of the skin take their value from the surface cell rather than the volume cell.
     pub(crate) is_of_surface: bool,
 }
 
 impl Array {
-    /// The value of a triangle of the skin, by its volume and its surface cell.
+    /// The value of a triangle of the skin, given its volume cell and its surface cell.
     pub(crate) fn of_triangle(&self, [volume, surface]: [u32; 2]) -> f64 {
         let first = if self.is_of_surface { surface } else { volume };
         let cell = if first == NONE && !self.key.is_label { volume.min(surface) } else { first };
@@ -55,7 +56,7 @@ impl Array {
     }
 }
 
-/// Every array of the mesh that holds numbers, EAS and labels first.
+/// Every array of the mesh that holds numbers, with EAS and labels first.
 pub(crate) fn of(mesh: &Mesh, eas: &[f32]) -> Vec<Array> {
     let mut arrays = Vec::new();
     if eas.iter().any(|q| !q.is_nan()) {
@@ -94,7 +95,7 @@ fn label_array(name: &str, mesh: &Mesh, dim: usize, labels: &Labels) -> Array {
     }
 }
 
-/// A cell array; one of few whole numbers, such as `body`, is taken to be labels.
+/// A cell array; one with few distinct integers, such as `body`, is taken for labels.
 fn of_cells(mesh: &Mesh, field: &Field) -> Option<Array> {
     let values = magnitudes(field)?;
     let is_of_surface = is_of_surface(mesh, &values);
@@ -102,7 +103,7 @@ fn of_cells(mesh: &Mesh, field: &Field) -> Option<Array> {
     Some(Array { is_of_surface, ..array(&field.name, Place::Cell, is_label, values) })
 }
 
-/// Scalars as they are, rows of several by their length; none of texts.
+/// Scalars as they are, the norms of rows with several components; `None` for texts.
 fn magnitudes(field: &Field) -> Option<Vec<f64>> {
     let values = field.values.to_f64()?;
     match field.components {
@@ -120,7 +121,7 @@ fn has_few(values: &[f64]) -> bool {
     })
 }
 
-/// Whether an array says something about surface cells and nothing about volume cells.
+/// Whether an array varies on surface cells but not on volume cells.
 fn is_of_surface(mesh: &Mesh, values: &[f64]) -> bool {
     let says_something = |dim: usize| {
         let cells = (0..values.len()).filter(|&i| mesh.cells.kind(CellId::new(i)).dim() == Some(dim));
@@ -131,7 +132,7 @@ fn is_of_surface(mesh: &Mesh, values: &[f64]) -> bool {
     !has(3) || (has(2) && says_something(2) && !says_something(3))
 }
 
-/// Values in sixteen bits: `low + step * n`, and one number for none.
+/// Values packed into 16 bits, `low + step * n`, with one code for missing ones.
 #[derive(Clone, Debug)]
 pub(crate) struct Packed {
     pub(crate) block: Block,
@@ -140,7 +141,7 @@ pub(crate) struct Packed {
     pub(crate) step: f64,
 }
 
-/// Packs values; whole numbers exactly where they fit. None where there is no number.
+/// Packs values, integers exactly where they fit; `None` where there are no numbers.
 pub(crate) fn pack(on: Place, values: &[f64]) -> Option<Packed> {
     let numbers = || values.iter().filter(|x| x.is_finite()).map(|x| x.clamp(-LARGEST, LARGEST));
     let low = numbers().reduce(f64::min)?;

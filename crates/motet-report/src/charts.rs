@@ -1,4 +1,4 @@
-//! Line charts as SVG, drawn here so that they are there without a script.
+//! Line charts as SVG, drawn here so that they need no script.
 
 use std::fmt::Write as _;
 
@@ -8,9 +8,9 @@ use crate::numbers::short;
 
 const WIDTH: f64 = 360.0;
 const HEIGHT: f64 = 190.0;
-/// Room left, right, above and below the lines.
+/// Margins left, right, above and below the lines.
 const MARGINS: [f64; 4] = [50.0, 12.0, 10.0, 34.0];
-/// With more points than this, no dot marks each.
+/// Above this number of points, they are not marked by dots.
 const MOST_DOTS: usize = 40;
 
 /// Values over time (or steps), as one or several lines.
@@ -20,19 +20,19 @@ pub(crate) struct Chart {
     pub(crate) x_name: String,
     pub(crate) x: Vec<f64>,
     pub(crate) lines: Vec<Line>,
-    /// A value that deserves a line across.
+    /// A value that is marked by a horizontal line, with its name.
     pub(crate) threshold: Option<(f64, &'static str)>,
     pub(crate) from_zero: bool,
 }
 
-/// One line; None where there is no value.
+/// One line; `None` where a value is missing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Line {
     pub(crate) name: String,
     pub(crate) y: Vec<Option<f64>>,
 }
 
-/// A chart as the page takes it.
+/// A chart in the form that the page uses.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Drawn {
     pub(crate) title: String,
@@ -41,7 +41,7 @@ pub(crate) struct Drawn {
     pub(crate) legend: Vec<String>,
 }
 
-/// From values to places in the picture.
+/// Maps values to positions in the picture.
 struct Scale {
     low: f64,
     high: f64,
@@ -51,14 +51,14 @@ struct Scale {
 
 impl Scale {
     fn at(&self, x: f64) -> f64 {
-        // Halves first: the difference of huge numbers need not be a number.
+        // Halves first: the difference of huge numbers may overflow.
         let part = (x / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0);
         self.from + part * (self.to - self.from)
     }
 }
 
 impl Chart {
-    /// Whether there is something to draw: a line that has two values at least.
+    /// Whether there is something to draw: a line with at least two values.
     pub(crate) fn is_worth_it(&self) -> bool {
         self.x.len() > 1 && self.lines.iter().any(|line| line.y.iter().flatten().count() > 1)
     }
@@ -101,7 +101,7 @@ impl Chart {
             self.put_line(&mut svg, line, i, &x, &y);
         }
         if let Some((value, name)) = self.threshold {
-            // Lines should stay above it, so that its name stands below, where there is room.
+            // Lines should stay above the threshold, so its name goes below it, where there is space.
             let at = y.at(value);
             let at = if at + 14.0 < HEIGHT - below { at + 11.0 } else { at - 3.0 };
             let _ = write!(
@@ -184,7 +184,7 @@ impl Chart {
     }
 }
 
-/// The least and the largest, apart from each other.
+/// The range of the finite values, widened where it is empty or a single value.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let finite = values.filter(|x| x.is_finite());
     let (low, high) =
@@ -197,7 +197,7 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
 }
 
-/// Round values over a range: multiples of 1, 2 or 5 and a power of ten.
+/// Round values within a range: multiples of 1, 2 or 5 times a power of ten.
 fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
     let rough = (high / about as f64) - (low / about as f64);
     let power = 10f64.powf(rough.log10().floor());
@@ -222,7 +222,7 @@ fn label(tick: f64) -> String {
     }
 }
 
-/// A text within HTML.
+/// Escapes text for HTML.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

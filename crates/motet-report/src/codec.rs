@@ -1,6 +1,6 @@
-//! Tables of whole numbers as few bytes: differences, bytes of like weight together, zlib.
+//! Compact encoding of tables of integers: differences, bytes grouped by significance, zlib.
 //!
-//! The page's `script/unpack.js` is the other half.
+//! `script/unpack.js` of the page decodes it.
 
 use std::io::Write as _;
 
@@ -10,11 +10,12 @@ use flate2::write::ZlibEncoder;
 /// What the numbers of a table are, and so which differences are small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// Each as it stands: values of cells, which their neighbours say little about.
+    /// Each number as it is: values of cells, which say little about their neighbours.
     Plain,
-    /// Each less the one above it: places and values of points that lie near each other.
+    /// Each number minus the one above it: positions and values of nearby points.
     Steps,
-    /// The first of a row less the one above it, the others less the one before them: ids of cells in rising order.
+    /// The first of a row minus the one above it, the others minus the one before them: vertex ids of cells
+    /// in ascending order.
     Ids,
 }
 
@@ -28,12 +29,12 @@ impl Kind {
     }
 }
 
-/// A table that is packed.
+/// A packed table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Block {
     pub(crate) rows: usize,
     pub(crate) columns: usize,
-    /// How many bytes of a number are there; the higher ones are 0 everywhere.
+    /// How many bytes of each number are stored; the higher ones are 0 everywhere.
     pub(crate) planes: usize,
     pub(crate) kind: Kind,
     pub(crate) data: Vec<u8>,
@@ -59,7 +60,7 @@ impl Block {
         Self::of(kind, values.as_chunks::<1>().0)
     }
 
-    /// How many bytes of the page it takes, as base64 and with what is said about it.
+    /// The number of bytes it takes on the page, as base64 with its description.
     pub(crate) fn cost(&self) -> usize {
         self.data.len().div_ceil(3) * 4 + 80
     }
@@ -81,14 +82,14 @@ fn differences<const N: usize>(kind: Kind, rows: &[[u32; N]], column: usize) -> 
     }
 }
 
-/// Small numbers of either sign become small ones without: 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
+/// Maps small numbers of either sign to small unsigned ones: 0, -1, 1, -2, ... to 0, 1, 2, 3, ...
 fn zigzag(difference: u32) -> u32 {
     (difference << 1) ^ (difference.cast_signed() >> 31).cast_unsigned()
 }
 
 fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
-    // A vector takes every byte.
+    // Writing to a vector cannot fail.
     let _ = encoder.write_all(bytes);
     encoder.finish().unwrap_or_default()
 }
@@ -99,7 +100,7 @@ pub(crate) mod tests {
 
     use super::*;
 
-    /// What `script/unpack.js` does.
+    /// Does what `script/unpack.js` does.
     pub(crate) fn unpacked(block: &Block) -> Vec<Vec<u32>> {
         let mut bytes = Vec::new();
         flate2::read::ZlibDecoder::new(&block.data[..]).read_to_end(&mut bytes).unwrap();

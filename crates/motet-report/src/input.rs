@@ -1,4 +1,4 @@
-//! What the inputs are: meshes, series of them, and reports or logs in JSON.
+//! The inputs of a report: meshes, series of them, and reports or logs in JSON.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub(crate) struct Meshes {
 }
 
 impl Input {
-    /// Looks at what an input is; meshes are read later, one at a time.
+    /// Finds out what an input is; meshes are read later, one at a time.
     pub(crate) fn open(path: &Path) -> Result<Self> {
         let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
@@ -41,14 +41,14 @@ impl Input {
 }
 
 impl Meshes {
-    /// Reads one frame, with notes of what the reader passed over.
+    /// Reads one frame, with notes on what the reader skipped.
     pub(crate) fn read(&self, frame: usize) -> Result<(Mesh, Vec<String>)> {
         let (mesh, notes) = io::read_noted(&self.frames[frame].1)?;
         Ok((mesh, notes))
     }
 }
 
-/// The name that the page gives to a file: without folders, so that a report tells nothing about the machine.
+/// The name of a file on the page: without folders, so that a report reveals nothing about the machine.
 pub(crate) fn name_of(path: &Path) -> String {
     let name = path.file_name().unwrap_or(path.as_os_str());
     name.to_string_lossy().into_owned()

@@ -1,7 +1,8 @@
-//! The order in which vertices, triangles and cells of a mesh are shipped: neighbours beside each other, so that
-//! differences are small, and the vertices that are seen from outside first.
+//! The order in which vertices, triangles and cells of a mesh are written to the page: neighbours next to
+//! each other, so that differences are small, and the vertices visible from outside first.
 //!
-//! Frames of the same cells share one layout ([`Layouts`](crate::layouts::Layouts)), and so the same tables of ids.
+//! Frames of the same cells share one layout ([`Layouts`](crate::layouts::Layouts)), and so the same tables
+//! of ids.
 
 use motet::Mesh;
 use motet::base::{CellId, Point, VertexId};
@@ -11,10 +12,10 @@ use motet::mesh::{CellKind, Cells, largest_extent};
 
 use crate::skin::{NONE, Skin, pieces};
 
-/// A mesh in the order of shipping. Ids are places in `vertices`.
+/// A mesh in the order of the page. Ids are positions in `vertices`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Layout {
-    /// Every vertex that is shown; the first `n_skin` of them are seen from outside.
+    /// Every vertex shown; the first `n_skin` of them are visible from outside.
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) n_skin: usize,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -23,15 +24,15 @@ pub(crate) struct Layout {
     /// The volume and the surface cell of each triangle.
     pub(crate) triangle_cells: Vec<[u32; 2]>,
     pub(crate) solids: Solids,
-    /// The cell that each solid is.
+    /// The cell of each solid.
     pub(crate) solid_cells: Vec<CellId>,
-    /// Triangles and volume cells that are left out since their points are no numbers.
+    /// Triangles and volume cells left out because their points are not finite.
     pub(crate) not_finite: usize,
-    /// Volume cells whose facets are not known.
+    /// Number of volume cells whose facets are not known.
     pub(crate) not_known: usize,
 }
 
-/// Volume cells by their vertices, or by triangles that bound them where not all are tets.
+/// Volume cells by their vertices if all are tets, otherwise by the triangles that bound them.
 #[derive(Clone, Debug)]
 pub(crate) enum Solids {
     Tets(Vec<[u32; 4]>),
@@ -45,7 +46,7 @@ impl Default for Solids {
 }
 
 impl Solids {
-    /// The vertices of one, some of them more than once.
+    /// The vertices of one solid, some of them more than once.
     pub(crate) fn vertices(&self, i: usize) -> impl Iterator<Item = u32> + '_ {
         let (tet, facets): (&[u32], &[([u32; 3], u8)]) = match self {
             Self::Tets(tets) => (&tets[i], &[]),
@@ -86,7 +87,7 @@ impl Layout {
         self.vertices.len() + 6 * self.triangles.len() + self.solid_cells.len() + of_solids
     }
 
-    /// Adds the vertices that are used and not taken, along a curve that fills space.
+    /// Adds the vertices that are used but not yet taken, along a space-filling curve.
     fn take(&mut self, mesh: &Mesh, is_used: &[bool], is_taken: &mut [bool]) {
         let Some([low, high]) = mesh.bounds() else { return };
         let new = (0..is_used.len()).filter(|&v| is_used[v] && !is_taken[v]);
@@ -96,7 +97,7 @@ impl Layout {
         self.vertices.extend(new.iter().map(|&(_, v)| VertexId(v)));
     }
 
-    /// The volume cells whose facets are known and whose points are numbers.
+    /// The volume cells with known facets and finite points.
     fn shown_solids(&mut self, mesh: &Mesh) -> Vec<CellId> {
         let facets = Facets::of(&mesh.cells);
         let mut shown = Vec::new();
@@ -145,7 +146,7 @@ impl Layout {
     }
 }
 
-/// Vertices of a volume cell; those of its faces, since a polyhedron may list others.
+/// Visits the vertices of a volume cell: those of its faces, since a polyhedron may list others.
 fn each_vertex(facets: &Facets, cell: CellId, mut see: impl FnMut(VertexId)) {
     let cells: &Cells = facets.cells();
     if cells.kind(cell) == CellKind::TETRA {
@@ -168,7 +169,7 @@ fn solid(mesh: &Mesh, facets: &Facets, cell: CellId, place: &[u32]) -> Vec<([u32
     triangles
 }
 
-/// The same triangle from its lowest id on, and its edges.
+/// The triangle rotated to start at its lowest id, with its edges.
 fn turned([a, b, c]: [u32; 3], edges: u8) -> ([u32; 3], u8) {
     match a.min(b).min(c) {
         low if low == a => ([a, b, c], edges),
@@ -177,7 +178,7 @@ fn turned([a, b, c]: [u32; 3], edges: u8) -> ([u32; 3], u8) {
     }
 }
 
-/// The place of a point on Morton's curve through a box; points without numbers come last.
+/// The position of a point on the Morton curve through a box; points that are not finite come last.
 fn morton(point: Point, low: Point, high: Point) -> u64 {
     if !is_finite(point) {
         return u64::MAX;
@@ -187,7 +188,7 @@ fn morton(point: Point, low: Point, high: Point) -> u64 {
     spread(cell(0)) | spread(cell(1)) << 1 | spread(cell(2)) << 2
 }
 
-/// 21 bits with two bits of 0 between each.
+/// Spreads 21 bits, with two zero bits between neighbours.
 fn spread(x: u64) -> u64 {
     let x = (x | x << 32) & 0x001f_0000_0000_ffff;
     let x = (x | x << 16) & 0x001f_0000_ff00_00ff;

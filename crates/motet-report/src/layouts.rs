@@ -1,7 +1,8 @@
-//! One layout a topology: frames of the same cells share it, in whatever order they are read.
+//! One layout per topology: frames of the same cells share it, in whatever order they are read.
 //!
-//! A frame is read more than once: first for its skin, later for its inside, which names vertices of the skin. Both have to be
-//! laid out alike, so what a frame's layout is follows from its topology and from nothing that was read in between.
+//! A frame is read more than once: first for its skin, later for its inside, which refers to vertices of the
+//! skin. Both must have the same layout, so a frame's layout depends only on its topology and not on what was
+//! read in between.
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -17,19 +18,21 @@ use crate::input::Meshes;
 use crate::layout::Layout;
 use crate::skin::pieces;
 
-/// How many ids of layouts are held in memory: a quarter of a gigabyte. One layout is held however large it is.
+/// How many ids of layouts are kept in memory: a quarter of a gigabyte. One layout is kept however large it
+/// is.
 const MOST_IDS: usize = 1 << 26;
 
-/// All that a layout depends on but the order of vertices: cells, which points are no numbers, and how facets of more than three
-/// corners are divided. Of 128 bits, so that two topologies do not share one by chance.
+/// A hash of everything that a layout depends on except the order of vertices: cells, which points are not
+/// finite, and how facets with more than three corners are divided. It has 128 bits, so that two topologies
+/// do not collide by chance.
 type Topology = [u64; 2];
 
-/// The layouts of an input; those used last are held, the others made again as they were.
+/// The layouts of an input; those used last are kept, the others are recomputed when needed.
 #[derive(Debug)]
 pub(crate) struct Layouts {
-    /// The frame whose points give the vertices of a topology their order.
+    /// The frame whose points determine the order of vertices of a topology.
     sources: HashMap<Topology, usize>,
-    /// What each frame was when it was first read.
+    /// The topology of each frame when it was first read.
     topologies: HashMap<usize, Topology>,
     held: Vec<(Topology, Rc<Layout>)>,
     most_ids: usize,
@@ -46,10 +49,11 @@ impl Layouts {
         Self { sources: HashMap::new(), topologies: HashMap::new(), held: Vec::new(), most_ids }
     }
 
-    /// The layout of a frame, whose mesh this is.
+    /// The layout of a frame, given its mesh.
     ///
     /// # Errors
-    /// When the frame has other cells than when it was first read, or a frame that has to be read again cannot be.
+    /// When the frame has other cells than when it was first read, or a frame that must be read again cannot
+    /// be.
     pub(crate) fn of(&mut self, input: &Meshes, frame: usize, mesh: &Mesh) -> Result<Rc<Layout>> {
         let topology = topology(mesh);
         if *self.topologies.entry(frame).or_insert(topology) != topology {
@@ -114,7 +118,8 @@ fn topology(mesh: &Mesh) -> Topology {
     hashers.map(|hasher| hasher.finish())
 }
 
-/// The triangles that surface cells and facets of volume cells are divided into, where they are not triangles at once.
+/// Visits the division into triangles of a surface cell, or of the facets of a volume cell, where these are
+/// not triangles.
 fn each_division(mesh: &Mesh, facets: &Facets, cell: CellId, see: &mut impl FnMut(Vec<([VertexId; 3], u8)>)) {
     let kind = mesh.cells.kind(cell);
     match kind.dim() {
@@ -198,7 +203,7 @@ mod tests {
         assert_eq!(topology(&mesh), before);
         mesh.points[3][1] = f64::NAN;
         assert_ne!(topology(&mesh), before);
-        // A square, and the same with a dent at one corner or at the next.
+        // A square, and squares with a dent at one corner or at the next.
         let polygon = |points: [Point; 4]| {
             let ring = (0..4).map(VertexId).collect();
             topology(&Mesh::new(points.to_vec(), Cells::uniform(CellKind::QUAD, ring).unwrap()))

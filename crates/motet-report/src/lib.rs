@@ -1,17 +1,18 @@
 //! Meshes, series of meshes and logs as one HTML page: a view to turn and cut, charts, tables.
 //!
-//! The page works without a network and without anything beside it. What is in it is budgeted: the surface of each frame comes first, then its
-//! inside, or the cells at a number of planes, and the page says what was left out. The same inputs give the same bytes.
+//! The page is one file and works offline. Its size has a budget: the surface of each frame comes first, then
+//! its inside, or the cells at a number of planes, and the page says what was left out. The same inputs give
+//! the same bytes.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `input`, `log` | what is read: meshes one at a time; JSON, whatever its keys |
-//! | `quality`, `arrays` | what is told of a mesh, and what it can be coloured by |
-//! | `skin`, `layout`, `layouts` | what is seen from outside; the order in which all of it is shipped, one for frames of the same cells |
-//! | `codec`, `store` | tables of numbers as few bytes, each once |
-//! | `part`, `plan`, `shown` | one frame packed; how much of which frame fits; what came of it |
+//! | `input`, `log` | inputs: meshes, read one at a time; JSON, whatever its keys |
+//! | `quality`, `arrays` | what is reported of a mesh, and by what it can be coloured |
+//! | `skin`, `layout`, `layouts` | what is visible from outside; the order of everything on the page, shared by frames of the same cells |
+//! | `codec`, `store` | compact tables of numbers, each stored once |
+//! | `part`, `plan`, `shown` | packing one frame; how much of which frame fits; the result |
 //! | `charts`, `sections`, `page` | lines, tables, the page |
-//! | `script/`, `style.css`, `page.html` | what the browser does |
+//! | `script/`, `style.css`, `page.html` | the part that runs in the browser |
 
 mod arrays;
 mod charts;
@@ -41,66 +42,67 @@ use crate::part::Holds;
 use crate::shown::Shown;
 use crate::store::Store;
 
-/// What a page is made of, and how large it may be.
+/// Options of a page.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The file to write; its ending is `.html` or `.htm`.
+    /// The file to write; its extension is `.html` or `.htm`.
     pub output: PathBuf,
-    /// What stands over the page; without one, the names of the inputs.
+    /// The title of the page; by default the names of the inputs.
     pub title: Option<String>,
-    /// How many bytes of the page meshes may take. Surfaces are there whatever it says.
+    /// How many bytes of the page meshes may take. Surfaces are always included.
     pub budget: usize,
 }
 
 impl Options {
-    /// What [`Options::budget`] is if nobody says otherwise: 24 MB.
+    /// The default of [`Options::budget`]: 24 MB.
     pub const BUDGET: usize = 24_000_000;
 
-    /// A page at `output`, its budget as usual.
+    /// Options for a page at `output`, with the default budget.
     pub fn new(output: impl Into<PathBuf>) -> Self {
         Self { output: output.into(), title: None, budget: Self::BUDGET }
     }
 }
 
-/// What was written, and what was not.
+/// What was written and what was left out.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The page.
+    /// The file of the page.
     pub output: PathBuf,
-    /// Its size.
+    /// Size of the page.
     pub bytes: usize,
-    /// How many of these are meshes.
+    /// Number of bytes that meshes take.
     pub payload_bytes: usize,
-    /// How many they were allowed to be.
+    /// Number of bytes that meshes were allowed to take.
     pub budget_bytes: usize,
-    /// One by one, in the order of the call.
+    /// A report for each input, in the order of the call.
     pub inputs: Vec<InputReport>,
 }
 
-/// What became of one input.
+/// What was written of one input.
 #[derive(Clone, Debug, Serialize)]
 pub struct InputReport {
-    /// The file.
+    /// Path of the input.
     pub file: PathBuf,
-    /// Frames of a mesh or series; 0 of a log.
+    /// Number of frames of a mesh or series; 0 for a log.
     pub frames: usize,
-    /// Frames that have a picture.
+    /// Number of frames with a picture.
     pub shown: usize,
-    /// Frames whose volume cells are all there to be cut.
+    /// Number of frames that can be cut anywhere, since they contain all volume cells.
     pub whole: usize,
-    /// Frames that can be cut at some planes.
+    /// Number of frames that can be cut at some planes.
     pub cut: usize,
-    /// Rows of a log's longest table.
+    /// Number of rows of a log's longest table.
     pub rows: usize,
-    /// What is not on the page, each in a sentence.
+    /// What is not on the page, a sentence each.
     pub left_out: Vec<String>,
 }
 
-/// Writes a page about `inputs`: meshes and series in any format that motet reads, reports (`.json`) and logs (`.jsonl`).
+/// Writes a page about `inputs`: meshes and series in any format that motet reads, reports (`.json`) and logs
+/// (`.jsonl`).
 ///
 /// # Errors
-/// When an input cannot be read or is empty, naming the file and the place; when the output's ending is not that of a page,
-/// or it would overwrite an input.
+/// When an input cannot be read or is empty, naming the file and the place; when the output's extension is
+/// not that of a page, or the output would overwrite an input.
 pub fn write(inputs: &[PathBuf], options: &Options) -> Result<Report> {
     check(inputs, options)?;
     let mut opened = inputs.iter().map(|path| Input::open(path)).collect::<Result<Vec<_>>>()?;

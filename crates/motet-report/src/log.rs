@@ -1,4 +1,4 @@
-//! Reports and logs in JSON, whatever their keys: single facts, and tables with a row a step.
+//! Reports and logs in JSON, whatever their keys: single facts, and tables with a row per step.
 
 use std::path::{Path, PathBuf};
 
@@ -7,21 +7,21 @@ use serde_json::{Map, Value};
 
 use crate::numbers::short;
 
-/// A list of objects within a row is spread over columns up to this length.
+/// A list of objects within a row is spread over columns if it has at most this length.
 const LONGEST_SPREAD: usize = 12;
-/// Columns that stand before all others.
+/// Columns that come before all others.
 const FIRST: [&str; 2] = ["step", "time"];
 
-/// What a JSON file says.
+/// The content of a JSON file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Log {
     pub(crate) file: PathBuf,
-    /// Keys with their values, in the order of the file's keys.
+    /// Keys with their values, in the order of the file.
     pub(crate) facts: Vec<(String, String)>,
     pub(crate) tables: Vec<Table>,
 }
 
-/// Rows of a list of objects.
+/// A table from a list of objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Table {
     pub(crate) name: String,
@@ -29,14 +29,14 @@ pub(crate) struct Table {
     pub(crate) columns: Vec<Column>,
 }
 
-/// One key of all rows.
+/// The values of one key in all rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Column {
     pub(crate) name: String,
     pub(crate) cells: Vec<Cell>,
 }
 
-/// What one row says under one key.
+/// The value of one row for one key.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Cell {
     None,
@@ -45,7 +45,7 @@ pub(crate) enum Cell {
 }
 
 impl Column {
-    /// The numbers, None where a row has none.
+    /// The numbers, `None` where a row has none.
     pub(crate) fn numbers(&self) -> Vec<Option<f64>> {
         let number = |cell: &Cell| if let Cell::Number(x) = cell { Some(*x) } else { None };
         self.cells.iter().map(number).collect()
@@ -66,7 +66,7 @@ impl Table {
                 self.columns.push(Column { name, cells: Vec::new() });
                 self.columns.len() - 1
             });
-            // A key that comes twice (`a.b` and `b` within `a`) keeps its first value.
+            // A key that occurs twice (`a.b` and `b` within `a`) keeps its first value.
             let column = &mut self.columns[place].cells;
             if column.len() <= self.n_rows {
                 column.resize(self.n_rows, Cell::None);
@@ -85,10 +85,10 @@ impl Table {
     }
 }
 
-/// A file of one object (or one list of objects): the `--json` of a verb.
+/// Reads a file of one object (or one list of objects): the `--json` output of a verb.
 ///
 /// # Errors
-/// When it cannot be read, or is something else.
+/// When it cannot be read, or contains anything else.
 pub(crate) fn read_object(path: &Path) -> Result<Log> {
     let value: Value = serde_json::from_slice(&bytes(path)?).map_err(|e| no_json(path, e.line(), &e))?;
     let mut log = Log { file: path.to_owned(), ..Log::default() };
@@ -100,10 +100,10 @@ pub(crate) fn read_object(path: &Path) -> Result<Log> {
     Ok(log)
 }
 
-/// A file with an object a line.
+/// Reads a file with an object per line.
 ///
 /// # Errors
-/// As [`read_object`]; names the line.
+/// When it cannot be read, or a line is not an object; names the line.
 pub(crate) fn read_lines(path: &Path) -> Result<Log> {
     let bytes = bytes(path)?;
     let mut rows = Table { name: "steps".into(), ..Table::default() };
@@ -182,7 +182,7 @@ fn joined(prefix: &str, key: &str) -> String {
     if prefix.is_empty() { key.to_owned() } else { format!("{prefix}.{key}") }
 }
 
-/// One row's keys and values; objects within become keys with dots.
+/// The keys and values of one row; keys of nested objects are joined by dots.
 fn spread(prefix: &str, row: &Map<String, Value>, cells: &mut Vec<(String, Cell)>) {
     for (key, value) in row {
         let name = joined(prefix, key);
@@ -199,13 +199,13 @@ fn spread(prefix: &str, row: &Map<String, Value>, cells: &mut Vec<(String, Cell)
     }
 }
 
-/// What tells one object of a list from the others: its name, or the first text that it has.
+/// The name of an object in a list: its `name`, otherwise its first text, otherwise its number.
 fn name_of_row(row: &Map<String, Value>, i: usize) -> String {
     let texts = || row.values().filter_map(Value::as_str);
     row.get("name").and_then(Value::as_str).or_else(|| texts().next()).map_or(i.to_string(), str::to_owned)
 }
 
-/// A value in few words; None for what says nothing.
+/// A value in few words; `None` for null.
 fn text(value: &Value) -> Option<String> {
     Some(match value {
         Value::Null => return None,

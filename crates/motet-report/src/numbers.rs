@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Numbers formatted for people.
 
-/// A number in few signs.
+/// A number in few digits.
 pub(crate) fn short(x: f64) -> String {
     let size = x.abs();
     if !x.is_finite() {
@@ -17,13 +17,13 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
-/// A count with its thousands apart.
+/// A count with its thousands separated.
 pub(crate) fn count(n: usize) -> String {
     let digits = n.to_string();
     let mut out = String::new();
     for (i, digit) in digits.chars().enumerate() {
         if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            // A narrow space at which no line breaks.
+            // A narrow no-break space.
             out.push('\u{202f}');
         }
         out.push(digit);
@@ -36,7 +36,7 @@ pub(crate) fn counted(n: usize, noun: &str) -> String {
     format!("{} {noun}{}", count(n), if n == 1 { "" } else { "s" })
 }
 
-/// A time as it was given, but for rounding.
+/// A time as given, apart from rounding.
 pub(crate) fn time(t: f64) -> String {
     let rounded = (t * 1e6).round() / 1e6;
     if rounded == 0.0 { short(t) } else { rounded.to_string().replace('-', "\u{2212}") }

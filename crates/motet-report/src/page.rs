@@ -1,4 +1,4 @@
-//! The page: sections, the view's tables of numbers, style and script, all in one file.
+//! The page: sections, the tables of numbers for the view, style and script, all in one file.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ use crate::store::{BlockId, Store};
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("style.css");
-/// One idea a file; together one function of the page.
+/// The parts of the script; together they form one function of the page.
 const SCRIPT: [&str; 9] = [
     include_str!("script/unpack.js"),
     include_str!("script/colour.js"),
@@ -31,13 +31,13 @@ const SCRIPT: [&str; 9] = [
     include_str!("script/main.js"),
 ];
 
-/// An input as the page takes it.
+/// An input in the form that the page uses.
 pub(crate) enum Part {
     Meshes(Box<Shown>),
     Log(Log),
 }
 
-/// The whole page.
+/// Renders the whole page.
 pub(crate) fn rendered(
     parts: &[Part],
     options: &Options,
@@ -66,7 +66,7 @@ pub(crate) fn rendered(
         },
     );
     let page = page.map_err(|e| Error::options(format!("the page cannot be put together: {e}")))?;
-    // Behind the template: numbers and script are no words of it, and are large.
+    // Inserted after templating: numbers and script are large and contain no template syntax.
     Ok(page.replace("<!--DATA-->", &data(parts, store, used)).replace(
         "<!--SCRIPT-->",
         &format!("<script>\n(() => {{\n\"use strict\";\n{}\n}})();\n</script>", SCRIPT.join("\n")),
@@ -89,7 +89,7 @@ fn sections_of(parts: &[Part]) -> Vec<Section> {
     parts.iter().map(section).collect()
 }
 
-/// What the script reads: a description as JSON, and each block as base64.
+/// The data that the script reads: a description as JSON, and each block as base64.
 fn data(parts: &[Part], store: &Store, used: &BTreeSet<BlockId>) -> String {
     let new: BTreeMap<BlockId, usize> = used.iter().enumerate().map(|(new, &old)| (old, new)).collect();
     let inputs: Vec<Value> = parts.iter().filter_map(described).collect();
@@ -102,7 +102,7 @@ fn data(parts: &[Part], store: &Store, used: &BTreeSet<BlockId>) -> String {
         .collect();
     let ids: BTreeMap<String, usize> = new.iter().map(|(old, new)| (old.to_string(), *new)).collect();
     let manifest = json!({ "inputs": inputs, "blocks": blocks, "ids": ids });
-    // No `<` within: it could end the element.
+    // Escape `<`, which could end the element.
     let mut text = format!(
         "<script type=\"application/json\" id=\"manifest\">{}</script>\n",
         manifest.to_string().replace('<', "\\u003c")
@@ -117,7 +117,7 @@ fn data(parts: &[Part], store: &Store, used: &BTreeSet<BlockId>) -> String {
     text
 }
 
-/// What the view needs to know of an input.
+/// The description of an input for the view.
 fn described(part: &Part) -> Option<Value> {
     let Part::Meshes(shown) = part else { return None };
     let arrays: Vec<Value> = shown

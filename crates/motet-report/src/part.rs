@@ -1,4 +1,4 @@
-//! One frame, packed: its skin, and of its inside what the budget allows.
+//! One frame, packed: its skin, and as much of its inside as the budget allows.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +12,9 @@ use crate::layout::{Layout, Solids};
 use crate::skin::NONE;
 use crate::store::{BlockId, Store};
 
-/// Coordinates are shipped as whole numbers up to this: a millionth of the box around the frame.
+/// Coordinates are stored as integers up to this: a resolution of a millionth of the frame's bounding box.
 const FINEST: f64 = 1_048_575.0;
-/// How many bad tets are shipped where the inside is not.
+/// How many bad tets are stored where the inside is not.
 const MOST_BAD: usize = 20_000;
 
 /// The values of one array: `low + step * n`.
@@ -26,13 +26,13 @@ pub(crate) struct Values {
     pub(crate) step: f64,
 }
 
-/// Values by the place of their array in the list of all.
+/// Values by the index of their array in the list of all arrays.
 pub(crate) type ValuesByArray = BTreeMap<usize, Values>;
 
-/// What is seen of a frame from outside.
+/// What is visible of a frame from outside.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SkinPart {
-    /// The lowest corner of the box, and the step of coordinates.
+    /// The lowest corner of the bounding box, and the step of coordinates.
     pub(crate) low: Point,
     pub(crate) step: Point,
     points: BlockId,
@@ -45,37 +45,38 @@ pub(crate) struct SkinPart {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct InsidePart {
     pub(crate) holds: Holds,
-    /// Whether all arrays are here, or only quality and labels.
+    /// Whether all arrays are included, or only quality and labels.
     #[serde(skip)]
     pub(crate) with_arrays: bool,
-    /// Vertices beyond those of the skin.
+    /// The vertices that are not on the skin.
     points: BlockId,
     #[serde(skip_serializing_if = "Option::is_none")]
     tets: Option<BlockId>,
-    /// How many triangles bound each cell, these, and their edges: where not all are tets.
+    /// Where not all cells are tets: the number of bounding triangles of each cell, the triangles, and their
+    /// edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     facets: Option<[BlockId; 3]>,
     /// Which of the cells are bad tets.
     bad: BlockId,
-    /// Where the planes lie whose cells are here, along each axis.
+    /// Positions along each axis of the planes whose cells are included.
     pub(crate) planes: [Vec<f64>; 3],
     pub(crate) values: ValuesByArray,
 }
 
-/// Which volume cells are shipped.
+/// Which volume cells are included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Holds {
-    /// All.
+    /// All cells.
     All,
-    /// Those that so many planes along each axis cross, and the bad ones.
+    /// Cells that this many planes along each axis cross, and bad ones.
     Planes(usize),
-    /// Only the bad ones.
+    /// Only bad ones.
     Bad,
 }
 
 impl SkinPart {
-    /// All blocks, those of arrays too where asked for.
+    /// All blocks, with those of arrays if requested.
     pub(crate) fn blocks(&self, with_arrays: bool) -> Vec<BlockId> {
         let values = self.values.values().filter(|_| with_arrays).map(|v| v.block);
         [self.points, self.triangles, self.edges].into_iter().chain(values).collect()
@@ -90,22 +91,22 @@ impl InsidePart {
     }
 }
 
-/// A frame that is to be packed.
+/// A frame to be packed.
 pub(crate) struct Frame<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) layout: &'a Layout,
-    /// Arrays with their places in the list of all.
+    /// Arrays with their indices in the list of all arrays.
     pub(crate) arrays: &'a [(usize, Array)],
-    /// Bad tets, cells rising.
+    /// Bad tets, in ascending order of cells.
     pub(crate) bad: &'a [CellId],
-    /// The lowest corner of the box around the frame, and the step of coordinates.
+    /// The lowest corner of the bounding box, and the step of coordinates.
     pub(crate) grid: (Point, Point),
 }
 
-/// The lowest corner of the box around a mesh, and the step of coordinates that are shipped.
+/// The lowest corner of a mesh's bounding box, and the step of stored coordinates.
 pub(crate) fn grid(mesh: &Mesh) -> (Point, Point) {
     let [low, high] = mesh.bounds().unwrap_or([[0.0; 3]; 2]);
-    // One by one: the difference of huge numbers need not be a number.
+    // Divide first: the difference of huge numbers may overflow.
     (low, [0, 1, 2].map(|i| (high[i] / FINEST) - (low[i] / FINEST)))
 }
 
@@ -131,7 +132,7 @@ impl Frame<'_> {
         }
     }
 
-    /// The inside; None where there is nothing of what is asked for.
+    /// Packs the inside; `None` where it contains no cells of the requested kind.
     pub(crate) fn inside(&self, holds: Holds, with_arrays: bool, store: &mut Store) -> Option<InsidePart> {
         let planes = self.planes(holds);
         let chosen = self.chosen(holds, &planes);
@@ -166,12 +167,12 @@ impl Frame<'_> {
         })
     }
 
-    /// How many volume cells there are to ship.
+    /// The number of volume cells that can be included.
     pub(crate) fn n_solids(&self) -> usize {
         self.layout.solid_cells.len()
     }
 
-    /// Coordinates of vertices of the layout as whole numbers.
+    /// Coordinates of vertices of the layout as integers.
     fn places(&self, vertices: impl Iterator<Item = usize>) -> Vec<[u32; 3]> {
         let (low, step) = self.grid;
         let place = |v: usize| {
@@ -181,7 +182,7 @@ impl Frame<'_> {
         vertices.map(place).collect()
     }
 
-    /// Planes that divide the box into equal parts along each axis.
+    /// Planes that divide the bounding box into equal parts along each axis.
     fn planes(&self, holds: Holds) -> [Vec<f64>; 3] {
         let n = if let Holds::Planes(n) = holds { n } else { 0 };
         let (low, step) = self.grid;
@@ -202,7 +203,7 @@ impl Frame<'_> {
         self.bad.binary_search(&self.layout.solid_cells[solid]).is_ok()
     }
 
-    /// Whether a plane goes through a cell, or so near that rounded coordinates may say so.
+    /// Whether a plane crosses a cell, or may do so with rounded coordinates.
     fn is_crossed(&self, solid: usize, planes: &[Vec<f64>; 3]) -> bool {
         let (_, step) = self.grid;
         (0..3).any(|axis| {
@@ -216,7 +217,7 @@ impl Frame<'_> {
         })
     }
 
-    /// The vertices beyond the skin that the chosen cells have, and the cells by those.
+    /// The vertices of the chosen cells that are not on the skin, and the cells with renumbered vertices.
     fn renumbered(&self, chosen: &[usize], holds: Holds) -> (Vec<usize>, Solids) {
         let layout = self.layout;
         let n_skin = layout.n_skin;

@@ -1,4 +1,5 @@
-//! Which frames of an input are shipped, and how much of each: the skin of as many frames as fit, then their insides.
+//! Which frames of an input go onto the page, and how much of each: the skins of as many frames as fit, then
+//! their insides.
 
 use std::collections::BTreeSet;
 use std::rc::Rc;
@@ -15,7 +16,7 @@ use crate::quality::{self, Quality};
 use crate::shown::{Facts, Shipped, Shown};
 use crate::store::{BlockId, Store};
 
-/// What of an inside is tried, the best first: which cells, and whether with all arrays.
+/// Levels of detail for insides, the best first: which cells, and whether with all arrays.
 const LEVELS: [(Holds, bool); 7] = [
     (Holds::All, true),
     (Holds::All, false),
@@ -26,7 +27,7 @@ const LEVELS: [(Holds, bool); 7] = [
     (Holds::Planes(1), false),
 ];
 
-/// Reads an input and packs it into `budget` bytes of the page, beside what is `paid` for.
+/// Reads an input and packs it into `budget` bytes of the page; blocks in `paid` cost nothing.
 pub(crate) fn shown(
     input: &Meshes,
     budget: usize,
@@ -43,7 +44,7 @@ pub(crate) fn shown(
     Ok(shown)
 }
 
-/// The last mesh that was read, and the layout that meshes of the same cells share.
+/// The last mesh read, with the layouts that meshes of the same cells share.
 #[derive(Default)]
 struct Reader {
     frame: Option<usize>,
@@ -96,7 +97,7 @@ struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// The skin of every frame; and its whole inside, as long as all of it fits.
+    /// Packs the skin of every frame, and its whole inside as long as everything fits.
     fn skins(&mut self) -> Result<()> {
         let mut spent = self.paid.clone();
         let mut left = self.budget;
@@ -145,7 +146,7 @@ impl Plan<'_> {
         self.store.cost(&blocks.collect::<Vec<_>>(), self.paid)
     }
 
-    /// Keeps as many skins as fit, evenly chosen; where two are too much, without arrays.
+    /// Keeps as many skins as fit, evenly chosen; if not even two fit, without arrays.
     fn choose_frames(&mut self) {
         let n = self.shown.frames.len();
         let least = n.min(2);
@@ -165,7 +166,7 @@ impl Plan<'_> {
         self.shown.frames.retain(|_| frame.next().is_some_and(|i| kept.contains(&i)));
     }
 
-    /// The insides, where not all of them are there: the best level that all frames can have.
+    /// Packs the insides where some are missing: at the best level that all frames can have.
     fn insides(&mut self) -> Result<()> {
         if self.shown.frames.iter().all(|frame| frame.inside.is_some() || frame.n_solids == 0) {
             return Ok(());
@@ -178,7 +179,8 @@ impl Plan<'_> {
         let order = spread(self.shown.frames.len());
         let mut level = 0;
         for (done, &place) in order.iter().enumerate() {
-            // The first has its part of what is left, so that all frames get the same; after it, what is shared is paid for.
+            // The first frame may take only its share of the budget left, so that all frames get the same
+            // level; after it, shared blocks are paid for.
             let share = if done == 0 { left / order.len() } else { left };
             let (inside, reached) = self.inside(place, level, left, share, &spent)?;
             level = reached;
@@ -191,7 +193,8 @@ impl Plan<'_> {
         Ok(())
     }
 
-    /// The inside of one frame by the first level from `level` on that fits; else its bad tets, where those fit.
+    /// Packs the inside of one frame at the first level from `level` on that fits; otherwise its bad tets,
+    /// where those fit.
     fn inside(
         &mut self,
         place: usize,
@@ -214,7 +217,7 @@ impl Plan<'_> {
     }
 }
 
-/// `m` of `n` places: the first, the last, and evenly chosen ones between.
+/// `m` of `n` indices: the first, the last, and evenly chosen ones between.
 fn even(n: usize, m: usize) -> Vec<usize> {
     match m {
         0 => Vec::new(),
@@ -223,7 +226,7 @@ fn even(n: usize, m: usize) -> Vec<usize> {
     }
 }
 
-/// All places so that those that come first lie far apart: the first, the last, those in the middle.
+/// All indices in an order in which the early ones lie far apart: the first, the last, those in the middle.
 fn spread(n: usize) -> Vec<usize> {
     let mut order = Vec::new();
     let mut m = 1;

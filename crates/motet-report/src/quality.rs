@@ -1,4 +1,4 @@
-//! How good the tets of one frame are, in numbers.
+//! Statistics of the quality of the tets of one frame.
 
 use motet::Mesh;
 use motet::base::{CellId, Point};
@@ -9,23 +9,23 @@ use motet::mesh::curved::CurvedCells;
 use motet::mesh::{BAD_EAS, CellKind, OrientedTets, Qualities};
 use serde::Serialize;
 
-/// Bars of EAS: one below 0, then twenty to 1.
+/// Bars of the EAS histogram: one below 0, then twenty up to 1.
 pub(crate) const EAS_BARS: usize = 21;
-/// Bars of the smallest dihedral angle, of 5 degrees each; that of the regular tet is 70.5.
+/// Bars of the histogram of the smallest dihedral angle, of 5 degrees each; that of the regular tet is 70.5.
 pub(crate) const ANGLE_BARS: usize = 15;
 
-/// Equi-angle quality and dihedral angles of the tets whose points are numbers.
+/// Equi-angle quality and dihedral angles of the tets with finite points.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Quality {
     pub(crate) tets: usize,
     pub(crate) eas_min: f64,
-    /// How good all are together.
+    /// The distribution of the quality of all tets.
     pub(crate) all: Qualities,
-    /// Below [`BAD_EAS`], and not of a boundary layer.
+    /// Tets below [`BAD_EAS`] outside boundary layers.
     pub(crate) bad: usize,
-    /// Below [`BAD_EAS`], and of a boundary layer.
+    /// Tets below [`BAD_EAS`] in boundary layers.
     pub(crate) layers: usize,
-    /// Flat or inverted.
+    /// Flat or inverted tets.
     pub(crate) inverted: usize,
     pub(crate) worst_cell: usize,
     pub(crate) worst_at: Point,
@@ -40,11 +40,12 @@ pub(crate) struct Quality {
 pub(crate) struct ByCell {
     /// EAS of each cell, NaN where it has none.
     pub(crate) eas: Vec<f32>,
-    /// Bad tets, cells rising.
+    /// Bad tets, in ascending order of cells.
     pub(crate) bad: Vec<CellId>,
 }
 
-/// The quality of the tets, of quadratic ones the corners: of all, and of each cell. Of quadratic tets those are inverted that are so anywhere inside.
+/// The quality of the tets, overall and by cell, from the corners of quadratic ones. A quadratic tet counts
+/// as inverted if it is so anywhere inside.
 pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     let mut eas = vec![f32::NAN; mesh.cells.len()];
     let (mut quality, mut low) = (Quality::empty(), Vec::new());
@@ -74,7 +75,7 @@ pub(crate) fn of(mesh: &Mesh) -> (Option<Quality>, ByCell) {
     (all.map(|_| quality.finished()), ByCell { eas, bad })
 }
 
-/// Quadratic cells, in rising order, the determinant of whose Jacobian is not positive everywhere.
+/// Quadratic cells whose Jacobian determinant is not positive everywhere, in ascending order.
 fn not_upright(mesh: &Mesh) -> Vec<CellId> {
     let curved = CurvedCells::of(&mesh.cells, &mesh.points);
     let fallen = (0..curved.len()).filter(|&i| !curved.is_upright(i, &mesh.points));
@@ -99,7 +100,7 @@ impl Quality {
         }
     }
 
-    /// Angles are radians until [`Self::finished`].
+    /// Adds a tet and returns its EAS. Angles are in radians until [`Self::finished`].
     fn add(&mut self, cell: usize, tet: [Point; 4]) -> f64 {
         let eas = eas(tet);
         let [low, high] = dihedral::min_max(tet);

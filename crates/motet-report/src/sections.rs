@@ -1,4 +1,4 @@
-//! What is told of each input below the view: sentences, charts and tables.
+//! The sections below the view, one per input: sentences, charts and tables.
 
 use serde::Serialize;
 
@@ -8,11 +8,11 @@ use crate::log::{Cell, Column, Log, Table};
 use crate::numbers::{count, counted, short, time};
 use crate::shown::{Facts, Shown};
 
-/// Charts of one table at most; the other columns are in the table.
+/// The maximum number of charts of one table; the other columns are in the table only.
 const MOST_CHARTS: usize = 12;
-/// Rows of one table at most; of more, the first, the last and evenly chosen ones.
+/// The maximum number of rows of one table; of more, the first, the last and evenly chosen ones are shown.
 const MOST_ROWS: usize = 400;
-/// Columns that tell most, in the order in which they are charted.
+/// The most informative columns, in the order in which they are charted.
 const TELLING: [&str; 12] = [
     "worst_eas",
     "worst_eas.value",
@@ -28,7 +28,7 @@ const TELLING: [&str; 12] = [
     "deviation",
 ];
 
-/// What a table of frames says of the tets of each.
+/// Columns on the quality of tets in a table of frames.
 const QUALITY_COLUMNS: [&str; 12] = [
     "tets",
     "worst EAS",
@@ -44,11 +44,11 @@ const QUALITY_COLUMNS: [&str; 12] = [
     "angles, degrees",
 ];
 
-/// One input's part of the page.
+/// The section of one input.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Section {
     pub(crate) name: String,
-    /// The place among the inputs that have pictures; its charts follow the frame that is shown.
+    /// The index among the inputs with pictures; the section's charts follow the frame shown there.
     pub(crate) view: Option<usize>,
     pub(crate) sentences: Vec<String>,
     pub(crate) notes: Vec<String>,
@@ -58,18 +58,18 @@ pub(crate) struct Section {
     pub(crate) tables: Vec<Grid>,
 }
 
-/// A table as it is printed.
+/// A table in printed form.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(crate) struct Grid {
     pub(crate) name: String,
     pub(crate) head: Vec<String>,
-    /// Whether a column has numbers, which stand to the right.
+    /// Whether each column holds numbers, which are aligned to the right.
     pub(crate) numeric: Vec<bool>,
     pub(crate) rows: Vec<Vec<String>>,
     pub(crate) note: Option<String>,
 }
 
-/// The part of a mesh or a series.
+/// The section of a mesh or a series.
 pub(crate) fn of_meshes(shown: &Shown, view: usize) -> Section {
     Section {
         name: shown.name.clone(),
@@ -115,7 +115,7 @@ fn sentences(shown: &Shown) -> Vec<String> {
     told
 }
 
-/// So many cells of a kind, in words.
+/// The number of cells of a kind, in words.
 fn kind_of_cells(n: usize, kind: &str) -> String {
     match kind {
         "tetra" => counted(n, "tet"),
@@ -188,7 +188,7 @@ fn charts(shown: &Shown) -> Vec<Drawn> {
     all.filter(Chart::is_worth_it).map(|chart| chart.drawn()).collect()
 }
 
-/// The certificates: a row a frame.
+/// The table of certificates, with a row per frame.
 fn frames(shown: &Shown) -> Grid {
     let has_quality = shown.facts.iter().any(|facts| facts.quality.is_some());
     let has_gap = shown.facts.iter().any(|facts| facts.least_gap.is_some());
@@ -237,7 +237,7 @@ fn quality_cells(facts: &Facts) -> Vec<String> {
     ]
 }
 
-/// The part of a report or a log.
+/// The section of a report or a log.
 pub(crate) fn of_log(log: &Log) -> Section {
     let n_rows = log.tables.iter().map(|table| table.n_rows).max().unwrap_or(0);
     let mut sentences = Vec::new();
@@ -269,7 +269,8 @@ pub(crate) fn of_log(log: &Log) -> Section {
     }
 }
 
-/// Columns that are lines of one chart, by the names that they end with: how good all tets are.
+/// Columns drawn as lines of one chart, the quality of all tets, with the names of the lines; matched by the
+/// end of the column's name.
 const QUALITIES: [(&str, &str); 4] = [
     ("quality.worst", "worst"),
     ("quality.p1", "1 % below"),
@@ -293,7 +294,7 @@ fn quality_chart(table: &Table, (x_name, x): &(String, Vec<f64>)) -> Option<Char
     })
 }
 
-/// Charts of the columns that change, and how many of these have none.
+/// Charts of the columns that vary, and the number of such columns without a chart.
 fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
     let (x_name, x) = abscissa(table);
     let qualities = quality_chart(table, &(x_name.clone(), x.clone()));
@@ -330,7 +331,7 @@ fn table_charts(table: &Table) -> (Vec<Drawn>, usize) {
     (charts.iter().filter(|c| c.is_worth_it()).map(|c| title(c.drawn())).collect(), left)
 }
 
-/// Whether numbers under a key name something, and have no course worth a line.
+/// Whether the numbers under a key are identifiers, whose course is not worth a chart.
 fn is_id(name: &str) -> bool {
     let last = name.rsplit(['.', ' ']).next().unwrap_or(name);
     matches!(last, "step" | "time" | "frame" | "cell" | "vertex" | "point" | "tet" | "triangle" | "id")
@@ -344,7 +345,7 @@ fn stage(name: &str) -> String {
     name.split_once("seconds.").map_or(name, |(_, stage)| stage).to_owned()
 }
 
-/// What the rows are drawn over: time where it rises, else steps, else their numbers.
+/// The abscissa of a table's charts: time where it increases, otherwise steps, otherwise row numbers.
 fn abscissa(table: &Table) -> (String, Vec<f64>) {
     for name in ["time", "step"] {
         let numbers: Option<Vec<f64>> =

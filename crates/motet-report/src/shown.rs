@@ -1,4 +1,5 @@
-//! What the page knows of a mesh or a series: facts of every frame, pictures of those that fit, and what was left out.
+//! What the page contains of a mesh or a series: facts of every frame, pictures of those that fit, and what
+//! was left out.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use crate::part::{Holds, InsidePart, SkinPart};
 use crate::quality::Quality;
 use crate::store::BlockId;
 
-/// All that the page knows of a mesh or a series.
+/// Everything that the page contains of a mesh or a series.
 #[derive(Debug, Default)]
 pub(crate) struct Shown {
     pub(crate) name: String,
@@ -21,22 +22,22 @@ pub(crate) struct Shown {
     /// Names of labels, by array.
     pub(crate) names: Vec<BTreeMap<i32, String>>,
     pub(crate) facts: Vec<Facts>,
-    /// The frames that have a picture.
+    /// The frames with a picture.
     pub(crate) frames: Vec<Shipped>,
     pub(crate) with_arrays: bool,
-    /// What is not on the page, each in a sentence.
+    /// What is not on the page, a sentence each.
     pub(crate) left_out: Vec<String>,
     pub(crate) notes: Vec<String>,
 }
 
-/// What is told of every frame, with a picture or without.
+/// What is reported of every frame, with or without a picture.
 #[derive(Clone, Debug)]
 pub(crate) struct Facts {
     pub(crate) time: f64,
     pub(crate) points: usize,
     pub(crate) cells: Vec<(String, usize)>,
     pub(crate) quality: Option<Quality>,
-    /// The smallest value of an array `gap`, and where.
+    /// The smallest value of an array `gap`, and where it occurs.
     pub(crate) least_gap: Option<(f64, Point)>,
 }
 
@@ -70,12 +71,13 @@ fn least_gap(mesh: &Mesh) -> Option<(f64, Point)> {
 }
 
 impl Shown {
-    /// Nothing is known yet but the name.
+    /// The state before reading, with the name only.
     pub(crate) fn of(input: &Meshes) -> Self {
         Self { name: name_of(&input.file), is_series: input.is_series, with_arrays: true, ..Self::default() }
     }
 
-    /// The place of an array in the list of all, by its name and where its values stand.
+    /// The index of an array in the list of all arrays, by its name and whether it is on points or cells;
+    /// added if missing.
     pub(crate) fn place_of(&mut self, array: &Array) -> usize {
         let is_it = |key: &Key| (&key.name, key.on) == (&array.key.name, array.key.on);
         let place = self.keys.iter().position(is_it).unwrap_or_else(|| {
@@ -88,7 +90,7 @@ impl Shown {
         place
     }
 
-    /// Says what is not on the page.
+    /// Lists what is not on the page.
     pub(crate) fn tell(&mut self) {
         let (n, m) = (self.facts.len(), self.frames.len());
         let mut told = Vec::new();
@@ -137,7 +139,7 @@ impl Shown {
         if self.is_series { counted(frames, "frame") } else { "the mesh".to_owned() }
     }
 
-    /// Whether arrays that the skin has are left out inside.
+    /// Whether arrays of the skin are missing inside.
     fn lacks_colours(&self, frame: &Shipped) -> bool {
         let has_more = self.keys.iter().any(|key| !key.is_label && key.name != EAS);
         has_more

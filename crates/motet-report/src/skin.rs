@@ -1,4 +1,4 @@
-//! What is seen of a mesh from outside: triangles with the cells they belong to, and which of their sides are edges.
+//! The visible surface of a mesh: triangles with their cells, and which of their sides are edges.
 
 use std::collections::HashMap;
 
@@ -7,18 +7,19 @@ use motet::base::{VertexId, rising_list};
 use motet::geometry::vector::is_finite;
 use motet::mesh::{Boundary, CellKind, triangulate};
 
-/// Says that a triangle belongs to no cell of that dimension.
+/// Marks a triangle without a cell of that dimension.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The boundary of the volume cells and all surface cells, each place once.
+/// The boundary of the volume cells and all surface cells, coincident triangles only once.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Skin {
     pub(crate) triangles: Vec<[VertexId; 3]>,
-    /// Bit `i`: the side from corner `i` to the next is an edge of the mesh, and no diagonal that only divides it.
+    /// Bit `i`: the side from corner `i` to the next is an edge of the mesh, not a diagonal of a divided
+    /// cell.
     pub(crate) edges: Vec<u8>,
     pub(crate) volume_cell: Vec<u32>,
     pub(crate) surface_cell: Vec<u32>,
-    /// How many triangles were left out since their points are no numbers.
+    /// Number of triangles left out because their points are not finite.
     pub(crate) not_finite: usize,
 }
 
@@ -60,7 +61,7 @@ impl Skin {
     }
 }
 
-/// A facet or surface cell as triangles, with the sides of each that are edges.
+/// Divides a facet or surface cell into triangles, with the sides of each that are edges.
 pub(crate) fn pieces(mesh: &Mesh, kind: CellKind, vertices: &[VertexId]) -> Vec<([VertexId; 3], u8)> {
     if let (CellKind::TRIANGLE, &[a, b, c]) = (kind, vertices) {
         return vec![([a, b, c], 7)];
@@ -78,7 +79,7 @@ pub(crate) fn pieces(mesh: &Mesh, kind: CellKind, vertices: &[VertexId]) -> Vec<
     pieces
 }
 
-/// The vertices in the order in which they stand round the cell.
+/// The vertices in order around the cell.
 fn ring(kind: CellKind, vertices: &[VertexId]) -> Vec<VertexId> {
     let places: &[usize] = match kind {
         CellKind::PIXEL => &[0, 1, 3, 2],

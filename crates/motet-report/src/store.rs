@@ -1,14 +1,14 @@
-//! The packed tables of a page: what is the same is kept once.
+//! The packed tables of a page; equal ones are stored once.
 
 use std::collections::{BTreeSet, HashMap};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use crate::codec::Block;
 
-/// Which block of a [`Store`].
+/// Index of a block in a [`Store`].
 pub(crate) type BlockId = usize;
 
-/// All blocks that were packed; those that no frame of the page names are not written.
+/// All packed blocks; those that no frame of the page uses are not written.
 #[derive(Debug, Default)]
 pub(crate) struct Store {
     blocks: Vec<Block>,
@@ -16,7 +16,7 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// The block's id: that of an equal one where there is one.
+    /// Adds a block and returns its id, that of an equal block where there is one.
     pub(crate) fn put(&mut self, block: Block) -> BlockId {
         let mut hasher = DefaultHasher::new();
         (block.rows, block.columns, &block.data).hash(&mut hasher);
@@ -33,7 +33,7 @@ impl Store {
         &self.blocks[id]
     }
 
-    /// What these take of the page, beyond what `paid` takes already.
+    /// The size on the page of these blocks, except those in `paid`.
     pub(crate) fn cost(&self, ids: &[BlockId], paid: &BTreeSet<BlockId>) -> usize {
         let new: BTreeSet<BlockId> = ids.iter().copied().filter(|id| !paid.contains(id)).collect();
         new.iter().map(|&id| self.blocks[id].cost()).sum()

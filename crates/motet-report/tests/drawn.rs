@@ -1,4 +1,5 @@
-//! What a page would draw, unpacked again, is the mesh: for series whose cells change, in any order, whatever of them fits.
+//! What a page draws, unpacked again, is the mesh: for series whose cells change, in any order, however much
+//! of them fits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -17,21 +18,22 @@ use motet_report::{InputReport, Options, write};
 use proptest::prelude::*;
 use serde_json::Value;
 
-/// A page, and what its script makes of it.
+/// A page, and what its script reads from it.
 struct Page {
     text: String,
     manifest: Value,
     told: InputReport,
 }
 
-/// One frame, as the page draws it: points, triangles of the skin, volume cells by the ids of their points, and their values.
+/// One frame as the page draws it: points, triangles of the skin, volume cells by the ids of their points,
+/// and their values.
 struct Drawn {
     frame: usize,
     points: Vec<Point>,
     tolerance: f64,
     skin: Vec<Vec<u32>>,
     solids: Vec<Vec<u32>>,
-    /// Triangles that bound the cells, from inside to out or the other way round.
+    /// Triangles that bound the cells, facing outward or inward.
     facets: Vec<[u32; 3]>,
     planes: [Vec<f64>; 3],
     holds: Value,
@@ -55,7 +57,7 @@ impl Page {
         frames.iter().map(|frame| self.drawn(frame))
     }
 
-    /// What `script/unpack.js` and `script/geometry.js` do.
+    /// Does what `script/unpack.js` and `script/geometry.js` do.
     fn drawn(&self, frame: &Value) -> Drawn {
         let (skin, inside) = (&frame["skin"], &frame["inside"]);
         let triple = |value: &Value| [0, 1, 2].map(|i| value[i].as_f64().expect("a number"));
@@ -149,7 +151,7 @@ fn series(folder: &Path, meshes: &[Mesh]) -> std::path::PathBuf {
 }
 
 impl Drawn {
-    /// The vertex of the mesh that each point is: the nearest, no farther away than the rounding of coordinates.
+    /// The vertex of the mesh for each point: the nearest one, within the rounding of coordinates.
     fn vertices(&self, mesh: &Mesh) -> Vec<u32> {
         let nearest = |p: &Point| {
             let far = |v: &usize| distance(mesh.points[*v], *p);
@@ -171,7 +173,8 @@ impl Drawn {
         }
     }
 
-    /// The triangles are those of the boundary; of facets with more corners, their vertices are.
+    /// Asserts that the triangles are those of the boundary; of facets with more corners, the vertices are
+    /// compared.
     fn assert_skin(&self, mesh: &Mesh, named: &impl Fn(&[u32]) -> Vec<u32>) {
         let expected = Surface::boundary_of(mesh);
         let ours: BTreeSet<Vec<u32>> = self.skin.iter().map(|t| named(t)).collect();
@@ -181,7 +184,8 @@ impl Drawn {
         assert!(ours == theirs, "frame {}: the skin is not the boundary", self.frame);
     }
 
-    /// Each cell is the one that its number says; none is missing where all are said to be here, or those at planes.
+    /// Asserts that each cell is the one its number says, and that none is missing where all cells, or those
+    /// at planes, should be there.
     fn assert_solids(&self, mesh: &Mesh, named: &impl Fn(&[u32]) -> Vec<u32>) {
         let of_mesh =
             |cell: usize| sorted(mesh.cells.vertices(motet::base::CellId::new(cell)).iter().map(|v| v.0));
@@ -213,7 +217,7 @@ impl Drawn {
         })
     }
 
-    /// What the facets enclose, each cell by its own.
+    /// The sum of the volumes that the facets of each cell enclose.
     fn volume(&self) -> f64 {
         let mut facet = self.facets.iter();
         let mut sum = 0.0;
@@ -232,7 +236,8 @@ fn sorted(ids: impl Iterator<Item = u32>) -> Vec<u32> {
     ids.collect::<BTreeSet<u32>>().into_iter().collect()
 }
 
-/// The mesh with its vertices renumbered by a step that is coprime to their count: other connectivity, the same shape and counts.
+/// The mesh with its vertices renumbered by a stride coprime to their count: other connectivity, the same
+/// shape and counts.
 fn renumbered(mesh: &Mesh, stride: usize) -> Mesh {
     let n = mesh.points.len();
     let gcd = |mut a: usize, mut b: usize| {
@@ -253,7 +258,7 @@ fn renumbered(mesh: &Mesh, stride: usize) -> Mesh {
     Mesh::new(points, cells)
 }
 
-/// A mesh of one of six topologies, moved, with its ids as values.
+/// A mesh of one of six topologies, deformed, with its ids as values.
 fn frame((which, push): (usize, i32)) -> Mesh {
     let mut mesh = match which {
         0 => ball(3, 2),
@@ -264,7 +269,8 @@ fn frame((which, push): (usize, i32)) -> Mesh {
         _ => renumbered(&ball(3, 2), 11),
     };
     let push = 0.04 * f64::from(push);
-    // Sheared and bent, so that the order along any curve through the points changes; cells stay what they are.
+    // Sheared and bent, so that the order along any curve through the points changes; the cells stay the
+    // same.
     for p in &mut mesh.points {
         *p = [p[0] + push * p[1] + push * p[2] * p[2], p[1] - 2.0 * push * p[0], (1.0 + push) * p[2]];
     }

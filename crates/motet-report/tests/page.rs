@@ -1,4 +1,4 @@
-//! Pages as they are written: what is on them, how large they are, what is refused.
+//! Written pages: their content, their size, and what is refused.
 
 use std::fs;
 use std::path::PathBuf;
@@ -40,7 +40,7 @@ impl Folder {
         self.path("series.pvd")
     }
 
-    /// The report, the page, and what the page's script is told.
+    /// Returns the report, the page, and the data for the page's script.
     fn page(&self, inputs: &[PathBuf], budget: usize) -> (Report, String, Value) {
         let output = self.path("page.html");
         let report = write(inputs, &Options { budget, ..Options::new(&output) }).expect("a page");
@@ -57,7 +57,7 @@ impl Folder {
     }
 }
 
-/// A ball that is pushed along x, a little more in each of `n` frames.
+/// A ball deformed along x, a little more in each of `n` frames.
 fn pushed(n: usize) -> Vec<Mesh> {
     let frame = |k: usize| {
         let mut mesh = ball(6, 4);
