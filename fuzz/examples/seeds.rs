@@ -1,4 +1,5 @@
-//! Fills `corpus/TARGET/` with small files of every format that can be written, and with bytes for the targets of algorithms; `fuzz/run` calls it.
+//! Fills `corpus/TARGET/` with small files of every format that can be written, and with bytes for the
+//! targets of algorithms; called by `fuzz/run`.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -47,10 +48,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Files of bytes for each target of an algorithm.
+/// Number of byte files for each target of an algorithm.
 const N_SCRIPTS: u64 = 32;
 
-/// 256 bytes that look random, the same for each `k` (Marsaglia's xorshift).
+/// 256 pseudorandom bytes, the same for each `k` (Marsaglia's xorshift).
 fn bytes(k: u64) -> Vec<u8> {
     let mut state = 0x9e37_79b9_7f4a_7c15 ^ (k + 1);
     let next = || {
@@ -88,11 +89,11 @@ const DOLFIN: &str = r#"<?xml version="1.0"?>
 </dolfin>
 "#;
 
-/// The .node, .ele and .face files, a zero byte between them.
+/// The .node, .ele and .face files, separated by zero bytes.
 const TETGEN: &str = "5 3 1 1\n0 0 0 0 2 -1\n1 1 0 0 2 -1\n2 0 1 0 2 -1\n3 0 0 1 2 -1\n4 1 1 1 2 -1 # a comment\n\
     \02 4 1\n0 0 1 2 3 7\n1 1 2 3 4 8\n\02 1\n0 0 1 2 -1\n1 2 3 4 -2\n";
 
-/// Small meshes with all that a file may hold.
+/// Small meshes with everything that a file may contain.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let mut tets = shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
     let (n_points, n_cells) = (tets.points.len(), tets.cells.len());
@@ -121,7 +122,7 @@ fn polyhedron() -> Mesh {
     Mesh::new(points, cells)
 }
 
-/// Every way of writing; formats that do not know a version refuse it.
+/// Every combination of write options; formats refuse versions that they do not know.
 fn options() -> impl Iterator<Item = WriteOptions> {
     let compressions = [Compression::None, Compression::Zlib, Compression::Lz4, Compression::Lzma];
     let encodings = [Encoding::Ascii, Encoding::Base64, Encoding::Binary];

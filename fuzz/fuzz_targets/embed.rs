@@ -1,5 +1,6 @@
 #![no_main]
-//! Puts a body from bytes into a box of tets: the result is a mesh, its volume stays, tets are positive.
+//! Puts a body from bytes into a box of tets: the result is a valid mesh of the same volume with positive
+//! tets.
 
 mod solids;
 
@@ -12,7 +13,8 @@ use solids::Numbers;
 
 fuzz_target!(|bytes: &[u8]| {
     let mut numbers = Numbers(bytes);
-    // Any lattice cuts off the edge of a thin wedge: with a tolerance much smaller than the body the surface gets tens of thousands of triangles.
+    // Any lattice cuts off the edge of a thin wedge: with a tolerance much smaller than the body, the surface
+    // would get tens of thousands of triangles.
     let interface =
         [Interface::Match, Interface::Match, Interface::Conform { tolerance: Some(1.0) }][numbers.below(3)];
     let outside = [Outside::Cut, Outside::Keep][numbers.below(2)];

@@ -1,5 +1,6 @@
 #![no_main]
-//! Fills the boundary of a body from bytes: every triangle a facet, volumes as enclosed, tets positive or reported.
+//! Fills the boundary of a body from bytes: every triangle is a facet, volumes are as enclosed, tets are
+//! positive or reported.
 
 mod solids;
 
@@ -33,7 +34,7 @@ fuzz_target!(|bytes: &[u8]| {
     let cone = |t: &[VertexId; 3]| cone_volume(t.iter().copied(), &surface.points, surface.points[0]);
     let enclosed: f64 = surface.triangles.iter().map(cone).sum();
     let total: f64 = solids::volumes(&filled.mesh).values().sum();
-    // A part of the skin that faces inward encloses less than nothing.
+    // A part of the skin that faces inward encloses a negative volume.
     let faces_outward = solids::n_not_positive(&body) == 0;
     if faces_outward && filled.report.triangles_kept == filled.report.triangles {
         let off = (total - enclosed).abs();

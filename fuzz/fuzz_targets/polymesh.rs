@@ -1,5 +1,5 @@
 #![no_main]
-//! Takes any bytes apart at 0xff bytes into the files of a polyMesh, and reads them.
+//! Splits any bytes at 0xff into the files of a polyMesh, and reads them.
 
 use std::cell::LazyCell;
 use std::fs;

@@ -1,5 +1,6 @@
 #![no_main]
-//! Repairs, coarsens or sizes a body from bytes: the result is a mesh, its volumes stay, tets are positive or reported.
+//! Repairs, coarsens or sizes a body from bytes: the result is a valid mesh with the same volumes; tets are
+//! positive or reported.
 
 mod solids;
 
@@ -24,7 +25,7 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(outcome) = remesh_mesh(&mesh, &options, &Rules::default(), &Threads::single()) else { return };
     solids::check(&outcome.mesh);
     let n_wrong = solids::n_not_positive(&outcome.mesh);
-    // A part whose tets are all turned over counts as numbered the other way round.
+    // A part whose tets are all inverted counts as numbered the other way round.
     let n_before = solids::n_not_positive(&mesh);
     assert!(
         n_wrong <= n_before || outcome.report.after.inverted > 0,

@@ -1,4 +1,5 @@
-//! What the targets of algorithms share: bodies from bytes, and what a mesh of tets must be by definition.
+//! Shared by the targets of algorithms: bodies from bytes, and what must hold for a mesh of tets by
+//! definition.
 #![allow(dead_code, reason = "each target uses its part")]
 
 use std::collections::HashMap;
@@ -11,7 +12,7 @@ use motet::geometry::triangle::area;
 use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Cells, Field, Surface};
 
-/// Numbers from bytes, in their order; zeros where they end.
+/// Numbers from bytes in order; zeros after the last.
 pub struct Numbers<'a>(pub &'a [u8]);
 
 impl Numbers<'_> {
@@ -25,12 +26,12 @@ impl Numbers<'_> {
         first
     }
 
-    /// In 0..n, for n up to 256.
+    /// A number in 0..n, for n up to 256.
     pub fn below(&mut self, n: usize) -> usize {
         usize::from(self.byte()) % n
     }
 
-    /// In [-1, 1], a multiple of 1/16: coordinates often coincide.
+    /// A multiple of 1/16 in [-1, 1]: coordinates often coincide.
     pub fn coarse(&mut self) -> f64 {
         (f64::from(self.byte() % 33) - 16.0) / 16.0
     }
@@ -41,7 +42,8 @@ impl Numbers<'_> {
     }
 }
 
-/// Cubes of a lattice of 2 or 3 a side, each of 6 tets; corners moved by up to `most` of an edge. Cubes are in regions 1 to 3, all coordinates within [-1, 1].
+/// Cubes of a lattice of 2 or 3 per side, each of 6 tets, with corners moved by up to `most` of an edge.
+/// Cubes are in regions 1 to 3; all coordinates lie within [-1, 1].
 pub fn cubes(numbers: &mut Numbers, most: f64) -> Mesh {
     let n = 2 + numbers.below(2);
     let whole = box_grid([n; 3], [[-1.0; 3], [1.0; 3]]);
@@ -70,11 +72,11 @@ pub fn cubes(numbers: &mut Numbers, most: f64) -> Mesh {
     mesh
 }
 
-/// Leaves a mesh where it is, or turns, shifts or scales it, or rounds it to `f32`.
+/// Leaves a mesh where it is, or rotates, shifts or scales it, or rounds it to `f32`.
 fn placed(mesh: &mut Mesh, numbers: &mut Numbers) {
     let how = numbers.below(8);
     let turn = |p: Point| {
-        // A rotation with rational entries, which few floats are.
+        // A rotation with rational entries, most of which are not exact in floating point.
         let rows = [[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [-2.0, -1.0, 2.0]];
         rows.map(|r: [f64; 3]| (r[0] * p[0] + r[1] * p[1] + r[2] * p[2]) / 3.0)
     };
@@ -110,7 +112,7 @@ pub fn n_not_positive(mesh: &Mesh) -> usize {
     tets(mesh).into_iter().filter(|tet| !is_positive(*tet)).count()
 }
 
-/// The volume of the tets of each region; what rounding may make of it is part of `tolerance`.
+/// The volume of the tets of each region; `tolerance` covers rounding.
 pub fn volumes(mesh: &Mesh) -> HashMap<i64, f64> {
     let labels = mesh.cell_field("region").and_then(|f| f.values.to_f64());
     let mut volumes = HashMap::new();
@@ -121,8 +123,9 @@ pub fn volumes(mesh: &Mesh) -> HashMap<i64, f64> {
     volumes
 }
 
-/// How far the volumes of a mesh that was made of `given` may be off: the area of all facets times the rounding of given coordinates. Facets that are flat but for the rounding of `f32`, or of a
-/// few decimals, may be divided in another way; of the last decimal a hundredth is allowed.
+/// The permitted deviation of the volumes of a mesh made from `given`: the area of all facets times the
+/// rounding of the given coordinates. Facets that are flat up to the rounding of `f32`, or of a few decimals,
+/// may be divided in another way; a hundredth of the last decimal is allowed.
 pub fn tolerance(mesh: &Mesh, given: &Mesh) -> f64 {
     let coordinates = || given.points.iter().flatten().copied();
     let largest = coordinates().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -135,7 +138,8 @@ pub fn tolerance(mesh: &Mesh, given: &Mesh) -> f64 {
     facets * ten.map_or(0.0, |ten| 0.01 / ten).max(of_single).max(1e-12 * largest)
 }
 
-/// Asks of a mesh what every mesh is: ids within range, corners that differ, each facet of at most two tets and, where all are positive, no facet of two from the same side.
+/// Checks what holds for every mesh: ids within range, distinct corners, at most two tets at each facet and,
+/// where all tets are positive, no two on the same side of a facet.
 pub fn check(mesh: &Mesh) {
     mesh.validate().expect("the mesh holds together");
     let are_positive = n_not_positive(mesh) == 0;
@@ -160,7 +164,7 @@ fn rising(mut facet: [VertexId; 3]) -> [VertexId; 3] {
     facet
 }
 
-/// Whether an even number of exchanges puts the corners into rising order.
+/// Whether the permutation that sorts the corners is even.
 fn is_even([a, b, c]: [VertexId; 3]) -> bool {
     (usize::from(a > b) + usize::from(a > c) + usize::from(b > c)) % 2 == 0
 }

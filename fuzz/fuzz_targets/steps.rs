@@ -1,5 +1,6 @@
 #![no_main]
-//! A script from bytes, run on a moving mesh: moved, repaired, refined, coarsened, saved and loaded; after each the mesh is one, and what is counted is so.
+//! A script from bytes, run on a moving mesh: moved, repaired, refined, coarsened, saved and loaded; after
+//! each step the mesh is valid and the reported counts are true.
 
 mod solids;
 
@@ -11,7 +12,7 @@ use motet::moving::{MovingMesh, Options};
 use motet::refine::{Criterion, Wanted};
 use solids::Numbers;
 
-/// A mesh beyond this many tets ends a script.
+/// A script ends when the mesh has more tets than this.
 const MOST_TETS: usize = 20_000;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -58,7 +59,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// Moves driven vertices: all, those of one side, or each on its own way.
+/// Moves driven vertices: all together, those of one side, or each separately.
 fn push(goes: &mut [Point], places: &[Point], how: usize, numbers: &mut Numbers) {
     let by = numbers.vector().map(|x| 0.3 * x);
     let side = numbers.coarse();
@@ -78,7 +79,7 @@ fn refine(moving: &mut MovingMesh, numbers: &mut Numbers, threads: &Threads) {
     let ball = Criterion::Ball { centre: numbers.vector(), radius: 0.3 };
     let coarsen = numbers.below(2) == 1;
     let wanted = Wanted { criteria: vec![ball], coarsen, generations: Some(1), ..Wanted::default() };
-    // The ball may hold no tet: then nothing changes.
+    // The ball may contain no tet: then nothing changes.
     let before = moving.mesh().clone();
     if moving.refine(&wanted, threads).is_err() {
         assert_eq!(*moving.mesh(), before);

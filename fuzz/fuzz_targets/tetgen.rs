@@ -1,5 +1,5 @@
 #![no_main]
-//! Takes any bytes apart at zero bytes into .node, .ele and .face files, and reads them.
+//! Splits any bytes at zero bytes into .node, .ele and .face files, and reads them.
 
 use std::cell::LazyCell;
 use std::fs;

@@ -1,6 +1,6 @@
 #![no_main]
-//! Reads any bytes as a large VTU file by both ways that there are: whole, and array by array from the file.
-//! They agree.
+//! Reads any bytes as a large VTU file in both ways: whole, and array by array from the file. The results
+//! must agree.
 
 use std::cell::LazyCell;
 use std::fs;
@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 
 mod common;
 
-/// From this size on a file with raw appended data is read array by array.
+/// Files of at least this size with raw appended data are read array by array.
 const LARGE: usize = 256 << 10;
 
 thread_local! {

@@ -1,4 +1,4 @@
-//! Where a source file can be changed, and into what.
+//! The places where a source file can be changed, and their replacements.
 
 use std::ops::Range;
 
@@ -6,21 +6,21 @@ use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
 use syn::{BinOp, Block, Expr, ReturnType, Signature, Stmt, Type, UnOp};
 
-/// Letters of the source in a description.
+/// Maximum number of source characters in a description.
 const LONGEST: usize = 120;
 
-/// How a mutant stands in the source.
+/// The syntactic form of a mutant.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Form {
-    /// In place of an expression.
+    /// A replaced expression.
     Expression,
-    /// A return at the beginning of a body.
+    /// An early return at the beginning of a body.
     Body,
-    /// A statement that is left out.
+    /// A removed statement.
     Left,
 }
 
-/// A place in a source file, and what can stand there instead: each with its description.
+/// A place in a source file, with its possible replacements and a description of each.
 pub struct Site {
     pub range: Range<usize>,
     pub form: Form,
@@ -28,7 +28,7 @@ pub struct Site {
     pub mutants: Vec<(String, String)>,
 }
 
-/// All sites of a source file, outer ones before those within them; and the files of its test modules.
+/// All sites of a source file, outer ones before those nested in them, and the files of its test modules.
 pub fn find(source: &str) -> syn::Result<(Vec<Site>, Vec<String>)> {
     let file = syn::parse_file(source)?;
     let mut finder = Finder { source, names: Vec::new(), sites: Vec::new(), tests: Vec::new() };
@@ -38,7 +38,7 @@ pub fn find(source: &str) -> syn::Result<(Vec<Site>, Vec<String>)> {
 
 struct Finder<'a> {
     source: &'a str,
-    /// The implemented type and the functions around.
+    /// The enclosing implemented type and functions.
     names: Vec<String>,
     sites: Vec<Site>,
     tests: Vec<String>,
@@ -49,7 +49,7 @@ impl Finder<'_> {
         &self.source[node.span().byte_range()]
     }
 
-    /// The text of a node in one line, which is not long.
+    /// The text of a node in one line, truncated.
     fn line(&self, node: &impl Spanned) -> String {
         let line = self.text(node).split_whitespace().collect::<Vec<_>>().join(" ");
         line.char_indices().nth(LONGEST).map_or(line.clone(), |(end, _)| format!("{}...", &line[..end]))
@@ -74,7 +74,7 @@ impl Finder<'_> {
         self.names.pop();
     }
 
-    /// Plausible values of what a function returns.
+    /// Plausible values of a function's return type.
     fn values(&self, output: &ReturnType) -> Vec<String> {
         let ReturnType::Type(_, output) = output else { return vec!["()".into()] };
         let values: &[&str] = match &**output {
@@ -178,7 +178,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
         self.visit_expr(&repeat.expr);
     }
 
-    // Patterns, types and constants take no call.
+    // Patterns, types and constants cannot contain calls.
     fn visit_pat(&mut self, _: &'ast syn::Pat) {}
     fn visit_type(&mut self, _: &'ast Type) {}
     fn visit_generic_argument(&mut self, _: &'ast syn::GenericArgument) {}
@@ -218,7 +218,7 @@ fn swaps(op: &BinOp) -> &'static [&'static str] {
     }
 }
 
-/// Whether it is a chain with a pattern, which may stand after `if` and `while` alone.
+/// Whether an expression is a let chain, which is valid only after `if` and `while`.
 fn has_let(expression: &Expr) -> bool {
     match expression {
         Expr::Let(_) => true,

@@ -1,4 +1,4 @@
-//! Which mutants the tests notice.
+//! Runs the tests on mutants, and reports which mutants they detect.
 
 use std::collections::hash_map::DefaultHasher;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -11,14 +11,14 @@ use std::time::{Duration, Instant};
 use crate::suite::{Ended, Test};
 use crate::tree::Tree;
 
-/// Seconds that one mutant may take, and all of them.
+/// Maximum seconds for one mutant, and for all of them.
 pub struct Limits {
     pub each: f64,
     pub all: f64,
 }
 
-/// Runs the tests that reach each mutant, until one fails; verdicts of an earlier run are kept, but
-/// with `again` those of mutants that no test noticed.
+/// Runs the tests that reach each mutant until one fails. Verdicts of an earlier run are kept; with `again`,
+/// those of mutants that no test detected are not.
 pub fn judge(
     tree: &Tree,
     suite: &[Test],
@@ -40,7 +40,7 @@ pub fn judge(
     }
     let mut ids: Vec<usize> = (0..tree.mutants.len()).filter(|id| !tree.dropped.contains(id)).collect();
     ids.retain(|id| !verdicts.contains_key(id));
-    // No order of the source, so that a part of all is like all.
+    // Sorted by a hash, so that any part of the list is representative.
     ids.sort_by_key(|id| {
         let mut hasher = DefaultHasher::new();
         tree.mutants[*id].key.hash(&mut hasher);
@@ -109,7 +109,7 @@ impl<'a> Counts<'a> {
             .for_each(|[ran, failed]| (*ran, *failed) = (*ran + 1.0, *failed + f64::from(has_failed)));
     }
 
-    /// How likely a test is to fail on the next mutant of a file.
+    /// Estimates the probability that a test fails on the next mutant of a file.
     fn chance(&self, file: &str, test: usize) -> f64 {
         let [ran, failed] = self.of_all.get(&test).copied().unwrap_or_default();
         let of_any = (failed + 0.5) / (ran + 5.0);
@@ -118,13 +118,13 @@ impl<'a> Counts<'a> {
     }
 }
 
-/// Prints counts by folder and what is left; whether nothing is.
+/// Prints counts by folder and the surviving mutants; returns whether there are none.
 pub fn report(tree: &Tree, verdicts: &HashMap<usize, String>, equivalent: &str) -> bool {
     const KINDS: [&str; 7] =
         ["caught", "timed out", "equivalent", "survived", "not reached", "capped", "not run"];
     let mut folders: BTreeMap<&str, [usize; KINDS.len()]> = BTreeMap::new();
     let mut left = Vec::new();
-    // A key, a tab, the reason.
+    // Each line has a key, a tab and the reason.
     let equivalent: HashSet<&str> =
         equivalent.lines().filter_map(|l| l.rsplit_once('\t')).map(|(key, _)| key).collect();
     for (id, mutant) in tree.mutants.iter().enumerate().filter(|(id, _)| !tree.dropped.contains(id)) {

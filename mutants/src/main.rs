@@ -1,7 +1,7 @@
-//! Changes one expression of the library at a time and runs the tests that reach it: what no test notices
-//! is a missing test, code that is not needed, or a change that changes nothing.
+//! Changes one expression of the library at a time and runs the tests that reach it. A change that no test
+//! detects shows a missing test, unnecessary code, or an equivalent change.
 //!
-//! All mutants stand in one build, each behind a question whether it is on.
+//! All mutants are compiled into one build, each behind a run-time switch.
 
 mod find;
 mod judge;

@@ -1,4 +1,4 @@
-//! The tests: built once, with how long each takes and which mutants it reaches.
+//! The tests, built once, with the duration of each and the mutants that it reaches.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -12,9 +12,9 @@ use serde_json::Value;
 
 use crate::tree::{CRATE, Tree};
 
-/// Above this a test is left out.
+/// Tests that take longer than this are left out.
 const LONGEST: Duration = Duration::from_secs(30);
-/// Memory that a test may take, in kB: a mutant can fill a list for ever.
+/// Memory limit of a test, in kB, since a mutant can fill a list endlessly.
 const MEMORY: &str = "6000000";
 
 pub struct Test {
@@ -31,7 +31,7 @@ pub enum Ended {
     TimedOut,
 }
 
-/// Builds the library, without the mutants that do not compile, and then its tests; the programs of these.
+/// Builds the library, dropping mutants that do not compile, and then its tests; returns the test programs.
 pub fn build(tree: &mut Tree, target: &Path, tests: &[String]) -> io::Result<Vec<PathBuf>> {
     let cargo = |words: &[&str], more: &[String], folder: &Path| {
         let mut command = Command::new("cargo");
@@ -77,7 +77,7 @@ pub fn build(tree: &mut Tree, target: &Path, tests: &[String]) -> io::Result<Vec
     Ok(programs)
 }
 
-/// Runs each test by itself, or reads what an earlier run with the same mutants found.
+/// Runs each test by itself, or reads the results of an earlier run with the same mutants.
 pub fn baseline(tree: &Tree, programs: &[PathBuf], kept: &Path) -> io::Result<Vec<Test>> {
     let old = fs::read_to_string(kept).unwrap_or_default();
     let old: HashMap<&str, &str> = old.lines().filter_map(|line| line.split_once('\t')).collect();
@@ -134,7 +134,7 @@ impl Test {
         command.args(["-c", "ulimit -v \"$0\"; exec \"$@\"", MEMORY]).arg(&self.program);
         command.args(["--exact", &self.name, "--quiet", "--test-threads=1"]);
         command.env("MUTANT", mutant).env("MUTANT_REACH", tree.folder.join("reach.txt"));
-        // Random cases are the same ones each time, and a failure is neither made small nor kept.
+        // Random cases are the same each time; failures are neither minimised nor stored.
         command.env("PROPTEST_RNG_SEED", "1").env("PROPTEST_MAX_SHRINK_ITERS", "0");
         command.env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "1");
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());

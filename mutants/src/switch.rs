@@ -1,5 +1,5 @@
-//! Which mutant is on: the number in `MUTANT`. With `MUTANT=reach` none is, and those that are asked about
-//! are appended to the file `MUTANT_REACH`.
+//! The active mutant: the number in `MUTANT`. With `MUTANT=reach` none is active, and the numbers of mutants
+//! reached are appended to the file `MUTANT_REACH`.
 
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};

@@ -1,4 +1,4 @@
-//! A copy of the project in which every mutant stands, each behind a question whether it is on.
+//! A copy of the project that contains every mutant, each behind a run-time switch.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -8,11 +8,11 @@ use std::{fs, io};
 
 use crate::find::{Form, Site, find};
 
-/// A change of the source; its number is its place in the list and one more.
+/// A change of the source; its number is its index in the list plus one.
 pub struct Mutant {
     pub file: String,
     pub line: usize,
-    /// File, function and change, with tabs between: the same as long as these are.
+    /// File, function and change, separated by tabs: identifies the mutant as long as these stay the same.
     pub key: String,
     site: usize,
     text: String,
@@ -26,9 +26,9 @@ pub struct Tree {
     pub mutants: Vec<Mutant>,
     files: Vec<(String, String, Vec<Site>)>,
     library: String,
-    /// Those that do not compile.
+    /// Mutants that do not compile.
     pub dropped: HashSet<usize>,
-    /// Where each stands in the written file, and where its site does.
+    /// The ranges of each mutant and of its site in the written file.
     places: HashMap<usize, (Range<usize>, Range<usize>)>,
 }
 
@@ -81,14 +81,14 @@ impl Tree {
         }
     }
 
-    /// Writes the sources with all mutants but the dropped ones.
+    /// Writes the sources with all mutants except the dropped ones.
     pub fn write(&mut self) -> io::Result<()> {
         self.places.clear();
         for (file, source, sites) in &self.files {
             let mut ids: Vec<Vec<usize>> = vec![Vec::new(); sites.len()];
             let own = |(i, m): &(usize, &Mutant)| m.file == *file && !self.dropped.contains(i);
             self.mutants.iter().enumerate().filter(own).for_each(|(i, m)| ids[m.site].push(i));
-            // Ends before beginnings; of ends those within first, of beginnings those around.
+            // Ends before beginnings; inner ends first, outer beginnings first.
             let mut marks = Vec::new();
             for (site, found) in sites.iter().enumerate().filter(|(site, _)| !ids[*site].is_empty()) {
                 marks.push((found.range.start, 1, site as isize, site));
@@ -135,7 +135,7 @@ impl Tree {
         put(&self.folder.join(CRATE).join("src/mutants.rs"), switch.as_bytes())
     }
 
-    /// Drops what stands where the compiler found an error; false when that is nothing.
+    /// Drops the mutants where the compiler found an error; returns false if there are none.
     pub fn drop_at(&mut self, file: &str, span: Range<usize>) -> bool {
         let within = |around: &Range<usize>| around.start <= span.start && span.end <= around.end;
         let own = || self.places.iter().filter(|(id, _)| self.mutants[**id].file == file);
@@ -152,7 +152,7 @@ impl Tree {
     }
 }
 
-/// Writes a file unless it has these contents.
+/// Writes a file unless it already has these contents.
 fn put(path: &Path, contents: &[u8]) -> io::Result<()> {
     if fs::read(path).is_ok_and(|old| old == contents) {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Numpy arrays from lists of the library, whose memory they take over, and lists from arrays.
+//! Conversion between numpy arrays and lists of the library; arrays take over the memory of lists.
 
 use std::ops::Deref;
 
@@ -15,17 +15,18 @@ use pyo3::types::PyList;
 
 use crate::error::{input, raised};
 
-/// An array that is read where it lies. Another type, another number of axes, or memory that another call writes at the same time are errors of the input.
+/// An array that is read in place. Another type, another number of axes, or memory that another call is
+/// writing to are errors of the input.
 pub(crate) struct Read<'py, T: Element, D: Dimension>(PyReadonlyArray<'py, T, D>);
 
-/// An array that is written where it lies. Errors as for [`Read`], and for arrays that are read-only.
+/// An array that is written in place. Errors are as for [`Read`], also for read-only arrays.
 pub(crate) struct Written<'py, T: Element, D: Dimension>(pub(crate) PyReadwriteArray<'py, T, D>);
 
 /// Points or vectors, shape `(n, 3)`.
 pub(crate) type Vectors<'py> = Read<'py, f64, Ix2>;
 /// Points or vectors that are written, shape `(n, 3)`.
 pub(crate) type VectorsOut<'py> = Written<'py, f64, Ix2>;
-/// Numbers of vertices, cells, triangles.
+/// Indices of vertices, cells or triangles.
 pub(crate) type Ids<'py> = Read<'py, u32, Ix1>;
 
 impl<'py, T: Element, D: Dimension> Deref for Read<'py, T, D> {
@@ -60,7 +61,7 @@ fn written() -> PyErr {
     input("an array that is to be read is being written by this or another call; give it memory of its own")
 }
 
-/// An array of a type and a number of axes.
+/// An array with the required element type and number of axes.
 fn array<'py, T: Element, D: Dimension>(
     given: Borrowed<'_, 'py, PyAny>,
 ) -> PyResult<Bound<'py, PyArray<T, D>>> {
@@ -83,7 +84,7 @@ pub(crate) fn rows<'a>(array: &'a Vectors<'_>, what: &str) -> PyResult<&'a [Poin
     })
 }
 
-/// The rows of an array that is to be written, contiguous and of three columns.
+/// The rows of an array to be written that is contiguous and has three columns.
 pub(crate) fn rows_mut<'a>(out: &'a mut VectorsOut<'_>, what: &str) -> PyResult<&'a mut [Point]> {
     let shape = out.0.shape().to_vec();
     let flat = out.0.as_slice_mut().ok().filter(|_| shape[1] == 3);
@@ -111,7 +112,7 @@ pub(crate) fn vectors<'py>(py: Python<'py>, list: Vec<Point>) -> PyResult<Bound<
     table(py, list.into_flattened(), 3)
 }
 
-/// Rows of so many values each.
+/// An array of rows of `columns` values each.
 pub(crate) fn table<'py, T: Element>(
     py: Python<'py>,
     flat: Vec<T>,
@@ -123,7 +124,7 @@ pub(crate) fn table<'py, T: Element>(
 
 macro_rules! across {
     ($($variant:ident($t:ty);)*) => {
-        /// The values of a field: an array of `n`, or of `(n, components)`; texts are a list.
+        /// The values of a field: an array of shape `(n,)`, or `(n, components)`; texts are a list.
         pub(crate) fn from_field<'py>(py: Python<'py>, field: Field) -> PyResult<Bound<'py, PyAny>> {
             let k = field.components;
             match field.values {
@@ -133,7 +134,8 @@ macro_rules! across {
             }
         }
 
-        /// A field from an array of one, two or three dimensions, whose rows are the first; from a list of texts.
+        /// A field from an array of one, two or three dimensions, the first of which counts the rows; or from
+        /// a list of texts.
         pub(crate) fn to_field(name: String, array: &Bound<'_, PyAny>) -> PyResult<Field> {
             $(if let Ok(array) = array.cast::<PyArrayDyn<$t>>() {
                 let shape = array.shape().to_vec();

@@ -1,6 +1,6 @@
-//! Whole meshes across the border: into a [`Mesh`] by copying its arrays, out of it by handing them over.
+//! Conversion of whole meshes: into a [`Mesh`] by copying Python's arrays, and back by passing the arrays on.
 //!
-//! Python's `motet.Mesh` is made of numpy arrays; those of the cells are the compressed rows that [`Cells`] has.
+//! Python's `motet.Mesh` consists of numpy arrays; those of the cells are compressed rows as in [`Cells`].
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Ids, Read, Vectors, from_field, ids, rows, to_field, vectors};
 use crate::error::{OrRaise, input};
 
-/// A mesh that came from Python, checked.
+/// A mesh from Python, checked.
 pub(crate) struct Given(pub(crate) Mesh);
 
 impl<'py> FromPyObject<'_, 'py> for Given {
@@ -51,7 +51,8 @@ fn cells(mesh: &Borrowed<'_, '_, PyAny>) -> PyResult<Cells> {
     with_polyhedra(&kinds, &lists, &faces.as_array().to_vec())
 }
 
-/// Polyhedra bring their faces: for each how many there are, then of each face how many vertices, and these.
+/// Cells with polyhedra, whose faces are listed in `faces`: for each polyhedron the number of faces, then for
+/// each face the number of vertices and the vertices.
 fn with_polyhedra(kinds: &[CellKind], lists: &Csr<VertexId>, faces: &[u32]) -> PyResult<Cells> {
     let mut cells = Cells::new();
     let mut rest = faces;
@@ -87,7 +88,7 @@ fn fields(mesh: &Borrowed<'_, '_, PyAny>, of: &str) -> PyResult<Vec<Field>> {
     arrays.iter().map(|(name, array)| to_field(name.extract()?, &array)).collect()
 }
 
-/// A mesh on its way to Python: what `motet.Mesh` is made of, by name.
+/// The parts from which Python builds a `motet.Mesh`, by name.
 pub(crate) fn parts<'py>(py: Python<'py>, mesh: Mesh) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let faces: Vec<u32> = mesh.cells.polyhedron_faces().iter().flat_map(stream).collect();

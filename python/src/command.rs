@@ -1,4 +1,4 @@
-//! The command line, for the `motet` that is installed with the package.
+//! The command line, for the `motet` installed with the package.
 
 use std::ffi::OsString;
 
@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 
 use crate::error::called;
 
-/// Runs the command line with these words, the name of the program first; the exit status.
+/// Runs the command line with these arguments, the name of the program first, and returns the exit status.
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
     called(py, || Ok(motet_cli::run(words)))

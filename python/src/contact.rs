@@ -1,4 +1,4 @@
-//! How far apart surfaces are, where, and when they will touch.
+//! Contact: distances between surfaces, and when they will touch.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::contact::{self, Body, Gaps, NONE, Options, Room};
@@ -22,11 +22,11 @@ pub(crate) struct Contact {
     threads: Threads,
 }
 
-/// A pair of bodies, as reports have it.
+/// A pair of bodies, as in reports.
 #[derive(Serialize)]
 struct Pair<'a> {
     bodies: [&'a str; 2],
-    /// None where nothing is within reach.
+    /// `None` where nothing is within reach.
     distance: Option<f64>,
     points: Option<[Point; 2]>,
     triangles: Option<[u32; 2]>,
@@ -36,7 +36,7 @@ struct Pair<'a> {
     warned: [usize; 2],
 }
 
-/// A surface in a room, as reports have it.
+/// A surface in a room, as in reports.
 #[derive(Serialize)]
 struct Within<'a> {
     room: &'a str,
@@ -46,7 +46,8 @@ struct Within<'a> {
 
 #[pymethods]
 impl Contact {
-    /// `bodies`: each with its name, its triangles and whether it is the wall of a room; `None`: that is found.
+    /// `bodies`: the name and the triangles of each, and whether it is the wall of a room; `None` lets the
+    /// library decide.
     #[new]
     #[pyo3(signature = (points, bodies, *, warn, own, within, facing, fold, threads))]
     #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]
@@ -87,7 +88,7 @@ impl Contact {
         Ok(Self { contact, names, threads })
     }
 
-    /// Which surfaces lie in which rooms, and the part of their area inside where that was found.
+    /// Which surfaces lie in which rooms, with the part of their area inside where the room was detected.
     fn rooms(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let name = |body: u32| self.names[body as usize].as_str();
         let within =
@@ -122,7 +123,7 @@ impl Contact {
         Ok(all)
     }
 
-    /// When surfaces will touch: by a velocity for each point, as far as the horizon.
+    /// When surfaces will touch, by a velocity for each point, up to the horizon.
     fn look_ahead<'py>(
         &self,
         py: Python<'py>,
@@ -134,7 +135,7 @@ impl Contact {
         self.ahead(py, ahead)
     }
 
-    /// The same, to where points will be after a time.
+    /// When surfaces will touch, with points that reach the given positions after a time.
     fn look_ahead_to<'py>(
         &self,
         py: Python<'py>,
@@ -174,12 +175,13 @@ impl Contact {
     }
 }
 
-/// -1 stands for none.
+/// Ids as signed integers, with -1 for none.
 fn signed<'py>(py: Python<'py>, ids: &[u32]) -> Bound<'py, PyArray1<i64>> {
     PyArray1::from_vec(py, ids.iter().map(|&id| if id == NONE { -1 } else { id.into() }).collect())
 }
 
-/// The surfaces of a mesh by their names: patches, or all of it. Points of the mesh begin at `first`.
+/// The surfaces of a mesh by their names: patches, or the whole surface. Points of the mesh start at index
+/// `first`.
 #[pyfunction]
 pub(crate) fn bodies<'py>(
     py: Python<'py>,

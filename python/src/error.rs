@@ -1,4 +1,4 @@
-//! Errors of the library as exceptions of Python: the classes are those of `motet.errors`.
+//! Errors of the library as Python exceptions, whose classes are those of `motet.errors`.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,7 +10,7 @@ use pyo3::types::PyType;
 
 static CLASSES: PyOnceLock<Vec<Py<PyType>>> = PyOnceLock::new();
 
-/// An error as the exception that fits its kind.
+/// The exception for an error, by its kind.
 pub(crate) fn raised(error: Error) -> PyErr {
     Python::attach(|py| exception(py, &error).unwrap_or_else(|failed| failed))
 }
@@ -53,10 +53,10 @@ fn class(py: Python<'_>, place: usize) -> PyResult<Bound<'_, PyType>> {
     Ok(classes[place].bind(py).clone())
 }
 
-/// What comes of a call of the library. Other threads of Python go on meanwhile.
+/// Calls the library without holding Python's lock, so that other threads of Python continue.
 ///
 /// # Errors
-/// The exception that fits the error of the library; `InternalError` where it panics.
+/// The exception for the error of the library; `InternalError` where it panics.
 pub(crate) fn called<T: Send>(py: Python<'_>, call: impl FnOnce() -> motet::Result<T> + Send) -> PyResult<T> {
     match py.detach(|| catch_unwind(AssertUnwindSafe(call))) {
         Ok(outcome) => outcome.or_raise(),
@@ -76,9 +76,9 @@ fn internal(py: Python<'_>, what: &str) -> PyResult<PyErr> {
     Ok(PyErr::from_value(class(py, INTERNAL)?.call1((message, what))?))
 }
 
-/// `?` for results of the library.
+/// Lets `?` convert errors of the library.
 pub(crate) trait OrRaise<T> {
-    /// The value, or the exception that fits the error.
+    /// The value, or the exception for the error.
     fn or_raise(self) -> PyResult<T>;
 }
 

@@ -1,4 +1,4 @@
-//! Files, and what a mesh is.
+//! Reading and writing of files, and summaries of meshes.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -15,27 +15,28 @@ use crate::error::called;
 use crate::report::report;
 use crate::words::one_of;
 
-/// A mesh from a file, and what was passed over.
+/// Reads a mesh from a file; also returns notes on what the reader skipped.
 #[pyfunction]
 pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>, Vec<String>)> {
     let (mesh, notes) = called(py, || io::read_noted(&path))?;
     Ok((parts(py, mesh)?, notes))
 }
 
-/// Writes a mesh; what the format cannot hold.
+/// Writes a mesh; returns what the format cannot hold.
 #[pyfunction]
 pub(crate) fn write(py: Python<'_>, path: PathBuf, mesh: Given) -> PyResult<Vec<String>> {
     called(py, || io::write(&path, &mesh.0, &WriteOptions::default()))
 }
 
-/// The label of each cell as region and as patch, 0 for cells without one; `None` where the mesh has no such labels.
+/// The region label and the patch label of each cell, 0 for cells without one; `None` where the mesh has no
+/// such labels.
 #[pyfunction]
 pub(crate) fn labels(py: Python<'_>, mesh: Given) -> [Option<Bound<'_, PyArray1<i32>>>; 2] {
     let ids = |labels: Option<Labels>| labels.map(|labels| PyArray1::from_vec(py, labels.ids));
     [ids(mesh.0.regions()), ids(mesh.0.patches())]
 }
 
-/// Names of regions and patches as field data, from the name of a field to the label that is its value.
+/// The names of regions and patches as field data, each with its label as the value.
 #[pyfunction]
 pub(crate) fn name_fields(
     regions: BTreeMap<i32, String>,
@@ -44,7 +45,8 @@ pub(crate) fn name_fields(
     LabelNames { regions, patches }.to_entries().collect()
 }
 
-/// Names of regions and of patches by their labels, of those field data that hold one.
+/// The names of regions and of patches by their labels, from the field data that contain one, and the names
+/// of these fields.
 #[pyfunction]
 pub(crate) fn names_of_fields(
     fields: Vec<(String, i64)>,
@@ -55,27 +57,27 @@ pub(crate) fn names_of_fields(
     (names.regions, names.patches, taken)
 }
 
-/// The names of kinds of cells, and VTK's numbers of them.
+/// The names of cell kinds, with VTK's numbers.
 #[pyfunction]
 pub(crate) fn cell_kinds() -> BTreeMap<&'static str, u8> {
     CellKind::NAMED.iter().filter_map(|kind| Some((kind.name()?, kind.0))).collect()
 }
 
-/// Endings of files that can be read, and whether they can be written.
+/// File extensions that can be read, and whether they can be written.
 #[pyfunction]
 pub(crate) fn formats() -> BTreeMap<String, bool> {
     let formats = io::formats().iter();
     formats.flat_map(|f| f.endings.iter().map(|ending| ((*ending).to_owned(), f.write.is_some()))).collect()
 }
 
-/// What a mesh is, how good, and what is wrong with it.
+/// The content, quality and defects of a mesh.
 #[pyfunction]
 pub(crate) fn summary(py: Python<'_>, mesh: Given) -> PyResult<Bound<'_, PyAny>> {
     let summary = called(py, || Ok(Summary::of(&mesh.0)))?;
     report(py, &summary)
 }
 
-/// A measure of each tet; NaN for other cells.
+/// A quality measure of each tet; NaN for other cells.
 #[pyfunction]
 pub(crate) fn quality<'py>(py: Python<'py>, mesh: Given, measure: &str) -> PyResult<Bound<'py, PyAny>> {
     type Measure = fn([[f64; 3]; 4]) -> f64;

@@ -1,4 +1,4 @@
-//! Where everything in a new mesh came from, and arrays carried along.
+//! The origin of everything in a new mesh, and arrays carried from the old mesh.
 
 use motet::base::{CellId, Id, VertexId};
 use motet::mesh::history::{self, Origins};
@@ -16,37 +16,37 @@ pub(crate) struct History(pub(crate) history::History);
 
 #[pymethods]
 impl History {
-    /// The old vertex that each new one is; 2^32-1 for those that came.
+    /// The old vertex of each new vertex; 2^32-1 for inserted ones.
     #[getter]
     fn vertex_to_old<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         kept::<VertexId>(py, &self.0.vertices)
     }
 
-    /// The old cell that each new one is; 2^32-1 for those that came.
+    /// The old cell of each new cell; 2^32-1 for inserted ones.
     #[getter]
     fn cell_to_old<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         kept::<CellId>(py, &self.0.cells)
     }
 
-    /// The old vertex that each new one is, or has most of.
+    /// The old vertex of each new vertex, or the one with the largest share in it.
     #[getter]
     fn vertex_to_main<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         ids(py, self.0.vertices.main().collect()).into_any()
     }
 
-    /// The old cell that each new one is, or has most of.
+    /// The old cell of each new cell, or the one with the largest share in it.
     #[getter]
     fn cell_to_main<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         ids(py, self.0.cells.main().collect()).into_any()
     }
 
-    /// How well volumes fit.
+    /// How well the volumes of old and new cells agree.
     #[getter]
     fn ledger<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         report(py, &self.0.ledger)
     }
 
-    /// An array of the old mesh on the new one.
+    /// Carries an array of the old mesh to the new one.
     fn transfer<'py>(
         &self,
         py: Python<'py>,
@@ -75,12 +75,12 @@ impl History {
         from_field(py, new?.ok_or_else(|| input("the rule leaves nothing"))?)
     }
 
-    /// All of it, as dictionaries and lists.
+    /// The whole history, as dictionaries and lists.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         report(py, &self.0)
     }
 
-    /// The history that [`Self::state`] told of.
+    /// Restores a history from the result of [`Self::state`].
     #[staticmethod]
     fn of_state(state: &Bound<'_, PyAny>) -> PyResult<Self> {
         let restored = pythonize::depythonize(state);
@@ -98,7 +98,7 @@ impl History {
         )
     }
 
-    /// This change, then a later one.
+    /// The composition of this change with a later one.
     fn then(&self, later: &Self) -> PyResult<Self> {
         let fits = |a: usize, b: usize| a == b;
         if !fits(self.0.vertices.len(), later.0.vertices.n_old())

@@ -13,7 +13,7 @@ use crate::report::{Changed, quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
-/// The new mesh, its history, what was done, and whether all that was asked is reached.
+/// Returns the new mesh, its history, the report, and why the requested result was not reached.
 #[pyfunction]
 #[pyo3(signature = (
     host, devices, *, inside, interface, tolerance, outside, stray, adapt, size, growth, carve, reach, min_eas, values, carry, threads, progress

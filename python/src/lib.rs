@@ -1,15 +1,16 @@
-//! What Python calls: arrays in, arrays out. The package `motet` beside this crate gives names, words and documentation to it.
+//! The extension module that Python calls: arrays in, arrays out. The package `motet` beside this crate adds
+//! names, keywords and documentation.
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `arrays` | numpy arrays from lists of the library, and lists from arrays |
-//! | `border` | whole meshes across the border |
+//! | `arrays` | conversion between numpy arrays and lists of the library |
+//! | `border` | conversion of whole meshes |
 //! | `command` | the command line |
-//! | `error` | errors as Python's exceptions |
+//! | `error` | errors as Python exceptions |
 //! | `watch` | long calls: Ctrl-C and progress |
-//! | `words` | what a call may say: patches, rules of arrays, threads |
-//! | `shapes` | meshes of the library's own |
-//! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | a verb or a handle each |
+//! | `words` | common arguments: patches, rules of arrays, threads |
+//! | `shapes` | built-in meshes |
+//! | `files`, `meshing`, `motion`, `remesh`, `implant`, `refine`, `contact`, `moving` | one verb or handle each |
 
 mod arrays;
 mod border;

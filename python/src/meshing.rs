@@ -16,7 +16,7 @@ use crate::error::{OrRaise, called};
 use crate::report::{quality, report};
 use crate::watch::watched;
 
-/// What a call asks for; a class with these attributes on Python's side.
+/// The request of a call; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
 pub(crate) struct Asked {
     size: Option<f64>,
@@ -27,7 +27,7 @@ pub(crate) struct Asked {
     seeds: Vec<(Point, String)>,
     holes: Vec<Point>,
     min_eas: Option<f64>,
-    /// Layers on all walls, and by patch: how many, the first thickness, the growth.
+    /// Layers on all walls, and by patch: number, first thickness, growth.
     layers: Option<(u32, f64, f64)>,
     layers_on: BTreeMap<String, (u32, f64, f64)>,
     keep_prisms: bool,
@@ -38,7 +38,7 @@ pub(crate) struct Asked {
     hole_edges: usize,
 }
 
-/// What was done.
+/// The report of a call.
 #[derive(Serialize)]
 struct Told<'a> {
     #[serde(flatten)]
@@ -48,7 +48,8 @@ struct Told<'a> {
     repaired: &'a [Repair],
 }
 
-/// The mesh, what was done, and whether all that was asked is reached. `surfaces`: each with its name and whether it may end inside the others.
+/// Returns the mesh, the report, and why the requested result was not reached. `surfaces`: the mesh and name
+/// of each, and whether it may end inside the others.
 #[pyfunction]
 pub(crate) fn mesh<'py>(
     py: Python<'py>,
@@ -91,7 +92,7 @@ pub(crate) fn mesh<'py>(
     Ok((parts(py, filled.mesh)?, reported, not_reached))
 }
 
-/// The caps of a surface, put on any frame of it.
+/// The caps of a surface, to be put on any frame of it.
 #[pyclass(frozen, module = "motet._motet")]
 pub(crate) struct Caps(meshing::Caps);
 
@@ -102,7 +103,7 @@ impl Caps {
         called(py, || meshing::Caps::of(&surface.0)).map(Self)
     }
 
-    /// A frame of the surface, closed.
+    /// Closes a frame of the surface.
     fn close<'py>(&self, py: Python<'py>, frame: Given) -> PyResult<Bound<'py, PyDict>> {
         parts(py, called(py, || self.0.close(&frame.0))?)
     }

@@ -1,4 +1,4 @@
-//! Boundary displacement in, volume mesh out.
+//! Motion: boundary displacements in, volume mesh out.
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId, Watch};
@@ -17,7 +17,7 @@ use crate::report::{concluded, report};
 use crate::watch::{beside, watched};
 use crate::words::{Facets, all_facets, threads};
 
-/// What a mover is told; a class with these attributes on Python's side.
+/// Options of a mover; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
 pub(crate) struct Asked<'py> {
     method: String,
@@ -64,7 +64,7 @@ impl Asked<'_> {
     }
 }
 
-/// Moves the vertices of one mesh after its boundary.
+/// Moves the vertices of a mesh so that they follow its boundary.
 #[pyclass(module = "motet._motet")]
 pub(crate) struct Mover {
     mover: motion::Mover,
@@ -108,7 +108,7 @@ impl Mover {
         Ok(self.mover.weights(VertexId(vertex)).map(|(ids, weights)| (ids.map(|v| v.0), weights)))
     }
 
-    /// Reads and writes where the arrays are.
+    /// Makes a step; reads and writes the arrays in place.
     fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
         let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
         called(py, || self.mover.step(displacement, out, &self.threads))
@@ -131,7 +131,7 @@ impl Mover {
     }
 }
 
-/// Moves points after nodes, without a mesh.
+/// Moves points so that they follow nodes, without a mesh.
 #[pyclass(frozen, module = "motet._motet")]
 pub(crate) struct PointMover {
     mover: motion::PointMover,
@@ -148,20 +148,20 @@ impl PointMover {
         Ok(Self { mover, threads })
     }
 
-    /// How many points lie outside of the graph.
+    /// Number of points that lie outside the graph.
     #[getter]
     fn n_outside(&self) -> usize {
         self.mover.n_outside()
     }
 
-    /// Reads and writes where the arrays are.
+    /// Makes a step; reads and writes the arrays in place.
     fn step(&self, py: Python<'_>, displacement: Vectors<'_>, mut out: VectorsOut<'_>) -> PyResult<()> {
         let (displacement, out) = (rows(&displacement, "displacement")?, rows_mut(&mut out, "out")?);
         called(py, || self.mover.step(displacement, out, &self.threads))
     }
 }
 
-/// One motion of some vertices.
+/// A motion of some vertices.
 #[derive(FromPyObject)]
 pub(crate) enum Motion {
     /// Axis, angle in degrees, and centre.
@@ -169,7 +169,8 @@ pub(crate) enum Motion {
     Shift(Point),
 }
 
-/// Displacements of the boundary by patches that turn and shift: `parts` of the whole motion, one after the other. A vertex obeys the first that is told about it.
+/// Displacements of the boundary by patches that turn and shift, at several fractions (`parts`) of the whole
+/// motion. A vertex follows the first motion prescribed for it.
 #[pyfunction]
 pub(crate) fn prescribed<'py>(
     py: Python<'py>,
@@ -202,7 +203,8 @@ fn of(motion: &Motion, mesh: &Mesh, vertices: &[VertexId]) -> Prescribed {
     }
 }
 
-/// The cheapest method that keeps the worst cell at a bound on all of these displacements, and what was tried.
+/// The cheapest method that keeps the worst cell above a bound for all of these displacements, and the
+/// methods tried.
 #[pyfunction]
 pub(crate) fn choose<'py>(
     py: Python<'py>,
@@ -222,7 +224,7 @@ pub(crate) fn choose<'py>(
     Ok((choice.method.name().to_owned(), choice.least, report(py, &choice.tried)?))
 }
 
-/// Velocities by the difference of two places.
+/// Velocities by the difference of two positions.
 #[pyfunction]
 pub(crate) fn mesh_velocity<'py>(
     py: Python<'py>,
@@ -235,7 +237,7 @@ pub(crate) fn mesh_velocity<'py>(
     Ok(vectors(py, velocity)?.into_any())
 }
 
-/// The vertices of the interfaces inside that a displacement of all points moves, rising.
+/// The vertices of the interfaces inside that a displacement of all points moves, ascending.
 #[pyfunction]
 pub(crate) fn interface_vertices<'py>(
     py: Python<'py>,
@@ -250,7 +252,7 @@ pub(crate) fn interface_vertices<'py>(
     Ok(ids(py, vertices))
 }
 
-/// The vertices of patches, rising.
+/// The vertices of patches, ascending.
 #[pyfunction]
 pub(crate) fn patch_vertices<'py>(
     py: Python<'py>,

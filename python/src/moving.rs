@@ -1,4 +1,4 @@
-//! A mesh that moves with its walls and stays good.
+//! A mesh that follows its walls and stays good.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ use crate::report::{concluded, report};
 use crate::watch::{beside, watched};
 use crate::words::{one_of, rules, threads};
 
-/// What a moving mesh is told; a class with these attributes on Python's side.
+/// Options of a moving mesh; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
 pub(crate) struct Asked {
     method: String,
@@ -98,7 +98,7 @@ impl Asked {
     }
 }
 
-/// A mesh that moves with its walls and stays good.
+/// A mesh that follows its walls and stays good.
 #[pyclass(module = "motet._motet")]
 pub(crate) struct MovingMesh {
     moving: moving::MovingMesh,
@@ -106,7 +106,7 @@ pub(crate) struct MovingMesh {
 }
 
 impl MovingMesh {
-    /// A call of the handle that can be ended by Ctrl-C.
+    /// Makes a call of the handle that Ctrl-C can interrupt.
     fn watched<T: Send>(
         &mut self,
         py: Python<'_>,
@@ -137,7 +137,7 @@ impl MovingMesh {
         Ok(Self { moving: watched(py, threads, progress, new)?, threads: self::threads(threads)? })
     }
 
-    /// Goes on from what `save` wrote, with the same options.
+    /// Continues from what `save` wrote, with the same options.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, asked: Asked, threads: usize) -> PyResult<Self> {
         let mesh = called(py, || motet::io::read(&path))?;

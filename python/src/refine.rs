@@ -1,4 +1,4 @@
-//! Tets divided, many generations deep, and taken back.
+//! Refinement: tets divided, many generations deep, and divisions taken back.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ use crate::report::{Changed, report};
 use crate::watch::watched;
 use crate::words::{rules, threads};
 
-/// What is to be divided.
+/// A criterion of what to divide.
 #[pyclass(frozen, from_py_object, module = "motet._motet")]
 #[derive(Clone)]
 pub(crate) struct Criterion(pub(crate) refine::Criterion);
@@ -53,7 +53,7 @@ fn estimate(array: String, by: Estimator, amount: Much) -> PyResult<Criterion> {
     checked(refine::Criterion::Estimate { array, by, amount })
 }
 
-/// `ARRAY>VALUE`
+/// Parses `ARRAY>VALUE`.
 fn threshold(text: &str) -> PyResult<(String, f64)> {
     match text.parse::<Condition>().or_raise()? {
         Condition { array, relation: Relation::Above, value } => Ok((array, value)),
@@ -161,7 +161,7 @@ impl Criterion {
     }
 }
 
-/// What a call wants; a class with these attributes on Python's side.
+/// The request of a call; on Python's side a class with these attributes.
 #[derive(FromPyObject)]
 pub(crate) struct Asked {
     criteria: Vec<Criterion>,
@@ -176,7 +176,7 @@ pub(crate) struct Asked {
     forget: bool,
 }
 
-/// What a step came to.
+/// The report of a step.
 #[derive(Serialize)]
 struct Done {
     tets: usize,
@@ -197,7 +197,7 @@ struct Told {
     steps: Vec<refine::Step>,
 }
 
-/// The new mesh with its memory, its history, what was done, and why edges are longer than requested.
+/// Returns the new mesh with its memory, its history, the report, and why edges are longer than requested.
 #[pyfunction]
 pub(crate) fn refined<'py>(
     py: Python<'py>,
@@ -237,7 +237,7 @@ pub(crate) fn refined<'py>(
     Ok((parts(py, new)?, History(history), told, not_reached))
 }
 
-/// A mesh whose tets are divided and taken back, step after step.
+/// A mesh whose tets are divided, and divisions taken back, step after step.
 #[pyclass(module = "motet._motet")]
 pub(crate) struct Refinement {
     refinement: MeshRefinement,
@@ -260,7 +260,8 @@ impl Refinement {
         )
     }
 
-    /// For each cell how often its first one was divided; -1 for cells that are no tets.
+    /// The number of divisions that led to each cell from one of the first mesh; -1 for cells that are not
+    /// tets.
     fn generations<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let part = self.refinement.part();
         let mut all = vec![-1i16; self.refinement.mesh().cells.len()];

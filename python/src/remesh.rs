@@ -1,4 +1,4 @@
-//! Bad tets found and repaired.
+//! Repair of bad tets.
 
 use std::collections::BTreeMap;
 
@@ -12,14 +12,14 @@ use crate::report::{Changed, quality, report};
 use crate::watch::watched;
 use crate::words::{one_of, rules};
 
-/// How long edges are to be: everywhere, or at each point.
+/// The requested edge lengths: everywhere, or at each point.
 #[derive(FromPyObject)]
 pub(crate) enum AskedSizes {
     Uniform(f64),
     Points(Vec<f64>),
 }
 
-/// The new mesh, its history, what was done, and whether nothing bad is left.
+/// Returns the new mesh, its history, the report, and why the requested result was not reached.
 #[pyfunction]
 #[pyo3(signature = (mesh, *, min_eas, min_dihedral_deg, goal, surface, distance, keep_layers, hold, sizes, rounds, carry, threads, progress))]
 #[allow(clippy::too_many_arguments, reason = "a call of Python has its words one by one")]

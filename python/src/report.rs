@@ -12,17 +12,17 @@ use crate::history::History;
 /// A new mesh, its history, the report, and why the requested result was not reached.
 pub(crate) type Changed<'py> = (Bound<'py, PyDict>, History, Bound<'py, PyAny>, Option<String>);
 
-/// Anything that a report is made of, as dictionaries, lists and numbers.
+/// A report as dictionaries, lists and numbers.
 pub(crate) fn report<'py>(py: Python<'py>, told: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     Ok(pythonize::pythonize(py, told)?)
 }
 
-/// How good all tets of a mesh are; None where it has none.
+/// The quality of all tets of a mesh; `None` where it has none.
 pub(crate) fn quality<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Bound<'py, PyAny>> {
     report(py, &Qualities::of_mesh(mesh, &Threads::single()))
 }
 
-/// A report with `not_reached`: why the requested result was not reached, None where it was.
+/// A report with the key `not_reached`: why the requested result was not reached, `None` where it was.
 pub(crate) fn concluded<'py>(
     py: Python<'py>,
     told: &impl Serialize,

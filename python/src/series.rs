@@ -1,4 +1,4 @@
-//! What is over time: series of meshes, and of values of nodes.
+//! Data over time: series of meshes, and values of nodes.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub(crate) fn read_series(path: PathBuf) -> PyResult<Vec<(f64, PathBuf)>> {
     io::read_series(path).or_raise()
 }
 
-/// Whether a path is that of a series, by its ending.
+/// Whether a path names a series, by its extension.
 #[pyfunction]
 pub(crate) fn is_series(path: PathBuf) -> bool {
     io::is_series(path)
@@ -34,7 +34,7 @@ impl SeriesWriter {
         Self(io::SeriesWriter::new(path, WriteOptions::default()))
     }
 
-    /// Adds a mesh: its file, and what that cannot hold.
+    /// Adds a mesh; returns its file, and what the format cannot hold.
     fn add(&mut self, py: Python<'_>, time: f64, mesh: Given) -> PyResult<(PathBuf, Vec<String>)> {
         called(py, || self.0.add(time, &mesh.0))
     }
@@ -43,7 +43,7 @@ impl SeriesWriter {
 /// Times, ids, and values by node and time.
 type Nodal<'py> = (Vec<f64>, Vec<i64>, Bound<'py, PyAny>);
 
-/// Values of nodes over time.
+/// Reads values of nodes over time.
 #[pyfunction]
 pub(crate) fn read_nodal(py: Python<'_>, path: PathBuf) -> PyResult<Nodal<'_>> {
     let series = called(py, || NodalSeries::read(path))?;

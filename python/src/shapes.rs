@@ -1,4 +1,4 @@
-//! Meshes that the library makes itself: for tests, documentation and first tries.
+//! Built-in meshes: for tests, documentation and first experiments.
 
 use motet::base::Point;
 use motet::geometry::vector::in_range;
@@ -101,12 +101,12 @@ pub(crate) fn coil(
     parts(py, coil.mesh(steps, around).or_raise()?)
 }
 
-/// Whether memory has room for so many points along three directions.
+/// Checks that this many points along three directions fit into memory.
 fn room(n: [f64; 3]) -> PyResult<()> {
     shapes::check_count(n.iter().map(|n| n + 1.0).product()).or_raise()
 }
 
-/// The largest count along one direction: beyond it ids would not suffice.
+/// The largest count along one direction, beyond which ids would not suffice.
 const MOST: usize = 1000;
 
 fn at_least(n: usize, least: usize) -> PyResult<()> {

@@ -1,4 +1,5 @@
-//! Long calls: work goes on beside, on a thread of its own, while the one that called listens for Ctrl-C and tells how far it is.
+//! Long calls: the work runs on a thread of its own, while the calling thread listens for Ctrl-C and reports
+//! progress.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
@@ -10,11 +11,12 @@ use pyo3::prelude::*;
 use crate::error::{OrRaise, fault};
 use crate::words::threads;
 
-/// How often it listens.
+/// How often it checks.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// What comes of `work`, which gets `n_threads` that are watched. Meanwhile other threads of Python go on, and `progress` is called with the stage, what is
-/// done and what there is to do. What `progress` raises, or a handler of a signal, ends the work and is raised.
+/// Runs `work` with `n_threads` watched threads and returns its result. Meanwhile other threads of Python
+/// continue, and `progress` is called with the stage, the amount done and the total amount. An exception from
+/// `progress` or from a signal handler ends the work and is raised.
 pub(crate) fn watched<T: Send>(
     py: Python<'_>,
     n_threads: usize,
@@ -25,7 +27,7 @@ pub(crate) fn watched<T: Send>(
     beside(py, &watch, threads(n_threads)?.watched(&watch), progress, |threads| work(threads)).1
 }
 
-/// The same with threads that are handed back.
+/// Runs `work` with the given threads, watched through `watch`, and returns them with its result.
 pub(crate) fn beside<T: Send>(
     py: Python<'_>,
     watch: &Watch,
@@ -58,7 +60,7 @@ pub(crate) fn beside<T: Send>(
     })
 }
 
-/// Handles signals, and tells how far the work is, if it has got on since.
+/// Handles signals, and reports the progress if it has changed.
 fn listen(py: Python<'_>, progress: Option<&Py<PyAny>>, watch: &Watch, told: &mut Progress) -> PyResult<()> {
     py.check_signals()?;
     let now = watch.progress();

@@ -1,4 +1,4 @@
-//! What a call may say: patches by their names, rules of arrays, how many threads.
+//! Common arguments of calls: patches by name, rules of arrays, number of threads.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 use crate::arrays::Ids;
 use crate::error::{OrRaise, raised};
 
-/// `0`: all cores.
+/// The number of threads; 0 means all cores.
 pub(crate) fn threads(n: usize) -> PyResult<Threads> {
     Threads::new(n).or_raise()
 }
 
-/// One of a few words.
+/// One of a few keywords.
 pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
     known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value).ok_or_else(|| {
         let names: Vec<String> = known.iter().map(|(name, _)| format!("{name:?}")).collect();
@@ -27,7 +27,7 @@ pub(crate) fn one_of<T: Copy>(option: &str, word: &str, known: &[(&str, T)]) -> 
     })
 }
 
-/// What becomes of arrays, from their names to "mean", "linear", "inherit" or "drop".
+/// The rules by which arrays are carried, from their names to "mean", "linear", "inherit" or "drop".
 pub(crate) fn rules(mesh: &Mesh, carry: &BTreeMap<String, String>) -> PyResult<Rules> {
     let mut rules = Rules::default();
     for (name, word) in carry {
@@ -42,16 +42,16 @@ pub(crate) fn rules(mesh: &Mesh, carry: &BTreeMap<String, String>) -> PyResult<R
     Ok(rules)
 }
 
-/// Facets, as a call names them.
+/// Facets, as named by a call.
 #[derive(FromPyObject)]
 pub(crate) enum Facets<'py> {
     Number(i32),
     Name(String),
-    /// The vertices of each facet, end to end, and how many each has.
+    /// The concatenated vertices of all facets, and how many each facet has.
     Own((Ids<'py>, usize)),
 }
 
-/// The facets that a word means: a patch by name or number, or the facets themselves.
+/// The facets that a word refers to: a patch by name or number, or the facets themselves.
 pub(crate) fn facets(mesh: &Mesh, word: &Facets<'_>) -> PyResult<FacetSet> {
     let word = match word {
         Facets::Number(label) => label.to_string(),
@@ -64,7 +64,7 @@ pub(crate) fn facets(mesh: &Mesh, word: &Facets<'_>) -> PyResult<FacetSet> {
     FacetSet::find(mesh, &word).or_raise()
 }
 
-/// The facets of several words.
+/// The facets of each of several words.
 pub(crate) fn all_facets(mesh: &Mesh, words: &[Facets<'_>]) -> PyResult<Vec<FacetSet>> {
     words.iter().map(|word| facets(mesh, word)).collect()
 }

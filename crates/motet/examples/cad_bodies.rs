@@ -1,6 +1,7 @@
-//! Fills generated bodies that are flat but for rounding, and counts by kind what came of them.
+//! Fills generated bodies whose faces are flat up to rounding, and counts the outcomes by kind.
 //!
-//! `cargo run --release -p motet --example cad_bodies -- [COUNT] [SEED] [FOLDER]`; with a folder each body is written there as `SEED.off`, for other programs.
+//! `cargo run --release -p motet --example cad_bodies -- [COUNT] [SEED] [FOLDER]`; with a folder, each body
+//! is written there as `SEED.off` for other programs.
 
 #[path = "../tests/common/cad.rs"]
 mod cad_bodies;

@@ -1,4 +1,4 @@
-//! The small cases of `testdata`, by the library: prints a name and a number a line.
+//! Runs the small cases of `testdata` with the library; prints a name and a number per line.
 //!
 //! ```text
 //! cases repair MESH PATCH DX DY DZ SMOOTH     a patch is shifted, bad tets are repaired, x is carried along

@@ -1,7 +1,8 @@
-//! A coil as a surface file, to refine towards.
+//! Writes a coil as a surface file, as a target for refinement.
 //!
-//! `coil OUT.vtp [--at X,Y,Z] [--radius R] [--pitch P] [--turns N] [--wire W]` writes a helix about a line along z through the middle of its
-//! axis. Without words it is one for the aneurysm of the DOLFIN project (`aneurysm.xml.gz`, LGPL-3), in millimetres: four turns of a wire 0.3 thick.
+//! `coil OUT.vtp [--at X,Y,Z] [--radius R] [--pitch P] [--turns N] [--wire W]` writes a helix about a line
+//! along z through the middle of its axis. The defaults suit the aneurysm of the DOLFIN project
+//! (`aneurysm.xml.gz`, LGPL-3), in millimetres: four turns of a wire 0.3 thick.
 //!
 //! ```text
 //! motet refine aneurysm.xml.gz -o fine.vtu --near-size coil.vtp=0.075

@@ -1,6 +1,6 @@
 //! Fills closed surfaces with tets that have every triangle among their facets: `constrain [--stay] SURFACE...`.
 //!
-//! `--stay` leaves points on edges where they had to be put.
+//! With `--stay`, points inserted on edges stay there.
 //!
 //! Prints counts, bodies with their volumes, and seconds; checks that every tet is positive.
 

@@ -1,9 +1,13 @@
-//! How good the distances by Delaunay tets are, against the exact ones: one JSON line for each pair of surfaces and method.
+//! Accuracy of distances by Delaunay tets compared with exact ones: one JSON line for each pair of surfaces
+//! and method.
 //!
-//! `contact_delaunay [--threads N] [--case NAME]`. The real surfaces are read from the folder `MOTET_DATA`. Errors are parts of the exact distance.
-//! `delaunay` is `Between`: for a vertex the distance to the real features of other bodies in its tets; `stars` the same to
-//! all triangles round these; `paper` the tets of 2008, every edge and facet taken for real: a vertex has the least distance of its tets, two edges have that
-//! of their lines or else the shortest edge between. Its two-two tets are also held against the true distance of their edges. `nearest_tenth` is about the tenth of all vertices that is nearest to another body.
+//! `contact_delaunay [--threads N] [--case NAME]`. The real surfaces are read from the folder `MOTET_DATA`.
+//! Errors are relative to the exact distance. `delaunay` is `Between`: the distance from a vertex to the real
+//! features of other bodies in its tets; `stars` measures to all triangles around these features; `paper`
+//! takes the tets of 2008, with every edge and facet taken for real: a vertex has the least distance of its
+//! tets, two edges have the distance of their lines, or else the length of the shortest edge between them.
+//! Its two-two tets are also compared with the true distance of their edges. `nearest_tenth` covers the tenth
+//! of all vertices nearest to another body.
 
 mod common;
 
@@ -54,7 +58,7 @@ fn sphere(centre: Point, n: usize) -> Shape {
     (points.iter().map(|p| add(*p, centre)).collect(), triangles)
 }
 
-/// A coil whose wire has the radius 0.04, 0.03 to 0.09 from the tube's wall.
+/// A coil of wire radius 0.04, at distances of 0.03 to 0.09 from the tube's wall.
 fn coil() -> Outcome<Shape> {
     let turn = |i: u32| 0.06 * f64::from(i);
     let line: Vec<Point> =
@@ -95,7 +99,7 @@ fn made() -> Outcome<Vec<Case>> {
     Ok(cases)
 }
 
-/// Rows of three numbers.
+/// Reads rows of three numbers from a file.
 fn rows(file: &Path) -> Outcome<Vec<Point>> {
     let text = std::fs::read_to_string(file)?;
     let row = |line: &str| -> Outcome<Point> {
@@ -105,7 +109,7 @@ fn rows(file: &Path) -> Outcome<Vec<Point>> {
     text.lines().filter(|line| !line.trim().is_empty()).map(row).collect()
 }
 
-/// The braided stent where it was put, its wires as tubes.
+/// The braided stent in its final position, with its wires as tubes.
 fn braid(folder: &Path) -> Outcome<Shape> {
     let mut nodes = rows(&folder.join("pos_stent.txt"))?;
     for more in ["u_crimping.txt", "u_positioning.txt"] {
@@ -159,7 +163,7 @@ fn exact(case: &Case, threads: &Threads) -> Vec<f64> {
     gap
 }
 
-/// The least distance of two triangles of different bodies.
+/// The least distance between triangles of different bodies.
 fn exact_least(case: &Case, start: f64) -> f64 {
     let trees: Vec<NearestTriangle> =
         case.bodies.iter().map(|b| NearestTriangle::new(&case.points, b, &Threads::single())).collect();
@@ -178,7 +182,7 @@ fn exact_least(case: &Case, start: f64) -> f64 {
     least.sqrt()
 }
 
-/// The paper's distance for each vertex: the least of its gap tets.
+/// The paper's distance for each vertex: the least over its gap tets.
 fn by_the_paper(between: &Between, points: &[Point]) -> Vec<f64> {
     let mut gap = vec![f64::INFINITY; points.len()];
     for tet in &between.tets {
@@ -189,7 +193,7 @@ fn by_the_paper(between: &Between, points: &[Point]) -> Vec<f64> {
     gap
 }
 
-/// Of all two-two tets the distance of the two edges as the paper has it, with the true one.
+/// The distance of the two edges of each two-two tet by the paper's formula, and the true one.
 fn two_two_by_the_paper(between: &Between, points: &[Point]) -> Vec<(f64, f64)> {
     let two_two = between.tets.iter().filter(|tet| tet.kind == GapKind::TwoTwo);
     let both = |tet: &GapTet| {
@@ -203,7 +207,7 @@ fn rounded(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { format!("{x:.3e}").parse().unwrap_or(x) }
 }
 
-/// What errors there are, as parts of the exact distance.
+/// Statistics of the errors, relative to the exact distance.
 fn errors(pairs: &[(f64, f64)]) -> Value {
     let seen: Vec<f64> = pairs
         .iter()

@@ -1,14 +1,16 @@
-//! A stent that opens in a vessel: the series that a contact warning is shown on.
+//! A stent that opens in a vessel: the series used to show contact warnings.
 //!
-//! `contact_stent OUT.pvd [--steps 20] [--radius 0.45,1.3] [--length 15] X,Y,Z X,Y,Z ..` writes a stent along a line
-//! through the given places, crimped at first and opened step by step along its radius. Without places it runs through the middle
-//! of the artery of `vessels/vmtk_id1_aneurysm.vtp` (see the README), past the mouth of the aneurysm. Then
+//! `contact_stent OUT.pvd [--steps 20] [--radius 0.45,1.3] [--length 15] X,Y,Z X,Y,Z ..` writes a stent along
+//! a line through the given places, crimped at first and opened radially step by step. Without places it runs
+//! along the middle of the artery of `vessels/vmtk_id1_aneurysm.vtp` (see the README), past the mouth of the
+//! aneurysm. Then
 //!
 //! ```text
 //! motet contact OUT.pvd VESSEL -o gaps.pvd --warn 0.15
 //! ```
 //!
-//! tells at each step how far the struts are from the wall; the figure is that of Moyle and Ventikos (2008), figure 13, made anew.
+//! reports at each step how far the struts are from the wall, which reproduces figure 13 of Moyle and
+//! Ventikos (2008).
 
 use std::error::Error;
 
@@ -16,8 +18,9 @@ use motet::base::Point;
 use motet::io::{SeriesWriter, WriteOptions};
 use motet::mesh::shapes::{CenterLine, Stent};
 
-/// Along the artery, in millimetres: on the way of largest clearance from its inlet to where it branches, found by shortest
-/// ways over a grid of distances from the wall, where more than 1.3 of clearance counts as 1.3.
+/// Places along the artery, in millimetres: on the path of largest clearance from its inlet to where it
+/// branches, found by shortest paths over a grid of distances from the wall, where clearances above 1.3 count
+/// as 1.3.
 const ARTERY: [Point; 10] = [
     [43.3, 42.2, 38.0],
     [43.0, 43.4, 36.9],
@@ -31,7 +34,7 @@ const ARTERY: [Point; 10] = [
     [42.0, 56.3, 42.2],
 ];
 
-/// Fine steps along a smooth curve through places (Catmull and Rom 1974).
+/// Samples a smooth curve through the places finely (Catmull and Rom 1974).
 fn smooth(places: &[Point]) -> Vec<Point> {
     const STEPS: usize = 12;
     let at = |i: isize| places[i.clamp(0, places.len() as isize - 1) as usize];

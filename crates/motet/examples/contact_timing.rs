@@ -1,13 +1,15 @@
-//! How long distances from one surface to another take: a stent lattice in a tube.
+//! Timing of distances from one surface to another: a stent lattice in a tube.
 //!
-//! `contact_timing [--threads N] [--seconds S] [--check] [--distances PREFIX]` prints one JSON object with medians in milliseconds:
-//! the tree built from nothing, all vertices of the lattice asked, the tree refitted after a small motion, all asked again
-//! with the last answers as guesses, and each asked on its own; then both surfaces as bodies of a `Contact`: set-up, refit, their
-//! nearest places alone and everything, at first and at further steps. The same in seconds is for bench-compare.
+//! `contact_timing [--threads N] [--seconds S] [--check] [--distances PREFIX]` prints one JSON object with
+//! medians in milliseconds: building the tree, querying all vertices of the lattice, refitting the tree after
+//! a small motion, querying all again with the last answers as guesses, and querying each one separately;
+//! then both surfaces as bodies of a `Contact`: set-up, refit, their nearest places alone and everything, at
+//! first and at further steps. The values in seconds are for bench-compare.
 //!
-//! `--check` holds every answer against all triangles, of one vertex in a hundred. `--distances` writes those of all vertices to
-//! `PREFIX.f64`, and after the last of the steps that are written to `PREFIX_step.f64`. `contact_timing --write FOLDER` writes what
-//! is measured, and nothing else: points as f64, triangles as u32, at rest and at eight steps.
+//! `--check` compares the answers for one vertex in a hundred with a search over all triangles. `--distances`
+//! writes the distances of all vertices to `PREFIX.f64`, and those after the last of the written steps to
+//! `PREFIX_step.f64`. `contact_timing --write FOLDER` only writes the input of the measurements: points as
+//! f64, triangles as u32, at rest and at eight steps.
 
 mod common;
 
@@ -24,19 +26,19 @@ use serde_json::Value;
 
 use common::{Shape, lattice, tube};
 
-/// Steps that are written for others to measure.
+/// Number of steps that are written for other programs to measure.
 const STEPS: usize = 8;
 
-/// Gaps below this warn: some of the lattice.
+/// The warning distance, which part of the lattice is below.
 const WARN: f64 = 0.03;
 
-/// Points at a time step: moved by up to 0.0005 in each direction, which is one hundredth of the gap.
+/// Points at a time step: moved by up to 0.0005 in each direction, one hundredth of the gap.
 fn moved(points: &[Point], step: usize) -> Vec<Point> {
     let wave = |x: f64| 5e-4 * (3.0 * x + step as f64).sin();
     points.iter().map(|p| [p[0] + wave(p[2]), p[1] + wave(p[0]), p[2] + wave(p[1])]).collect()
 }
 
-/// Points of the tube and of the lattice at a time step; they move against each other.
+/// Points of the tube and of the lattice at a time step, with relative motion between them.
 fn at_step([tube, lattice]: [&[Point]; 2], step: usize) -> [Vec<Point>; 2] {
     [moved(tube, step), moved(lattice, step + 1)]
 }
@@ -46,7 +48,7 @@ fn median(budget: f64, mut work: impl FnMut(usize) -> f64) -> f64 {
     median_of(repeated(budget, &mut work))
 }
 
-/// Seconds of nine repeats, or of as many as the budget lasts for.
+/// Seconds of at least nine repeats, and of more while the budget lasts.
 fn repeated(budget: f64, mut work: impl FnMut(usize) -> f64) -> Vec<f64> {
     let begin = Instant::now();
     let mut all = Vec::new();
@@ -65,7 +67,7 @@ fn milliseconds(seconds: f64) -> f64 {
     (seconds * 1e6).round() / 1e3
 }
 
-/// Seconds that a piece of work takes, and what it gives.
+/// The seconds that a piece of work takes, and its result.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let start = Instant::now();
     let out = std::hint::black_box(work());
@@ -86,7 +88,8 @@ fn triangles_of(found: &[Option<Closest>]) -> Vec<u32> {
     found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
 }
 
-/// Vertices of the lattice against the tube; their distances at rest and after the last step.
+/// Measures the vertices of the lattice against the tube; returns their distances at rest and after the last
+/// step.
 fn by_vertex(
     [(points, triangles), (queries, _)]: [&Shape; 2],
     budget: f64,
@@ -135,8 +138,8 @@ fn contact([tube, lattice]: [&Shape; 2], threads: &Threads) -> motet::base::Resu
     Contact::new(points, bodies, Options { warn: Some(WARN), ..Options::default() }, threads)
 }
 
-/// The handle: nearest places of the two surfaces alone, and everything that it measures. Gives the gaps of the lattice after the
-/// last step.
+/// Times the contact handle: the nearest places of the two surfaces alone, and everything that it measures.
+/// Returns the gaps of the lattice after the last step.
 fn whole(shapes: [&Shape; 2], budget: f64, threads: &Threads, out: &mut Value) -> motet::Result<Vec<f64>> {
     let rest = contact(shapes, threads)?;
     out["contact_new_ms"] = median(budget, |_| timed(|| contact(shapes, threads)).0).into();
@@ -181,7 +184,7 @@ fn least(nearest: &[([u32; 2], Option<motet::contact::Nearest>)]) -> Value {
     nearest.iter().filter_map(|(_, nearest)| *nearest).map(|nearest| nearest.distance).next().into()
 }
 
-/// What is measured, for other programs: raw, little-endian.
+/// Writes the input of the measurements for other programs: raw, little-endian.
 fn write(folder: &Path, [tube, lattice]: [&Shape; 2]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let put =

@@ -1,5 +1,5 @@
-//! Fills hard random surfaces with tets and checks what comes out: `hard_cases FROM TO [KIND]`. Prints each that fails, keeps points on the surface
-//! or takes long, and counts by kind.
+//! Fills hard random surfaces with tets and checks the meshes: `hard_cases FROM TO [KIND]`. Prints each case
+//! that fails, leaves points on the surface or takes long, and counts by kind.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -12,14 +12,14 @@ use motet::delaunay::{EdgePoints, constrain};
 #[path = "../tests/common/mod.rs"]
 mod common;
 
-/// Seconds worth a line.
+/// Cases that take more seconds than this are printed.
 const LONG: f64 = 2.0;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let number = |i: usize| words.get(i).and_then(|w| w.parse::<u64>().ok());
     let (from, to) = (number(0).unwrap_or(0), number(1).unwrap_or(1000));
-    // Of each kind: all, kept as they came, with points left on the surface, failed.
+    // Counts by kind: all, surfaces unchanged, with points left on the surface, failed.
     let mut counts: BTreeMap<String, [usize; 4]> = BTreeMap::new();
     for case in (from..to).map(random_case) {
         let kind = case.name.split([' ', ',']).nth(1).unwrap_or_default().to_owned();

@@ -1,9 +1,14 @@
-//! How good meshes are that different methods move, and what a step takes: a sphere in a box that shifts and turns, a flap and a vessel that bend, a wall that was measured.
+//! Quality of meshes moved by different methods, and the time of a step: a sphere in a box that shifts and
+//! turns, a flap and a vessel that bend, a measured wall.
 //!
-//! `motion_quality [N,LAYERS|FILE] [--motion sphere|flap|vessel|frames] [--threads N] [--only WORD] [--row WORD] [--smooth SWEEPS]` prints a table; `22,10` has 32,000 vertices.
-//! The sphere is of radius 1 about the origin; the flap stands on the floor `y = -1`; the vessel goes along `z` from 0; a mesh that
-//! was measured has an array of points for each frame, `frame_1` and on, where its boundary is then. Each cell: bad tets (EAS below 0.2), inverted ones in brackets, the smallest dihedral angle of
-//! the others in degrees; the worst EAS, and that which a twentieth does not reach; seconds. "In steps": a tenth of a radius, five degrees or a frame at a time, the
+//! `motion_quality [N,LAYERS|FILE] [--motion sphere|flap|vessel|frames] [--threads N] [--only WORD] [--row
+//! WORD] [--smooth SWEEPS]` prints a table; `22,10` has 32,000 vertices. The sphere has radius 1 and its
+//! centre at the origin; the flap stands on the floor `y = -1`; the vessel extends along `z` from 0; a
+//! measured mesh has point arrays `frame_1`, `frame_2`, ... with the positions of its boundary in each frame.
+//! Each cell lists bad tets (EAS below 0.2), with inverted ones in brackets; the smallest dihedral angle of
+//! the others in degrees; the worst EAS, and its 5 % quantile; seconds. "In steps": a tenth of a radius, five
+//! degrees or a frame at a time, the method set up anew on the mesh of the step before. "In legs": likewise,
+//! but by a radius, 45 degrees or four frames.
 //! method set up anew on the mesh of the step before. "In legs": so, but by a radius, 45 degrees or four frames.
 
 use std::error::Error;
@@ -25,11 +30,11 @@ struct Row {
 }
 
 enum Motion {
-    /// The sphere goes along x and turns about z.
+    /// The sphere moves along x and turns about z.
     Sphere { shift: f64, degrees: f64 },
-    /// The flap becomes an arc of so many degrees.
+    /// The flap becomes an arc of this many degrees.
     Flap { degrees: f64 },
-    /// The vessel's axis becomes an arc, and its cross-sections turn about it, the farther along the more.
+    /// The vessel's axis becomes an arc, and its cross-sections turn about it, the more the farther along.
     Vessel { bend: f64, twist: f64 },
     /// The boundary in frames 0 to the last one.
     Frames(Vec<Vec<Point>>),
@@ -85,7 +90,7 @@ fn rows(motion: &str, mesh: &Mesh) -> Result<Vec<Row>, Box<dyn Error>> {
     })
 }
 
-/// The places of the points at rest, and in each frame that the mesh has.
+/// The positions of the points at rest, and in each frame of the mesh.
 fn frames(mesh: &Mesh) -> Vec<Vec<Point>> {
     let mut frames = vec![mesh.points.clone()];
     while let Some(field) = mesh.point_field(&format!("frame_{}", frames.len())) {
@@ -96,7 +101,7 @@ fn frames(mesh: &Mesh) -> Vec<Vec<Point>> {
 }
 
 impl Motion {
-    /// Where a boundary vertex is after a part of the motion; `p` is its first place.
+    /// The position of a boundary vertex after a part of the motion; `p` is its reference position.
     fn place(&self, v: VertexId, p: Point, part: f64) -> Point {
         match self {
             Self::Sphere { shift, degrees } if norm(p) < 1.2 => {
@@ -124,10 +129,10 @@ impl Motion {
     }
 }
 
-/// How long the vessel is.
+/// Length of the vessel.
 const VESSEL: f64 = 10.0;
 
-/// A line bent to an arc: where the point `along` it and `across` it goes.
+/// Bends a line to an arc: the new position of the point `along` it and `across` it.
 fn arc(curvature: f64, across: f64, along: f64) -> (f64, f64) {
     if curvature == 0.0 {
         return (across, along);
@@ -136,10 +141,10 @@ fn arc(curvature: f64, across: f64, along: f64) -> (f64, f64) {
     ((1.0 - cosine) / curvature + across * cosine, sine / curvature - across * sine)
 }
 
-/// Steps of which the median time counts.
+/// Number of steps of which the median time is taken.
 const REPEATS: usize = 9;
 
-/// Moves a mesh in so many parts; the last points, and the mean seconds of a part.
+/// Moves a mesh in `steps` parts; returns the last points, and the mean seconds per part.
 fn moved(
     mesh: &Mesh,
     row: &Row,
@@ -158,7 +163,7 @@ fn moved(
             })
             .collect();
         let mut out = now.points.clone();
-        // A system begins with what the last step left: its first step counts.
+        // Solving a system starts from the last step's solution, so only the first step counts.
         let once = !matches!(options.method, Method::Delaunay | Method::Bodies(_) | Method::Guided);
         let mut times = Vec::new();
         for _ in 0..if once { 1 } else { REPEATS } {
@@ -167,7 +172,7 @@ fn moved(
             times.push(begin.elapsed().as_secs_f64());
         }
         times.sort_by(f64::total_cmp);
-        // One step of a method that is set up once costs no more than the step.
+        // A single step of a method that is set up once costs no more than the step.
         seconds += times[times.len() / 2] + if steps > 1 { set_up } else { 0.0 };
         now.points = out;
     }
@@ -191,7 +196,7 @@ fn told(mesh: &Mesh, points: &[Point]) -> String {
     format!("{bad} [{inverted}] {:.1}; {worst:.3}, {twentieth:.3}", smallest.to_degrees())
 }
 
-/// Three digits with the unit that fits.
+/// A time in three digits, in a suitable unit.
 fn time(seconds: f64) -> String {
     let (number, unit) = match seconds {
         s if s >= 1.0 => (s, "s"),
@@ -202,7 +207,7 @@ fn time(seconds: f64) -> String {
     format!("{number:.digits$} {unit}")
 }
 
-/// How a way is divided.
+/// How a motion is divided.
 #[derive(Clone, Copy, PartialEq)]
 enum Parts {
     One,
@@ -255,7 +260,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let titles: Vec<&str> = rows.iter().map(|row| row.name.as_str()).collect();
     println!("| method | {} |\n|---|{}", titles.join(" | "), "---|".repeat(rows.len()));
     for (name, method, parts) in methods {
-        // Only the sphere is a body of its own.
+        // Only the sphere is a rigid body.
         if !name.contains(&only) || (name.starts_with("bodies") && motion != "sphere") {
             continue;
         }

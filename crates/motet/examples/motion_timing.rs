@@ -1,10 +1,12 @@
-//! How long mesh motion takes: set-up by stage, the update on its own, a rebuild, and a copy beside it.
+//! Timing of mesh motion: set-up by stage, the update alone, a rebuild, and for comparison a memory copy.
 //!
-//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X] [--method NAME] [--residual R] [--factor GIB]` prints one JSON object.
-//! MESH is any mesh file; `15,7`, `22,10`, `30,13` and `38,17` are the four sizes of the built-in sphere in a box.
-//! `--rigid-layer` holds one layer of cells at the whole boundary. `--travel X` moves the sphere by X along x
-//! with `advance` and adds its certificate. NAME is `delaunay` (default), `bodies`, `guided`, `elastic` or `laplace`; of the last two steps are solved to R (1e-8), and
-//! with a factor of at most so many GiB where one is asked for. Each step is along another axis than the one before, so that no iteration begins with what it looks for.
+//! `motion_timing MESH|N,LAYERS [--threads N] [--seconds S] [--rigid-layer] [--travel X] [--method NAME]
+//! [--residual R] [--factor GIB]` prints one JSON object. MESH is any mesh file; `15,7`, `22,10`, `30,13` and
+//! `38,17` are the four sizes of the built-in sphere in a box. `--rigid-layer` adds a rigid layer of one cell
+//! at the whole boundary. `--travel X` moves the sphere by X along x with `advance` and adds its certificate.
+//! NAME is `delaunay` (default), `bodies`, `guided`, `elastic` or `laplace`; the systems of the last two are
+//! solved to the residual R (1e-8), with a factorisation of at most GIB if given. Each step is along another
+//! axis than the one before, so that no iteration starts from its solution.
 
 use std::error::Error;
 use std::time::Instant;
@@ -78,7 +80,7 @@ fn load(name: &str) -> Result<Mesh, Box<dyn Error>> {
     }
 }
 
-/// The shortest of many runs, and the median.
+/// The shortest and the median time of many runs.
 fn repeat(budget: f64, mut work: impl FnMut()) -> (f64, f64) {
     work();
     let begin = Instant::now();
@@ -140,8 +142,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     });
     let driven = by(0, 0.5);
 
-    // What a step reads and writes once: places before and after, nodes and weights of each vertex, and each node's
-    // displacement as it is given and as it is used.
+    // What a step reads and writes once: positions before and after, nodes and weights of each vertex, and
+    // each node's displacement as given and as used.
     let nodes = setup.driven + setup.layer;
     let bytes = mesh.points.len() * (24 + 24 + 16 + 24) + setup.driven * 24 + nodes * 32;
     let rebuild = (0..3).map(|_| {

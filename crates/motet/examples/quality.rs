@@ -1,4 +1,4 @@
-//! Reads tets as raw little-endian f64 (12 a tet), writes all measures of each (8 a tet).
+//! Reads tets as raw little-endian f64 (12 per tet), and writes all quality measures of each (8 per tet).
 //!
 //! `quality IN OUT`; the order is eas, equi-angle skew, smallest and largest
 //! dihedral angle (radians), mean ratio, Cubit mean ratio, edge ratio, volume.

@@ -1,17 +1,22 @@
-//! Long refinement of a mesh, each step held against what refinement promises: towards something, or a front that moves through.
+//! Long refinement of a mesh, towards a target or along a moving front, with each step checked against the
+//! guarantees of refinement.
 //!
-//! `refine_long MESH|random:N|box:N|ball:N --towards point|line|surface|scattered [--generations N] [--start N] [--at X,Y,Z]` divides, in each of eight
-//! generations, the tets whose centre lies in a ball, a long or a flat ellipsoid about a place, by default the middle of the tet nearest to the middle
-//! of the mesh. It holds N tets at first (default 1000) and shrinks, so that 1.7 times as many are divided each time. Scattered are
-//! three in a hundred tets of the first mesh, a quarter of them (with all their parts) in the next generation, and so on.
+//! `refine_long MESH|random:N|box:N|ball:N --towards point|line|surface|scattered [--generations N] [--start
+//! N] [--at X,Y,Z]` divides, in each of eight generations, the tets whose centre lies in a ball, or in a long
+//! or a flat ellipsoid, about a place, by default the centre of the tet nearest to the middle of the mesh.
+//! The region holds N tets at first (default 1000) and shrinks, so that 1.7 times as many are divided each
+//! time. With `scattered`, three in a hundred tets of the first mesh are divided, a quarter of them (with all
+//! their parts) in the next generation, and so on.
 //!
-//! `refine_long MESH --front plane|sphere [--generations G] [--steps N] [--at X,Y,Z]` lets a front move through the mesh: along x, or out of a place. What it
-//! touches within G steps is divided, up to generation G (default 3), what it left two steps behind is taken back. In the end all is taken
-//! back, and the first mesh must be there bit for bit.
+//! `refine_long MESH --front plane|sphere [--generations G] [--steps N] [--at X,Y,Z]` moves a front through
+//! the mesh: along x, or outward from a place. Tets that it touches within G steps are divided, up to
+//! generation G (default 3); divisions of those that it left two steps behind are taken back. In the end
+//! everything is taken back, and the first mesh must be recovered bit for bit.
 //!
-//! Both: `[--threads N] [--keep K] [--share S] [--most N] [--no-price]`; it ends early past so many tets (default six million). A row each
-//! step, relative to the first mesh's worst where a name says so; below `without` are the same marks where no shape is kept. The exit status is 1
-//! when a promise is broken.
+//! Both: `[--threads N] [--keep K] [--share S] [--most N] [--no-price]`; the run ends early beyond N tets
+//! (default six million). Prints a row per step, relative to the first mesh's worst where a name says so;
+//! rows below `without` use the same marks without preserving shapes. The exit status is 1 when a guarantee
+//! is broken.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -52,8 +57,9 @@ enum Towards {
     Scattered,
 }
 
-/// An ellipsoid that shrinks: its half axes at first, in proportion, and by how much each shrinks in a generation. Eight times as many tets in each
-/// volume and these factors make 1.7.
+/// An ellipsoid that shrinks: the ratios of its initial half axes, and the factor by which each shrinks per
+/// generation. Division makes eight tets of each, which together with these factors gives 1.7 times as many
+/// per generation.
 #[derive(Clone, Copy)]
 struct Shrinking {
     axes: Point,
@@ -80,7 +86,7 @@ impl Towards {
 }
 
 impl Shrinking {
-    /// How far out a place is, in the ellipsoids of a generation.
+    /// The normalised distance of a place from the centre, in the ellipsoids of a generation.
     fn out(&self, from: Point, place: Point, generation: i32) -> f64 {
         let away = sub(place, from);
         distance([0, 1, 2].map(|k| away[k] / (self.axes[k] * self.factors[k].powi(generation))), [0.0; 3])
@@ -157,17 +163,18 @@ fn middle(mesh: &TetMesh) -> Point {
     centres.min_by(|p, q| distance(*p, middle).total_cmp(&distance(*q, middle))).unwrap_or(middle)
 }
 
-/// What is run, its rows, and whether all promises held so far.
+/// The state of a run, and whether all guarantees have held so far.
 struct Run {
     first: First,
     threads: Threads,
     refinement: Refinement,
-    /// The same marks where no shape is kept.
+    /// Refinement by the same marks without preserving shapes.
     without: Option<Refinement>,
     is_kept: bool,
 }
 
-/// How a mesh was refined in a step, by marks that follow from the mesh: how many, what came of it, seconds.
+/// Makes one step of refinement by marks computed from the mesh; returns their number, a summary and the
+/// seconds.
 fn advance(
     refinement: &mut Refinement,
     threads: &Threads,
@@ -230,7 +237,7 @@ impl Run {
         Ok(summary.n_tets)
     }
 
-    /// Divides what is marked, generation by generation.
+    /// Divides the marked tets, generation by generation.
     fn divide(&mut self, call: &Call, marked: impl Fn(&Refinement, i32) -> Vec<TetId>) -> Any<()> {
         for generation in 0..call.generations.unwrap_or(8) {
             let n_tets = self.step(usize::from(generation) + 1, &|refinement, threads| {
@@ -274,7 +281,7 @@ impl Run {
     fn front(&mut self, call: &Call, front: Front) -> Any<()> {
         let deepest = call.generations.unwrap_or(3);
         let at = call.at.unwrap_or_else(|| middle(&self.first.mesh));
-        // How far along a place is.
+        // The coordinate along which the front moves.
         let along = |p: Point| match front {
             Front::Plane => p[0],
             Front::Sphere => distance(p, at),
@@ -302,7 +309,7 @@ impl Run {
         self.back()
     }
 
-    /// Takes all back.
+    /// Takes everything back.
     fn back(&mut self) -> Any<()> {
         let mut n = 0;
         while self.refinement.mesh() != &self.first.mesh && n < 20 {
@@ -318,7 +325,7 @@ impl Run {
     }
 }
 
-/// Takes back what lies behind, then divides what reaches into the band ahead, once.
+/// Takes back what lies behind the front, then divides once what reaches into the band ahead.
 fn behind_and_ahead(
     refinement: &mut Refinement,
     threads: &Threads,

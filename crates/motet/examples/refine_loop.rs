@@ -1,8 +1,11 @@
-//! The loop of solving, sizes from the second derivatives of the solution, and adapting, beside refinement everywhere.
+//! The adaptation loop: solve, compute sizes from the second derivatives of the solution, adapt; compared
+//! with uniform refinement.
 //!
-//! `refine_loop [MESH] [--rounds N] [--tets N] [--factor F] [--error E] [--threads N]` begins with a mesh file, or a tube. In each of the rounds (default 4) a formula stands in for the
-//! solver, the mesh is coarsened and refined to sizes for so many tets (default 10000, and `F` times as many from round to round, default 2.5) or, with `--error`, for an error of
-//! at most `E`, one generation a round. Errors are relative to the fastest flow: the root of the mean square, and the most.
+//! `refine_loop [MESH] [--rounds N] [--tets N] [--factor F] [--error E] [--threads N]` starts from a mesh
+//! file, or a tube. In each of the rounds (default 4) a formula stands in for the solver, and the mesh is
+//! coarsened and refined to sizes for N tets (default 10000, and `F` times as many from round to round,
+//! default 2.5) or, with `--error`, for an error of at most `E`, one generation per round. Errors, root mean
+//! square and maximum, are relative to the largest velocity.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
@@ -18,7 +21,8 @@ use motet::refine::sizes::SizeLimits;
 use motet::refine::{Aim, HessianSizes};
 use motet::{Mesh, io};
 
-/// A front round the middle of the mesh that stands in for a solution: fast within a tenth of the extent, a hundredth wide.
+/// A front around the middle of the mesh that stands in for a solution: fast within a tenth of the extent, a
+/// hundredth wide.
 struct Front {
     middle: Point,
     extent: f64,

@@ -1,11 +1,14 @@
-//! Refinement as bench-compare asks it of all programs: the same mesh, the same marks, generation by generation.
+//! Refinement in the form that bench-compare requires of all programs: the same mesh, the same marks,
+//! generation by generation.
 //!
-//! `refine_rivals CASE.json OUT` reads the mesh and the marks' rule that bench-compare wrote beside `CASE.json`, and prints one JSON object
-//! with a row for each generation; meshes go to `OUT_1.points` and `OUT_1.tets`, and so on, unless they are there. The clock runs from the
-//! marks to the mesh. `refine_rivals --coil FILE` writes the points of a coil's surface as f64.
+//! `refine_rivals CASE.json OUT` reads the mesh and the rule for marks that bench-compare wrote beside
+//! `CASE.json`, and prints one JSON object with a row for each generation; meshes go to `OUT_1.points` and
+//! `OUT_1.tets`, and so on, unless these exist. The time runs from the marks to the mesh. `refine_rivals
+//! --coil FILE` writes the points of a coil's surface as f64.
 //!
-//! A tet is marked when its longest edge is longer than `longest`, and its centroid nearer to one of the points `near` than this generation's
-//! radius; with `whole` the radius is larger by the distance of its farthest corner from the centroid. Without `near` all tets are marked.
+//! A tet is marked when its longest edge is longer than `longest`, and its centroid is nearer to one of the
+//! points `near` than this generation's radius; with `whole` the radius is increased by the distance of the
+//! tet's farthest corner from its centroid. Without `near` all tets are marked.
 
 use std::error::Error;
 use std::fs;
@@ -20,7 +23,7 @@ use motet::mesh::shapes::Coil;
 use motet::refine::{Options, Refinement};
 use serde_json::{Map, Value, json};
 
-/// Five turns beside the sphere of the bench's mesh, of a wire of radius 0.05.
+/// Five turns of wire of radius 0.05 beside the sphere of the benchmark's mesh.
 fn coil() -> motet::Result<Vec<Point>> {
     let coil = Coil { centre: [2.5, 0.0, 0.0], radius: 0.6, pitch: 0.4, turns: 5.0, wire_radius: 0.05 };
     Ok(coil.mesh(72, 12)?.points)
@@ -52,7 +55,7 @@ fn write(mesh: &TetMesh, out: &str, generation: usize) -> std::io::Result<()> {
     fs::write(path("tets"), mesh.tets.iter().flatten().flat_map(|v| v.0.to_le_bytes()).collect::<Vec<_>>())
 }
 
-/// Which tets are to be divided.
+/// The rule by which tets are marked for division.
 struct Marks {
     near: Option<Vec<Point>>,
     radii: Vec<f64>,

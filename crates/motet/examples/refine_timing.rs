@@ -1,7 +1,8 @@
 //! Refinement of a mesh towards a point, generation by generation: shapes, counts, seconds.
 //!
-//! `refine_timing MESH [--generations N] [--uniform] [--point X,Y,Z] [--radius R] [--factor F] [--keep K] [--share S] [--threads N]` divides, in generation k, the
-//! tets whose centre is nearer to the point than `R F^k` (default 1.2 and 0.6), or all of them. One JSON object a generation; worst and median are
+//! `refine_timing MESH [--generations N] [--uniform] [--point X,Y,Z] [--radius R] [--factor F] [--keep K]
+//! [--share S] [--threads N]` divides, in generation k, the tets whose centre is nearer to the point than `R
+//! F^k` (default 1.2 and 0.6), or all of them. Prints one JSON object per generation; worst and median are
 //! relative to the first mesh where their name says so.
 
 use std::error::Error;

@@ -1,4 +1,5 @@
-//! Repairs the bad tets of a mesh and prints one line of JSON with the median time: what the comparison with other programs runs.
+//! Repairs the bad tets of a mesh and prints one line of JSON with the median time, for the comparison with
+//! other programs.
 //!
 //! `remesh IN OUT [--goal best] [--adapt] [--min-eas Q] [--rounds N] [--sizes H]`
 
@@ -22,7 +23,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (start.elapsed().as_secs_f64(), done)
 }
 
-/// Joining the tets and measuring each once: what any program of this kind has to do.
+/// The time to join the tets and to measure each once, which any such program has to spend.
 fn ground(mesh: &TetMesh) -> [f64; 2] {
     let (join, complex) = timed(|| Complex::new(mesh));
     drop(complex);

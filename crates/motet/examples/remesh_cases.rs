@@ -35,9 +35,9 @@ fn describe(name: &str, mesh: &TetMesh) {
     );
 }
 
-/// Bad tets that motion left in the paper's mesh, figure 11.
+/// The numbers of bad tets that motion left in the paper's mesh, figure 11.
 const PAPER: [&str; 4] = ["1", "66", "265", "598"];
-/// The way between two of the table's rows: one that leads to about as many.
+/// Displacement between two rows of the table, chosen to produce about as many bad tets as in the paper.
 const STRIDE: f64 = 0.22;
 
 fn channel(n_steps: usize) {
@@ -101,7 +101,7 @@ fn channel(n_steps: usize) {
     });
 }
 
-/// How far the sphere of the picture has moved.
+/// Displacement of the sphere in the picture.
 const SHIFT: f64 = 0.66;
 
 fn sphere(file: &str) -> ExitCode {
@@ -227,7 +227,7 @@ fn cube(distortion: Distortion, n_cycles: usize, sizes: Option<Sizes>) {
     );
 }
 
-/// A row after some cycles of a case that carries fields.
+/// Prints a row after some cycles of a case that carries fields.
 fn tell_fields(cycle: usize, loaded: &Loaded) {
     if cycle > 5 && !cycle.is_multiple_of(10) {
         return;

@@ -1,9 +1,10 @@
-//! Motet's own vessels and devices as closed surfaces, for other programs to fill.
+//! Writes motet's own vessels and devices as closed surfaces, for other programs to fill.
 //!
-//! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each vessel (48 without the word); and `loops.vtp`, a coil
-//! that lies in the sac of the aneurysm; and `stent.vtp`, a stent in its vessel, across the neck, pressed into the wall by a twentieth of the radius;
-//! `box.vtu` and `ball.vtu`, both of tets, the one in the middle of the other; `block.vtu` and `turns.vtp`: a box of tets, and a coil of 11,520 triangles that
-//! lies in it.
+//! `shapes FOLDER [--around N]` writes `aneurysm.vtp` and `bifurcation.vtp`, with N vertices around each
+//! vessel (48 by default); `loops.vtp`, a coil that lies in the sac of the aneurysm; `stent.vtp`, a stent in
+//! its vessel, across the neck, pressed into the wall by a twentieth of the radius; `box.vtu` and `ball.vtu`,
+//! both of tets, one in the middle of the other; `block.vtu` and `turns.vtp`, a box of tets, and a coil of
+//! 11,520 triangles that lies in it.
 
 use std::error::Error;
 use std::path::Path;
@@ -22,9 +23,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let aneurysm = Aneurysm { around, ..Aneurysm::default() };
     let coil = Coil { centre: [0.0; 3], radius: 0.8, pitch: 0.35, turns: 4.0, wire_radius: 0.075 };
     let mut loops = coil.mesh(120, 12)?;
-    // Its axis along that of the sac.
+    // Align the coil's axis with that of the sac.
     loops.points.iter_mut().for_each(|p| *p = [p[0], aneurysm.sac_height + p[2], -p[1]]);
-    // The axis of the vessel is a part of a circle, its middle in the origin.
+    // The axis of the vessel is a circular arc with its midpoint at the origin.
     let bend = aneurysm.length / aneurysm.bend_deg.to_radians();
     let on_axis = |i: i32| {
         let angle = aneurysm.bend_deg.to_radians() * (f64::from(i) / 200.0 - 0.5) * 0.6;

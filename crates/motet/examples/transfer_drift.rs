@@ -1,17 +1,24 @@
-//! What a long motion makes of fields: a paddle turns in its box, and fields are carried through every change of the mesh; beside it, a new mesh of everything after each turn.
+//! The effect of a long motion on fields: a paddle turns in its box, and fields are carried through every
+//! change of the mesh; for comparison, the whole box is filled anew after each turn.
 //!
-//! `transfer_drift turn MESH [--turns N] [--steps N] [--rule mean|linear]` moves the patch `paddle` of MESH about z; fields on points are carried by the rule.
-//! `transfer_drift anew MESH [--turns N] [--each N] [--size H] [--rule mean|linear]` fills the walls of
-//! MESH anew once a turn, or so often, and carries the fields from each mesh to the next one; it finds no other error on the way. Walls are the same; inside, each mesh is
-//! of another lattice, since all is turned in space before it is filled. Seven meshes take turns. Both print a JSON object a turn.
+//! `transfer_drift turn MESH [--turns N] [--steps N] [--rule mean|linear]` moves the patch `paddle` of MESH
+//! about z; fields on points are carried by the rule. `transfer_drift anew MESH [--turns N] [--each N]
+//! [--size H] [--rule mean|linear]` fills the walls of MESH anew N times per turn (default 1), and carries
+//! the fields from each mesh to the next; there is no other source of error. The walls are the same; the
+//! interior points of each mesh come from another lattice, since everything is rotated before filling. Seven
+//! meshes are used in rotation. Both print a JSON object per turn.
 //!
-//! Fields are functions of the place, set once. Where vertices move, their values change by what the exact function differs between the two places, as a solver
-//! without any error would have it; where the mesh changes, values are interpolated. So what is off is what changes have made of the field, and all of them together.
+//! Fields are functions of position, set once. Where vertices move, their values change by the difference of
+//! the exact function between the two positions, as with an error-free solver; where the mesh changes, values
+//! are interpolated. The errors are therefore those of all changes together.
 //!
-//! - `linear`: how far a linear function is off, at most, as a part of its range.
-//! - `smooth`: of `sin(pi x / 2) cos(pi y / 2) + z^2`, the L2 norm of the field less the interpolant of the exact function on the same mesh, over the norm of the function.
-//! - `own`: the L2 norm of that interpolant less the function, likewise: what no mesh of this size can avoid.
-//! - `conserved`: over single changes, by how much the integral of a density is off, at most; `contents`: the same over all, for one that stays in its cells while they move.
+//! - `linear`: the maximum error of a linear function, relative to its range.
+//! - `smooth`: for `sin(pi x / 2) cos(pi y / 2) + z^2`, the L2 norm of the difference between the field and
+//!   the interpolant of the exact function on the same mesh, relative to the norm of the function.
+//! - `own`: the L2 norm of the difference between that interpolant and the function, also relative:
+//!   unavoidable on a mesh of this size.
+//! - `conserved`: the maximum relative change of the integral of a density in a single change of the mesh;
+//!   `contents`: the accumulated change, for a density that stays in its cells while they move.
 
 #[path = "common/carried.rs"]
 mod carried;
@@ -37,7 +44,7 @@ struct Call {
     mesh: String,
     turns: usize,
     steps: usize,
-    /// New meshes a turn.
+    /// Number of new meshes per turn.
     each: usize,
     size: f64,
     rule: Rule,
@@ -77,7 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 const CONTENTS: &str = "contents";
 
-/// Something that is not the same everywhere, above 0.
+/// A density that varies in space, above 0.
 fn density(p: Point) -> f64 {
     2.0 + p[0].sin() * p[1].cos()
 }
@@ -136,13 +143,14 @@ fn turn(mesh: &Mesh, &Call { turns, steps, rule, .. }: &Call) -> Result<(), Box<
     Ok(())
 }
 
-/// The integral of what stays in its cells.
+/// The integral of the contents, a density that stays in its cells.
 fn contents(mesh: &Mesh) -> Result<f64, Box<dyn Error>> {
     let values = mesh.cell_field(CONTENTS).and_then(|field| field.values.to_f64());
     Ok(integral(mesh, &mesh.points, &values.ok_or("no contents")?))
 }
 
-/// By how much the integral of a density changes across the change of a step; 0 where there is none, or more than one, between which there is no mesh to look at.
+/// The relative change of the integral of a density across the change in a step; 0 where there is no change,
+/// or more than one, since the meshes between them are not available.
 fn conserved_by(before: &Mesh, moving: &MovingMesh, step: &Step, now: &Carried) -> motet::Result<f64> {
     let [change] = step.changes.as_slice() else { return Ok(0.0) };
     let old = density_field("density", &Mesh { points: change.points_before.clone(), ..before.clone() });
@@ -152,10 +160,10 @@ fn conserved_by(before: &Mesh, moving: &MovingMesh, step: &Step, now: &Carried) 
     Ok((integral(moving.mesh(), now.places(), &values(&new)) / was - 1.0).abs())
 }
 
-/// Meshes that take turns.
+/// Number of meshes used in rotation.
 const MESHES: usize = 7;
 
-/// Each turn ends with the next mesh, or goes through so many.
+/// Replaces the mesh by the next one `each` times per turn.
 fn anew(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(), Box<dyn Error>> {
     let filled = |k: usize| filled(mesh, 0.5 + k as f64, size);
     let meshes = (0..MESHES).map(filled).collect::<motet::Result<Vec<_>>>()?;
@@ -180,7 +188,7 @@ fn anew(mesh: &Mesh, &Call { turns, each, size, rule, .. }: &Call) -> Result<(),
     Ok(())
 }
 
-/// The walls of a mesh about the origin, turned by an angle, filled, and turned back.
+/// The walls of a mesh about the origin, rotated by an angle, filled, and rotated back.
 fn filled(mesh: &Mesh, angle: f64, size: f64) -> motet::Result<Mesh> {
     let threads = Threads::single();
     let turned = |angle: f64| {

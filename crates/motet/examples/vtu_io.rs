@@ -1,5 +1,5 @@
-//! How long a VTU file takes: `vtu_io read FILE RUNS`, `vtu_io write FILE OUT none|zlib|lz4|lzma RUNS`;
-//! prints the seconds of each run as JSON.
+//! Timing of VTU files: `vtu_io read FILE RUNS`, `vtu_io write FILE OUT none|zlib|lz4|lzma RUNS`; prints the
+//! seconds of each run as JSON.
 
 use std::time::Instant;
 

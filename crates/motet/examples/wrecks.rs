@@ -1,7 +1,8 @@
-//! Broken meshes, repaired: what came of each kind of damage, and how long the longest took.
+//! Repairs broken meshes; prints the outcomes for each kind of damage, and the longest time.
 //!
-//! `wrecks [N] [FIRST]`: the wrecks FIRST to FIRST + N; exit status 1 where one ends neither valid nor told nor refused.
-//! `wrecks N FIRST CELLS`: boxes of so many cells along each axis instead, their inner vertices shaken by up to two edges.
+//! `wrecks [N] [FIRST]`: the wrecks FIRST to FIRST + N; the exit status is 1 if a result is invalid without
+//! being reported or refused. `wrecks N FIRST CELLS`: boxes of CELLS cells along each axis instead, with
+//! inner vertices displaced by up to two edge lengths.
 
 #[path = "../tests/common/mod.rs"]
 #[allow(unreachable_pub, unused_imports, reason = "tests share it, and use other parts of it")]

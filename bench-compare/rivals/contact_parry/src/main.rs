@@ -1,16 +1,16 @@
-//! Distances of points from a triangle surface by parry. usage: contact_parry FOLDER THREADS RUNS DISTANCES
+//! Distances of points from a triangle surface by parry. Usage: contact_parry FOLDER THREADS RUNS DISTANCES
 //!
-//! At a step parry refits its tree; the distance from the triangle that was nearest last bounds each search.
+//! At each step parry refits its tree; the distance from the previous nearest triangle bounds each search.
 
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::TriMesh;
 use std::time::Instant;
 
-/// Time steps in the folder.
+/// Number of time steps in the folder.
 const STEPS: usize = 8;
 
-/// A bound by this much above a distance finds it again.
+/// The factor by which the bound exceeds a known distance, so that the search finds that distance again.
 const SLACK: f64 = 1.0 + 1e-9;
 
 fn points(path: String) -> Vec<Vector> {
@@ -29,13 +29,13 @@ fn write(path: String, answers: &[(f64, u32)]) {
     std::fs::write(path, answers.iter().flat_map(|a| a.0.to_le_bytes()).collect::<Vec<u8>>()).expect("distances");
 }
 
-/// The distance and the triangle.
+/// The distance from the surface, and the nearest triangle.
 fn first(mesh: &TriMesh, p: Vector) -> (f64, u32) {
     let (place, (triangle, _)) = mesh.project_local_point_and_get_location(p, false);
     ((place.point - p).length(), triangle)
 }
 
-/// The same, where `last` was the nearest triangle a moment ago.
+/// The distance from the surface and the nearest triangle, given the previous nearest triangle `last`.
 fn again(mesh: &TriMesh, p: Vector, last: u32) -> (f64, u32) {
     let known = mesh.triangle(last).distance_to_local_point(p, false);
     match mesh.project_local_point_and_get_location_with_max_dist(p, false, known * SLACK) {
@@ -44,7 +44,7 @@ fn again(mesh: &TriMesh, p: Vector, last: u32) -> (f64, u32) {
     }
 }
 
-/// Asks for all points, shared out among threads.
+/// Queries all points, divided among threads.
 fn all(queries: &[Vector], answers: &mut [(f64, u32)], threads: usize, ask: impl Fn(Vector, u32) -> (f64, u32) + Sync) {
     let part = queries.len().div_ceil(threads);
     let work = |queries: &[Vector], answers: &mut [(f64, u32)]| {

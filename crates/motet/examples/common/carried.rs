@@ -1,4 +1,5 @@
-//! Fields that follow exact functions of the place while vertices move, and are carried where the mesh changes.
+//! Fields that follow exact functions of position while vertices move, and are carried where the mesh
+//! changes.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,12 +9,12 @@ use motet::mesh::history::{History, Rule};
 use motet::mesh::{Field, Mesh};
 use serde_json::{Value, json};
 
-/// Values at vertices, and where these are.
+/// Values at vertices, and the positions of these.
 pub(crate) struct Carried {
     places: Vec<Point>,
     linear: Vec<f64>,
     smooth: Vec<f64>,
-    /// The largest absolute value of the linear function at first.
+    /// The initial maximum of the linear function's absolute value.
     range: f64,
 }
 
@@ -25,7 +26,7 @@ fn smooth(p: Point) -> f64 {
     (FRAC_PI_2 * p[0]).sin() * (FRAC_PI_2 * p[1]).cos() + p[2] * p[2]
 }
 
-/// The integral of values of cells over the tets.
+/// The integral of cell values over the tets.
 pub(crate) fn integral(mesh: &Mesh, places: &[Point], values: &[f64]) -> f64 {
     mesh.cells.tets().map(|(cell, corners)| values[cell.index()] * volume(places, corners)).sum()
 }
@@ -45,7 +46,7 @@ impl Carried {
         &self.places
     }
 
-    /// Vertices move: each value changes by what the exact function does on the way.
+    /// Moves the vertices: each value changes by the change of the exact function on the way.
     pub(crate) fn go_to(&mut self, places: &[Point]) {
         for (i, (&to, from)) in places.iter().zip(&mut self.places).enumerate() {
             self.linear[i] += linear(to) - linear(*from);
@@ -54,7 +55,8 @@ impl Carried {
         }
     }
 
-    /// Vertices move to `before`, and the mesh changes there; fields are carried by a rule of points.
+    /// Moves the vertices to `before`, and carries the fields through the change of the mesh there by a rule
+    /// for points.
     ///
     /// # Errors
     /// When the history is that of another mesh.
@@ -69,14 +71,15 @@ impl Carried {
         Ok(())
     }
 
-    /// How far the fields are off on a mesh whose vertices are where they are here.
+    /// Errors of the fields, on a mesh with the vertex positions of `self`.
     pub(crate) fn measured(&self, mesh: &Mesh) -> Value {
         let off = self.linear.iter().zip(&self.places).map(|(u, p)| (u - linear(*p)).abs() / self.range);
         let error: Vec<f64> = self.smooth.iter().zip(&self.places).map(|(u, p)| u - smooth(*p)).collect();
         let (mut squares, mut own, mut all) = (0.0, 0.0, 0.0);
         for (_, corners) in mesh.cells.tets() {
             let volume = volume(&self.places, corners);
-            // Of linear functions on a tet: exactly a twentieth of the squares and of the square of the sum.
+            // The integral of the square of a linear function over a tet: a twentieth of the volume times the
+            // sum of the squared values plus the square of their sum, exactly.
             let e = corners.map(|v| error[v.index()]);
             let sum: f64 = e.iter().sum();
             squares += volume / 20.0 * (e.iter().map(|x| x * x).sum::<f64>() + sum * sum);
@@ -93,7 +96,8 @@ impl Carried {
         })
     }
 
-    /// The means over a tet of the squares of the exact function's interpolant less the function, and of the function, by a rule of four points.
+    /// Means over a tet, by a four-point rule: of the squared difference between the exact function and its
+    /// interpolant, and of the squared function.
     fn by_points(&self, corners: [VertexId; 4]) -> [f64; 2] {
         const NEAR: f64 = 0.585_410_196_624_968_5;
         const FAR: f64 = 0.138_196_601_125_010_5;
