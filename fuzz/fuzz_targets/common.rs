@@ -1,4 +1,4 @@
-//! What the targets share: bytes in, a mesh or an error out.
+//! Shared by the targets of file formats: bytes in, a mesh or an error out.
 #![allow(dead_code, reason = "each target uses its part")]
 
 use std::path::Path;
@@ -10,7 +10,7 @@ fn format(ending: &str) -> &'static Format {
     formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
 }
 
-/// Reads `bytes` as a file with this ending. A mesh that comes out holds together.
+/// Reads `bytes` as a file with this extension. A mesh that results is valid.
 pub fn read(ending: &str, bytes: &[u8]) -> Option<Mesh> {
     let path = format!("in{ending}");
     let input = Input { path: Path::new(&path), bytes, notes: &Notes::default() };
@@ -19,15 +19,15 @@ pub fn read(ending: &str, bytes: &[u8]) -> Option<Mesh> {
     Some(mesh)
 }
 
-/// The first file written, and whether nothing was lost.
+/// Writes a mesh; returns the first file written, and whether nothing was lost.
 pub fn write(ending: &str, mesh: &Mesh) -> (Vec<u8>, bool) {
     let write = format(ending).write.expect("the format is written");
     let mut written = write(mesh, &WriteOptions::default()).expect("what is read can be written");
     (written.files.swap_remove(0).1, written.lost.is_empty())
 }
 
-/// What can be read can be written, and is read again: as many points, and where
-/// nothing was lost the same cells.
+/// Checks that what can be read can be written and read again, with the same number of points, and with the
+/// same cells where nothing was lost.
 pub fn there_and_back(ending: &str, bytes: &[u8]) {
     let Some(mesh) = read(ending, bytes) else { return };
     let (again, complete) = write(ending, &mesh);

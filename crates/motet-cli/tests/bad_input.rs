@@ -9,13 +9,13 @@ use motet::Mesh;
 use motet::base::{CellId, VertexId};
 use motet::mesh::{CellKind, Cells};
 
-/// A file, the call that gets it (`FILE` stands for it), and what must come of it.
+/// A file, the call that reads it (`FILE` stands for it), and the expected outcome.
 struct Case {
     file: &'static str,
     bytes: Vec<u8>,
     call: &'static [&'static str],
     code: i32,
-    /// Parts of the message, or of the result.
+    /// Expected parts of the message, or of the result.
     says: &'static [&'static str],
 }
 
@@ -26,7 +26,7 @@ fn bad(file: &'static str, bytes: impl AsRef<[u8]>, says: &'static [&'static str
     Case { file, bytes: bytes.as_ref().to_vec(), call: INFO, code: 3, says }
 }
 
-/// A whole VTU in text, from its points and the connectivity, offsets and types of its cells.
+/// A complete VTU file in text form, from its points and the connectivity, offsets and types of its cells.
 fn vtu(
     n_points: &str,
     n_cells: &str,
@@ -136,7 +136,7 @@ fn broken_others() -> Vec<Case> {
     ]
 }
 
-/// Readable files that are not what `move` needs, or that hold defects.
+/// Readable files that are not what `move` needs, or that have defects.
 fn odd_meshes() -> Vec<Case> {
     let file =
         |file, mesh: &Mesh, call, code, says| Case { file, bytes: written(file, mesh), call, code, says };

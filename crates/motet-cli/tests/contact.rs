@@ -59,7 +59,7 @@ fn two_blocks_have_their_gap_on_both_and_in_the_report() {
     for (i, p) in mesh.points.iter().enumerate() {
         assert_eq!(body[i], if i < n_left { 2.0 } else { 1.0 });
         assert_eq!(body_of[cell[i] as usize], body[i], "the closest cell is one of the closest body");
-        // A vertex warns with its triangles.
+        // A vertex has a warning if its triangles do.
         assert!(warning[i] == 1.0 || gap[i] >= 0.6, "{p:?}");
         assert!(warning[i] == 0.0 || gap[i] <= 1.2, "{p:?}");
         if p[0] == 1.5 {
@@ -126,7 +126,7 @@ fn a_series_goes_in_and_a_series_comes_out() {
         assert!((got - expected).abs() < 1e-12, "{least:?}");
     }
     assert_eq!((&told["first_warning"], &told["first_touch"]), (&Value::from(2.0), &Value::from(3.0)));
-    // From time 2 it is half a step to the contact, and none is seen from time 0.
+    // At time 2 the contact is half a step away; none is visible from time 0.
     let after = steps[2]["first_contact"]["after"].as_f64().expect("a time");
     assert!(after <= 0.5 && after > 0.499, "{after}");
     assert_eq!(steps[0]["first_contact"], Value::Null);
@@ -226,14 +226,14 @@ fn a_surface_is_held_against_itself() {
     folder.mesh("two.vtp", &two);
     let told = report(&folder, "contact two.vtp --self -o gaps.vtp --warn 0.3");
     assert_eq!(told["steps"][0]["least"], 0.25);
-    // As two files they warn of the same.
+    // As two files they have the same warnings.
     let apart = report(&folder, "contact one.vtp other.vtp -o apart.vtp --warn 0.3");
     let warned =
         |told: &Value, body: usize| told["steps"][0]["gaps"][body]["warned"].as_u64().expect("a count");
     assert_eq!(warned(&told, 0), warned(&apart, 0) + warned(&apart, 1));
     let gap = |name: &str| values(&read(folder.path(name)).expect("it is written"), "gap");
     for (alone, among) in gap("gaps.vtp").into_iter().zip(gap("apart.vtp")) {
-        // Vertices half way along the sides would look along their own surface.
+        // Vertices half way along the sides are measured along their own surface.
         assert!(alone == among || among > 0.5, "{alone} for {among}");
     }
 }

@@ -1,4 +1,4 @@
-//! Names that are no text, full disks, links, control characters, limits: what the system around a call can do to it.
+//! Hostile environments: names that are not Unicode, full disks, links, control characters, limits.
 
 mod common;
 

@@ -54,7 +54,7 @@ fn a_coil_and_what_the_report_says_of_it() {
     assert_eq!(n as u64, device["triangles"].as_u64().unwrap());
     let history: History = serde_json::from_slice(&folder.read("h.json")).unwrap();
     assert_eq!((history.vertices.len(), history.cells.len()), (mesh.points.len(), mesh.cells.len()));
-    // To people, and twice the same.
+    // Output for people, and the same result a second time.
     let call =
         folder.motet(["implant", "host.vtu", "coil.stl", "-o", "again.vtu", "--quality"]).assert().code(0);
     for what in ["tets carved; kept to the bit", "coil", "volume 27", "wrote again.vtu"] {
@@ -121,7 +121,7 @@ fn arrays_begin_in_devices_with_what_is_given() {
     let mesh = read(folder.path("out.vtu")).unwrap();
     let (u, c) = (mesh.point_field("u").unwrap().to_vectors().unwrap(), mesh.cell_field("c").unwrap());
     for (p, u) in mesh.points.iter().zip(&u) {
-        // The surface is the host's as well.
+        // The surface belongs to the host as well.
         let is_within =
             p.iter().map(|x| x * x).sum::<f64>().sqrt() < 0.49 && p.iter().any(|x| x.abs() < 0.49);
         let expected = if is_within && *u != [1.0, 2.0, 3.0] { [0.0, 0.5, 0.0] } else { [1.0, 2.0, 3.0] };
@@ -144,7 +144,7 @@ fn arrays_begin_in_devices_with_what_is_given() {
     refused("c=a", "no finite number");
 }
 
-/// Points of a mesh that are not on its boundary.
+/// The number of points of a mesh that are not on its boundary.
 fn n_inside(mesh: &Mesh) -> usize {
     mesh.points.len() - Surface::boundary_of(mesh).vertices().len()
 }

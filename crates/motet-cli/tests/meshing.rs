@@ -1,4 +1,4 @@
-//! `motet mesh`: what it fills, what it refuses, what it mends.
+//! `motet mesh`: what it fills, what it refuses, what it repairs.
 
 mod common;
 
@@ -66,11 +66,11 @@ fn a_flap_in_the_same_file_or_its_own_has_two_sides() {
     let told = report(&folder, &["mesh", "lumen.vtp", "--membrane", "flap.vtp", "-o", "out.vtu"]);
     assert_eq!(told["filled"]["triangles"], told["filled"]["triangles_kept"], "{told}");
     assert!(read(folder.path("out.vtu")).unwrap().patches().unwrap().find("flap").is_some());
-    // Without the word, the flap is an open surface.
+    // Without `--membrane`, the flap is an open surface.
     folder.motet(["mesh", "lumen.vtp", "flap.vtp", "-o", "no.vtu"]).assert().code(3);
 }
 
-/// As vessels come from programs that model them: a file a patch.
+/// A file per patch, as vessels come from modelling programs.
 #[test]
 fn files_that_end_at_common_edges_are_one_surface() {
     let folder = Folder::new();
@@ -95,11 +95,11 @@ fn files_that_end_at_common_edges_are_one_surface() {
     for name in labels.names.values() {
         assert!(mesh.patches().unwrap().find(name).is_some(), "{name}");
     }
-    // The wall between two meshes may come with both: it is there once.
+    // A wall between two meshes may be given by both: it is used once.
     std::fs::copy(folder.path("interface.stl"), folder.path("inner.stl")).unwrap();
     let twice: Vec<String> = words.iter().cloned().chain(["inner.stl".to_owned()]).collect();
     assert_eq!(call(&twice, "twice.vtu")["filled"]["triangles"], told["filled"]["triangles"]);
-    // Without the last of them it is open, and all that are left are named.
+    // Without the last of them it is open, and all the others are named.
     words.pop();
     let call = folder.motet(words.iter().map(String::as_str).chain(["-o", "no.vtu"])).assert().code(3);
     assert!(words[1..].iter().all(|file| stderr(&call).contains(file.as_str())), "{}", stderr(&call));
@@ -226,7 +226,7 @@ fn layers_grow_on_walls_and_are_told() {
     let made = read(folder.path("lumen.vtu")).unwrap();
     assert!(check(&made).is_empty());
     assert!(made.patches().unwrap().find("interface").is_some());
-    // The same said by patch, in two ways.
+    // Given by patch, in two ways.
     for words in [&["interface=4,0.02,1.2"][..], &["4,0.02,1.2", "--layers-on", "interface"]] {
         let told = report(&folder, &with(words));
         assert_eq!(told["layers"], everywhere["layers"]);
@@ -272,7 +272,7 @@ fn layers_that_mean_nothing_are_refused() {
         assert!(!stderr(&call).is_empty());
         assert!(!folder.path("out.vtu").exists());
     }
-    // No digits for the layers: none is there, the mesh is.
+    // Layers too thin for double precision are left out; the mesh is made.
     folder.motet(["mesh", "ball.stl", "-o", "out.vtu", "--layers", "3,1e-30,1"]).assert().code(4);
     assert!(check(&read(folder.path("out.vtu")).unwrap()).is_empty());
 }

@@ -97,7 +97,7 @@ fn a_patch_is_shifted_in_steps_and_a_series_written() {
 #[test]
 fn a_motion_beyond_the_wall_stops_where_it_must_and_exits_4() {
     let folder = Folder::new();
-    // Six quads a face: one vertex of the sphere is that nearest to the wall.
+    // With six quads per face, one vertex of the sphere is nearest to the wall.
     folder.mesh("box.vtu", &sphere_in_box(6, 3));
     let words = ["move", "box.vtu", "-o", "out.vtu", "--translate", "sphere=6,0,0", "--json"];
     let call = folder.motet(words).assert().code(4);
@@ -114,7 +114,7 @@ fn a_motion_beyond_the_wall_stops_where_it_must_and_exits_4() {
     assert!(read(folder.path("out.vtu")).is_ok());
 }
 
-/// The boundary of the cube as a surface of its own, vertices picked by `keep`.
+/// The boundary of the cube as a surface of its own, with vertices picked by `keep`.
 fn face(mesh: &Mesh, keep: impl Fn(Point) -> bool) -> (Mesh, Vec<VertexId>) {
     let boundary = motet::mesh::Boundary::of(&mesh.cells);
     let facets = boundary.facets.iter().filter(|f| f.iter().all(|v| keep(mesh.points[v.index()])));
@@ -190,7 +190,7 @@ fn a_wall_follows_its_surfaces_while_the_ends_slide() {
 fn displacements_of_nodes_over_time_are_written_and_read() {
     let folder = Folder::new();
     let mut mesh = cube(3);
-    // Ids of its own, as a part of a larger model has them.
+    // With its own ids, as part of a larger model.
     let ids: Vec<i64> = (0..mesh.points.len() as i64).map(|v| 1000 - v).collect();
     mesh.set_point_field(Field::scalars("GlobalNodeID", ids));
     folder.mesh("cube.vtu", &mesh);
@@ -421,7 +421,7 @@ fn the_cheapest_method_that_keeps_the_mesh_good_is_taken() {
     assert!(told["choice"]["tried"][0]["kept"] == false && told["choice"]["tried"][1]["kept"] == true);
     let least = told["choice"]["least"].as_f64().unwrap();
     assert!(told["after"]["worst_eas"]["value"].as_f64().unwrap() >= least);
-    // Nothing is as good as that: the best is taken, and it is said.
+    // No method is as good as that: the best is taken, and a message says so.
     let words = [
         "move",
         "box.vtu",

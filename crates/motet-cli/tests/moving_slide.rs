@@ -49,7 +49,7 @@ fn patches_that_share_an_edge_and_are_moved_apart_are_refused_with_the_place_and
         assert!(stderr(&call).contains(part), "{}", stderr(&call));
     }
     assert_eq!(folder.names(), ["box.vtu"]);
-    // Moved alike they are one; and what stays in place wins.
+    // Patches with equal motions count as one; a patch kept in place takes precedence.
     let alike =
         ["move", "box.vtu", "-o", "out.vtu", "--translate", "zmax=0,0,0.1", "--translate", "xmax=0,0,0.1"];
     folder.motet(alike).assert().code(0);
@@ -118,7 +118,7 @@ fn a_rim_that_leaves_its_plane_is_told() {
     assert_eq!((leaves["patch"].as_str(), leaves["distance"].as_f64()), (Some("xmin"), Some(0.1)));
 }
 
-/// Two boxes side by side, the second of half the edge length: its vertices hang on facets of the first.
+/// Two boxes side by side, the second with half the edge length: its vertices hang on facets of the first.
 fn hanging() -> Mesh {
     let [coarse, fine] =
         [(2, 0.0), (4, 1.0)].map(|(n, x)| box_grid([n; 3], [[x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]]));
@@ -148,8 +148,9 @@ fn hanging_vertices_and_how_far_the_mesh_opens_at_them_are_told() {
     let call = folder.motet(words).assert().code(0);
     assert!(stderr(&call).contains("hanging_vertex") && stderr(&call).contains("opens"), "{}", stderr(&call));
     let told = report(&folder.motet(words.into_iter().chain(["--json"])).assert().code(0));
-    // 25 vertices of the fine side less 9 that both have. The one below the middle of the upper edge stays; the coarse edge that it lies on goes half as
-    // far as its upper end, 0.1 / 4. Along the upper edge the parabola is 0.1 / 16 above its chords.
+    // 25 vertices of the fine side minus the 9 that both have. The one below the middle of the upper edge
+    // stays; the coarse edge that it lies on moves half as far as its upper end, 0.1 / 4. Along the upper
+    // edge the parabola is 0.1 / 16 above its chords.
     assert_eq!(told["hanging"]["vertices"], 16);
     let opening = told["hanging"]["opening"].as_f64().unwrap();
     assert!((opening - 0.1 / 8.0).abs() < 1e-15, "{opening}");

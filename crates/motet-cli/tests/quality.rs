@@ -1,4 +1,5 @@
-//! Every report tells how good all tets are: the same numbers in all verbs, held against values that are sorted here.
+//! Every report contains the quality of all tets: the same numbers for all verbs, compared with values sorted
+//! here.
 
 mod common;
 
@@ -47,7 +48,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// What a call says to programs, after it said the table to people.
+/// The JSON report of a call, after its table for people was checked.
 fn reported(folder: &Folder, words: &[&str]) -> Value {
     let text = stdout(&folder.motet(words).assert().success());
     let rows: Vec<&str> = text.lines().skip_while(|line| !line.contains(HEAD)).skip(1).collect();

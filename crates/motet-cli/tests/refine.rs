@@ -59,7 +59,7 @@ fn what_is_divided_is_remembered_and_taken_back() {
     assert!(one.points.iter().zip(values).all(|(p, value)| (value - linear(*p)).abs() < 1e-13));
     assert!(one.cell_field("refine_root").is_some() && one.point_field("refine_reference").is_some());
 
-    // Level after level back, to the file's points and cells as they were.
+    // Taking back level after level restores the points and cells of the file.
     report(&folder, &["refine", "one.vtu", "-o", "two.vtu", "--coarsen"]);
     let two = read(folder.path("two.vtu")).unwrap();
     assert!(two.cells.len() < one.cells.len() && two.cell_field("refine_root").is_some());
@@ -68,7 +68,7 @@ fn what_is_divided_is_remembered_and_taken_back() {
     assert!(three.points == first.points && three.cells == first.cells);
     assert!(three.cell_field("refine_root").is_none());
     assert_eq!(three.point_data, first.point_data);
-    // Or as many levels at once as are asked for.
+    // So does taking back as many levels at once as requested.
     report(&folder, &["refine", "one.vtu", "-o", "four.vtu", "--coarsen", "--generations", "6"]);
     assert!(folder.read("four.vtu") == folder.read("three.vtu"));
 }
@@ -108,14 +108,14 @@ fn edges_get_short_at_a_device() {
     let history: History = serde_json::from_slice(&folder.read("h.json")).unwrap();
     assert_eq!((history.vertices.len(), history.cells.len()), (fine.points.len(), fine.cells.len()));
     assert_eq!(history.cells.n_old(), lumen().cells.len());
-    // Nothing is left to do; nor is anything done.
+    // Nothing is left to do, and nothing is done.
     let again = report(
         &folder,
         &["refine", "fine.vtu", "-o", "again.vtu", "--near-size", "coil.vtp=0.1,0.5", "--coarsen"],
     );
     let steps = again["steps"].as_array().unwrap();
     assert_eq!(steps[0]["tets"], steps.last().unwrap()["tets"]);
-    // Cut short: what was reached is written.
+    // If stopped early, what was reached is written.
     let words =
         ["refine", "lumen.vtu", "-o", "short.vtu", "--near-size", "coil.vtp=0.05", "--limit-generation", "1"];
     let call = folder.motet(words).assert().code(4);
@@ -179,7 +179,7 @@ fn what_cannot_be_is_refused_before_any_work() {
     refused(&["--ball", "1,2,3"], 2, "--ball");
     refused(&["--region", "nowhere"], 2, "nowhere");
     refused(&["--all", "--history", "lumen.vtu"], 2, "lumen.vtu");
-    // Arrays of a memory that is of another mesh.
+    // Memory arrays that belong to another mesh.
     let mut wrong = lumen();
     let n = wrong.cells.len();
     wrong.set_cell_field(Field::scalars("refine_root", vec![0; n]));

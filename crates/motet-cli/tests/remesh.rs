@@ -36,7 +36,7 @@ fn shaken(shake: f64) -> Mesh {
     mesh
 }
 
-/// A mesh that is repaired whole, and one with a wall that allows no good tet.
+/// A folder with a mesh that can be repaired completely, and one with a wall that allows no good tet.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.mesh("shaken.vtu", &shaken(0.4));
@@ -149,7 +149,7 @@ fn what_cannot_be_repaired_is_told_with_place_and_reason() {
         assert!(!left["reason"].is_null() && left["type"].is_string());
         assert!(left["why"].as_str().is_some_and(|why| why.len() > 10));
     }
-    // The first ten and a count; all with -v.
+    // The first ten and a count; all of them with -v.
     let call = folder.motet(words).assert().code(4);
     let lines = |told: &str| told.lines().filter(|line| line.starts_with("  cell ")).count();
     assert_eq!(lines(&stdout(&call)), 10);
@@ -176,7 +176,7 @@ fn what_is_not_bad_stays_to_the_bit_and_fields_keep_what_they_mean() {
         n_kept += u64::from(new.cells.kind(CellId(id)) == CellKind::TETRA);
     }
     assert_eq!(told["kept"], n_kept);
-    // What the history carries is what was written.
+    // The arrays carried by the history are those written.
     for field in &old.point_data {
         assert_eq!(Some(&history.transfer_points(field).unwrap()), new.point_field(&field.name));
     }
@@ -210,7 +210,7 @@ fn integral(mesh: &Mesh, name: &str) -> f64 {
 #[test]
 fn the_report_tells_how_well_arrays_were_carried() {
     let folder = Folder::new();
-    // Nothing inverted: tets on top of each other hold too much.
+    // Without inverted tets, since overlapping tets contain too much.
     let mut mesh = shaken(0.3);
     let mut chance = Chance(0x1234_5678_9abc_def1);
     mesh.set_cell_field(Field::scalars(
@@ -224,7 +224,7 @@ fn the_report_tells_how_well_arrays_were_carried() {
     let new = read(folder.path("out.vtu")).unwrap();
     let fields = told["fields"].as_array().unwrap();
     let heads: Vec<_> = fields.iter().map(|f| [&f["name"], &f["on"], &f["rule"]]).collect();
-    // Whole numbers have no integrals; the quality was not carried.
+    // Integer arrays have no integrals; the quality was not carried.
     assert_eq!(
         heads,
         [
@@ -242,7 +242,7 @@ fn the_report_tells_how_well_arrays_were_carried() {
             ["range_before", "range_after"].map(|range| [0, 1].map(|i| field[range][i].as_f64()));
         assert!(before[0] <= after[0] && after[1] <= before[1], "{field}");
     }
-    // The linear field over the unit cube, and the array as it was written.
+    // The integral of the linear field over the unit cube, and that of the array as written.
     let integral_of = |i: usize, when: &str| fields[i]["regions"][0][when][0].as_f64().unwrap();
     assert!(
         (integral_of(0, "before") - 0.75).abs() < 1e-12 && (integral_of(0, "after") - 0.75).abs() < 1e-12
@@ -327,7 +327,7 @@ fn other_formats_in_and_out() {
         folder.motet(["remesh", "shaken.vtu", "-o", name]).assert().code(0);
         let told = report(&folder.motet(["info", name, "--json"]).assert().code(0));
         assert_eq!(told["quality"]["eas"]["bad"], 0, "{name}");
-        // And in again: nothing is bad any more.
+        // Repaired again, nothing is bad any more.
         let again = folder.motet(["remesh", name, "-o", "again.vtu", "--json"]).assert().code(0);
         assert_eq!(report(&again)["untouched"], 1.0, "{name}");
     }
@@ -338,7 +338,7 @@ fn a_surface_that_adapts_lets_more_be_repaired() {
     let folder = Folder::new();
     let mut mesh = shaken(0.0);
     let mut chance = Chance(0x2545_f491_4f6c_dd1d);
-    // Within the sides, too.
+    // Within the sides as well.
     for point in &mut mesh.points {
         let n_free = point.iter().filter(|&&x| x > 0.0 && x < 1.0).count();
         *point = point.map(|x| {
@@ -435,7 +435,7 @@ fn sizes_that_are_none_are_refused() {
 #[test]
 fn what_is_named_is_held() {
     let folder = folder();
-    // All tets are of one region: where it is held, nothing can be done.
+    // All tets belong to one region: where it is held, nothing can be done.
     let words = ["remesh", "shaken.vtu", "-o", "held.vtu", "--hold", "box", "--surface", "adapt", "--json"];
     let told = report(&folder.motet(words).assert().success());
     assert!(told["held"].as_u64().unwrap() > 0 && told["after"]["bad"] == 0, "{told}");

@@ -1,4 +1,4 @@
-//! `motet run` and `motet cap`: what they write, how a killed run goes on, what they refuse.
+//! `motet run` and `motet cap`: what they write, how a killed run resumes, what they refuse.
 
 mod common;
 
@@ -16,7 +16,7 @@ use motet::mesh::{CellKind, Cells, Field, Surface};
 use motet::{Mesh, mesh};
 use serde_json::Value;
 
-/// A sphere that goes far and turns, twice there and back.
+/// A sphere that moves far and turns, twice there and back.
 const JOB: &str = r#"
 mesh = "box.vtu"
 output = "out/moved.pvd"
@@ -56,11 +56,11 @@ fn folder() -> Folder {
     folder
 }
 
-/// What is in a folder, but for what the clock said.
+/// The content of a folder, except for timings.
 fn bytes(folder: &Folder, name: &str) -> BTreeMap<String, Vec<u8>> {
     let files =
         fs::read_dir(folder.path(name)).expect("the folder is there").map(|e| e.expect("an entry").path());
-    // A run that is killed while it writes leaves what it was writing beside its place.
+    // A run that is killed while writing leaves the draft beside its destination.
     let is_meant = |path: &std::path::PathBuf| {
         let name = path.to_string_lossy();
         !name.ends_with(".times.jsonl") && !name.contains(".motet-")
@@ -163,7 +163,7 @@ fn a_run_ends_where_it_is_told_to_and_goes_on_from_there() {
     parted.write("job.toml", longer.as_bytes());
     parted.motet(["run", "job.toml", "--resume", "-q", "--until", "13"]).assert().code(0);
     assert_eq!(read_series(parted.path("out/moved.pvd")).unwrap().len(), 14);
-    // Another job does not go on from it.
+    // Another job does not resume from it.
     let before = bytes(&parted, "out");
     for (from, to, key) in [
         ("fixed = [\"box\"]", "inside = []", "motion.fixed was [\"box\"] and is []"),
@@ -217,7 +217,7 @@ fn what_is_missing_of_a_run_to_go_on_with_is_told() {
 fn one_run_at_a_time_writes_to_an_output_and_leftovers_of_killed_ones_go() {
     let folder = folder();
     fs::create_dir(folder.path("out")).unwrap();
-    // Of a run that was killed, of another output, and of someone else.
+    // Left by a killed run, by a run with another output, and by someone else.
     let left = [".motet-moved_0002.vtu-abc123", ".motet-moved.jsonl-abc123", ".motet-moved.pvd.lock"];
     let others = [".motet-moved_b.pvd-abc123", ".motet-other_0002.vtu-abc123", ".motet-notes"];
     left.iter().chain(&others).for_each(|name| folder.write(&format!("out/{name}"), b"1"));
@@ -317,7 +317,7 @@ fn what_is_wrong_with_a_job_is_told_with_its_line() {
     folder.motet(["run"]).assert().code(2);
 }
 
-/// The wall of an aneurysm, without its ends, as it pulses.
+/// The wall of an aneurysm without its ends, in phase `k` of its pulse.
 fn pulsing(k: usize) -> Mesh {
     let whole = Aneurysm::default().mesh().unwrap();
     let surface = Surface::of(&whole);
@@ -354,7 +354,7 @@ fn measured_walls_are_capped_meshed_and_followed_by_a_mesh_of_its_own_triangles(
     let repaired =
         ["remesh", "lumen.vtu", "-o", "lumen2.vtu", "--surface", "adapt", "--distance", "0.02", "-q"];
     made(folder.motet(repaired).assert());
-    // Without a number of steps there is one for each measured wall.
+    // Without a number of steps, there is one for each measured wall.
     for (mesh, matching, steps) in [("lumen.vtu", "position", "steps = 12\n"), ("lumen2.vtu", "nearest", "")]
     {
         let job = format!(

@@ -1,4 +1,4 @@
-//! Facets, boundary and neighbours: tables against reference cells, results against brute force.
+//! Facets, boundary and neighbours: tables are compared with reference cells, results with brute force.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! Bodies that are flat but for rounding are filled with every triangle kept and every tet positive.
+//! Bodies whose faces are flat up to rounding are filled with every triangle kept and every tet positive.
 
 #[path = "common/cad.rs"]
 mod cad_bodies;

@@ -1,4 +1,4 @@
-//! Defects: none in the built-in shapes, each found by name and place where it was put in.
+//! Defects: none in the built-in shapes; each inserted one is found by name and place.
 
 use motet::Mesh;
 use motet::base::{CellId, Point, VertexId};
@@ -117,7 +117,7 @@ fn a_tet_folded_onto_its_neighbour() {
     let defect = folded.iter().find(|d| d.kind == DefectKind::FoldedFacet).expect("it is found");
     assert_eq!((defect.count, &defect.examples[0].cells[..]), (1, &[CellId(0), CellId(1)][..]));
     assert!(!is_conforming(&folded));
-    // Side by side, numbered either way, nothing is folded; nor is a tet that was turned inside out.
+    // Side by side, numbered either way, nothing is folded; nor is an inverted tet.
     for other in [[0, 2, 1, 5], [0, 1, 2, 5], [0, 2, 1, 4]] {
         assert!(of(&[0, 1, 2, 3], &other).iter().all(|d| d.kind != DefectKind::FoldedFacet), "{other:?}");
     }
@@ -160,7 +160,7 @@ fn cells_that_do_not_fit_together() {
 
 #[test]
 fn a_crack_whose_rim_is_shared_is_still_a_crack() {
-    // Two tets on one triangle of which they share two corners and have a third each.
+    // Two tets whose facets share two corners, and have a third corner each at the same place.
     let points = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.], [0., 1., 0.], [0.2, 0.2, 1.], [0.2, 0.2, -1.]];
     let tets = mesh(&points, &[(CellKind::TETRA, &[0, 1, 2, 4]), (CellKind::TETRA, &[1, 0, 3, 5])]);
     assert!(found(&tets).contains(&(DefectKind::UnmergedFacet, 1)));
@@ -182,7 +182,7 @@ fn a_wall_divided_on_one_side_only() {
     );
     assert_eq!(defects[0].examples[1].at, Some([0.5, 0.5, 1.0]));
     assert!(!is_conforming(&defects));
-    // The same far from the origin, in another unit.
+    // The same mesh far from the origin, and in another unit.
     for (scale, shift) in [(1e-3, 0.0), (1e3, 0.0), (1.0, 1000.0)] {
         let mut moved = cubes.clone();
         moved.points.iter_mut().for_each(|p| *p = p.map(|x| x * scale + shift));
@@ -288,7 +288,7 @@ fn hopeless_meshes_are_told_about_in_bounded_time() {
     assert!(duplicates.count >= 19_999 && duplicates.examples.len() == 5);
 }
 
-/// Real meshes and what others measured on them (angles in degrees): file, tets, inverted,
+/// Real meshes with the values that other programs measured (angles in degrees): file, tets, inverted,
 /// smallest and largest dihedral angle, smallest and mean mean-ratio.
 type Measured = (&'static str, usize, usize, [f64; 2], [f64; 2]);
 const MEASURED: &[Measured] = &[
@@ -302,7 +302,7 @@ const MEASURED: &[Measured] = &[
     ("bad_tets/polyfem_screw.msh", 6059, 0, [0.0127, 180.0], [0.00143, 0.5]),
 ];
 
-/// Whether `x` is `expected` to the half of its third digit.
+/// Whether `x` is `expected` to half of its third digit.
 fn to_three_digits(x: f64, expected: f64) -> bool {
     (x - expected).abs() <= expected.abs() * 5.1e-3
 }

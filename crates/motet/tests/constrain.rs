@@ -1,4 +1,5 @@
-//! Constrained Delaunay tets, held against what they promise: every triangle is there, all fits, volumes, empty spheres.
+//! Constrained Delaunay tets, compared with what they promise: every triangle is there, tets are conforming,
+//! volumes, empty spheres.
 
 mod common;
 
@@ -21,15 +22,16 @@ fn check(name: &str, points: &[Point], triangles: &[Triangle], rule: EdgePoints)
     filled
 }
 
-/// A kind of hard surfaces of which some take too long yet: many sharp notches side by side, with long thin triangles across them.
+/// A kind of hard surfaces of which some still take too long: many sharp notches side by side, with long thin
+/// triangles across them.
 const OPEN_KIND: &str = "wedges";
 
-/// The first so many hard surfaces that are no open kind.
+/// The first `n` hard surfaces that are not of the open kind.
 fn cases(n: usize) -> impl Iterator<Item = Case> {
     (0..).map(random_case).filter(|case| !case.name.contains(OPEN_KIND)).take(n)
 }
 
-/// `MOTET_CASES=1000` checks more of them.
+/// The number of cases; `MOTET_CASES=1000` checks more of them.
 fn n_cases() -> usize {
     std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(60)
 }
@@ -51,7 +53,7 @@ fn hard_surfaces_are_filled_and_kept() {
 
 #[test]
 fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
-    // Stretched along one axis, edges would need too many points.
+    // If stretched along one axis, edges would need too many points.
     let is_small = |case: &Case| case.triangles.len() < 120 && !case.name.contains("axis");
     for case in cases(n_cases()).filter(is_small) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::Stay);
@@ -60,8 +62,9 @@ fn where_points_stay_on_edges_spheres_hold_nothing_that_sees_them() {
 
 #[test]
 fn bodies_that_were_hard_once_are_filled() {
-    // An edge or a triangle in the first three could not be made in its turn; a hollow in 413 had corners that none of its old tets had; facets round one
-    // edge of 658 cut another within the last digit of an `f64` share of it; 1082 lies far from the origin for its size.
+    // In the first three, an edge or a triangle could not be recovered in its turn; a hollow in 413 had
+    // corners that none of its old tets had; facets around one edge of 658 intersect another within the last
+    // digit of an `f64` share of it; 1082 lies far from the origin for its size.
     for case in [129, 244, 297, 413, 658, 1082].map(random_case) {
         check(&case.name, &case.points, &case.triangles, EdgePoints::MoveInside);
     }

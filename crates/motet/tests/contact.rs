@@ -1,4 +1,4 @@
-//! Contact: gaps against a look at everything, in metres and in millimetres.
+//! Contact: gaps compared with brute force, in metres and in millimetres.
 
 mod common;
 mod surfaces;
@@ -18,7 +18,7 @@ fn contact(shapes: &[Shape], options: Options) -> Contact {
     Contact::new(points, bodies, options, &Threads::single()).expect("the shapes are sound")
 }
 
-/// Holds all gaps of two shapes against the oracle, and against a second measuring that starts from the first.
+/// Compares all gaps of two shapes with the oracle, and with a second measurement that starts from the first.
 fn holds(shapes: &[Shape; 2], what: &str) {
     for unit in UNITS {
         let shapes = shapes.clone().map(|shape| shape.scaled(unit));
@@ -83,7 +83,7 @@ fn a_thousand_random_pairs_have_the_gaps_of_a_look_at_everything() {
     }
 }
 
-/// A shift that depends on the place alone.
+/// A shift that depends only on the place.
 fn numbers_wave(p: Point, x: f64) -> f64 {
     (3.0 * p[0] + 5.0 * p[1] + 7.0 * p[2] + 11.0 * x).sin()
 }
@@ -96,14 +96,14 @@ fn a_thousand_degenerate_pairs_have_the_gaps_of_a_look_at_everything() {
         let step = [(); 3].map(|()| 0.5 * grid(&mut numbers, 3));
         let flat = |n: u32| sheet(n, |_, _| 0.0);
         let pair = match case % 8 {
-            // Cubes on a grid: they touch in faces, edges and vertices, lie in each other, are the same.
+            // Cubes on a grid: they touch in faces, edges and vertices, are nested, or coincide.
             0 => [cube(), cube().shifted(step)],
             1 => [cube(), cube().scaled(0.5).shifted(step)],
             // Sheets in one plane, apart or on top of each other.
             2 => [flat(3), flat(2).shifted([step[0], step[1], 0.0])],
-            // A sheet that stands on another, and one that lies beside it.
+            // A sheet that stands on another, or lies beside it.
             3 => [flat(2), flat(3).map(|p| [p[2] + step[0], p[0], p[1] + step[2]])],
-            // Nested: round and flat ones with the same middle.
+            // Nested: round and flat ones with the same centre.
             4 => [torus(4, 6, [1.0, 0.5]), torus(4, 6, [1.0, 0.25 + 0.125 * grid(&mut numbers, 1)])],
             // Far apart.
             5 => [cube(), cube().shifted(step.map(|x| 1e6 * x + 3e6))],
@@ -209,7 +209,7 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
         let gaps = room.measure(&Threads::single());
         assert!(gaps.bodies[0].gap.iter().all(|&gap| gap == 0.25));
         assert!(!gaps.pairs[0].is_penetrated());
-        // Shifted, one half is outside the room.
+        // After a shift, one half is outside the room.
         let mut points = room.points().to_vec();
         points[..8].iter_mut().for_each(|p| p[0] += 0.5);
         room.refit(&points, &Threads::single()).unwrap();
@@ -223,7 +223,8 @@ fn a_cube_in_a_cube_is_negative_and_in_a_room_positive() {
 
 #[test]
 fn a_sheet_that_folds_meets_itself_and_one_that_is_flat_does_not() {
-    // Rolled up along x to a spiral whose turns are 0.1 apart; lengths along the sheet are kept but for the chords.
+    // Rolled up along x to a spiral whose turns are 0.1 apart; lengths along the sheet are kept, apart from
+    // chords.
     let spiral = |x: f64, y: f64| {
         let radius = |u: f64| 0.3 + 0.1 * u / std::f64::consts::TAU;
         let u = 12.0 * x;
@@ -233,7 +234,7 @@ fn a_sheet_that_folds_meets_itself_and_one_that_is_flat_does_not() {
     let options = Options { own: true, warn: Some(0.12), ..Options::default() };
     let gaps = contact(std::slice::from_ref(&rolled), options).measure(&Threads::single());
     let body = &gaps.bodies[0];
-    // Each point with a turn beside it sees that turn.
+    // Each point with a turn beside it is measured to that turn.
     let inner = (0..body.gap.len()).filter(|&i| 12.0 * f64::from(i as u32 / 61) / 60.0 < 12.0 - 7.0);
     for i in inner {
         assert!((0.085..0.101).contains(&body.gap[i]), "{} at {i}", body.gap[i]);
@@ -384,7 +385,7 @@ fn what_crosses_counts_whichever_way_it_faces() {
     let all = contact(&[plate(), turned.clone()], Options::default()).measure(&Threads::single());
     assert_eq!(gaps.pairs[0].crossings, all.pairs[0].crossings);
     assert!(all.pairs[0].crossings.len() > 2);
-    // The same as one body, and a bow-tie whose triangles share the vertex that they cross at.
+    // Both as one body, and a bow-tie whose triangles share the vertex where they cross.
     let mut both = plate();
     both.triangles.extend(turned.triangles.iter().map(|t| t.map(|v| v + 8)));
     both.points.extend(turned.points);
@@ -404,7 +405,7 @@ fn a_surface_beside_a_far_larger_one_loses_nothing() {
         for case in 0..40 {
             let small = soup(&mut numbers, 9);
             let mut large = soup(&mut numbers, 9).map(|p| p.map(|x| size * (x - 0.5)));
-            // Some triangles with one corner near by.
+            // Some triangles with one corner nearby.
             for v in [0, 3, 12] {
                 large.points[v] = [(); 3].map(|()| 3.0 * numbers.unit());
             }

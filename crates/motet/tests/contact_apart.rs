@@ -1,4 +1,5 @@
-//! Triangles that are to stay apart: free as long as they are, stopped where they are as near as they may come, and near at first only by a part.
+//! Triangles that must stay apart: free as long as they are, stopped at the permitted distance, and, if
+//! nearer at first, moved only by a part.
 
 mod common;
 
@@ -27,7 +28,7 @@ fn random(numbers: &mut Numbers) -> Point {
     [(); 3].map(|()| 2.0 * numbers.unit() - 1.0)
 }
 
-/// Two triangles beside each other that go towards each other and turn.
+/// Two triangles beside each other that approach each other and turn.
 fn case(numbers: &mut Numbers, gap: f64) -> [[Triangle; 2]; 2] {
     let x = [0.0, 2.0 + gap].map(|at| [(); 3].map(|()| add(random(numbers), [at, 0.0, 0.0])));
     let v = [0.5, -0.5].map(|fast| [(); 3].map(|()| add(scale(random(numbers), 0.3), [fast, 0.0, 0.0])));
@@ -44,7 +45,7 @@ fn triangles_stop_where_they_are_as_near_as_they_may_come() {
             continue;
         }
         let found = time(x, v, apart);
-        // What rounding takes: positions are about 10.
+        // The effect of rounding: positions are about 10.
         let rounding = 1e-13;
         let until = found.min(HORIZON);
         for s in 0..=40 {

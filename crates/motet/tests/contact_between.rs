@@ -1,4 +1,4 @@
-//! Gaps by Delaunay tets: classes by hand, bounds and exactness against brute force, degenerate bodies.
+//! Gaps by Delaunay tets: classes by hand, bounds and exactness compared with brute force, degenerate bodies.
 
 mod common;
 
@@ -28,7 +28,7 @@ fn kinds(found: &Between) -> Vec<GapKind> {
     found.tets.iter().map(|tet| tet.kind).collect()
 }
 
-/// An octahedron whose faces are split `n` times, moved out to a sphere.
+/// An octahedron whose faces are split `n` times, projected onto a sphere.
 fn sphere(n: usize, centre: Point, radius: f64) -> (Vec<Point>, Triangles) {
     let mut points: Vec<Point> = Vec::new();
     for axis in 0..3 {
@@ -151,14 +151,14 @@ fn one_tet_is_what_its_vertices_say() {
 
 #[test]
 fn chords_and_facets_that_are_no_triangles_do_not_count() {
-    // An apex over the middle of an edge that the surface does not have.
+    // An apex over the middle of an edge that is not part of the surface.
     let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 2.0, 0.0], [1.0, 0.1, 0.5]];
     let with = between(&points, &[ids(&[[0, 1, 2]]), ids(&[[3; 3]])]);
     assert_eq!(with.gap[3], 0.5);
     let chord = between(&points, &[ids(&[[0, 2, 2], [1, 2, 2]]), ids(&[[3; 3]])]);
     let to_edges = segment_segment::closest([points[3]; 2], [points[0], points[2]]).distance();
     assert!((chord.gap[3] - to_edges).abs() < 1e-15 && chord.gap[3] > 0.5);
-    // The paper's way takes it for a facet all the same.
+    // The paper's method takes it for a facet nevertheless.
     assert_eq!(paper::within(&chord.tets[0], &points), Some(0.5));
 }
 
@@ -230,7 +230,7 @@ fn sides_keep_gaps_on_the_side_of_the_fluid() {
         assert!(found.gap.iter().all(|gap| *gap == f64::INFINITY), "{wrong:?}");
         assert_eq!(found.least, None);
     }
-    // Turned round, the sides change.
+    // Turned inside out, the sides change.
     let turned: Vec<Triangles> =
         bodies.iter().map(|b| b.iter().map(|&[x, y, z]| [x, z, y]).collect()).collect();
     assert_eq!(sided(&points, &turned, &[Side::Inside, Side::Outside]).gap, both.gap);
@@ -252,7 +252,7 @@ fn nothing_is_measured_through_a_wall() {
     points.extend([[0.1, 0.2, 0.5], [0.2, 0.1, -0.5]]);
     let bodies = [ids(&plate), ids(&[[10; 3]]), ids(&[[11; 3]])];
     let found = sided(&points, &bodies, &[Side::Outside]);
-    // Each point is measured to the face that it sees, and each face to the point before it.
+    // Each point is measured to the face that is visible from it, and each face to the point before it.
     assert!((0.5..0.6).contains(&found.gap[10]) && (0.4..0.5).contains(&found.gap[11]));
     assert!(found.closest[10].0 < 5 && (5..10).contains(&found.closest[11].0));
     assert_eq!((found.closest[4], found.closest[9]), (VertexId(10), VertexId(11)));
@@ -268,11 +268,11 @@ fn bodies_that_share_a_place_touch() {
     assert_eq!((found.closest[0].index(), found.closest[second].index()), (second, 0));
     assert_eq!(found.least.unwrap().distance, 0.0);
     assert!(kinds(&found).contains(&GapKind::Touching));
-    // The same with one vertex in both.
+    // The same bodies sharing one vertex.
     bodies[1].as_flattened_mut().iter_mut().filter(|v| v.index() == second).for_each(|v| *v = VertexId(0));
     let shared = between(&points, &bodies);
     assert_eq!((shared.gap[0], shared.closest[0], shared.gap[second]), (0.0, VertexId(0), f64::INFINITY));
-    // Once more, each triangle with points of its own: as if they were one.
+    // The same bodies, each triangle with its own points: the result is as if they were one.
     let (soup, own): (Vec<Point>, Vec<Triangles>) = {
         let mut soup = Vec::new();
         let own = bodies.iter().map(|body| {
@@ -380,7 +380,7 @@ fn what_cannot_be_measured_is_refused_with_the_place() {
     assert!(refused(&[ids(&[[0, 1, 1]]), vec![]]).contains("body 1 has no triangles"));
     assert!(refused(&[ids(&[[0, 1, 1], [0, 1, 3]])]).contains("body 0, triangle 1: names point 3"));
     assert!(refused(&[ids(&[[0, 1, 2]])]).contains("body 0, point 2"));
-    // A point that no body uses may be anything.
+    // A point that no body uses may have any coordinates.
     assert!(
         Between::new(
             &points,

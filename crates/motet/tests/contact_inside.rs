@@ -1,4 +1,5 @@
-//! Crossing triangles and what is inside: against looking at all pairs, against solid angles, and on grids where rays hit vertices and edges.
+//! Crossing triangles, and what is inside: compared with all pairs, with solid angles, and on grids where
+//! rays hit vertices and edges.
 
 mod common;
 
@@ -15,7 +16,7 @@ use proptest::prelude::*;
 
 type Triangles = Vec<[VertexId; 3]>;
 
-/// The boundary of a shape, facing outward, each point moved; appended to the points there are.
+/// Appends the boundary of a shape, facing outward, with each point moved, to the existing points.
 fn append(mesh: &motet::Mesh, points: &mut Vec<Point>, place: impl Fn(Point) -> Point) -> Triangles {
     let surface = Surface::boundary_of(mesh);
     let start = points.len() as u32;
@@ -45,7 +46,7 @@ fn torus(r: f64, n: usize, m: usize, points: &mut Vec<Point>) -> Triangles {
     (0..n * m).flat_map(square).collect()
 }
 
-/// `inside` of lone points.
+/// `inside` for single points.
 fn lone(points: &mut Vec<Point>, asked: &[Point], b: &[[VertexId; 3]]) -> Vec<bool> {
     let start = points.len();
     points.extend(asked);
@@ -63,7 +64,8 @@ fn soup(n_points: u32, n: usize) -> impl Strategy<Value = Triangles> {
     prop::collection::vec(prop::array::uniform3((0..n_points).prop_map(VertexId)), 1..n)
 }
 
-/// Four times the points of the grid within both triangles, at quarters of the weights: what a pair has in common, as far as these tell.
+/// Four times the grid points within both triangles, at quarters of the weights: a sample of what a pair has
+/// in common.
 fn common_places(a: [Point; 3], b: [Point; 3]) -> Vec<Point> {
     let places = |t: [Point; 3]| -> Vec<Point> {
         let weights = (0..=4).flat_map(|i| (0..=4 - i).map(move |j| [i, j, 4 - i - j].map(f64::from)));
@@ -79,7 +81,7 @@ proptest! {
 
     #[test]
     fn crossings_are_all_pairs_that_meet(points in small_grid(12), a in soup(6, 8), b in soup(6, 8)) {
-        // Nothing is shared: the second surface has points of its own.
+        // The surfaces share nothing: the second has its own points.
         let b: Triangles = b.iter().map(|t| t.map(|v| VertexId(v.0 + 6))).collect();
         let mut expected = Vec::new();
         for (i, &t) in a.iter().enumerate() {
@@ -122,7 +124,7 @@ proptest! {
                 prop_assert!(is_found || !more, "{a:?} {b:?}");
                 prop_assert!(!is_found || triangle_triangle::meet(a, b));
                 if is_found && shared.len() == 1 {
-                    // Drawn a little towards the shared vertex, neither loses the other.
+                    // Moved a little towards the shared vertex, each still has two other corners.
                     let far = |t: [Point; 3]| t.iter().filter(|p| **p != shared[0]).count();
                     prop_assert!(far(a) == 2 && far(b) == 2);
                 }
@@ -130,7 +132,7 @@ proptest! {
         }
     }
 
-    /// Rays through vertices and along edges and faces of boxes of whole numbers.
+    /// Rays through vertices and along edges and faces of boxes with integer coordinates.
     #[test]
     fn boxes_on_a_grid_hold_what_their_sides_say(
         low in prop::array::uniform3(-2i8..=1), size in prop::array::uniform3(1u8..=3), n in prop::array::uniform3(1usize..=3),
@@ -149,7 +151,8 @@ proptest! {
         prop_assert_eq!(lone(&mut points, &asked, &b), expected);
     }
 
-    /// Closed soups of tets, which overlap, degenerate and coincide: grids of points against the sum of the tets that hold them.
+    /// Closed soups of tets, which overlap, degenerate and coincide: winding numbers at grid points equal the
+    /// sum over the tets that contain them.
     #[test]
     fn soups_of_tets_wind_as_their_tets_do(
         points in small_grid(8),
@@ -181,7 +184,7 @@ fn random_points_are_inside_where_solid_angles_say_so() {
     let outer = append(&ball(4, 2), &mut points, |p| p);
     let mut inner = append(&ball(3, 2), &mut points, |p| scale(p, 0.5));
     inner.iter_mut().for_each(|t| t.swap(1, 2));
-    // A shell; a torus beside and through it; a tube through all.
+    // A shell; a torus beside and through it; a tube through everything.
     let mut all = [outer, inner].concat();
     all.extend(torus(0.3, 40, 20, &mut points));
     all.extend(append(&tube(&TubeOptions::default()), &mut points, |p| add(scale(p, 0.3), [0.2, 0.1, -2.0])));
@@ -225,7 +228,8 @@ fn crossing_surfaces_say_the_same_with_and_without_their_parts() {
     }
 }
 
-/// A tet that hangs from a vertex of a box, half inside: its other vertices are on both sides of what they share.
+/// A tet attached to a vertex of a box, half inside: its other vertices are on both sides of the shared
+/// vertex.
 #[test]
 fn surfaces_that_share_vertices_are_told_apart_at_them() {
     let mut points = Vec::new();

@@ -1,4 +1,5 @@
-//! Contact of a surface with itself: what sees what, against a look at everything by the rule written anew.
+//! Contact of a surface with itself: which places face each other, compared with brute force by an
+//! independent implementation of the rule.
 
 mod common;
 mod surfaces;
@@ -72,7 +73,7 @@ fn knife_edges_that_point_at_each_other_are_seen() {
 
 #[test]
 fn nothing_is_seen_through_the_thickness_of_a_plate() {
-    // A grid on both sides, 0.01 apart; the sides are closed by the rim.
+    // A grid on both sides, 0.01 apart; the gap between them is closed by the rim.
     let n = 10;
     let top = sheet(n, |_, _| 0.01);
     let bottom = sheet(n, |_, _| 0.0).turned_inside_out();
@@ -95,7 +96,7 @@ fn nothing_is_seen_through_the_thickness_of_a_plate() {
     assert!(gaps.pairs[0].nearest.is_none());
 }
 
-/// The rule by its words. Lengths of ways along edges come from a table of all of them.
+/// The literal rule. Lengths of paths along edges come from a table of all of them.
 struct Oracle<'a> {
     shape: &'a Shape,
     normals: Vec<[f64; 3]>,
@@ -118,7 +119,7 @@ impl<'a> Oracle<'a> {
             }
         }
         (0..n).for_each(|v| ways[v][v] = 0.0);
-        // Floyd and Warshall.
+        // The algorithm of Floyd and Warshall.
         for k in 0..n {
             let through = ways[k].clone();
             for row in &mut ways {
@@ -129,7 +130,8 @@ impl<'a> Oracle<'a> {
         Self { shape, normals: (0..shape.triangles.len()).map(normal).collect(), ways }
     }
 
-    /// Whether a direction leaves a surface through the triangle by more than this cosine, or by the sum of the triangles that hold all of some vertices.
+    /// Whether a direction leaves a surface through the triangle by more than this cosine, or by the sum of
+    /// the triangles that contain all of some vertices.
     fn leaves(&self, holds: &[u32], out: [f64; 3]) -> bool {
         let is_around = |t: &usize| holds.iter().all(|v| self.shape.triangles[*t].contains(v));
         let around = (0..self.normals.len()).filter(is_around);
@@ -137,14 +139,15 @@ impl<'a> Oracle<'a> {
         norm(sum) > 0.0 && dot(scale(sum, 1.0 / norm(sum)), out) > 0.25
     }
 
-    /// Whether a direction leaves through any of the triangles that hold all of some vertices, however askew.
+    /// Whether a direction leaves through any of the triangles that contain all of some vertices, however
+    /// obliquely.
     fn grazes(&self, holds: &[u32], out: [f64; 3]) -> bool {
         let around =
             (0..self.normals.len()).filter(|t| holds.iter().all(|v| self.shape.triangles[*t].contains(v)));
         around.map(|t| dot(self.normals[t], out)).any(|cosine| cosine > 0.02)
     }
 
-    /// The gap of a vertex, within reach; and how near anything came to being judged the other way.
+    /// The gap of a vertex, within reach; and how close any decision was to the opposite one.
     fn gap(&self, v: usize, within: f64, fold: f64) -> f64 {
         let p = self.shape.points[v];
         let mut least = f64::INFINITY;
@@ -185,7 +188,7 @@ fn folded_surfaces_have_the_gaps_of_a_look_at_everything() {
     let mut n_found = 0;
     for seed in 0..12 {
         let wave = |x: f64, y: f64| (f64::from(seed) + 5.0 * x + 3.0 * y).sin();
-        // A ring bent up and down, so that parts of it come near each other; every second time two of them.
+        // A ring bent up and down, so that parts of it approach each other; in every second case two of them.
         let bent = torus(7, 40, [1.0, 0.3]).map(|p| {
             let lift = 0.5 * wave(p[0], p[1]) + 0.2 * wave(3.0 * p[1], p[0]);
             [p[0] * (0.55 + 0.4 * p[1] * p[1]), p[1] + 0.1 * wave(p[2], p[0]), p[2] + lift]
@@ -194,7 +197,7 @@ fn folded_surfaces_have_the_gaps_of_a_look_at_everything() {
             0 => bent,
             _ => joined(&[bent.clone(), bent.shifted([0.1, 0.3, 0.75])]),
         };
-        // The oracle takes the normals as they are: outward.
+        // The oracle takes normals as given: outward.
         let volume = |shape: &Shape| -> f64 {
             let corners = (0..shape.triangles.len()).map(|t| shape.corners(t));
             corners.map(|[a, b, c]| dot(a, cross(b, c))).sum()

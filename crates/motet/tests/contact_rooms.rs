@@ -1,4 +1,4 @@
-//! Contact: which surfaces are closed however their vertices are numbered, and which are rooms of others.
+//! Contact: which surfaces are closed, however their vertices are numbered, and which are rooms of others.
 
 mod common;
 mod surfaces;
@@ -8,14 +8,14 @@ use motet::base::{Point, Threads};
 use motet::contact::{Body, Contact, Gaps, Options, Room};
 use surfaces::{Shape, bodies, coil, cube, sheet, torus};
 
-/// Every triangle with corners of its own, as STL files have them.
+/// Every triangle with its own corners, as in STL files.
 fn as_soup(shape: &Shape) -> Shape {
     let points = (0..shape.triangles.len()).flat_map(|t| shape.corners(t)).collect();
     let triangles = (0..shape.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     Shape { points, triangles }
 }
 
-/// Vertices in another order.
+/// The shape with its vertices in another order.
 fn renumbered(shape: &Shape, numbers: &mut Numbers) -> Shape {
     let mut order: Vec<usize> = (0..shape.points.len()).collect();
     (1..order.len()).for_each(|i| order.swap(i, numbers.below(i + 1)));
@@ -27,7 +27,8 @@ fn renumbered(shape: &Shape, numbers: &mut Numbers) -> Shape {
     }
 }
 
-/// Triangles whose corners all satisfy a condition have vertices of their own, as caps and parts in OBJ and CAD files.
+/// The shape with separate vertices for triangles whose corners all satisfy a condition, as for caps and
+/// parts in OBJ and CAD files.
 fn seamed(shape: &Shape, is_part: impl Fn(Point) -> bool) -> Shape {
     let n = shape.points.len() as u32;
     let mut seamed = shape.clone();
@@ -55,7 +56,7 @@ fn measured(shapes: &[Shape], rooms: &[Room], options: Options) -> (Contact, Gap
     (contact, gaps)
 }
 
-/// Gap, warning and nearest triangle at every corner of every triangle; the bits.
+/// Gap bits and warning at every corner of every triangle.
 fn at_corners(contact: &Contact, gaps: &Gaps) -> Vec<(u64, bool)> {
     let mut all = Vec::new();
     for (id, body) in (0..).zip(&gaps.bodies) {
@@ -113,14 +114,15 @@ fn what_leaves_a_room_with_a_lid_of_its_own_is_as_negative_as_it_is_far_out() {
         let is_out = contact.points()[v.index()][0] > 1.0;
         assert_eq!(*gap, if is_out { -0.25 } else { 0.25 });
     }
-    // The vertices of the lid are reported as they are given: there twice, and each with its gap.
+    // The vertices of the lid are reported as given: twice, and each with its gap.
     assert_eq!(gaps.bodies[1].vertices.len(), 12);
     assert_eq!(gaps.pairs[0].n_wrong, [4, 0]);
 }
 
 #[test]
 fn a_slit_is_no_seam() {
-    // Two sheets at one place, closed along their rim by shared vertices: repeated vertices inside it are those of the other side.
+    // Two sheets at the same place, closed along their rim by shared vertices: repeated vertices inside it
+    // belong to the other side.
     let flat = sheet(4, |_, _| 0.0);
     let n = flat.points.len() as u32;
     let is_rim = |p: Point| p[..2].iter().any(|&x| x == 0.0 || x == 1.0);
@@ -151,11 +153,11 @@ fn closed_surfaces_are_rooms_of_what_they_enclose_and_nested_ones_of_all_within(
         assert_eq!(pairs(&contact), [[1, 0], [2, 0], [2, 1], [2, 3]]);
         assert!(contact.rooms().iter().all(|within| within.share == Some(1.0)));
         assert!(gaps.bodies.iter().flat_map(|body| &body.gap).all(|&gap| gap >= 0.5) && !gaps.is_warned());
-        // Told rooms are rooms of what is not a room round them.
+        // Given rooms are rooms of everything except the rooms around them.
         let told = [Room::No, Room::Yes, Room::Yes, Room::No];
         let (contact, _) = measured(&all, &told, Options::default());
         assert_eq!(pairs(&contact), [[1, 0], [1, 3], [2, 0], [2, 1], [2, 3]]);
-        // Without rooms all that is enclosed is where it must not be.
+        // Without rooms, whatever is enclosed is where it must not be.
         let none = vec![Room::No; 4];
         let (contact, gaps) = measured(&all, &none, Options { warn: Some(0.1), ..Options::default() });
         assert!(contact.rooms().is_empty() && gaps.is_warned());
@@ -166,14 +168,14 @@ fn closed_surfaces_are_rooms_of_what_they_enclose_and_nested_ones_of_all_within(
 
 #[test]
 fn what_pokes_through_has_the_room_that_most_of_it_is_in() {
-    // A rod along x, so long; 1 of it lies in the cube.
+    // A rod of this length along x, of which 1 lies in the cube.
     let rod = |length: f64| cube().map(|p| [0.5 + length * p[0], 0.4 + 0.2 * p[1], 0.4 + 0.2 * p[2]]);
     for (length, is_room) in [(0.4, true), (0.6, false), (5.0, false)] {
         let (contact, _) = measured(&[rod(length), cube()], &[], Options::default());
         // Corners stand for the area: half of them are beyond the wall at 1.
         assert_eq!(!contact.rooms().is_empty(), is_room, "{length}");
     }
-    // Of many rings the part of the area counts, and what is outside is negative.
+    // For many rings the share of the area counts, and what is outside is negative.
     let ring = |shift: f64| torus(8, 24, [0.3, 0.05]).shifted([0.5 + shift, 0.5, 0.5]);
     let (contact, gaps) = measured(&[ring(0.3), cube()], &[], Options::default());
     let share = contact.rooms().first().and_then(|within| within.share).expect("most of it is inside");
@@ -191,7 +193,7 @@ fn neither_of_two_that_overlap_nor_an_open_one_nor_one_beside_is_a_room() {
         [torus(8, 12, [1.0, 0.4]), torus(8, 12, [1.0, 0.4]).shifted([0.1, 0.0, 0.05])],
         [cube(), cube().shifted([3.0, 0.0, 0.0])],
         [small.clone(), open],
-        // Beside the tube of a ring, within its box.
+        // Beside the tube of a ring, within its bounding box.
         [small.shifted([-0.4, -0.4, -0.4]), torus(8, 12, [1.0, 0.4])],
     ];
     for (k, case) in cases.into_iter().enumerate() {
@@ -210,7 +212,7 @@ fn what_is_a_room_is_decided_at_first() {
     let gaps = contact.measure(&Threads::single());
     assert_eq!(pairs(&contact), [[1, 0]]);
     assert!(gaps.bodies[0].gap.iter().all(|&gap| gap < 0.0), "all of it is outside its room");
-    // The same bodies with other triangles go on with the same rooms.
+    // The same bodies with other triangles keep their rooms.
     let told = [0, 1].map(|id| contact.room(id));
     assert_eq!(told, [Room::Of(vec![]), Room::Of(vec![0])]);
     let body = |id: u32| Body {

@@ -1,4 +1,5 @@
-//! When moving surfaces touch first: never later than they do, and hardly sooner; against roots of the cubics and against looking often.
+//! The first contact of moving surfaces: never reported too late, and hardly too early; compared with roots
+//! of the cubics and with dense sampling in time.
 
 mod common;
 
@@ -18,7 +19,7 @@ fn always(_: u32, _: u32) -> bool {
     true
 }
 
-/// The time of two triangles alone.
+/// The contact time of two triangles alone.
 fn time(x: [Triangle; 2], v: [Triangle; 2], horizon: f64) -> f64 {
     let found = sweep(x.as_flattened(), v.as_flattened(), &A, &B, horizon, always, &Threads::single());
     assert_eq!(found.times[0], found.times[1]);
@@ -34,7 +35,7 @@ fn random(numbers: &mut Numbers) -> Point {
     [(); 3].map(|()| 2.0 * numbers.unit() - 1.0)
 }
 
-/// Two triangles beside each other that mostly come together: with a common motion, and shapes of all kinds.
+/// Two triangles beside each other that mostly approach each other: with a common motion, and of all shapes.
 fn case(numbers: &mut Numbers) -> ([Triangle; 2], [Triangle; 2]) {
     let mut triangle = |shift: f64| [(); 3].map(|()| add(random(numbers), [shift, 0.0, 0.0]));
     let mut x = [triangle(0.0), triangle(2.0 + 0.5)];
@@ -51,7 +52,8 @@ fn case(numbers: &mut Numbers) -> ([Triangle; 2], [Triangle; 2]) {
     (x, v)
 }
 
-/// Roots in [0, horizon] of the volume of the tet of four moving points: between the places where its slope is 0 it has one at most.
+/// Roots in [0, horizon] of the volume of the tet of four moving points, which has at most one root between
+/// zeros of its slope.
 fn coplanar_times(x: [Point; 4], v: [Point; 4], horizon: f64) -> Vec<f64> {
     let [a, b, c] = [1, 2, 3].map(|k| sub(x[k], x[0]));
     let [d, e, f] = [1, 2, 3].map(|k| sub(v[k], v[0]));
@@ -83,7 +85,8 @@ fn coplanar_times(x: [Point; 4], v: [Point; 4], horizon: f64) -> Vec<f64> {
     roots
 }
 
-/// The first of these times at which the triangles are as good as in touch: where a vertex reaches a face or an edge an edge.
+/// The first of these times at which the triangles practically touch: where a vertex reaches a face, or an
+/// edge an edge.
 fn first_contact(x: [Triangle; 2], v: [Triangle; 2], horizon: f64) -> f64 {
     let (all_x, all_v) = (x.as_flattened(), v.as_flattened());
     let vertex_face = (0..3).flat_map(|k| [[k, 3, 4, 5], [3 + k, 0, 1, 2]]);
@@ -203,18 +206,18 @@ fn plain_motions_have_plain_times() {
     is(time([lower, over(1.0)], [still, all([0.0, 0.0, -0.5])], 3.0), 2.0);
     is(time([lower, over(1.0)], [still, all([0.0, 0.0, -0.5])], f64::INFINITY), 2.0);
     is(time([lower, over(1.0)], [still, all([0.0, 0.0, -1e-9])], f64::INFINITY), 1e9);
-    // Both ways to come too late.
+    // Two ways in which the contact comes too late.
     for horizon in [1.9, 0.0, -1.0, f64::NAN] {
         assert_eq!(time([lower, over(1.0)], [still, all([0.0, 0.0, -0.5])], horizon), f64::INFINITY);
     }
     for horizon in [5.0, f64::INFINITY] {
-        // Moving apart, along each other, with each other, not at all.
+        // Moving apart, along each other, together, not at all.
         for v in [[0.0, 0.0, 1.0], [3.0, 2.0, 0.0], [0.0; 3]] {
             assert_eq!(time([lower, over(1.0)], [still, all(v)], horizon), f64::INFINITY, "{v:?}");
             assert_eq!(time([lower, over(1e-9)], [still, all(v)], horizon), f64::INFINITY, "{v:?}");
         }
         assert_eq!(time([lower, over(1.0)], [all([1.0, 2.0, -3.0]); 2], horizon), f64::INFINITY);
-        // In touch already: in a plane, at a vertex, through each other; even when they part.
+        // Already in contact: in a plane, at a vertex, through each other; even when they separate.
         for other in [
             lower,
             over(0.0).map(|p| add(p, [1.0, 0.0, 0.0])),
@@ -226,19 +229,19 @@ fn plain_motions_have_plain_times() {
         let beside = lower.map(|p| [3.0 - p[0], 1.0 - p[1], 0.0]);
         is(time([lower, beside], [still, all([-1.0, 0.0, 0.0])], horizon), 2.0);
     }
-    // Past each other by a hair, and onto each other by one.
+    // Passing each other by a hair, and hitting by one.
     let past = |z: f64| [[-2.0, 0.0, z], [-2.0, 1.0, z], [-3.0, 0.5, z + 1.0]];
     assert_eq!(time([lower, past(1e-5)], [still, all([1.0, 0.0, 0.0])], 9.0), f64::INFINITY);
     is(time([lower, past(-1e-5)], [still, all([1.0, 0.0, 0.0])], 9.0), 2.00001);
     // Points and segments.
     is(time([lower, all([0.2, 0.2, 1.0])], [still, all([0.0, 0.0, -1.0])], f64::INFINITY), 1.0);
     is(time([all([0.0; 3]), all([0.0, 0.0, 1.0])], [still, all([0.0, 0.0, -1.0])], f64::INFINITY), 1.0);
-    // No numbers: no contact, no panic.
+    // Not finite: no contact, no panic.
     assert_eq!(time([lower, all([f64::NAN; 3])], [still, still], 1.0), f64::INFINITY);
     assert_eq!(time([lower, lower], [still, all([f64::INFINITY; 3])], 1.0), f64::INFINITY);
 }
 
-/// Two bumpy balls that come together, with a motion of their own for each vertex.
+/// Two bumpy balls that approach each other, with a separate motion for each vertex.
 fn balls(n: usize, seed: u64) -> (Vec<Point>, Vec<Point>, [Vec<[VertexId; 3]>; 2]) {
     let mut numbers = Numbers(seed);
     let surface = Surface::boundary_of(&ball(n, 1));
@@ -293,7 +296,7 @@ fn surfaces_have_the_times_of_all_their_pairs_for_any_number_of_threads() {
                 for t in [a[i], b[j]] {
                     assert!(triangle_triangle::closest(of(&then, t), [first.place; 3]).distance() < 1e-5);
                 }
-                // Without the first pair another is first.
+                // Without the first pair, another is first.
                 let without = |i, j| [i, j] != first.triangles;
                 let second = sweep(&points, &velocity, &a, &b, horizon, without, &threads).first;
                 assert!(second.is_none_or(|s| s.time >= first.time && s.triangles != first.triangles));

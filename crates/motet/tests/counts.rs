@@ -1,4 +1,5 @@
-//! One way to count: whichever verb is asked, a mesh has as many bad tets, inverted ones and tets of boundary layers.
+//! Consistent counts: every verb reports the same number of bad tets, inverted ones and tets of boundary
+//! layers for a mesh.
 
 use motet::Mesh;
 use motet::base::{Threads, VertexId};
@@ -11,7 +12,7 @@ use motet::motion::{self, Mover};
 use motet::moving::{self, MovingMesh};
 use motet::remesh::{self, remesh};
 
-/// What a door counts.
+/// The counts of one verb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Counts {
     bad: usize,
@@ -19,14 +20,14 @@ struct Counts {
     inverted: usize,
 }
 
-/// By what `motet info` prints.
+/// Counts by `motet info`.
 fn by_info(mesh: &Mesh) -> Counts {
     let summary = Summary::of(mesh);
     let eas = summary.quality.unwrap().eas;
     Counts { bad: eas.bad, layers: eas.layers, inverted: summary.inverted }
 }
 
-/// By the certificate of a motion.
+/// Counts by the certificate of a motion.
 fn by_mover(mesh: &Mesh) -> Counts {
     let mover = Mover::new(mesh, &motion::Options::default(), &Threads::single()).unwrap();
     let certificate = mover.quality(&mesh.points, &Threads::single());
@@ -35,14 +36,14 @@ fn by_mover(mesh: &Mesh) -> Counts {
     Counts { bad: quality.bad, layers: quality.layers, inverted: certificate.inverted }
 }
 
-/// By the report of a repair, of the mesh as it came.
+/// Counts by the report of a repair, for the input mesh.
 fn by_remesh(mesh: &Mesh) -> Counts {
     let part = TetPart::of(mesh).unwrap();
     let before = remesh(&part.mesh, &remesh::Options::default(), &Threads::single()).unwrap().report.before;
     Counts { bad: before.bad, layers: before.layers, inverted: before.inverted }
 }
 
-/// By a step of a moving mesh; layers are not told there.
+/// Counts by a step of a moving mesh, which does not report layers.
 fn by_step(mesh: &Mesh) -> [usize; 2] {
     let options = moving::Options { repair: None, ..moving::Options::default() };
     let mut moving = MovingMesh::new(mesh, options, &Threads::single()).unwrap();
@@ -50,7 +51,7 @@ fn by_step(mesh: &Mesh) -> [usize; 2] {
     [step.bad, step.inverted]
 }
 
-/// What every door counts, which is the same.
+/// Asserts that all verbs agree; returns the counts.
 fn counted(what: &str, mesh: &Mesh) -> Counts {
     let info = by_info(mesh);
     assert_eq!(by_mover(mesh), info, "{what}: mover");
@@ -80,7 +81,7 @@ fn layered() -> Mesh {
     mesh
 }
 
-/// A box whose inner vertices stand elsewhere: some tets are bad, some inverted.
+/// A box with displaced inner vertices: some tets are bad, some inverted.
 fn shaken() -> Mesh {
     let mut mesh = box_grid([4, 4, 4], [[0.0; 3], [4.0; 3]]);
     for (i, p) in mesh.points.iter_mut().enumerate() {
@@ -91,7 +92,7 @@ fn shaken() -> Mesh {
     mesh
 }
 
-/// Bad and inverted tets by their definition, of a mesh that is numbered well.
+/// Bad and inverted tets by definition, of a consistently numbered mesh.
 fn by_definition(mesh: &Mesh) -> [usize; 2] {
     let tets = || mesh.cells.tets().map(|(_, tet)| tet.map(|v| mesh.points[v.index()]));
     let is_inverted = |[a, b, c, d]: &[[f64; 3]; 4]| orient3d(*a, *b, *c, *d) <= 0;
@@ -128,7 +129,7 @@ fn thin_tets_of_layers_are_not_bad_and_others_are() {
     let mut mesh = layered();
     let counts = counted("layered", &mesh);
     assert!(counts.layers > 1000 && counts.bad == 0 && counts.inverted == 0, "{counts:?}");
-    // A vertex inside that is drawn to a neighbour makes slivers, which stand in no column.
+    // A vertex inside that is moved towards a neighbour makes slivers, which stand in no column.
     let inside =
         |p: &[f64; 3]| p[2] > 0.2 && p[2] < 0.5 && p[0] > 0.2 && p[0] < 0.8 && p[1] > 0.2 && p[1] < 0.8;
     let place = mesh.points.iter().position(inside).unwrap();
@@ -155,7 +156,7 @@ fn a_tet_folded_over_its_neighbour_is_inverted() {
     assert_eq!((info.inverted, by_remesh(&folded)), (1, info));
 }
 
-/// After a repair the report counts what the mesh that came of it has.
+/// The counts in the report of a repair are those of the new mesh.
 #[test]
 fn what_a_repair_reports_is_what_the_new_mesh_has() {
     for (what, mesh, limits) in [("layered", layered(), &[0.2][..]), ("shaken", shaken(), &[0.2, 0.45][..])] {
@@ -179,7 +180,7 @@ fn what_a_repair_reports_is_what_the_new_mesh_has() {
     }
 }
 
-/// The array that is written for each cell has the numbers that are counted.
+/// The values of the cell array match the counts.
 #[test]
 fn the_array_of_qualities_is_of_oriented_tets() {
     let mesh = shaken();

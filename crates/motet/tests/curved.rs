@@ -1,4 +1,5 @@
-//! Quadratic cells judged by their Jacobian: against dense sampling of its definition, and against maps whose derivative is known.
+//! Quadratic cells judged by their Jacobian: compared with dense sampling of its definition, and with maps of
+//! known derivative.
 
 mod common;
 
@@ -22,7 +23,7 @@ fn places_in_a_tet(n: usize) -> Vec<[f64; 4]> {
     all.map(|[i, j, k]| [n - i - j - k, i, j, k].map(|x| x as f64 / n as f64)).collect()
 }
 
-/// `det J` of a quadratic tet by its definition: sums of nodes times derivatives of `L (2 L - 1)` and `4 L L'`.
+/// `det J` of a quadratic tet by definition: sums of nodes times derivatives of `L (2 L - 1)` and `4 L L'`.
 fn of_tet(nodes: &[Point], l: [f64; 4]) -> f64 {
     let by = |k: usize| {
         let corner = (0..4).map(|i| (nodes[i], if i == k { 4.0 * l[i] - 1.0 } else { 0.0 }));
@@ -41,7 +42,7 @@ fn of_tet(nodes: &[Point], l: [f64; 4]) -> f64 {
     determinant([1, 2, 3].map(|k| sub(by(k), by(0))))
 }
 
-/// A tet whose nodes are shaken by up to so much.
+/// A tet whose nodes are displaced by up to `most`.
 fn shaken_tet(chance: &mut Chance, most: f64) -> Vec<Point> {
     let middle = |&[a, b]: &[usize; 2]| scale(add(TET_CORNERS[a], TET_CORNERS[b]), 0.5);
     let nodes = TET_CORNERS.into_iter().chain(TET_EDGES.iter().map(middle));
@@ -58,7 +59,7 @@ fn random_quadratic_tets_are_upright_where_no_sample_of_their_jacobian_is_negati
         let [low, high] = [f64::min, f64::max].map(|f| samples.iter().copied().reduce(f).unwrap());
         let jacobian = Jacobian::of(CellKind::QUADRATIC_TETRA, &nodes).unwrap();
         let found = jacobian.least().determinant;
-        // The least value is one that is there, and no sample is below it.
+        // The least value is attained, and no sample is below it.
         assert!(found <= low + 1e-5 * (high - low), "{found} {low}");
         assert!(found >= low - 0.05 * (high - low), "{found} {low}");
         if is_upright(CellKind::QUADRATIC_TETRA, &nodes, false) {
@@ -80,7 +81,8 @@ fn random_quadratic_tets_are_upright_where_no_sample_of_their_jacobian_is_negati
     );
 }
 
-/// The nodes of a straight cell of a kind: corners of the usual reference cell, and the others between them.
+/// The nodes of a straight cell of a kind: corners of the usual reference cell, and the other nodes between
+/// them.
 fn reference(kind: CellKind) -> Vec<Point> {
     let middles = middles(kind);
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -127,7 +129,7 @@ impl QuadraticMap {
         self.0.map(|row| row.iter().zip(terms).map(|(a, b)| a * b).sum())
     }
 
-    /// The determinant of its derivative.
+    /// The determinant of the map's derivative.
     fn determinant(&self, [x, y, z]: Point) -> f64 {
         determinant(self.0.map(|[_, a, b, c, xx, yy, xy, yz, zx, zz]| {
             [
@@ -139,7 +141,8 @@ impl QuadraticMap {
     }
 }
 
-/// Every kind has all quadratic polynomials among its functions: a cell whose nodes a quadratic map has moved is the image under that very map.
+/// The shape functions of every kind include all quadratic polynomials: a cell whose nodes are moved by a
+/// quadratic map is the image under that map.
 #[test]
 fn cells_of_every_kind_under_a_quadratic_map_have_its_jacobian() {
     let mut chance = Chance(11);
@@ -162,7 +165,8 @@ fn cells_of_every_kind_under_a_quadratic_map_have_its_jacobian() {
             let high = samples.iter().map(|s| s.0.abs()).fold(0.0, f64::max);
             assert!(found.determinant <= low + 1e-5 * high, "{kind:?} {found:?} {low}");
             assert!(found.determinant >= low - 0.1 * high, "{kind:?} {found:?} {low}");
-            // Where the map folds, several places of the cell lie at one point of space: one of them has that determinant.
+            // Where the map folds, several places of the cell coincide in space: one of them has that
+            // determinant.
             let extent = samples.iter().map(|s| distance(s.1, samples[0].1)).fold(0.0, f64::max);
             let is_there = |s: &(f64, Point)| {
                 distance(s.1, found.place) < 0.2 * extent && (s.0 - found.determinant).abs() < 0.1 * high
@@ -219,7 +223,8 @@ fn flat_tet() -> Mesh {
     shapes::quadratic(&Mesh::new(points, cells))
 }
 
-/// A mesh of straight quadratic tets, one of whose inner middle nodes is pushed so far that the cells around it fold, though their corners stay.
+/// A mesh of straight quadratic tets, one of whose inner mid-edge nodes is moved so far that the cells around
+/// it fold, though their corners stay.
 #[test]
 fn a_cell_that_is_folded_between_its_corners_is_a_defect() {
     let mut mesh = shapes::quadratic(&shapes::box_grid([2; 3], [[0.0; 3], [2.0; 3]]));

@@ -1,4 +1,4 @@
-//! The Delaunay triangulation held against its definition, on sets from ordinary to hostile.
+//! The Delaunay triangulation compared with its definition, on sets from ordinary to hostile.
 
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::delaunay::Triangulation;
@@ -63,8 +63,8 @@ fn triangulate(points: &[Point]) -> Triangulation {
     Triangulation::new(points, &Threads::single()).expect("the points span a volume")
 }
 
-/// Asserts all that makes a Delaunay triangulation, facet by facet: by Delaunay's lemma (1934) that implies the
-/// empty sphere of every tet against all points.
+/// Asserts all defining properties of a Delaunay triangulation, facet by facet: by Delaunay's lemma (1934)
+/// that implies the empty sphere of every tet with respect to all points.
 fn assert_delaunay(points: &[Point], t: &Triangulation) {
     let corner = |v: VertexId| points[v.index()];
     for (id, (tet, neighbors)) in t.tets().iter().zip(t.neighbors()).enumerate() {
@@ -86,7 +86,8 @@ fn assert_delaunay(points: &[Point], t: &Triangulation) {
     assert_euler(points, t);
 }
 
-/// The hull is the facets without neighbour, and convex at every edge; the tets fill it.
+/// Asserts that the hull consists of the facets without neighbour and is convex at every edge, and that the
+/// tets fill it.
 fn assert_hull(points: &[Point], t: &Triangulation) {
     let open = t.neighbors().iter().flatten().filter(|n| **n == OUTSIDE).count();
     assert_eq!(open, t.hull().len());
@@ -109,7 +110,8 @@ fn assert_hull(points: &[Point], t: &Triangulation) {
     }
 }
 
-/// Vertices - edges + facets - tets = 1 for a ball; every distinct point is a vertex.
+/// Asserts that vertices - edges + facets - tets = 1, as for a ball, and that every distinct point is a
+/// vertex.
 fn assert_euler(points: &[Point], t: &Triangulation) {
     let mut edges = BTreeSet::new();
     let mut vertices: BTreeSet<VertexId> = BTreeSet::new();
@@ -129,7 +131,7 @@ fn assert_euler(points: &[Point], t: &Triangulation) {
     }
 }
 
-/// No point in any sphere, all against all.
+/// Asserts that no point is in any sphere, by brute force.
 fn assert_empty_spheres(points: &[Point], t: &Triangulation) {
     for tet in t.tets() {
         let [a, b, c, d] = tet.map(|v| points[v.index()]);
@@ -137,7 +139,7 @@ fn assert_empty_spheres(points: &[Point], t: &Triangulation) {
     }
 }
 
-/// Tets as sets of coordinates, so that numbering does not matter.
+/// Tets as sets of coordinates, independent of numbering.
 fn as_set(points: &[Point], t: &Triangulation) -> BTreeSet<Vec<[u64; 3]>> {
     let bits = |v: VertexId| points[v.index()].map(|x| (x + 0.0).to_bits());
     let sorted = |tet: &[VertexId; 4]| {
@@ -291,7 +293,7 @@ fn one_tet_is_its_own_triangulation() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Few places for many points: every degeneracy there is.
+    /// Few places for many points: every kind of degeneracy.
     #[test]
     fn small_degenerate_sets(
         points in prop::collection::vec(prop::array::uniform3(-2i8..=2), 0..60),

@@ -1,4 +1,5 @@
-//! Stents and wires: closed, turned outward, of the right genus, free of crossings, also bent along a centre line.
+//! Stents and wires: closed, facing outward, of the right genus, free of crossings, also when bent along a
+//! centre line.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -12,7 +13,7 @@ use motet::mesh::{Surface, cone_volume};
 
 type Triangles = [[VertexId; 3]];
 
-/// Panics unless each edge is used once each way; the Euler characteristic.
+/// Panics unless each edge is used once in each direction; returns the Euler characteristic.
 fn euler_if_closed(triangles: &Triangles) -> i64 {
     let mut edges = BTreeMap::new();
     let mut vertices: Vec<VertexId> = triangles.as_flattened().to_vec();
@@ -57,7 +58,7 @@ fn a_stent_is_a_closed_surface_with_a_handle_for_each_link() {
     {
         let stent = Stent { rings, crowns, segments, link_every, ..Stent::default() };
         let triangles = stent.triangles().unwrap();
-        // Each ring is a torus, of characteristic 0, and a link takes off 2.
+        // Each ring is a torus, of characteristic 0, and each link subtracts 2.
         assert_eq!(euler_if_closed(&triangles), -2 * stent.n_links() as i64);
         assert!(rings == 1 || link_every == 20 || stent.n_links() >= rings - 1);
         if link_every == 1 {
@@ -87,10 +88,10 @@ fn a_stent_has_the_same_triangles_and_no_crossings_at_every_radius() {
         assert!(volume(&points, &triangles) > last * 0.5);
         last = volume(&points, &triangles);
     }
-    // Much crimped, with wide struts: legs close up, but do not cross.
+    // Strongly crimped, with wide struts: legs close up but do not cross.
     let tight = Stent { strut_width: 0.5, ..small() };
     assert_eq!(crossings(&tight.points(0.12).unwrap(), &triangles), 0);
-    // The same in metres.
+    // The same stent in metres.
     let metres = Stent { length: 4e-3, strut_width: 1.5e-4, thickness: 1e-4, link_length: 1.5e-4, ..small() };
     let (a, b) = (metres.points(1e-3).unwrap(), small().points(1.0).unwrap());
     assert!(a.iter().zip(&b).all(|(a, b)| norm(sub(a.map(|x| 1e3 * x), *b)) < 1e-14));
@@ -111,7 +112,7 @@ fn a_stent_bends_along_a_centre_line_without_crossing_or_twist() {
     assert_eq!(crossings(&points, &triangles), 0);
     let (bent, straight) = (volume(&points, &triangles), volume(&stent.points(1.0).unwrap(), &triangles));
     assert!((bent / straight - 1.0).abs() < 0.02, "{bent} {straight}");
-    // A circle, in its plane: what points across the plane still does at the end. Ends go on straight.
+    // A circle in its plane: what points across the plane still does at the end. The ends continue straight.
     let circle: Vec<Point> =
         (0..=40).map(|i| TAU * f64::from(i) / 80.0).map(|a| [a.cos(), a.sin(), 0.0]).collect();
     let circle = CenterLine::new(&circle).unwrap();
@@ -152,7 +153,7 @@ fn surface(mesh: &Mesh) -> Surface {
 
 #[test]
 fn segments_become_chains_between_ends_and_loops() {
-    // A Y, a loop, and a segment of no length.
+    // A Y, a loop, and a segment of zero length.
     let found =
         chains(9, &segments(&[[0, 1], [2, 1], [2, 3], [2, 4], [5, 6], [6, 7], [7, 5], [8, 8], [1, 0]]));
     let as_numbers: Vec<(Vec<u32>, bool)> =
@@ -188,7 +189,7 @@ fn within(triangles: &Triangles, n: usize) -> Vec<[VertexId; 3]> {
 
 #[test]
 fn a_closed_wire_meets_itself_without_a_seam() {
-    // Not in a plane, so that the frame comes back turned.
+    // Not in a plane, so that the frame comes back rotated.
     let n = 60;
     let knot: Vec<Point> = (0..n)
         .map(|i| TAU * f64::from(i) / f64::from(n))
@@ -199,7 +200,8 @@ fn a_closed_wire_meets_itself_without_a_seam() {
     assert_eq!(euler_if_closed(&wire_of.triangles), 0);
     assert!(volume(&wire_of.points, &wire_of.triangles) > 0.0);
     assert_eq!(crossings(&wire_of.points, &wire_of.triangles), 0);
-    // No side is sheared: edges along the wire are hardly longer than the longest step of the line and what the bend adds.
+    // No side is sheared: edges along the wire are hardly longer than the longest step of the line plus the
+    // effect of the bend.
     let longest = (0..n as usize)
         .flat_map(|i| (0..8).map(move |k| (8 * i + k, 8 * ((i + 1) % n as usize) + k)))
         .map(|(a, b)| distance(wire_of.points[a], wire_of.points[b]))
@@ -219,7 +221,7 @@ fn a_wire_that_cannot_be_is_refused_with_the_segment() {
     assert!(refused(&[[0, 9]], 0.1).contains("point 9"));
     assert!(refused(&[[0, 1]], 0.0).contains("radius"));
     assert!(wire(&points, &segments(&[[0, 1]]), 0.1, 2).is_err());
-    // A sharp turn back has no middle, but gives a wire all the same.
+    // A sharp turn back has no middle, but still gives a wire.
     let back = [[0.0; 3], [1.0, 0.0, 0.0], [0.5, 0.0, 0.0]];
     assert!(wire(&back, &segments(&[[0, 1], [1, 2]]), 0.1, 6).is_ok());
 }

@@ -1,4 +1,5 @@
-//! Distances of points, segments and triangles: against arithmetic without rounding, and what every distance must obey.
+//! Distances of points, segments and triangles: compared with exact arithmetic, and checked for the
+//! properties of every distance.
 
 mod distance_oracle;
 
@@ -13,7 +14,7 @@ use num_traits::Zero;
 use oracle::Grid;
 use proptest::prelude::*;
 
-/// The promise: this part of the extent.
+/// The promised error, relative to the extent.
 const PROMISED: f64 = 4e-15;
 /// Coordinates so large that products are rounded, while sums of some vertices are not.
 const FINE: i64 = 1 << 45;
@@ -22,7 +23,7 @@ fn float(p: Grid) -> Point {
     p.map(|x| x as f64)
 }
 
-/// The largest difference of two vertices.
+/// The largest distance between two vertices.
 fn extent(points: &[Point]) -> f64 {
     points.iter().flat_map(|p| points.iter().map(|q| distance(*p, *q))).fold(0.0, f64::max)
 }
@@ -37,8 +38,9 @@ fn within(a: [Grid; 3], [k, l]: [i64; 2]) -> Grid {
     [0, 1, 2].map(|x| (a[0][x] * (12 - k - l) + a[1][x] * k + a[2][x] * l) / 12)
 }
 
-/// Two triangles as they are hard to measure: on a small grid, where they cross, touch and coincide; on a fine one; in a
-/// plane; needles of both kinds; nearly parallel; touching; with a vertex on a needle; without area.
+/// Pairs of triangles that are hard to measure: on a small grid, where they cross, touch and coincide; on a
+/// fine one; in a plane; needles of both kinds; nearly parallel; touching; with a vertex on a needle; without
+/// area.
 fn pair() -> impl Strategy<Value = [Grid; 6]> {
     let small = prop::array::uniform6(prop::array::uniform3(-4..=4i64));
     let fine = prop::array::uniform6(prop::array::uniform3(-FINE..=FINE));
@@ -70,7 +72,7 @@ fn pair() -> impl Strategy<Value = [Grid; 6]> {
     })
 }
 
-/// Everything that must hold of closest points, whatever they are of.
+/// Checks everything that must hold of closest points, for all primitives.
 fn check<const A: usize, const B: usize>(
     found: Closest<A, B>,
     a: [Grid; A],
@@ -97,7 +99,7 @@ fn check<const A: usize, const B: usize>(
     Ok(if extent > 0.0 { off / extent } else { 0.0 })
 }
 
-/// Written out case by case.
+/// The feature by its definition, case by case.
 fn feature(weights: &[f64]) -> Feature {
     let held: Vec<bool> = weights.iter().map(|&w| w > 0.0).collect();
     match held.as_slice() {
@@ -111,7 +113,7 @@ fn feature(weights: &[f64]) -> Feature {
     }
 }
 
-/// By the weights alone that `triangle::closest` gives.
+/// The closest points by the weights of `triangle::closest` alone.
 fn plain(p: Point, triangle: [Point; 3]) -> Closest<1, 3> {
     let on_b = triangle::closest(triangle, p);
     let offset = at(&triangle.map(|x| sub(x, p)), &on_b);
@@ -126,7 +128,7 @@ fn extent_of(a: [Point; 3], b: [Point; 3]) -> f64 {
     extent(&[a, b].concat())
 }
 
-/// Triangles anywhere in a box, where nothing is degenerate.
+/// Random triangles in a box, without degeneracies.
 fn anywhere() -> impl Strategy<Value = [[Point; 3]; 2]> {
     prop::array::uniform2(prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)))
 }
@@ -153,7 +155,7 @@ proptest! {
         let by = |p: Point| scale(p, 2f64.powi(power));
         let exact = oracle::distance(&[g[3]], &[g[0], g[1], g[2]]);
         let extent = extent(&[a[0], a[1], a[2], b[0]]);
-        // Other units may take the other way to the point, so it need not have the same bits.
+        // In other units the search may take another path to the point, so it need not have the same bits.
         let weights = triangle::closest(a.map(by), by(b[0]));
         let d = norm(at(&a.map(|x| sub(x, b[0])), &weights));
         prop_assert!((d - exact).abs() <= PROMISED * extent, "{d} {exact}");
@@ -249,14 +251,14 @@ proptest! {
         };
         let all = [gradient.by_a, gradient.by_b].concat();
         let slope = all[vertex][axis];
-        // The pair that was found is still one of pairs: no faster than that.
+        // The pair that was found is still a candidate, so the distance grows no faster than that.
         let curved = STEP * STEP / (2.0 * d) + 1e-14;
         let (ahead, behind) = (moved(STEP), moved(-STEP));
         prop_assert!(ahead <= d + slope * STEP + curved && behind <= d - slope * STEP + curved);
-        // No slower either, where the two sides do not make a kink.
+        // Nor any slower, where the two sides do not form a kink.
         let kink = 2.0 * d - ahead - behind;
         prop_assert!(((ahead - behind) / (2.0 * STEP) - slope).abs() <= (kink.abs() + 2.0 * curved) / STEP);
-        // Moving all vertices moves nothing.
+        // Moving all vertices together changes nothing.
         let sum = all.iter().fold([0.0; 3], |sum, g| add(sum, *g));
         prop_assert!(norm(sum) < 1e-15);
     }
@@ -329,7 +331,7 @@ fn what_is_not_a_number_stops_nobody() {
     }
 }
 
-/// Each is within the promise, and the mean error far below it.
+/// Each error is within the promise, and the mean error far below it.
 #[test]
 fn the_mean_error_is_a_rounding_or_so() {
     use proptest::strategy::ValueTree;

@@ -1,4 +1,5 @@
-//! Tets that walls force count as good while others are repaired: these tets, and no others of the same quality.
+//! Tets that walls force count as good while others are repaired: exactly these tets, and no others of the
+//! same quality.
 
 use motet::base::{Point, TetId, Threads, VertexId};
 use motet::geometry::quality::eas;
@@ -7,10 +8,10 @@ use motet::mesh::shapes::box_grid;
 use motet::mesh::{TetMesh, TetPart};
 use motet::remesh::{Options, Outcome, SurfaceRule, remesh};
 
-/// Far enough for a copy to lie apart, and a power of two: coordinates of few digits stay exact.
+/// Far enough to separate a copy, and a power of two: coordinates with few digits stay exact.
 const APART: f64 = 16.0;
 
-/// A cube of `n^3` cubes whose top lies `shear` further along x; coordinates have few digits.
+/// A cube of `n^3` cubes whose top is shifted by `shear` along x; coordinates have few digits.
 fn sheared(n: usize, shear: f64) -> TetMesh {
     let mut mesh = TetPart::of(&box_grid([n; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
     mesh.points.iter_mut().for_each(|p| p[0] += shear * p[2]);
@@ -24,7 +25,7 @@ fn corners(mesh: &TetMesh, tet: usize) -> [Point; 4] {
     mesh.tets[tet].map(|v| mesh.points[v.index()])
 }
 
-/// The mesh, and of each of its bad tets a copy apart from all else: its own walls force it, to the same bits.
+/// The mesh, with a separate copy of each of its bad tets: its own walls force it, with the same bits.
 fn with_copies_of_the_bad(mesh: &TetMesh) -> (TetMesh, usize) {
     let mut all = mesh.clone();
     let bad: Vec<usize> = (0..mesh.tets.len()).filter(|&t| eas(corners(mesh, t)) < 0.2).collect();
@@ -40,12 +41,12 @@ fn with_copies_of_the_bad(mesh: &TetMesh) -> (TetMesh, usize) {
     (all, bad.len())
 }
 
-/// The bad tets that are left in the mesh itself.
+/// The number of bad tets left in the mesh itself.
 fn left_here(outcome: &Outcome) -> usize {
     outcome.report.left.iter().filter(|left| left.place[0] < APART).count()
 }
 
-/// What is repaired in a mesh does not depend on which tets lie somewhere else, forced by walls of their own.
+/// The repair of a mesh does not depend on tets elsewhere that are forced by their own walls.
 #[test]
 fn a_tet_is_not_given_up_because_walls_force_another_of_its_quality() {
     for (n, shear) in [(2, 5.5), (4, 5.5)] {

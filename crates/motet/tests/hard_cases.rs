@@ -1,4 +1,5 @@
-//! The hard surfaces are what they promise: closed, free of crossings and of flat triangles, and of the volume that they tell.
+//! The hard surfaces are as promised: closed, free of crossings and of flat triangles, and of the stated
+//! volume.
 
 mod common;
 

@@ -1,4 +1,5 @@
-//! Fields across changes of a mesh: what is linear stays so, integrals stay, constants stay, what was kept stays to the bit.
+//! Fields across changes of a mesh: linear fields, integrals and constants are preserved, and what was kept
+//! stays to the bit.
 
 mod common;
 
@@ -17,8 +18,9 @@ fn single() -> Threads {
     Threads::single()
 }
 
-/// The unit box in two regions, 1 below x = 1/2 and 2 above, each a Delaunay triangulation of its own; `n` points in each and
-/// on each side; the wall between them has points of both. Triangles on the outside, a patch a side.
+/// The unit box in two regions, 1 below x = 1/2 and 2 above, each with its own Delaunay triangulation; `n`
+/// points in each and on each side; the wall between them has points of both. Triangles on the outside, one
+/// patch per side.
 fn two_regions(seed: u64, n: usize) -> Mesh {
     let mut chance = Chance(seed);
     let corners = |x: f64| (0..4).map(move |i| [x, f64::from(i & 1), f64::from(i >> 1)]);
@@ -72,7 +74,7 @@ fn two_regions(seed: u64, n: usize) -> Mesh {
     mesh
 }
 
-/// The history between two meshes that have nothing in common.
+/// The history between two meshes that have no vertex or cell in common.
 fn all_new(old: &Mesh, new: &Mesh) -> History {
     let (vertices, cells) = (vec![Id::NONE; new.points.len()], vec![Id::NONE; new.cells.len()]);
     between(old, new, &vertices, &cells, &single()).unwrap()
@@ -138,7 +140,7 @@ fn quadratic_point_fields_stay_quadratic_off_walls_with_another_field_in_each_re
     for (id, row) in rows.ids().iter().zip(rows.iter()) {
         let exact = value(new.points[id.index()]);
         let negative: f64 = row.shares.iter().filter(|share| **share < 0.0).sum();
-        // Rows with more than that are brought nearer to linear ones.
+        // Rows with larger negative shares are brought closer to linear ones.
         if negative > -0.499 {
             assert!((floats(&carried)[id.index()] - exact).abs() < 1e-10);
             most = most.max((floats(&linear)[id.index()] - exact).abs());
@@ -162,7 +164,7 @@ fn integrals_over_regions_survive_a_hundred_transfers() {
     }
     let mut chance = Chance(99);
     let regions = old.regions().unwrap();
-    // Of either sign, and far apart in the two regions.
+    // Values of either sign, very different in the two regions.
     let values: Vec<f64> =
         regions.ids.iter().map(|&r| (chance.next() - 0.3) * if r == 1 { 1.0 } else { 1e6 }).collect();
     let first = Field::scalars("heat", values);
@@ -177,7 +179,7 @@ fn integrals_over_regions_survive_a_hundred_transfers() {
         let [integral, absolute] = before[&region];
         assert!((after[0] - integral).abs() < 1e-12 * absolute, "{region}: {integral} {}", after[0]);
     }
-    // It spread out, but did not cross the wall.
+    // The field spread out, but did not cross the wall.
     assert!(field.values != first.values);
     for (i, &region) in regions.ids.iter().enumerate().filter(|(_, r)| **r != 0) {
         assert!(floats(&field)[i].abs() <= if region == 1 { 1.0 } else { 1e6 });
@@ -222,14 +224,14 @@ fn ids_names_and_directions_are_taken_over_whole() {
         .collect();
     let carried = history.transfer_cells(&Field::vectors("fibres", &fibres)).unwrap();
     assert!(carried.to_vectors().unwrap().iter().all(|f| fibres.contains(f)));
-    // Labels follow: a tet is of the region, and a triangle of the patch, that the new mesh says.
+    // Labels are consistent: the region of a tet, and the patch of a triangle, are those of the new mesh.
     for label in ["region", "patch"] {
         let carried = history.transfer_cells(old.cell_field(label).unwrap()).unwrap();
         assert_eq!(&carried, new.cell_field(label).unwrap());
     }
 }
 
-/// A triangulation as a mesh with one region, and of each tet where it stands, by its vertices.
+/// A triangulation as a mesh with one region, and the cell of each tet by its vertices.
 fn triangulated(points: &[Point]) -> (Mesh, BTreeMap<[VertexId; 4], CellId>) {
     let triangulation = Triangulation::new(points, &single()).unwrap();
     let cells = Cells::uniform(CellKind::TETRA, triangulation.tets().as_flattened().to_vec()).unwrap();
@@ -242,8 +244,8 @@ fn sorted(mut tet: [VertexId; 4]) -> [VertexId; 4] {
     tet
 }
 
-/// The history when points are added to a triangulation, or some of its points are moved; tets with the same vertices
-/// are the same.
+/// The history when points are added to a triangulation, or some of its points are moved; tets with the same
+/// vertices are the same.
 fn local(old_points: &[Point], new_points: &[Point], threads: &Threads) -> (Mesh, Mesh, History) {
     let (old, places) = triangulated(old_points);
     let (new, _) = triangulated(new_points);
@@ -304,7 +306,7 @@ fn a_moved_vertex_is_interpolated_at_its_new_place_and_keeps_its_names() {
     assert!((floats(&carried)[50] - linear(new.points[50])).abs() < 1e-13);
     let ids = Field::scalars("id", (0..old.points.len() as i32).collect::<Vec<i32>>());
     assert_eq!(history.transfer_points(&ids).unwrap(), ids);
-    // Tets with the same vertices changed shape all the same.
+    // Tets with the same vertices have changed shape nevertheless.
     for (cell, tet) in new.cells.tets().filter(|(_, tet)| tet.contains(&VertexId(50))) {
         assert!(matches!(history.cells.of(cell), Origin::Changed(_)), "{tet:?}");
     }
@@ -323,7 +325,7 @@ fn any_number_of_threads_gives_the_same_history() {
 fn old_tets_may_be_inverted_or_flat_and_the_ledger_says_so() {
     let points = cloud(41, 60);
     let (mut old, _) = triangulated(&points);
-    // Pulled through its star, and another put on top of its neighbour.
+    // One vertex pulled through its star, and another moved onto its neighbour.
     old.points[20] = [1.5, 1.4, 0.3];
     old.points[21] = old.points[22];
     let (new, _) = triangulated(&points);
@@ -339,7 +341,7 @@ fn old_tets_may_be_inverted_or_flat_and_the_ledger_says_so() {
 #[test]
 fn what_lies_outside_takes_the_nearest_values() {
     let (old, _) = triangulated(&cloud(51, 40));
-    // A box with a dent outward on one side: the surface gave way.
+    // A box with a bump on one side: the surface has moved.
     let mut points = cloud(52, 40);
     points.push([0.5, 0.5, 1.125]);
     let (new, _) = triangulated(&points);
@@ -373,7 +375,7 @@ fn two_histories_in_one_do_what_both_do() {
     let ids = Field::scalars("id", (0..meshes[0].cells.len() as i64).collect::<Vec<i64>>());
     let stepwise = second.transfer_cells(&first.transfer_cells(&ids).unwrap()).unwrap();
     assert_eq!(stepwise, both.transfer_cells(&ids).unwrap());
-    // Nothing happening before or after changes nothing.
+    // Composition with an identity before or after changes nothing.
     let nothing = History::identity(first.vertices.n_old(), first.cells.n_old());
     assert_eq!(nothing.then(&first).vertices.kept(), first.vertices.kept());
     assert_eq!(nothing.then(&first).cells.changed().ids(), first.cells.changed().ids());

@@ -14,7 +14,7 @@ use motet::base::{Point, VertexId};
 use motet::io::{WriteOptions, write};
 use motet::mesh::{CellKind, Cells};
 
-/// A folder that goes away with the test.
+/// A folder that is removed after the test.
 pub(crate) struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -41,7 +41,7 @@ impl Folder {
         fs::read(self.path(name)).expect("the file is there")
     }
 
-    /// Writes a mesh in the format that the name tells, and returns the name.
+    /// Writes a mesh in the format given by the name, and returns the name.
     pub(crate) fn mesh(&self, name: &str, mesh: &Mesh) -> String {
         write(self.path(name), mesh, &WriteOptions::default()).expect("the mesh is written");
         name.to_string()
@@ -94,7 +94,7 @@ pub(crate) fn stderr(call: &Assert) -> String {
     String::from_utf8_lossy(&call.get_output().stderr).into_owned()
 }
 
-/// The folder of real meshes, where there is one.
+/// The folder of real meshes, where it exists.
 pub(crate) fn data() -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("MOTET_DATA").map_or_else(default, PathBuf::from);

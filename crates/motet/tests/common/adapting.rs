@@ -1,4 +1,5 @@
-//! The loop of solving, sizes from the second derivatives of the solution, and adapting; the solver is a formula, so that the error is known.
+//! The adaptation loop: solve, compute sizes from the second derivatives of the solution, adapt. The solver
+//! is a formula, so that the error is known.
 
 use motet::base::{Point, TetId, Threads};
 use motet::geometry::tet::{at, volume};
@@ -8,7 +9,7 @@ use motet::refine::wish::{coarser, marked};
 use motet::refine::{HessianSizes, MeshRefinement, Options, Refinement};
 use motet::{Mesh, Result};
 
-/// What a solver would say on this mesh: velocities along z, and a pressure.
+/// The solution on this mesh: velocities along z, and a pressure.
 pub(crate) fn solve(mesh: &mut Mesh, speed: impl Fn(Point) -> f64, pressure: impl Fn(Point) -> f64) {
     let velocity: Vec<Point> = mesh.points.iter().map(|p| [0.0, 0.0, speed(*p)]).collect();
     let pressure: Vec<f64> = mesh.points.iter().map(|p| pressure(*p)).collect();
@@ -16,7 +17,8 @@ pub(crate) fn solve(mesh: &mut Mesh, speed: impl Fn(Point) -> f64, pressure: imp
     mesh.set_point_field(Field::scalars("pressure", pressure));
 }
 
-/// How far a formula is from its linear interpolant: the root of the mean square and the most, at five places a tet.
+/// The difference between a formula and its linear interpolant: root mean square and maximum, at five places
+/// per tet.
 pub(crate) fn error(mesh: &TetMesh, of: impl Fn(Point) -> f64) -> [f64; 2] {
     let (mut squares, mut weights, mut most) = (0.0f64, 0.0f64, 0.0f64);
     let (a, b) = (1.0 / 6.0, 0.5);
@@ -35,7 +37,8 @@ pub(crate) fn error(mesh: &TetMesh, of: impl Fn(Point) -> f64) -> [f64; 2] {
     [(squares / weights).sqrt(), most]
 }
 
-/// Refinement everywhere, until there are `n` tets: their number and the mean error, one generation after the other.
+/// Refines uniformly until there are `n` tets; returns the number of tets and the mean error of each
+/// generation.
 pub(crate) fn everywhere(
     first: &TetMesh,
     n: usize,
@@ -52,16 +55,16 @@ pub(crate) fn everywhere(
     Ok(found)
 }
 
-/// The mean error of refinement everywhere with so many tets: between two generations it goes with a power of their number.
+/// The mean error of uniform refinement with `n` tets, interpolated between two generations by a power law.
 pub(crate) fn with_as_many(found: &[[f64; 2]], n: f64) -> f64 {
-    // The last generation has no fewer tets.
+    // The last generation has at least as many tets.
     let Some(pair) = found.windows(2).find(|pair| n <= pair[1][0]) else { return found[0][1] };
     let [[n0, e0], [n1, e1]] = [pair[0], pair[1]];
     e0 * (n / n0).powf((e1 / e0).ln() / (n1 / n0).ln())
 }
 
-/// Makes the mesh for the next solution: divisions taken back, then tets divided, so often at most. Sizes are found once and carried; the smallest and
-/// the largest are given.
+/// Makes the mesh for the next solution: takes back divisions, then divides tets, at most this many times.
+/// Sizes are computed once and carried; the smallest and the largest are given.
 pub(crate) fn adapt(
     mesh: &mut Mesh,
     sizes: &HessianSizes,

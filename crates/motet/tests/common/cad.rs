@@ -1,4 +1,5 @@
-//! Bodies as CAD programs write them: flat faces in several triangles, turned, shifted and rounded, so that they are flat but for rounding.
+//! Bodies as CAD programs write them: flat faces in several triangles, rotated, shifted and rounded, so that
+//! they are flat only up to rounding.
 
 use std::f64::consts::TAU;
 
@@ -31,7 +32,8 @@ impl Numbers {
 pub(crate) const KINDS: [&str; 7] =
     ["cylinder, fans", "cylinder, strips", "cylinder, centres", "cone", "gear", "box with a hole", "fillets"];
 
-/// A body of `KINDS[seed % 7]`; every other one is turned, a third shifted by 1000, a third of all written in `f32`.
+/// A body of `KINDS[seed % 7]`; every second one is rotated, a third are shifted by 1000, and a third of all
+/// are written in `f32`.
 pub(crate) fn cad(seed: usize) -> Cad {
     let mut numbers = Numbers(seed as u64);
     let kind = seed % KINDS.len();
@@ -106,7 +108,7 @@ fn centre(n: usize) -> Vec<[usize; 3]> {
     (0..n).map(|i| [n, i, (i + 1) % n]).collect()
 }
 
-/// Rings at two heights, and the sides between them.
+/// A prism: rings at two heights, and the sides between them.
 fn prism(ring: &[[f64; 2]], height: f64, cap: &[[usize; 3]]) -> Body {
     let (n, has_centre) = (ring.len(), cap.iter().flatten().any(|&v| v == ring.len()));
     let n_level = n + usize::from(has_centre);
@@ -137,7 +139,7 @@ fn pierced(n: usize, height: f64) -> Body {
         let along = 2.0 * (i % per_side) as f64 / per_side as f64 - 1.0;
         [[1.0, along], [-along, 1.0], [-1.0, -along], [along, -1.0]][i / per_side]
     };
-    // The first corner of the square is at an eighth of a turn below the axis.
+    // The first corner of the square is an eighth of a turn below the axis.
     let inner = |i: usize| {
         let (y, x) = (TAU * (i as f64 / n as f64 - 0.125)).sin_cos();
         [0.5 * x, 0.5 * y]
@@ -157,7 +159,7 @@ fn pierced(n: usize, height: f64) -> Body {
     (points, (0..n).flat_map(around).flat_map(quad).collect())
 }
 
-/// Turns about the origin, by a random unit quaternion (Shoemake 1992, *Uniform random rotations*).
+/// Rotates about the origin, by a random unit quaternion (Shoemake 1992, *Uniform random rotations*).
 fn turn(points: &mut [Point], numbers: &mut Numbers) {
     let [u, v, w] = [0; 3].map(|_| numbers.next());
     let [(s, c), (t, d)] = [(TAU * v).sin_cos(), (TAU * w).sin_cos()];

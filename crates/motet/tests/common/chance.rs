@@ -1,8 +1,8 @@
-//! Numbers that look like chance.
+//! Pseudorandom numbers.
 
 use motet::base::Point;
 
-/// Numbers in [0, 1) without end, by Marsaglia's xorshift; begins with any number but 0.
+/// An endless stream of numbers in [0, 1), by Marsaglia's xorshift; the seed is any number but 0.
 pub(crate) struct Chance(pub(crate) u64);
 
 impl Chance {
@@ -17,7 +17,7 @@ impl Chance {
         low + (high - low) * self.next()
     }
 
-    /// In the unit cube.
+    /// A random point in the unit cube.
     pub(crate) fn point(&mut self) -> Point {
         [self.next(), self.next(), self.next()]
     }

@@ -1,4 +1,4 @@
-//! A mesh with arrays, regions and patches for criteria, and what is needed to see whether they hold.
+//! A mesh with arrays, regions and patches for criteria, and helpers to check these.
 
 use std::sync::Arc;
 
@@ -18,12 +18,12 @@ pub(crate) fn longest(corners: [Point; 4]) -> f64 {
     EDGES.map(|[i, j]| distance(corners[i], corners[j])).into_iter().fold(0.0, f64::max)
 }
 
-/// The tets for which the definition holds.
+/// The tets for which `holds` is true.
 pub(crate) fn those(part: &TetPart, holds: impl Fn(usize) -> bool) -> Vec<TetId> {
     (0..part.mesh.tets.len()).filter(|&t| holds(t)).map(TetId::new).collect()
 }
 
-/// Tets and triangles as cells of a mesh, in mixed order: triangles first, so that tets have other numbers.
+/// Tets and triangles as cells of a mesh: triangles first, so that tets get other numbers.
 pub(crate) fn whole(tets: &TetMesh) -> Mesh {
     let mut cells = Cells::new();
     tets.triangles.iter().for_each(|t| cells.push(CellKind::TRIANGLE, *t));
@@ -46,7 +46,7 @@ pub(crate) fn pressure(p: &Point) -> f64 {
     (1.5 * p[0]).tanh() + 0.3 * p[1] * p[2]
 }
 
-/// Fields by formula, on points and on cells.
+/// Adds fields by formula, on points and on cells.
 pub(crate) fn with_fields(mut mesh: Mesh) -> Mesh {
     let v: Vec<Point> = mesh.points.iter().map(speed).collect();
     mesh.set_point_field(Field::vectors("v", &v));
@@ -74,7 +74,7 @@ pub(crate) fn case() -> (Mesh, TetPart) {
     (mesh, part)
 }
 
-/// Two plates, and a closed surface that a tet holds whole.
+/// Two plates, and a closed surface that lies within a single tet.
 pub(crate) fn target(threads: &Threads) -> Arc<Target> {
     let mut points = vec![[1.2, -1.0, -1.0], [3.0, 0.5, 1.0], [1.5, 2.0, 0.3], [-2.0, 0.0, 2.0]];
     let mut triangles = vec![[0, 1, 2].map(VertexId), [1, 2, 3].map(VertexId)];
@@ -89,7 +89,7 @@ pub(crate) fn target_triangles(target: &Target) -> Vec<[Point; 3]> {
     target.triangles().iter().map(|t| t.map(|v| target.points()[v.index()])).collect()
 }
 
-/// The distance of a tet from triangles, by looking at all.
+/// The distance of a tet from triangles, by brute force.
 pub(crate) fn from_triangles(corners: [Point; 4], triangles: &[[Point; 3]]) -> f64 {
     let from = |triangle: &[Point; 3]| {
         let facets = FACETS.map(|facet| {

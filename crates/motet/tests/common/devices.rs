@@ -1,4 +1,4 @@
-//! Hosts and devices for what puts one into the other.
+//! Hosts and devices for tests of implantation.
 
 use super::chance::Chance;
 use motet::base::{CellId, Point, VertexId};
@@ -6,7 +6,7 @@ use motet::implant::{Device, Inside};
 use motet::mesh::Mesh;
 use motet::mesh::shapes::{Coil, Stent, ball, box_grid};
 
-/// A box of edge 3 round the origin, of cells of edge 3 / n.
+/// A box of edge 3 around the origin, with cells of edge 3 / n.
 pub(crate) fn room(n: usize) -> Mesh {
     box_grid([n; 3], [[-1.5; 3], [1.5; 3]])
 }
@@ -25,9 +25,9 @@ pub(crate) fn coil(at: Point) -> Mesh {
     coil.mesh(40, 8).unwrap()
 }
 
-/// The corners of a facet by their bits, in an order of their own.
+/// The bits of the corners of a facet, in an order independent of numbering.
 pub(crate) fn key<const N: usize>(mut corners: [Point; N]) -> [[u64; 3]; N] {
-    // -0.0 is 0.0.
+    // Maps -0.0 to 0.0.
     let bits = |p: Point| p.map(|x| (x + 0.0).to_bits());
     corners.sort_by_key(|p| bits(*p));
     corners.map(bits)
@@ -51,7 +51,7 @@ pub(crate) fn stent() -> Mesh {
     stent.mesh(0.8).unwrap()
 }
 
-/// A device of one of five shapes, somewhere; every fourth on the lattice of the host.
+/// A device of one of five shapes at a random place; every fourth is on the lattice of the host.
 pub(crate) fn random_device(chance: &mut Chance) -> (String, Device) {
     let kind = (chance.next() * 5.0) as usize;
     let on_lattice = chance.next() < 0.25;

@@ -23,7 +23,7 @@ pub(crate) struct Editor {
 }
 
 impl Editor {
-    /// Proposes a random operation somewhere, whether it does good or not, as long as every tet is positive.
+    /// Proposes a random operation, useful or not, as long as every tet is positive.
     pub(crate) fn propose(&mut self, complex: &Complex, numbers: &mut Numbers) -> bool {
         let alive: Vec<TetId> = complex.tets().collect();
         let tet = alive[numbers.below(alive.len())];
@@ -55,7 +55,7 @@ impl Editor {
         }
     }
 
-    /// Makes a proposal, if the kernel lets it; whether it did.
+    /// Makes a proposal if the kernel permits it; returns whether it did.
     pub(crate) fn make(&mut self, complex: &mut Complex) -> bool {
         match complex.check_against(&self.change, 0.0) {
             Ok(checked) => {

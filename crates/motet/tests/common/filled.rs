@@ -1,4 +1,5 @@
-//! What tets of given surfaces promise, asked of them: every triangle is there, all fits, volumes, empty spheres.
+//! Checks of what tets of given surfaces promise: every triangle is there, tets are conforming, volumes,
+//! empty spheres.
 
 use std::collections::{HashMap, HashSet};
 
@@ -19,7 +20,7 @@ fn rising(mut t: Triangle) -> Triangle {
     t
 }
 
-/// What is wrong with a result, if anything.
+/// The faults of a result, in words.
 pub(crate) fn faults(
     points: &[Point],
     triangles: &[Triangle],
@@ -72,7 +73,8 @@ pub(crate) fn faults(
 /// More tets than this are summed in `f64`.
 const MANY: usize = 20_000;
 
-/// So many last places of the largest coordinate a rounded point may lie off its edge or triangle.
+/// The permitted distance of a rounded point from its edge or triangle, in units in the last place of the
+/// largest coordinate.
 const LAST_PLACES: f64 = 2.0;
 
 type Exact = [BigRational; 3];
@@ -97,8 +99,8 @@ fn length(a: &Exact) -> f64 {
     dot(a, a).to_f64().unwrap().sqrt()
 }
 
-/// The points that are left on the surface, which come after the `n` given, and how far each lies off the line of its edge or the plane of its triangle,
-/// since it is rounded.
+/// The points left on the surface, which follow the `n` given ones, with the distance of each from the line
+/// of its edge or the plane of its triangle, caused by rounding.
 fn off_surface(n: usize, triangles: &[Triangle], filled: &Constrained) -> Vec<(VertexId, f64)> {
     let at = |v: VertexId| exact(filled.points[v.index()]);
     let off_edge = |[a, b]: [VertexId; 2], v| {
@@ -117,10 +119,12 @@ fn off_surface(n: usize, triangles: &[Triangle], filled: &Constrained) -> Vec<(V
     on_edges.chain(in_triangles.map(|(t, v)| (v, off_triangle(triangles[t as usize], v)))).collect()
 }
 
-/// Points left on the surface that are more than rounded, and bodies whose tets do not sum to what their surface encloses.
+/// Points left on the surface that are off by more than rounding, and bodies whose tets do not sum to the
+/// volume that their surface encloses.
 ///
-/// Sums are exact, but for very many tets. They are equal to the last bit where no rounded point is on the surface; where some are, they differ by their
-/// distances from it times a third of the facets there, to first order, and twice that is allowed.
+/// Sums are exact, except for very many tets. They are equal to the last bit where no rounded point is on the
+/// surface; where there are some, they differ to first order by the distances of these points times a third
+/// of the area of the facets there, and twice that is allowed.
 pub(crate) fn volumes(n: usize, triangles: &[Triangle], filled: &Constrained) -> Vec<String> {
     let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
     let at = |v: VertexId| filled.points[v.index()];
@@ -169,7 +173,8 @@ pub(crate) fn volumes(n: usize, triangles: &[Triangle], filled: &Constrained) ->
     faults
 }
 
-/// Facets between tets, not of the surface, with the one tet's vertex inside the sphere of the other (exact, so only without points on edges).
+/// Facets between tets, not on the surface, where the vertex of one tet is inside the sphere of the other
+/// (tested exactly, so only without points on edges).
 fn spheres(
     n: usize,
     filled: &Constrained,

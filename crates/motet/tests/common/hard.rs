@@ -19,14 +19,14 @@ pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) points: Vec<Point>,
     pub(crate) triangles: Vec<[VertexId; 3]>,
-    /// What the triangles enclose as they are turned (of nested surfaces every second faces inward); of surfaces with
-    /// membranes, what they enclose in all.
+    /// The volume enclosed, with the orientation of the triangles (of nested surfaces every second one faces
+    /// inward); for surfaces with membranes, the total.
     pub(crate) volume: Option<f64>,
-    /// Bodies share triangles: an edge can have an odd number of them.
+    /// Whether bodies share triangles: an edge can then have an odd number of them.
     pub(crate) has_membranes: bool,
 }
 
-/// Case `i` of as many as there are numbers, of 10 to some thousand triangles.
+/// Case `i`, with 10 to some thousand triangles.
 pub(crate) fn random_case(i: u64) -> Case {
     let mut numbers = Numbers(i.wrapping_mul(0x9e37_79b9).wrapping_add(77));
     let (kind, make) = KINDS[(i % KINDS.len() as u64) as usize];
@@ -64,7 +64,8 @@ const KINDS: [Kind; 23] = [
     ("wedges", |n| polygons::wedges(3 + n.below(200), 0.5f64.powi(n.below(30) as i32), n)),
 ];
 
-/// Stretches, shrinks and moves a body by amounts that change no sign: powers of two, and moves that round nothing. What was done.
+/// Stretches, shrinks and moves a body by amounts that change no sign: powers of two, and shifts without
+/// rounding. Returns a description.
 fn change(body: &mut Body, numbers: &mut Numbers) -> String {
     let mut done = String::new();
     if numbers.below(4) == 0 {

@@ -1,4 +1,5 @@
-//! What refinement has to keep, held against the first mesh: volumes, areas, facets that match, places, and how good tets are.
+//! What refinement has to preserve, compared with the first mesh: volumes, areas, matching facets, positions,
+//! and the quality of tets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,13 +11,14 @@ use motet::mesh::TetMesh;
 use motet::mesh::tet_facets::for_each_tet_facet;
 use motet::refine::Refinement;
 
-/// Volumes and areas may differ by this, relative to themselves.
+/// The permitted relative difference of volumes and areas.
 const TOLERANCE: f64 = 1e-13;
 
-/// Tets below this part of the first mesh's worst EAS are counted.
+/// Tets with an EAS below this part of the first mesh's worst are counted.
 pub(crate) const LEAST: f64 = 0.9;
 
-/// A sum with what its rounding lost (Neumaier 1974, *Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen*).
+/// A sum with the part lost by rounding (Neumaier 1974, *Rundungsfehleranalyse einiger Verfahren zur
+/// Summation endlicher Summen*).
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     sum: f64,
@@ -35,17 +37,17 @@ impl Sum {
     }
 }
 
-/// How large a mesh and its parts are.
+/// The volume of a mesh and of its parts.
 #[derive(Clone, Debug, Default)]
 struct Sizes {
     volume: f64,
     regions: BTreeMap<i32, f64>,
     patches: BTreeMap<i32, f64>,
-    /// The area of all facets that one tet has.
+    /// The area of all facets that belong to one tet only.
     boundary: f64,
     /// Facets of three tets or more.
     n_crowded: usize,
-    /// Triangles that are no facet of a tet.
+    /// Triangles that are not a facet of a tet.
     n_loose: usize,
 }
 
@@ -86,13 +88,13 @@ impl Sizes {
     }
 }
 
-/// How good a mesh is.
+/// The quality of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Quality {
     pub(crate) worst: f64,
     pub(crate) median: f64,
     pub(crate) worst_ratio: f64,
-    /// Tets below [`LEAST`] of a worst EAS that was given.
+    /// Number of tets below [`LEAST`] of a given worst EAS.
     pub(crate) n_below: usize,
 }
 
@@ -112,19 +114,19 @@ impl Quality {
     }
 }
 
-/// What a refined mesh is held against.
+/// The first mesh, with which a refined one is compared.
 pub(crate) struct First {
     pub(crate) mesh: TetMesh,
     pub(crate) quality: Quality,
     sizes: Sizes,
 }
 
-/// What came of it.
+/// The result of a comparison.
 pub(crate) struct Kept {
     pub(crate) quality: Quality,
     /// Roots with tets below [`LEAST`] of the first mesh's worst EAS.
     pub(crate) roots: BTreeSet<u32>,
-    /// Promises that do not hold, in words.
+    /// Broken promises, in words.
     pub(crate) broken: Vec<String>,
 }
 
@@ -134,7 +136,7 @@ impl First {
         Self { mesh, quality, sizes }
     }
 
-    /// Holds a refined mesh against the first one.
+    /// Compares a refined mesh with the first one.
     pub(crate) fn compare(&self, refinement: &Refinement, threads: &Threads) -> Kept {
         let mesh = refinement.mesh();
         let least = LEAST * self.quality.worst;
@@ -163,7 +165,7 @@ impl First {
     }
 }
 
-/// Holds a mesh of other vertices, it may be, against one before.
+/// Asserts that a mesh, possibly with other vertices, has the sizes of an earlier one.
 pub(crate) fn fits(before: &TetMesh, mesh: &TetMesh) {
     let broken = Sizes::of(before).broken(mesh);
     assert!(broken.is_empty(), "{broken:?}");
@@ -183,7 +185,7 @@ impl Sizes {
             ));
         }
         let mut hold = |what: &str, before: f64, after: f64| {
-            // A comparison that NaN does not pass.
+            // This comparison fails for NaN.
             let is_same = ((after - before) / before).abs() <= TOLERANCE;
             if !(is_same || before == after) {
                 broken.push(format!("{what} {before} became {after}, {:e} more", after / before - 1.0));

@@ -1,4 +1,4 @@
-//! What several tests need: real meshes, random meshes, random numbers.
+//! Shared by several tests: real meshes, random meshes, random numbers.
 
 #![allow(dead_code, reason = "each test uses a part of it")]
 
@@ -24,14 +24,14 @@ use motet::delaunay::Triangulation;
 use motet::geometry::tet::centroid;
 use motet::mesh::TetMesh;
 
-/// Every tetrahedral mesh of the data folder, where there is one. The cross-checks read the same list.
+/// Every tetrahedral mesh of the data folder, where it exists. The cross-checks read the same list.
 pub(crate) fn data_meshes() -> Vec<(String, Mesh)> {
     let names = include_str!("../real_tet_meshes.txt").lines();
     let Some(folder) = data_folder() else { return Vec::new() };
     names.map(|name| (name.to_string(), motet::io::read(folder.join(name)).unwrap())).collect()
 }
 
-/// The data folder, where there is one; says so where there is none.
+/// The data folder, where it exists; prints a note otherwise.
 pub(crate) fn data_folder() -> Option<PathBuf> {
     let folder = std::env::var("MOTET_DATA")
         .unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data").into());
@@ -43,7 +43,8 @@ pub(crate) fn data_folder() -> Option<PathBuf> {
     Some(folder)
 }
 
-/// A stream of numbers without end (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number generators*).
+/// An endless stream of random numbers (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number
+/// generators*).
 pub(crate) struct Numbers(pub(crate) u64);
 
 impl Numbers {
@@ -58,13 +59,14 @@ impl Numbers {
         (self.next() % n as u64) as usize
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
-/// Random points in a box, triangulated; two regions, 3 and 7, with a jagged interface, and some labelled facets.
+/// Random points in a box, triangulated; two regions, 3 and 7, with a jagged interface, and some labelled
+/// facets.
 pub(crate) fn random_mesh(n: usize, seed: u64) -> TetMesh {
     let mut numbers = Numbers(seed);
     let mut points: Vec<Point> = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| x as f64)).collect();
@@ -73,7 +75,7 @@ pub(crate) fn random_mesh(n: usize, seed: u64) -> TetMesh {
     let tets = delaunay.tets().to_vec();
     let corners = |t: &[VertexId; 4]| t.map(|v| points[v.index()]);
     let regions = tets.iter().map(|t| if centroid(corners(t))[0] < 0.5 { 3 } else { 7 }).collect();
-    // Two of these tets may share a facet; a triangle that is there twice would have to be held.
+    // Two of these tets may share a facet; a duplicate triangle would have to be held.
     let mut facets = BTreeSet::new();
     let triangles = tets.iter().step_by(29).map(|&[a, b, c, _]| [c, a, b]);
     let triangles: Vec<_> = triangles.filter(|&[a, b, c]| facets.insert(BTreeSet::from([a, b, c]))).collect();

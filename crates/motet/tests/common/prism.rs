@@ -22,12 +22,12 @@ pub(crate) fn prism(n: usize, radius: f64, height: f64) -> Mesh {
     Mesh::new(points, Cells::uniform(CellKind::TRIANGLE, ids).unwrap())
 }
 
-/// The same mesh with each point elsewhere.
+/// The mesh with transformed points.
 pub(crate) fn moved(mesh: &Mesh, to: impl Fn(Point) -> Point) -> Mesh {
     Mesh::new(mesh.points.iter().map(|p| to(*p)).collect(), mesh.cells.clone())
 }
 
-/// The same mesh, turned by odd angles about two axes.
+/// The mesh rotated by odd angles about two axes.
 pub(crate) fn turned(mesh: &Mesh) -> Mesh {
     let [(s, c), (t, d)] = [0.7f64, 1.1].map(f64::sin_cos);
     moved(mesh, |[x, y, z]| {

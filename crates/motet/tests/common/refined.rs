@@ -1,4 +1,4 @@
-//! What is needed to see what holds of a refined mesh.
+//! Helpers to check refined meshes.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use motet::geometry::vector::distance;
 use motet::mesh::shapes::sphere_in_box;
 use motet::mesh::{TetMesh, TetPart};
 
-/// Facets by their vertices, rising, and by how many tets they are used.
+/// Facets by their sorted vertices, with the number of tets that use them.
 pub(crate) fn facets(mesh: &TetMesh) -> HashMap<[VertexId; 3], u32> {
     let mut uses = HashMap::new();
     for tet in &mesh.tets {

@@ -1,10 +1,10 @@
-//! What a closed surface holds, from nothing but the definition.
+//! Whether a closed surface encloses a point, from the definition alone.
 
 use motet::base::{Point, VertexId};
 use motet::geometry::vector::{cross, dot, norm, sub};
 
-/// Whether a closed surface goes round `q`, either way: by the solid angles of its triangles, which sum to 4 pi a turn (Van Oosterom and Strackee 1983,
-/// *The solid angle of a plane triangle*).
+/// Whether a closed surface winds around `q` in either direction: by the solid angles of its triangles, which
+/// sum to 4 pi per turn (Van Oosterom and Strackee 1983, *The solid angle of a plane triangle*).
 pub(crate) fn holds(points: &[Point], triangles: &[[VertexId; 3]], q: Point) -> bool {
     let angle = |t: &[VertexId; 3]| {
         let [a, b, c] = t.map(|v| sub(points[v.index()], q));

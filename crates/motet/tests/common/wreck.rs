@@ -1,4 +1,5 @@
-//! Meshes that somebody has broken, and whether a mesh is one: by the definition, and by nothing that `motet` uses to keep it.
+//! Deliberately broken meshes, and checks of validity by definition, independent of the code by which `motet`
+//! ensures it.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,16 +13,16 @@ use motet::remesh::{Options, SurfaceRule, remesh};
 
 use super::{Numbers, random_mesh};
 
-/// What was done to a mesh.
+/// The damage done to a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Damage {
     /// Inner vertices moved at random, some or all, by up to twice their shortest edge.
     Shaken,
-    /// A tet put on the inner side of a boundary facet, so that two lie on one side of it.
+    /// A tet added on the inner side of a boundary facet, so that two lie on one side of it.
     Folded,
-    /// A tet there twice, its vertices in another order.
+    /// A duplicate of a tet, with its vertices in another order.
     Doubled,
-    /// A tet one of whose vertices is another one of the mesh.
+    /// A tet with one vertex replaced by another of the mesh.
     Misnamed,
     /// Vertices of the boundary moved through the mesh.
     Pushed,
@@ -30,26 +31,26 @@ pub(crate) enum Damage {
 pub(crate) const DAMAGES: [Damage; 5] =
     [Damage::Shaken, Damage::Folded, Damage::Doubled, Damage::Misnamed, Damage::Pushed];
 
-/// A mesh and what was done to it.
+/// A broken mesh and its damage.
 pub(crate) struct Wreck {
     pub(crate) damage: Damage,
     pub(crate) sound: TetMesh,
     pub(crate) mesh: TetMesh,
 }
 
-/// What came of a wreck.
+/// The outcome of repairing a wreck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum End {
-    /// Every tet is positive, and the mesh is one.
+    /// Every tet is positive, and the mesh is valid.
     Valid,
-    /// Tets are left that are flat or inverted, and the report counts them.
+    /// Flat or inverted tets are left, and the report counts them.
     Told,
     /// An error that names a place.
     Refused,
 }
 
 impl Wreck {
-    /// The wreck of a number: every size of shake, folds, several regions, membranes.
+    /// The wreck for a seed: shakes of every size, folds, several regions, membranes.
     pub(crate) fn new(seed: u64) -> Self {
         let mut numbers = Numbers(seed);
         let damage =
@@ -66,7 +67,8 @@ impl Wreck {
         Self { damage, sound, mesh }
     }
 
-    /// A box of `n` cells along each axis, all of whose inner vertices are moved by up to `part` of an edge along each axis.
+    /// A box of `n` cells along each axis, with all inner vertices moved by up to `part` of an edge along
+    /// each axis.
     pub(crate) fn shaken_box(seed: u64, n: usize, part: f64) -> Self {
         let sound = TetPart::of(&box_grid([n; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
         let (mut mesh, mut numbers) = (sound.clone(), Numbers(seed));
@@ -77,7 +79,8 @@ impl Wreck {
         Self { damage: Damage::Shaken, sound, mesh }
     }
 
-    /// Repairs it by a rule for the surface, and says what came of it; in words what must not be.
+    /// Repairs the wreck by a rule for the surface and returns the outcome; a violation is described in the
+    /// error.
     pub(crate) fn end(&self, surface: SurfaceRule) -> Result<End, String> {
         let options = Options { surface, ..Options::default() };
         let outcome = match remesh(&self.mesh, &options, &Threads::single()) {
@@ -146,7 +149,7 @@ fn sorted(facet: &[VertexId; 3]) -> [VertexId; 3] {
     key
 }
 
-/// The facets of one tet alone, of two regions, or with a triangle.
+/// The facets that belong to one tet only, separate two regions, or have a triangle.
 fn walls(mesh: &TetMesh) -> Vec<[VertexId; 3]> {
     let mut uses: HashMap<[VertexId; 3], Vec<usize>> = HashMap::new();
     facets(mesh).for_each(|(t, f)| uses.entry(sorted(&f)).or_default().push(t));
@@ -229,8 +232,9 @@ fn push(mesh: &mut TetMesh, numbers: &mut Numbers) {
     }
 }
 
-/// Whether tets fit together: no vertex twice in one, no two alike, a facet of two at most; and at how many facets a tet is flat, or two lie on one side.
-/// How the vertices of a tet are numbered does not matter.
+/// Checks that tets fit together: no vertex twice in one, no two alike, at most two at a facet. Returns the
+/// number of facets at which a tet is flat, or two lie on one side. The order of the vertices of a tet does
+/// not matter.
 pub(crate) fn sound_connectivity(mesh: &TetMesh) -> Result<usize, String> {
     let mut seen: HashMap<[VertexId; 4], usize> = HashMap::new();
     for (t, tet) in mesh.tets.iter().enumerate() {
@@ -261,7 +265,7 @@ pub(crate) fn sound_connectivity(mesh: &TetMesh) -> Result<usize, String> {
     Ok(n_wrong)
 }
 
-/// Whether two meshes have the same walls, by the bits of their points, and regions of the same volume.
+/// Checks that two meshes have the same walls, by the bits of their points, and regions of the same volume.
 fn same_walls(old: &TetMesh, new: &TetMesh) -> Result<(), String> {
     let bits = |mesh: &TetMesh| {
         let of = |f: [VertexId; 3]| {

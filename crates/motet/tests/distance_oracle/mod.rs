@@ -1,11 +1,11 @@
-//! The distance of two simplices without rounding, by another route than the library's: it is the least of the distances of
-//! the affine hulls of every two faces, of those pairs whose closest points lie within both faces.
+//! The exact distance of two simplices, by another method than the library's: the least of the distances
+//! between the affine hulls of any two faces whose closest points lie within both faces.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-/// A point of a grid.
+/// A point of an integer grid.
 pub(crate) type Grid = [i64; 3];
 
 fn dot(a: &Grid, b: &Grid) -> BigInt {
@@ -16,7 +16,7 @@ fn sub(a: &Grid, b: &Grid) -> Grid {
     [0, 1, 2].map(|k| a[k] - b[k])
 }
 
-/// By the first row; at most 4 rows.
+/// Expansion along the first row; at most 4 rows.
 fn determinant(rows: &[Vec<BigInt>]) -> BigInt {
     if rows.is_empty() {
         return BigInt::from(1);
@@ -32,7 +32,8 @@ fn determinant(rows: &[Vec<BigInt>]) -> BigInt {
     (0..rows.len()).filter(|&c| !rows[0][c].is_zero()).map(|c| signed(c) * determinant(&minor(c))).sum()
 }
 
-/// Squared distance of the affine hulls of `a` and `b`, if they have one closest pair of points only and it lies within both.
+/// Squared distance of the affine hulls of `a` and `b`, if they have a unique pair of closest points that
+/// lies within both.
 fn of_hulls(a: &[Grid], b: &[Grid]) -> Option<BigRational> {
     let from = sub(&a[0], &b[0]);
     let mut along: Vec<Grid> = a[1..].iter().map(|p| sub(p, &a[0])).collect();
@@ -65,8 +66,8 @@ fn faces(points: &[Grid]) -> Vec<Vec<Grid>> {
     (1..1 << points.len()).map(chosen).collect()
 }
 
-/// The squared distance of two simplices. A closest pair within the smallest possible faces is the only one of
-/// their hulls, so it is among those looked at.
+/// The squared distance of two simplices. A closest pair within the smallest possible faces is the unique one
+/// of their hulls, so it is among those examined.
 pub(crate) fn distance_squared(a: &[Grid], b: &[Grid]) -> BigRational {
     let pairs = faces(a).into_iter().flat_map(|x| faces(b).into_iter().map(move |y| (x.clone(), y)));
     pairs.filter_map(|(x, y)| of_hulls(&x, &y)).min().expect("two vertices have a distance")

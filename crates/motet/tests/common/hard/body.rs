@@ -1,11 +1,11 @@
-//! What all hard surfaces are built of: boxes, extruded polygons, and changes that round nothing.
+//! The building blocks of hard surfaces: boxes, extruded polygons, and transformations without rounding.
 
 use motet::base::{Point, VertexId};
 use motet::geometry::predicates::orient3d;
 
 use super::super::Numbers;
 
-/// Triangles over points, and what they enclose.
+/// Triangles over points, and the volume they enclose.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Body {
     pub(crate) points: Vec<Point>,
@@ -20,13 +20,13 @@ impl Body {
         Self { points, triangles, volume, has_membranes: false }
     }
 
-    /// One axis longer or shorter, by a power of two.
+    /// Scales one axis by a power of two.
     pub(crate) fn scale(&mut self, axis: usize, by: f64) {
         self.points.iter_mut().for_each(|p| p[axis] *= by);
         self.volume = self.volume.map(|v| v * by);
     }
 
-    /// Moves it, unless that rounds a coordinate.
+    /// Shifts the body, unless that rounds a coordinate; returns whether it did.
     pub(crate) fn shift(&mut self, by: Point) -> bool {
         let is_exact = |p: &Point| (0..3).all(|k| (p[k] + by[k]) - by[k] == p[k]);
         if !self.points.iter().all(is_exact) {
@@ -36,12 +36,12 @@ impl Body {
         true
     }
 
-    /// Axes in a circle: x becomes y.
+    /// Permutes the axes cyclically: x becomes y.
     pub(crate) fn turn(&mut self) {
         self.points.iter_mut().for_each(|p| p.rotate_right(1));
     }
 
-    /// Both, apart; volumes sum.
+    /// The disjoint union of both bodies; volumes add up.
     pub(crate) fn with(mut self, other: &Self) -> Self {
         let first = self.points.len();
         self.points.extend(&other.points);
@@ -56,7 +56,7 @@ impl Body {
         self
     }
 
-    /// Points at one place become one.
+    /// Merges points at the same place.
     pub(crate) fn welded(mut self) -> Self {
         let mut ids = std::collections::BTreeMap::new();
         let mut points: Vec<Point> = Vec::new();

@@ -1,4 +1,5 @@
-//! Boxes whose faces are cut badly: random points on edges and faces, in line with others, and edges flipped at random.
+//! Boxes with badly divided faces: random points on edges and faces, collinear with others, and edges flipped
+//! at random.
 
 use motet::base::Point;
 use motet::geometry::predicates::orient3d;
@@ -12,7 +13,7 @@ pub(crate) fn cut_box(steps: usize, numbers: &mut Numbers) -> Body {
     cut(steps, |n| (1 + n.below(7)) as f64 / 8.0, numbers)
 }
 
-/// The same with points near what is there already, so that triangles are thin.
+/// A box with about `steps` points on its surface, near existing points, so that triangles are thin.
 pub(crate) fn cut_box_thin(steps: usize, numbers: &mut Numbers) -> Body {
     cut(steps, |n| [0.5, 0.1, 1e-3, 1e-6, 0.999_999][n.below(5)] * (0.5 + 0.5 * n.unit()), numbers)
 }
@@ -38,11 +39,12 @@ struct Faces {
     triangles: Vec<[usize; 3]>,
 }
 
-/// Inside, and in no plane of a face.
+/// A place inside the box, in no plane of a face.
 const WITHIN: Point = [0.5, 1.0, 0.75];
 
 impl Faces {
-    /// Whether triangles face outward, none of them flat. All are in faces of the box, so signs are those within the plane.
+    /// Whether triangles face outward and none is flat. All lie in faces of the box, so signs are those
+    /// within the plane.
     fn are_sound(&self, triangles: &[[usize; 3]]) -> bool {
         triangles.iter().all(|t| {
             let [a, b, c] = t.map(|v| self.points[v]);
@@ -50,7 +52,8 @@ impl Faces {
         })
     }
 
-    /// A triangle turned so that a random edge is its first, and the other one at that edge.
+    /// A triangle rotated so that a random edge is its first, and the vertices of the two triangles at that
+    /// edge.
     fn random_edge(&self, numbers: &mut Numbers) -> ([usize; 2], [usize; 4]) {
         let s = numbers.below(self.triangles.len());
         let mut turned = self.triangles[s];
@@ -63,7 +66,7 @@ impl Faces {
         ([s, t], [a, b, c, d])
     }
 
-    /// A place that is in the plane of a face when the others are: no sum of shares is rounded.
+    /// A place that is exactly in the plane of a face if the others are: no sum of shares is rounded.
     fn between(&self, from: usize, to: &[(usize, f64)]) -> Point {
         let origin = self.points[from];
         to.iter().fold(origin, |p, &(v, share)| add(p, scale(sub(self.points[v], origin), share)))
@@ -101,7 +104,7 @@ impl Faces {
         let corners = [a, b, c, d].map(|v| self.points[v]);
         let [p, q, r, o] = corners;
         let new = [[a, d, c], [d, b, c]];
-        // Over an edge of the box nothing is flipped.
+        // Edges of the box are not flipped.
         if orient3d(p, q, r, o) == 0 && self.are_sound(&new) {
             [self.triangles[s], self.triangles[t]] = new;
         }

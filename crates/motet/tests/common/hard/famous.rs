@@ -1,12 +1,13 @@
-//! Polyhedra that need points of their own to be divided into tets: Schoenhardt's and Chazelle's.
+//! Polyhedra that cannot be divided into tets without additional points: Schoenhardt's and Chazelle's.
 
 use std::f64::consts::TAU;
 
 use super::super::Numbers;
 use super::body::{Body, area, ears};
 
-/// A prism over a triangle whose top is turned by this angle, above 0 and below 60 degrees (in radians), with its sides cut along the
-/// diagonals that lie inside (Schoenhardt 1928). At 30 degrees it is the usual one; near 0 sides are nearly flat, near 60 diagonals nearly meet.
+/// A prism over a triangle whose top is rotated by this angle, above 0 and below 60 degrees (in radians),
+/// with its sides cut along the diagonals that lie inside (Schoenhardt 1928). 30 degrees is the usual choice;
+/// near 0 sides are nearly flat, near 60 diagonals nearly meet.
 pub(crate) fn schoenhardt(twist: f64) -> Body {
     let corner = |angle: f64| [angle.cos(), angle.sin()];
     let [bottom, top] = [0.0, twist].map(|turn| [0, 1, 2].map(|i| corner(turn + TAU * f64::from(i) / 3.0)));
@@ -17,7 +18,7 @@ pub(crate) fn schoenhardt(twist: f64) -> Body {
         let next = (i + 1) % 3;
         triangles.extend([[i, next, next + 3], [i, next + 3, i + 3]]);
     }
-    // Simpson's rule is exact for a prismatoid; in the middle there is a hexagon of the middles of edges.
+    // Simpson's rule is exact for a prismatoid; the middle section is a hexagon of midpoints of edges.
     let half = |p: [f64; 2], q: [f64; 2]| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
     let middle: Vec<_> =
         (0..3).flat_map(|i| [half(bottom[i], top[i]), half(bottom[i], top[(i + 1) % 3])]).collect();
@@ -25,7 +26,7 @@ pub(crate) fn schoenhardt(twist: f64) -> Body {
     Body::new(points, &triangles, Some(volume))
 }
 
-/// A third of them near each end, where all is nearly degenerate.
+/// A random angle; a third are near each end of the range, where the body is nearly degenerate.
 pub(crate) fn random_twist(numbers: &mut Numbers) -> f64 {
     let (small, at) = (0.1f64.powi(2 + numbers.below(8) as i32), TAU / 6.0);
     match numbers.below(3) {
@@ -38,8 +39,8 @@ pub(crate) fn random_twist(numbers: &mut Numbers) -> f64 {
 /// Half the width of a notch where it opens.
 const HALF_WIDTH: f64 = 0.0625;
 
-/// A block with `n` thin notches from below, across y, and `n` from above, across x, that end on the surfaces z = x y and z = x y + `room`
-/// (Chazelle 1984): at least some n^2 tets are needed.
+/// A block with `n` thin notches from below, across y, and `n` from above, across x, that end on the surfaces
+/// z = x y and z = x y + `room` (Chazelle 1984): at least on the order of n^2 tets are needed.
 pub(crate) fn chazelle(n: usize, room: f64) -> Body {
     let end = (n + 1) as f64;
     let (low, high) = (-1.0, end * end + 2.0);
@@ -76,11 +77,11 @@ pub(crate) fn chazelle(n: usize, room: f64) -> Body {
         }));
     };
     for s in [0, 1] {
-        // Where y is least or largest: notches below, a straight edge above.
+        // The sides of least and largest y: notches below, a straight edge above.
         let mut corners: Vec<usize> = (0..m).map(|i| bottom(s, i)).collect();
         corners.extend([top(1, s * (m - 1)), top(0, s * (m - 1))]);
         side(corners, 0, s == 1);
-        // Where x is: a straight edge below, notches above.
+        // The sides of least and largest x: a straight edge below, notches above.
         let mut corners = vec![bottom(0, s * (m - 1)), bottom(1, s * (m - 1))];
         corners.extend((0..m).rev().map(|i| top(s, i)));
         side(corners, 1, s == 0);

@@ -9,8 +9,9 @@ use super::body::{Body, halves};
 
 type Place = [usize; 3];
 
-/// The boundary of a random set of about this share of `n^3` voxels, quads cut along random diagonals. Where voxels meet in an
-/// edge or a corner alone the surface is not a manifold there, unless it is asked to be one: then voxels are filled in.
+/// The boundary of a random set of about this share of `n^3` voxels, with quads cut along random diagonals.
+/// Where voxels meet only in an edge or a corner, the surface is not a manifold, unless `is_manifold` is set:
+/// then voxels are filled in.
 pub(crate) fn voxels(n: usize, share: f64, is_manifold: bool, numbers: &mut Numbers) -> Body {
     let mut grid = Grid::new(n, |_| numbers.unit() < share);
     grid.full[Grid::index(n, [n / 2; 3])] = true;
@@ -29,7 +30,7 @@ pub(crate) fn voxels(n: usize, share: f64, is_manifold: bool, numbers: &mut Numb
     skin.body(&lines, Some(volume))
 }
 
-/// A box parted into cells by membranes; four or three triangles share inner edges.
+/// A box divided into cells by membranes; three or four triangles share inner edges.
 pub(crate) fn cells(n: Place, numbers: &mut Numbers) -> Body {
     let lines = n.map(|n| random_lines(n, numbers));
     let mut skin = Skin::default();
@@ -45,7 +46,7 @@ pub(crate) fn cells(n: Place, numbers: &mut Numbers) -> Body {
     Body { has_membranes: n != [1; 3], ..skin.body(&lines, Some(volume)) }
 }
 
-/// A plate of height 1 whose top goes up and down at random by as much as `height`: dihedral angles are nearly flat.
+/// A plate of height 1 whose top varies at random by up to `height`: dihedral angles are nearly flat.
 pub(crate) fn bumps(n: usize, height: f64, numbers: &mut Numbers) -> Body {
     let lines = [random_lines(n, numbers), random_lines(n, numbers), vec![0.0, 1.0]];
     let mut skin = Skin::default();
@@ -65,12 +66,12 @@ pub(crate) fn bumps(n: usize, height: f64, numbers: &mut Numbers) -> Body {
         area * (a[2] + b[2] + c[2]) / 3.0
     };
     let is_top = |t: &[Point; 3]| t.iter().all(|p| p[2] > 0.5);
-    // On the sides triangles have no area seen from above.
+    // Triangles on the sides have no area seen from above.
     body.volume = Some(tops.filter(is_top).map(column).sum());
     body
 }
 
-/// Rising coordinates: whole numbers, or random steps of 64ths.
+/// Increasing coordinates: integers, or random steps of 64ths.
 fn random_lines(n: usize, numbers: &mut Numbers) -> Vec<f64> {
     let is_even = numbers.below(2) == 0;
     let mut line = vec![0.0];
@@ -124,7 +125,7 @@ impl Skin {
     }
 }
 
-/// Which voxels are full.
+/// A grid of voxels, each full or empty.
 struct Grid {
     n: usize,
     full: Vec<bool>,
@@ -144,15 +145,16 @@ impl Grid {
     }
 
     fn beside(&self, mut place: Place, axis: usize, up: bool) -> bool {
-        // Below 0 comes the largest number, which is outside too.
+        // Below 0 wraps to the largest number, which is outside too.
         place[axis] = if up { place[axis] + 1 } else { place[axis].wrapping_sub(1) };
         self.at(place)
     }
 
-    /// Fills an empty voxel where full ones meet, or empty ones do, in an edge or a corner alone. Whether there was one.
+    /// Fills an empty voxel where full ones, or empty ones, meet only in an edge or a corner; returns whether
+    /// there was one.
     fn fill_one_pinch(&mut self) -> bool {
         let n = self.n;
-        // Those at the rim count too: outside all is empty.
+        // Corners on the outer rim count too: everything outside is empty.
         for corner in places([n + 1; 3]) {
             let around: Vec<Place> =
                 (0..8).map(|d| [0, 1, 2].map(|k| (corner[k] + (d >> k & 1)).wrapping_sub(1))).collect();
@@ -170,7 +172,7 @@ impl Grid {
     }
 }
 
-/// Whether, of the eight voxels round a corner, those that are full (or empty) hang together by their sides.
+/// Whether, of the eight voxels around a corner, the full (or empty) ones are connected by their sides.
 fn is_joined(full: &[bool], wanted: bool) -> bool {
     let Some(first) = (0..8).find(|&d| full[d] == wanted) else { return true };
     let (mut seen, mut next) = ([false; 8], vec![first]);

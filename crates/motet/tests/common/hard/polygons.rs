@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::super::Numbers;
 use super::body::{Body, extruded};
 
-/// A comb: `teeth` of this width, as far apart as that, of random length.
+/// A comb: `teeth` of this width, equally far apart, of random length.
 pub(crate) fn comb(teeth: usize, width: f64, numbers: &mut Numbers) -> Body {
     let mut polygon = vec![[0.0, -1.0], [(2 * teeth - 1) as f64 * width, -1.0]];
     for tooth in (0..teeth).rev() {
@@ -22,7 +22,8 @@ pub(crate) fn comb(teeth: usize, width: f64, numbers: &mut Numbers) -> Body {
     extruded(&polygon, (1 + numbers.below(8)) as f64 / 4.0, numbers)
 }
 
-/// A band wound round a point; `thickness` is the part of the room between turns that it takes, less than 1.
+/// A band wound around a point; `thickness` is the fraction of the space between turns that it takes, less
+/// than 1.
 pub(crate) fn spiral(turns: usize, steps: usize, thickness: f64, numbers: &mut Numbers) -> Body {
     let at = |i: usize, off: f64| {
         let turn = i as f64 / steps as f64;
@@ -36,8 +37,8 @@ pub(crate) fn spiral(turns: usize, steps: usize, thickness: f64, numbers: &mut N
     extruded(&polygon, 1.0, numbers)
 }
 
-/// A polygon round the origin whose corners lie on one circle exactly, and a share of them on one half as large: all points with
-/// whole coordinates on the circle of radius 1105, or most of them.
+/// A polygon around the origin whose corners lie exactly on one circle, and a share of them on one half as
+/// large: all points with integer coordinates on the circle of radius 1105, or most of them.
 pub(crate) fn cocircular(outer_share: f64, numbers: &mut Numbers) -> Body {
     const RADIUS: i32 = 1105;
     let mut corners: Vec<[i32; 2]> = Vec::new();
@@ -49,7 +50,7 @@ pub(crate) fn cocircular(outer_share: f64, numbers: &mut Numbers) -> Body {
     }
     let angle = |[x, y]: [i32; 2]| f64::from(y).atan2(f64::from(x));
     corners.sort_by(|a, b| angle(*a).total_cmp(&angle(*b)));
-    // Enough stay for the origin to be inside.
+    // Keep enough corners for the origin to be inside.
     corners.retain(|[x, y]| *x == 0 || *y == 0 || numbers.unit() < 0.8);
     let polygon: Vec<[f64; 2]> = corners
         .into_iter()

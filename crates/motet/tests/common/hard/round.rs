@@ -1,4 +1,4 @@
-//! Bodies round a point or along a line: spiky stars, convex hulls, knots, coils.
+//! Bodies around a point or along a line: spiky stars, convex hulls, knots, coils.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -13,7 +13,8 @@ use motet::mesh::shapes::{Coil, wire};
 use super::super::Numbers;
 use super::body::Body;
 
-/// Corners and triangles of an icosahedron, each triangle divided in four some times, put onto the unit sphere.
+/// Corners and triangles of an icosahedron, with each triangle divided into four this many times, projected
+/// onto the unit sphere.
 pub(crate) fn icosphere(times: usize) -> (Vec<Point>, Vec<[usize; 3]>) {
     let golden = 0.5 * (1.0 + 5f64.sqrt());
     let mut points: Vec<Point> = Vec::new();
@@ -24,7 +25,7 @@ pub(crate) fn icosphere(times: usize) -> (Vec<Point>, Vec<[usize; 3]>) {
             points.push(scale(p, 1.0 / norm(p)));
         }
     }
-    // Corners are neighbours when they are nearest.
+    // Corners are neighbours if their distance is minimal.
     let near = |i: usize, j: usize| i != j && dot(points[i], points[j]) > 0.4;
     let outward = |[i, j, k]: [usize; 3]| dot(points[i], cross(points[j], points[k])) > 0.0;
     let mut triangles = Vec::new();
@@ -57,14 +58,14 @@ fn in_four(points: &mut Vec<Point>, triangles: &[[usize; 3]]) -> Vec<[usize; 3]>
     triangles.iter().flat_map(divide).collect()
 }
 
-/// A body that is seen whole from the origin, with radii from `least` to 1.
+/// A star-shaped body about the origin, with radii from `least` to 1.
 pub(crate) fn star(times: usize, least: f64, numbers: &mut Numbers) -> Body {
     let (mut points, triangles) = icosphere(times);
     points.iter_mut().for_each(|p| *p = scale(*p, least + (1.0 - least) * numbers.unit()));
     Body::new(points, &triangles, None)
 }
 
-/// The convex hull of points, which encloses what their Delaunay tets fill.
+/// The convex hull of points, with the volume that their Delaunay tets fill.
 fn hull(points: &[Point]) -> Body {
     let delaunay = Triangulation::new(points, &Threads::single()).expect("they span a volume");
     let filled = delaunay.tets().iter().map(|t| volume(t.map(|v| points[v.index()]))).sum();
@@ -73,7 +74,7 @@ fn hull(points: &[Point]) -> Body {
     used(&all)
 }
 
-/// Without the points that no triangle has.
+/// The body without points that no triangle uses.
 fn used(body: &Body) -> Body {
     let mut ids = BTreeMap::new();
     let mut points = Vec::new();
@@ -100,14 +101,15 @@ pub(crate) fn hull_of_cube(n: usize, numbers: &mut Numbers) -> Body {
     hull(&(0..n).map(|_| [(); 3].map(|()| numbers.unit())).collect::<Vec<_>>())
 }
 
-/// Points with whole coordinates: many in one plane, many on one sphere, some twice.
+/// The hull of points with integer coordinates: many in one plane, many on one sphere, some twice.
 pub(crate) fn hull_of_lattice(n: usize, side: usize, numbers: &mut Numbers) -> Body {
     let mut points: Vec<Point> = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     points.extend((0..n).map(|_| [(); 3].map(|()| numbers.below(side) as f64)));
     hull(&points)
 }
 
-/// A closed tube along a knot on a torus that goes `2 p - 1` times through its hole while it goes round twice.
+/// A closed tube along a knot on a torus that passes `2 p - 1` times through its hole while it goes around
+/// twice.
 pub(crate) fn knot(p: usize, steps: usize, around: usize) -> Body {
     let q = 2 * p - 1;
     let line: Vec<Point> = (0..steps)

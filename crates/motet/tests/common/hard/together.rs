@@ -1,4 +1,4 @@
-//! Several surfaces: inside each other, nearly touching, or sharing corners, edges and facets.
+//! Several surfaces: nested, nearly touching, or sharing corners, edges and facets.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use super::super::Numbers;
 use super::body::{Body, cuboid};
 use super::round;
 
-/// This many boxes, each inside the one before; every second is turned inward.
+/// `n` boxes, each inside the one before; every second is turned inward.
 pub(crate) fn nested(n: usize) -> Body {
     let box_of = |i: usize| {
         let half = (n - i) as f64;
@@ -19,7 +19,7 @@ pub(crate) fn nested(n: usize) -> Body {
     (1..n).fold(box_of(0), |all, i| all.with(&box_of(i)))
 }
 
-/// Plates on top of each other with this much room in between.
+/// Plates on top of each other with gaps of this size.
 pub(crate) fn plates(n: usize, room: f64, numbers: &mut Numbers) -> Body {
     let (mut all, mut low) = (cuboid([0.0; 3], [1.0, 1.0, 0.25]), 0.25);
     for _ in 0..n {
@@ -36,7 +36,7 @@ pub(crate) fn tet_in_box(shared: usize, numbers: &mut Numbers) -> Body {
     let mut body = cuboid([0.0; 3], [1.0; 3]);
     let shell = body.triangles[numbers.below(12)].map(VertexId::index);
     let mut tet: Vec<usize> = shell[..shared].to_vec();
-    // In no plane with each other and corners or edges of the box.
+    // In general position relative to each other and to corners and edges of the box.
     let inner = [[0.5, 0.5, 0.5], [0.625, 0.53125, 0.5625], [0.5, 0.6875, 0.53125]];
     for p in &inner[..4 - shared] {
         tet.push(body.points.len());
@@ -47,7 +47,7 @@ pub(crate) fn tet_in_box(shared: usize, numbers: &mut Numbers) -> Body {
     if volume < 0.0 {
         tet.swap(2, 3);
     }
-    // As a hole: its facets face inward.
+    // As a hole, with facets that face inward.
     let holes = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]].map(|t| t.map(|i: usize| VertexId::new(tet[i])));
     let is_new = |t: &[VertexId; 3]| !t.iter().all(|v| shell.contains(&v.index()));
     body.triangles.extend(holes.into_iter().filter(is_new));
@@ -81,7 +81,7 @@ pub(crate) fn boxes_in_touch(numbers: &mut Numbers) -> Body {
     }
 }
 
-/// Of triangles with the same corners the first stays.
+/// Drops all but the first of the triangles with the same corners.
 fn drop_twins(body: &mut Body) {
     let mut seen = BTreeSet::new();
     body.triangles.retain(|t| {
@@ -91,7 +91,7 @@ fn drop_twins(body: &mut Body) {
     });
 }
 
-/// A spiky body in a larger copy of itself, turned inward; between them lies a thin shell.
+/// A spiky body, turned inward, in a larger copy of itself; between them lies a thin shell.
 pub(crate) fn star_in_star(numbers: &mut Numbers) -> Body {
     let outer = round::star(1 + numbers.below(3), 0.2, numbers);
     let mut inner = outer.clone();
