@@ -1,4 +1,5 @@
-//! Devices in a mesh, held against what is promised: every triangle a facet, all fits, volumes, what stays stays to the bit.
+//! Devices in a mesh, compared with what is promised: every triangle is a facet, the mesh is conforming,
+//! volumes are right, and the rest stays to the bit.
 
 mod common;
 
@@ -30,7 +31,7 @@ fn surface(device: &Device) -> Surface {
     }
 }
 
-/// What is wrong with a result that is said to be valid.
+/// The faults of a result that is reported as valid.
 fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Vec<String> {
     let mut faults = Vec::new();
     let mesh = &made.mesh;
@@ -82,7 +83,7 @@ fn faults(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) 
     faults
 }
 
-/// Tets of the host farther from all devices than was to be touched, that are not there any more.
+/// Tets of the host farther from all devices than the reach that are no longer there.
 fn touched_beyond(host: &Mesh, devices: &[Device], options: &Options, made: &Implanted) -> Option<String> {
     if options.adapt != Adapt::No {
         return None;
@@ -262,14 +263,14 @@ fn fields_go_along() {
         let ledger = field_ledger(&host, &made.mesh, &Rules::default());
         let of_mean = ledger.iter().find(|field| field.name == "mean").unwrap();
         assert!(of_mean.range_after.unwrap()[0] >= of_mean.range_before.unwrap()[0]);
-        // The sum over all regions stays: what lies in the ball came from the box.
+        // The sum over all regions is preserved: what lies in the ball came from the box.
         let integral = |mesh: &Mesh| -> f64 {
             let mean = mesh.cell_field("mean").unwrap().values.to_f64().unwrap();
             tets(mesh).map(|(cell, tet)| mean[cell.index()] * volume(tet)).sum()
         };
         let (before, after) = (integral(&host), integral(&made.mesh));
         assert!((before - after).abs() < 1e-9 * before.abs().max(27.0), "{before} {after}");
-        // Kept is kept.
+        // Kept cells keep their values.
         for (cell, origin) in (0u32..).map(CellId).zip(made.history.cells.iter()) {
             if let (Origin::Kept(old), Adapt::No) = (origin, options.adapt) {
                 let now = made.mesh.cells.vertices(cell).iter().map(|v| made.mesh.points[v.index()]);
@@ -365,7 +366,7 @@ fn together(a: &Mesh, b: &Mesh) -> Mesh {
 #[test]
 fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
     let host = room(8);
-    // Turns that overlap; two balls, one partly in the other; a ball there twice; a ball with a hole.
+    // Overlapping turns; two balls, one partly in the other; a ball given twice; a ball with a hole.
     let overlapping = Coil { centre: [0.0; 3], radius: 0.6, pitch: 0.2, turns: 2.5, wire_radius: 0.12 };
     let lens = |r: f64, d: f64| std::f64::consts::PI * (4.0 * r + d) * (2.0 * r - d).powi(2) / 12.0;
     let sphere = |r: f64| std::f64::consts::PI * 4.0 / 3.0 * r * r * r;
@@ -395,7 +396,7 @@ fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
         assert!(made.report.volume_deviation() < 1e-9, "{name}");
         assert_eq!(made.report.n_unforced(), 0, "{name}");
         assert!(fit.to_old <= fit.tolerance, "{name} {fit:?}");
-        // The hole is closed by a surface that the old one does not have.
+        // The hole is closed by a surface that has no counterpart in the old one.
         assert!(name == "holed" || fit.is_reached(), "{name} {fit:?}");
         if let Some(volume) = volume {
             let off = (told.volume - volume).abs() / volume;
@@ -404,7 +405,7 @@ fn what_crosses_itself_gets_a_new_surface_within_the_tolerance() {
     }
 }
 
-/// The same surface, facing the other way.
+/// The surface with opposite orientation.
 fn turned(mesh: &Mesh) -> Mesh {
     let mut surface = together(mesh, &Mesh::default());
     let turned: Vec<VertexId> = surface.cells.iter().flat_map(|(_, _, v)| [v[0], v[2], v[1]]).collect();
@@ -432,7 +433,8 @@ fn parts_are_taken_as_they_are_meant_whichever_way_they_face() {
     is_near(&mixed, of_one);
     is_near(&together(&mixed, &other), of_both);
     is_near(&together(&mixed, &turned(&other)), of_both);
-    // A cavity faces the other way than what it lies in, and two that face one way are one room.
+    // A cavity is oriented opposite to the surface around it; two nested surfaces with the same orientation
+    // are one body.
     let shell = together(&one, &turned(&within));
     for shell in [&shell, &turned(&shell)] {
         is_near(shell, of_one - of_within);
@@ -441,7 +443,7 @@ fn parts_are_taken_as_they_are_meant_whichever_way_they_face() {
     for filled in [&filled, &turned(&filled)] {
         is_near(filled, of_one);
     }
-    // One triangle of many turned, and an open ball.
+    // One triangle of many reversed, and an open ball.
     let mut odd = together(&one, &Mesh::default());
     let first: Vec<VertexId> = odd.cells.vertices(CellId(0)).to_vec();
     let all: Vec<VertexId> = odd.cells.iter().flat_map(|(_, _, v)| v.to_vec()).collect();
@@ -473,7 +475,7 @@ fn new_surfaces_have_no_narrow_triangles() {
     }
 }
 
-/// That at the first corner, in degrees.
+/// The angle at the first corner, in degrees.
 fn angle([a, b, c]: [Point; 3]) -> f64 {
     let [u, v] = [b, c].map(|p| sub(p, a));
     norm(cross(u, v)).atan2(dot(u, v)).to_degrees()
@@ -497,7 +499,7 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     let refused =
         |mesh: Mesh, options: &Options| put(&host, &[Device::new(mesh, "thing")], options).unwrap_err();
     assert!(refused(Mesh::default(), &conform(None)).what().contains("goes round nothing"));
-    // Before any work, with what can be had.
+    // Refused before any work, with what is possible instead.
     let too_fine = refused(device.mesh.clone(), &conform(Some(1e-6)));
     assert!(too_fine.what().contains("far too many cubes"));
     assert!(too_fine.remedy_text().unwrap().contains("a tolerance of 2"), "{too_fine}");
@@ -508,7 +510,7 @@ fn a_tolerance_is_kept_and_what_goes_round_nothing_refused() {
     assert!(refused(odd, &conform(None)).what().contains("no number"));
 }
 
-/// `MOTET_CASES=500` makes more of them. Those that meet walls have their own test.
+/// `MOTET_CASES=500` makes more placements. Those that meet walls have their own test.
 #[test]
 fn random_placements_away_from_walls_are_sound() {
     let n: usize = std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(40);

@@ -1,4 +1,5 @@
-//! Wires that touch, cross or nearly do are put in with a new surface: what bounds the flow, and the wires, is a 2-manifold.
+//! Wires that touch, cross or nearly do are put in with a new surface: the boundaries of the flow and of the
+//! wires are 2-manifolds.
 
 mod common;
 
@@ -52,7 +53,8 @@ fn straight(from: Point, to: Point) -> Vec<Point> {
     (0..=4).map(|i| add(from, scale(sub(to, from), f64::from(i) / 4.0))).collect()
 }
 
-/// Edges of the boundary of some tets that not just two of its facets use, and vertices with more than one fan of them.
+/// Counts edges of the boundary of some tets that do not have exactly two of its facets, and vertices with
+/// more than one fan of them.
 fn pinches(tets: &[[VertexId; 4]]) -> (usize, usize) {
     let mut facets: HashMap<[VertexId; 3], ([VertexId; 3], usize)> = HashMap::new();
     for &[a, b, c, d] in tets {
@@ -71,7 +73,7 @@ fn pinches(tets: &[[VertexId; 4]]) -> (usize, usize) {
             at.entry(w).or_default().push([u, v]);
         }
     }
-    // Round a vertex the sides across from it follow each other in one ring.
+    // Around a vertex, the opposite sides follow each other in one ring.
     let is_one_fan = |sides: &Vec<[VertexId; 2]>| {
         let next: HashMap<VertexId, VertexId> = sides.iter().map(|&[u, v]| (u, v)).collect();
         let (start, mut v, mut n) = (sides[0][0], sides[0][0], 0);

@@ -1,4 +1,5 @@
-//! Devices that touch walls of the host or go through them: both divided where they meet, what lies outside cut off or kept.
+//! Devices that touch walls of the host or cross them: both are divided where they meet; the part outside is
+//! cut off or kept.
 
 mod common;
 
@@ -22,7 +23,7 @@ fn put(host: &Mesh, devices: &[Device], options: &Options) -> motet::Result<Impl
     implant(host, devices, options, &Rules::default(), &Threads::single())
 }
 
-/// Surfaces stay where they are, but for what lies in one plane.
+/// Options by which surfaces stay where they are, except within a plane.
 fn strict() -> Options {
     Options { adapt: Adapt::No, stray: Some(1e-9), ..Options::default() }
 }
@@ -31,7 +32,8 @@ fn filled(mesh: Mesh, name: &str) -> Device {
     Device { mesh, name: name.to_owned(), inside: Inside::Filled }
 }
 
-/// What a device and a box have in common: tets of the device, each with the five of the box.
+/// The volume that a device and a box have in common: tets of the device, each intersected with the five of
+/// the box.
 fn common_volume(device: &Device, low: Point, high: Point) -> f64 {
     let mut surface = Surface::of(&device.mesh);
     if surface.triangles.is_empty() {
@@ -52,7 +54,8 @@ fn common_volume(device: &Device, low: Point, high: Point) -> f64 {
 const LOW: Point = [-1.5; 3];
 const HIGH: Point = [1.5; 3];
 
-/// What is wrong with a result: facets that are open where there is neither a wall of the box nor the device, volumes that are not those of both.
+/// The faults of a result: open facets that belong neither to a wall of the box nor to the device, and
+/// volumes that are not those of both.
 fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> Vec<String> {
     let mut faults = Vec::new();
     let mesh = &made.mesh;
@@ -87,7 +90,8 @@ fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> V
             faults.push(format!("a facet at {:?} is open", facet[0]));
         }
     }
-    // Triangles of the device that are far from walls are there: those that are divided, two rings round them and what these touch may have changed.
+    // Triangles of the device far from walls are kept: those that are divided, two rings around them and what
+    // these touch may have changed.
     let longest = (0..surface.triangles.len()).flat_map(|t| {
         let [a, b, c] = surface.corners(t);
         [distance(a, b), distance(b, c), distance(c, a)]
@@ -109,7 +113,7 @@ fn faults(device: &Device, options: &Options, made: &Implanted, stray: f64) -> V
     };
     let all: f64 = tets(mesh).map(|(_, tet)| volume(tet)).sum();
     let mut expect = |what: &str, is: f64, expected: f64| {
-        // What strays is a strip along the line where both meet, or all of a thin device.
+        // The strayed part is a strip along the line where both meet, or all of a thin device.
         let bound = 1e-9 * expected.abs().max(1e-3) + 8.0 * stray * part.max(0.1);
         if (is - expected).abs() > bound {
             faults.push(format!("{what}: {is}, expected {expected}"));
@@ -141,7 +145,7 @@ fn area(mesh: &Mesh, patch: i32) -> f64 {
 #[test]
 fn a_box_through_a_wall_is_cut_off_or_kept() {
     let host = room(8);
-    // Aligned with nothing: half of it is outside.
+    // Not aligned with anything: half of it is outside.
     let device = |inside| Device {
         inside,
         ..filled(box_grid([2; 3], [[-0.31, -0.23, 1.2], [0.37, 0.41, 1.83]]), "box")
@@ -200,7 +204,7 @@ fn what_lies_on_a_wall_has_its_own_patch() {
         let other = Device { inside: Inside::Hollow, ..device };
         assert!(sound(&host, &other, &strict()).report.devices[0].contact_patch.is_none());
     }
-    // One that keeps its tets may have whole facets and corners on walls.
+    // A device that keeps its tets may have whole facets and corners on walls.
     let cube = Device::new(box_grid([1; 3], [[0.75, 0.0, 0.0], [1.5, 0.75, 0.75]]), "cube");
     let tip = Device::new(moved(ball(2, 1), |p| [0.3 * p[0], 0.3 * p[1], 1.2 + 0.3 * p[2]]), "tip");
     for (device, has_area) in [(cube, true), (tip, false)] {
@@ -208,10 +212,10 @@ fn what_lies_on_a_wall_has_its_own_patch() {
         let told = &made.report.devices[0];
         assert_eq!((told.triangles, told.contact_patch.is_some()), (told.triangles_kept, has_area));
     }
-    // From outside it only touches.
+    // A device outside only touches.
     let beside = filled(box_grid([2; 3], [[-0.3, -0.2, 1.5], [0.4, 0.3, 2.0]]), "box");
     assert!(put(&host, &[beside], &strict()).unwrap_err().what().contains("lies outside of the host"));
-    // Two that have walls and a side in common.
+    // Two devices with common walls and a common side.
     let two = [[-0.5, 0.0], [0.0, 0.5]]
         .map(|[x, y]| filled(box_grid([2; 3], [[x, -0.3, 1.1], [y, 0.3, 1.7]]), "half"));
     let made = put(&host, &two, &strict()).unwrap();
@@ -316,7 +320,7 @@ fn what_takes_all_the_room_or_holds_cells_of_other_kinds_is_refused() {
     assert!(error.what().contains("cells of other kinds") && error.place().is_some(), "{error}");
 }
 
-/// `MOTET_CASES=500` makes more of them.
+/// `MOTET_CASES=500` makes more placements.
 #[test]
 fn random_placements_give_a_sound_mesh_or_a_named_refusal() {
     let n: usize = std::env::var("MOTET_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(60);

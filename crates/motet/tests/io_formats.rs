@@ -1,5 +1,4 @@
-//! MSH, STL, OBJ, Medit, TetGen and DOLFIN files: what is written comes back, what
-//! is damaged is told.
+//! MSH, STL, OBJ, Medit, TetGen and DOLFIN files: written files are read back; damage is reported.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +13,7 @@ fn format(ending: &str) -> &'static Format {
     formats().iter().find(|f| f.endings.contains(&ending)).expect("the format is registered")
 }
 
-/// Reads bytes as a file with this ending, without a file.
+/// Parses bytes as a file with this extension, in memory.
 fn parse(ending: &str, bytes: &[u8]) -> motet::Result<Mesh> {
     let path = format!("in{ending}");
     read_as(format(ending), &Input { path: Path::new(&path), bytes, notes: &Notes::default() })
@@ -26,7 +25,7 @@ fn notes_of(ending: &str, bytes: &[u8]) -> Vec<String> {
     notes.into_vec()
 }
 
-/// Writes into memory: the first file, and what was lost.
+/// Writes into memory; returns the first file, and what was lost.
 fn print(ending: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<String>) {
     let writer = format(ending).write.expect("the format is written");
     let mut written = writer(mesh, options).expect("the mesh is written");
@@ -248,7 +247,7 @@ proptest! {
         prop_assert_eq!(corners(&back), corners(&mesh));
         prop_assert_eq!(patch_names(&back), if labels.iter().any(|l| *l != labels[0]) { patch_names(&mesh) } else { vec![] });
 
-        // In binary after rounding to single precision, which the first writing does.
+        // In binary, after rounding to single precision, which the first writing does.
         mesh.set_cell_field(Field::scalars("attribute", labels.iter().map(|&l| l as u16).collect::<Vec<_>>()));
         let once = parse(".stl", &print(".stl", &mesh, &WriteOptions::default()).0).unwrap();
         let rounded = corners(&mesh).iter().map(|t| t.map(|p| p.map(|x| f64::from(x as f32)))).collect::<Vec<_>>();
@@ -257,7 +256,7 @@ proptest! {
         prop_assert_eq!(once.cell_field("attribute"), marked);
     }
 
-    /// Whatever is cut off or overwritten: a mesh or an error, never a panic.
+    /// Whatever is cut off or overwritten, the result is a mesh or an error, never a panic.
     #[test]
     fn damage_is_survived(
         (mut mesh, labels) in meshes(MSH_KINDS, false),
@@ -280,7 +279,7 @@ proptest! {
         for (ending, options) in files {
             let (mut bytes, _) = print(ending, &mesh, &options);
             let n = bytes.len();
-            // A surface of no cells has no bytes.
+            // A surface without cells has no bytes.
             for (place, value) in flips.iter().filter(|_| n > 0) {
                 bytes[(place * n as f64) as usize] ^= value;
             }
@@ -299,7 +298,7 @@ fn corners(mesh: &Mesh) -> Vec<[Point; 3]> {
     mesh.cells.iter().map(|(.., v)| [v[0], v[1], v[2]].map(|v| mesh.points[v.index()])).collect()
 }
 
-/// Every message names the place; most say what to do.
+/// Every message names the place; most suggest a remedy.
 #[test]
 fn damaged_files_are_told() {
     let msh2 = |body: &str| format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n{body}");
@@ -580,7 +579,7 @@ fn marks_of_medit_come_back() {
     assert!(lost.iter().all(|l| l.contains("order")), "{lost:?}");
     let back = parse(".mesh", &bytes).unwrap();
     assert_eq!(back.point_data, mesh.point_data);
-    // Edges come first now.
+    // Edges come first after reading.
     assert_eq!(back.cell_field("medit:ridge").unwrap().values, Values::U8(vec![0, 1, 0]));
     assert_eq!(back.cell_field("medit:required").unwrap().values, Values::U8(vec![0, 0, 1]));
     assert_eq!(back.cell_field("medit:ref").unwrap().values, Values::I32(vec![4, 5, 9]));
@@ -634,7 +633,7 @@ fn a_volume_becomes_its_boundary_in_formats_of_surfaces() {
         assert!(lost.iter().any(|l| l.contains("boundary")), "{lost:?}");
         let surface = parse(ending, &bytes).unwrap();
         assert_eq!(surface.cells.counts(), [(CellKind::TRIANGLE, 6)]);
-        // Facing outward, a closed surface holds its volume: 1/6 and 1/3 of the unit cube.
+        // Facing outward, a closed surface encloses its volume: 1/6 and 1/3 of the unit cube.
         let volume: f64 = self::corners(&surface)
             .iter()
             .map(|[a, b, c]| {
@@ -707,7 +706,7 @@ fn every_real_file_is_read_or_refused_with_a_remedy() {
     assert!(n_read > 0);
 }
 
-/// A folder as SimVascular lays it out: one tet, two of its facets as faces.
+/// A folder in SimVascular's layout: one tet, two of its facets as faces.
 fn mesh_complete(folder: &Path, with_ids: bool, face_ids: [i32; 2]) {
     let mut volume = Mesh::new(
         vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -725,7 +724,7 @@ fn mesh_complete(folder: &Path, with_ids: bool, face_ids: [i32; 2]) {
         face.set_cell_field(Field::scalars("GlobalElementID", vec![1i32]));
         if with_ids {
             face.set_point_field(Field::scalars("GlobalNodeID", ids.map(|i| 10 * (i as i64 + 1)).to_vec()));
-            // Ids count, not places.
+            // Ids are used, not positions.
             face.points.iter_mut().for_each(|p| p[0] += 0.125);
         }
         write(folder.join("mesh-surfaces").join(name).with_extension("vtp"), &face, &WriteOptions::default())
@@ -804,7 +803,7 @@ fn an_entity_gets_a_number_also_where_the_largest_is_taken() {
     let mut mesh = motet::mesh::shapes::box_grid([1, 1, 1], [[0.0; 3], [1.0; 3]]);
     let n = mesh.cells.len();
     mesh.cell_data.clear();
-    // One entity with several labels: version 4 knows one to an entity, so new ones are needed.
+    // One entity with several labels: version 4 permits one per entity, so new entities are needed.
     mesh.set_cell_field(Field::scalars("gmsh:geometrical", vec![i32::MAX; n]));
     mesh.set_cell_field(Field::scalars("gmsh:physical", (1..).take(n).collect::<Vec<i32>>()));
     let folder = tempfile::tempdir().unwrap();
@@ -832,7 +831,7 @@ fn a_mesh_goes_into_a_simvascular_folder_and_comes_back() {
     let back = read(&folder).unwrap();
     assert_eq!(back.points, mesh.points);
     assert_eq!(back.point_field("p"), mesh.point_field("p"));
-    // The same cells with the same labels; faces come in the order of their names.
+    // The cells and labels are the same; faces come in the order of their names.
     let cells = |mesh: &Mesh| {
         let labels = mesh.patches().unwrap().ids;
         let mut cells: Vec<_> =
@@ -843,7 +842,7 @@ fn a_mesh_goes_into_a_simvascular_folder_and_comes_back() {
     assert_eq!(cells(&back), cells(&mesh));
     mesh.label_names.patches.insert(1, "wall_left".into());
     assert_eq!(back.label_names.patches, mesh.label_names.patches);
-    // Each facet has the element behind it: they share its three vertices.
+    // Each facet refers to the element behind it: they share its three vertices.
     let elements = back.cell_field("GlobalElementID").unwrap().values.to_i64().unwrap();
     for (i, kind, vertices) in back.cells.iter().filter(|(_, kind, _)| *kind == CellKind::TRIANGLE) {
         let behind = motet::base::CellId::new(elements[i.index()] as usize - 1);

@@ -1,4 +1,5 @@
-//! Meshes in several files or pieces, cells of several groups, bytes behind triangles, and what unpacks without end.
+//! Meshes in several files or pieces, cells in several groups, trailing bytes after triangles, and
+//! decompression without end.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use motet::base::VertexId;
 use motet::io::{Compression, WriteOptions, formats, read_noted, write};
 use motet::mesh::{CellKind, Cells, Field, Summary, shapes};
 
-/// A folder that goes away with the test.
+/// A folder that is removed after the test.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -39,7 +40,7 @@ fn refused(path: impl AsRef<Path>) -> String {
     read_noted(path).expect_err("it is refused").to_string()
 }
 
-/// The cells of a cube between two planes across x, with a layer of ghosts on either side where asked for.
+/// The cells of a cube between two planes across x, with a layer of ghosts on either side on request.
 fn part(whole: &Mesh, [low, high]: [f64; 2], ghosts: f64) -> Mesh {
     let (mut cells, mut flags) = (Cells::new(), Vec::new());
     let mut new = vec![None; whole.points.len()];
@@ -154,7 +155,7 @@ fn an_element_of_two_groups_is_one_cell() {
     assert_eq!(mesh.cell_field("gmsh:physical").and_then(|f| f.values.to_i64()), Some(vec![7, 5]));
     assert_eq!(mesh.cell_field("e").and_then(|f| f.values.to_f64()), Some(vec![0.5, 7.0]));
     assert!(notes.contains("several physical groups"), "{notes}");
-    // The same group twice, or another entity, is what the file says.
+    // The same group twice, or another entity, is taken as the file says.
     for other in ["2 4 2 7 1 1 2 3 4\n", "2 4 2 9 2 1 2 3 4\n"] {
         let (mesh, _) = read(folder.write("other.msh", text(&format!("1 4 2 7 1 1 2 3 4\n{other}"), "")));
         assert_eq!(mesh.cells.len(), 2, "{other}");
@@ -188,7 +189,7 @@ fn bytes_behind_triangles_are_passed_over() {
     assert!(refused(folder.write("cut.stl", &bytes)).contains("bytes"));
 }
 
-/// A grid of points that are all 0, as one block that stands there many times.
+/// A grid of points that are all 0, as one block repeated many times.
 fn zeros(n_blocks: usize) -> Vec<u8> {
     let block = 3 << 19;
     let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());

@@ -1,5 +1,5 @@
-//! VTU, VTP, legacy VTK and PVD files: what goes out comes back, and damaged
-//! files are refused with the place and a remedy.
+//! VTU, VTP, legacy VTK and PVD files: written files are read back, and damaged files are refused with the
+//! place and a remedy.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn write(ending: &str, mesh: &Mesh, options: &WriteOptions) -> (Vec<u8>, Vec<Str
     (written.files.remove(0).1, written.lost)
 }
 
-/// Every way of writing a VTK file with this ending.
+/// Every combination of options for a VTK file with this extension.
 fn ways(ending: &str) -> Vec<WriteOptions> {
     let way = |encoding, compression, version: Option<&str>| WriteOptions {
         encoding,
@@ -43,7 +43,7 @@ fn ways(ending: &str) -> Vec<WriteOptions> {
     ways
 }
 
-/// Equal to the bit, where `==` would take 0 for -0 and no NaN for itself.
+/// Asserts equality to the bit, where `==` would equate 0 and -0 and distinguish NaN from itself.
 fn assert_same(ours: &Mesh, theirs: &Mesh) {
     let bits = |points: &[[f64; 3]]| points.as_flattened().iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&ours.points), bits(&theirs.points));
@@ -108,7 +108,7 @@ fn any_fields(prefix: &'static str, n_rows: usize) -> impl Strategy<Value = Vec<
     })
 }
 
-/// Cells of kinds with a fixed number of vertices, and with any.
+/// Cells of kinds with a fixed number of vertices, and of others.
 fn any_cell(n_points: u32) -> impl Strategy<Value = (CellKind, Vec<u32>)> {
     let fixed =
         prop::sample::select(vec![1u8, 3, 5, 8, 9, 10, 11, 12, 13, 14, 15, 16, 21, 22, 24, 25, 26, 29, 34])
@@ -119,8 +119,8 @@ fn any_cell(n_points: u32) -> impl Strategy<Value = (CellKind, Vec<u32>)> {
         .prop_flat_map(move |(kind, n)| (Just(kind), prop::collection::vec(0..n_points, n)))
 }
 
-/// A polyhedron's faces from any ids: consecutive triangles. Its vertices are
-/// those of its faces, sorted, which is how legacy files have them.
+/// Adds a cell; a polyhedron gets consecutive triangles of the ids as faces. Its vertices are those of its
+/// faces, sorted, as in legacy files.
 fn push(cells: &mut Cells, kind: CellKind, ids: &[u32]) {
     if kind != CellKind::POLYHEDRON {
         return cells.push(kind, ids.iter().map(|&v| VertexId(v)));
@@ -190,7 +190,7 @@ proptest! {
         let at = |share: f64| ((bytes.len() - 1) as f64 * share) as usize;
         // Neither may panic; what is read has been validated.
         if let Err(error) = read(ending, &bytes[..at(cut)]) {
-            // An empty file has no place in it.
+            // An empty file has no place.
             assert!(error.place().is_some() || at(cut) == 0, "{error}");
             assert!(error.remedy_text().is_some(), "{error}");
         }
@@ -224,7 +224,7 @@ fn polygonal_data_comes_back_in_vtks_order_of_cells() {
         assert_eq!(back.cells.kinds(), kinds);
         assert_eq!(back.cells.connectivity().list(3), ids(&[0, 1, 3, 2]));
         assert_eq!(back.cell_data[0].values, Values::U8(vec![10, 11, 6, 7, 2, 3, 4, 5, 0, 1]));
-        // A second time round nothing is left to change.
+        // The second time, nothing is left to change.
         let (again, lost) = write(".vtp", &back, &way);
         assert!(lost.is_empty());
         assert_same(&read(".vtp", &again).unwrap(), &back);
@@ -261,7 +261,7 @@ fn labels_of_other_programs_are_written_under_our_names() {
 
 // Damaged files.
 
-/// One tet with an array, as text that the tests change.
+/// One tet with an array, as text that the tests modify.
 const TET: &str = r#"<?xml version="1.0"?>
 <VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
   <UnstructuredGrid>
@@ -282,7 +282,7 @@ const TET: &str = r#"<?xml version="1.0"?>
 </VTKFile>
 "#;
 
-/// Changes `TET` and asserts that the message has `place`, `what` and a remedy.
+/// Modifies `TET` and asserts that the message has `place`, `what` and a remedy.
 fn assert_refused(from: &str, to: &str, place: &str, what: &str) {
     assert!(TET.contains(from), "{from}");
     let error = read(".vtu", TET.replace(from, to).as_bytes()).expect_err(to);
@@ -431,7 +431,7 @@ fn appended_data_that_lie_are_refused() {
     }
 }
 
-/// Large files with raw appended data are read array by array, small ones whole: what is refused is the same.
+/// Large files with raw appended data are read array by array, small ones whole: both refuse the same.
 #[test]
 fn a_block_that_reaches_into_the_next_array_is_refused_either_way() {
     let options = WriteOptions { compression: Compression::Zlib, ..WriteOptions::default() };
@@ -457,7 +457,7 @@ fn pieces_are_joined_and_must_have_the_same_arrays() {
     let (start, end) = (TET.find("    <Piece").unwrap(), TET.find("  </UnstructuredGrid>").unwrap());
     let piece = &TET[start..end];
     let twice = |second: &str| format!("{}{}{}", &TET[..end], second, &TET[end..]);
-    // Points at the same place are one, those of the first piece; elsewhere all stay.
+    // Points at the same place are merged into those of the first piece; all others stay.
     let joined = read(".vtu", twice(piece).as_bytes()).unwrap();
     assert_eq!((joined.points.len(), joined.cells.len()), (4, 2));
     assert_eq!(joined.cells.connectivity().list(1), [0, 1, 2, 3].map(VertexId));
@@ -503,7 +503,7 @@ fn both_layouts_of_polyhedra_mean_the_same() {
     }
 }
 
-/// A tet in a legacy file, which the tests change.
+/// A tet in a legacy file, which the tests modify.
 const LEGACY: &str = "# vtk DataFile Version 3.0\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n\
     0 0 0 1 0 0\n0 1 0 0 0 1\nCELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\nPOINT_DATA 4\n\
     SCALARS a%20b int 1\nLOOKUP_TABLE default\n1 2 3 4\nVECTORS v double\n0 0 0 1 1 1 2 2 2 3 3 3\n";
@@ -514,7 +514,7 @@ fn a_legacy_file_is_read() {
     assert_eq!(mesh.points[3], [0.0, 0.0, 1.0]);
     assert_eq!(mesh.point_field("a b").unwrap().values, Values::I32(vec![1, 2, 3, 4]));
     assert_eq!(mesh.point_field("v").unwrap().components, 3);
-    // Line ends of Windows, words in small letters, no line for a lookup table.
+    // Windows line ends, lower-case keywords, no line for a lookup table.
     let other =
         LEGACY.replace("LOOKUP_TABLE default\n", "").replace("DATASET", "dataset").replace('\n', "\r\n");
     assert_same(&read(".vtk", other.as_bytes()).unwrap(), &mesh);

@@ -1,4 +1,4 @@
-//! The kernel: whatever is done, every invariant holds, and undoing it gives back every bit.
+//! The kernel: whatever is done, every invariant holds, and undoing it restores every bit.
 
 mod common;
 
@@ -138,7 +138,7 @@ fn tets_numbered_the_other_way_are_told_from_inverted_ones() {
     let turned = Complex::new(&mesh).unwrap();
     turned.verify().unwrap();
     assert!(turned.tets().all(|t| (turned.quality(t) - sound.quality(t)).abs() < 1e-12));
-    // A vertex drawn through the facet opposite: its tets are inverted, their numbering is not to blame.
+    // A vertex moved through the facet opposite: its tets are inverted, whatever their numbering.
     let inner = (8..48).map(VertexId).find(|&v| sound.hold(v) == Hold::Free).unwrap();
     mesh.points[inner.index()] = [3.0, 3.0, 3.0];
     let inverted = Complex::new(&mesh).unwrap();

@@ -1,4 +1,5 @@
-//! What the kernel refuses, by name, whether the surface is kept or adapts; and what a mesh is once folded tets are removed.
+//! What the kernel refuses, by name, whether the surface is kept or adapts; and the mesh after folded tets
+//! are removed.
 
 use motet::base::{TetId, VertexId};
 use motet::geometry::tet::FACETS;
@@ -23,7 +24,7 @@ fn complex(mesh: &TetMesh, adapts: bool) -> Complex {
     complex
 }
 
-/// What the kernel says to one vertex drawn into another.
+/// The kernel's answer to the collapse of one vertex into another.
 fn drawn(complex: &Complex, removed: VertexId, kept: VertexId) -> Result<(), Reject> {
     let (mut star, mut change) = (Star::default(), Change::default());
     star.gather(complex, removed);
@@ -31,7 +32,7 @@ fn drawn(complex: &Complex, removed: VertexId, kept: VertexId) -> Result<(), Rej
     complex.check_against(&change, 0.0).map(|_| ())
 }
 
-/// An edge from inside a cube to a vertex into which its end can be drawn.
+/// An edge from inside a cube to a vertex into which its end can be collapsed.
 fn inner_edge(mesh: &TetMesh) -> [VertexId; 2] {
     let whole = complex(mesh, false);
     let free = |v: &VertexId| whole.hold(*v) == Hold::Free;
@@ -69,7 +70,7 @@ fn fixed_edges_and_lines_are_kept_whichever_way_they_are_given() {
     let mut loose = complex(&lined, false);
     loose.set_hold(a, Hold::Free);
     assert!(matches!(drawn(&loose, a, b), Err(Reject::Edge(_))));
-    // Where the surface may change a line may be divided, and does not end for nothing.
+    // Where the surface may change, a line may be divided, but must not end.
     let adapting = complex(&lined, true);
     assert!(adapting.may_divide(a, b));
     assert!(matches!(drawn(&adapting, a, b), Err(Reject::Vertex(_))));
@@ -78,7 +79,7 @@ fn fixed_edges_and_lines_are_kept_whichever_way_they_are_given() {
 #[test]
 fn a_wall_that_would_be_lost_is_named_as_one() {
     let whole = complex(&cube(4), false);
-    // Facets that nothing stands behind, and those that too much does, are named otherwise.
+    // Facets with no tet behind them, and those with too many, are refused by other names.
     let one = whole.tets().find(|&t| (0..4).filter(|&i| whole.is_wall(t, i)).count() == 1).unwrap();
     let [a, b, c, d] = whole.vertices(one);
     let fill = |tets: &[[VertexId; 4]]| {
@@ -140,7 +141,7 @@ fn what_is_folded_over_a_mesh_is_peeled_off_and_nothing_of_it_is_left() {
         .iter()
         .find_map(|t| <[VertexId; 3]>::try_from(t.iter().copied().filter(is_on).collect::<Vec<_>>()).ok())
         .unwrap();
-    // To a vertex of its own, and to one of the mesh.
+    // To a new vertex, and to one of the mesh.
     for apex in [None, Some(vertex_at(&mesh, [0.75, 0.5, 0.5]))] {
         let mut folded = mesh.clone();
         let d = apex.unwrap_or(VertexId::new(mesh.points.len()));
@@ -156,7 +157,7 @@ fn what_is_folded_over_a_mesh_is_peeled_off_and_nothing_of_it_is_left() {
         assert_eq!(complex.is_used(d), apex.is_some());
         assert_eq!(complex.n_used_vertices(), mesh.points.len());
         assert_eq!(complex.peel(), 0);
-        // One that is locked, or that holds a vertex of its own, stays.
+        // A folded tet that is locked, or that is the only one at a vertex, stays.
         let mut locked = Complex::new(&folded).unwrap();
         locked.lock(TetId::new(mesh.tets.len()));
         assert_eq!(locked.peel(), 0);
@@ -263,7 +264,8 @@ fn arrays_that_do_not_fit_make_no_complex_and_refusals_say_what_they_are_about()
     }
 }
 
-/// A flat tet `abpq` on the boundary, its edge `ab` outside, with a tet behind `apq`; behind `bpq` one below or, where `b` lies within `apq`, above.
+/// A flat tet `abpq` on the boundary, with its edge `ab` outside and a tet behind `apq`; behind `bpq` is a
+/// tet below or, where `b` lies within `apq`, above.
 fn flat_on_the_boundary(is_within: bool) -> TetMesh {
     let (a, c) = ([0.0, 0.05, -1.0], [0.0, -1.0, 0.2]);
     let (b, d) =
@@ -304,7 +306,7 @@ fn tets_on_the_wrong_side_of_bared_walls_are_refused() {
     });
     let wall = |vertices: [VertexId; 3]| NewWall { vertices, patch: 7, triangle: 0 };
     let with = |fill: &[TetId]| {
-        // One tet goes, others are there once more; walls on all that nothing else stands behind.
+        // One tet is removed, others are duplicated; walls on all facets without another tet behind them.
         let mut change = Change { cavity: vec![one], ..Change::default() };
         change.walls = facets.map(wall).to_vec();
         for &other in fill {
@@ -317,7 +319,7 @@ fn tets_on_the_wrong_side_of_bared_walls_are_refused() {
         whole.check_against(&change, 0.0).map(|_| ()).err()
     };
     assert_eq!(with(&[one]), None);
-    // Those behind two of its facets, once more: on the same side of a wall as they are already.
+    // Duplicates of the tets behind two of its facets: on the same side of a wall as the originals.
     for [i, j] in [[0, 1], [1, 2], [2, 3], [0, 3]] {
         let refused = with(&[others[i], others[j]]);
         let keys = [i, j].map(|k| {

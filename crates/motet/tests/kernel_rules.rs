@@ -1,4 +1,5 @@
-//! Rules of the kernel, one by one: what is looked up is what all tets would say, what is held stays, tets that walls force count as good.
+//! Rules of the kernel, one by one: look-ups agree with all tets, held things stay, tets that walls force
+//! count as good.
 
 mod common;
 
@@ -63,7 +64,7 @@ fn vertices_are_used_as_long_as_a_tet_has_them() {
     let mut complex = Complex::new(&mesh).unwrap();
     assert_eq!((complex.n_used_vertices(), complex.n_vertex_slots()), (n, n + 1));
     assert!(!complex.is_used(VertexId::new(n)) && complex.hold(VertexId::new(n)) == Hold::Fixed);
-    // One inside is drawn into a neighbour: its slot is the next to be taken.
+    // An inner vertex is collapsed into a neighbour: its slot is the next to be reused.
     let removed = (0..n).map(VertexId::new).find(|&v| complex.hold(v) == Hold::Free).unwrap();
     let (mut star, mut change) = (Star::default(), Change::default());
     star.gather(&complex, removed);
@@ -95,7 +96,7 @@ fn vertices_are_used_as_long_as_a_tet_has_them() {
     }
 }
 
-/// Draws a vertex of a wall into one beside it, walls and all.
+/// Collapses a vertex of a wall into one beside it, with its walls.
 fn drawn(complex: &Complex, removed: VertexId, kept: VertexId) -> Result<(), Reject> {
     let (mut star, mut change) = (Star::default(), Change::default());
     star.gather(complex, removed);
@@ -129,7 +130,7 @@ fn what_is_held_neither_moves_nor_goes() {
     assert!(locked.is_locked(tet) && locked.tets().filter(|&t| locked.is_locked(t)).count() == 1);
     assert_eq!(drawn(&locked, removed, kept), Err(Reject::Locked(tet)));
 
-    // A wall that is fixed holds its vertices; one of the others may still go if that leaves the wall.
+    // A fixed wall holds its vertices; one of the others may still be removed if that leaves the wall.
     let mut walled = adapting();
     let of_both = |complex: &Complex| {
         let has_both = |v: [VertexId; 3]| v.contains(&removed) && v.contains(&kept);
@@ -144,7 +145,7 @@ fn what_is_held_neither_moves_nor_goes() {
     walled.set_hold(removed, Hold::Surface);
     assert!(matches!(drawn(&walled, removed, kept), Err(Reject::Wall(_))));
 
-    // An edge that is fixed stays although its ends may move.
+    // A fixed edge stays although its ends may move.
     let inner = (0..mesh.points.len()).map(VertexId::new).find(|&v| fresh().hold(v) == Hold::Free).unwrap();
     let mut star = Star::default();
     star.gather(&fresh(), inner);
@@ -181,7 +182,8 @@ fn a_star_has_walls_where_its_vertex_is_on_one() {
     }
 }
 
-/// A tet between two walls that meet at an angle, its edge along x; the two other facets are well shaped.
+/// A tet between two walls that meet at an angle, with its edge along x; the two other facets are well
+/// shaped.
 fn wedge(degrees: f64) -> [Point; 4] {
     let (sin, cos) = degrees.to_radians().sin_cos();
     [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [-0.08, 0.8, 0.0], [0.08, 0.8 * cos, 0.8 * sin]]
@@ -211,7 +213,7 @@ fn tets_that_walls_force_count_as_good_until_all_are_judged_again() {
     for walls in [&[][..], &[2], &[3], &[0, 1], &[0, 2], &[1, 3]] {
         assert_eq!(complex.judge(corners, |i| sides_of(walls, i)), quality, "{walls:?}");
     }
-    // Flatter ones than those that were spared are not.
+    // Tets flatter than the exempt ones are not exempt.
     let flatter = wedge(7.0);
     assert_eq!(complex.judge(flatter, sides(&[2, 3])), eas(flatter));
     let better = wedge(10.0);
@@ -231,7 +233,7 @@ fn sides_of(walls: &[usize], i: usize) -> Side {
 
 #[test]
 fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
-    // A needle of a facet with 5 degrees, and a top high above it.
+    // A needle-shaped facet with an angle of 5 degrees, and an apex high above it.
     let angle = 5f64.to_radians();
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [angle.cos(), angle.sin(), 0.0], [0.75, 0.03, 0.9]];
     let quality = eas(corners);
@@ -247,7 +249,7 @@ fn a_narrow_wall_forces_its_tet_only_where_it_is_firm() {
     assert_eq!(judged(Side::Firm, 3), f64::INFINITY);
     assert_eq!([judged(Side::Wall, 3), judged(Side::Inside, 3)], [quality; 2]);
     assert_eq!(judged(Side::Firm, 0), quality);
-    // All walls of a surface that is kept are firm; of one that adapts, those of marked tets.
+    // All walls of a surface that is kept are firm; of one that adapts, only those of marked tets.
     assert_eq!((0..4).map(|i| complex.side(TetId(0), i)).collect::<Vec<_>>(), [Side::Firm; 4]);
     complex.adapt_surface();
     assert_eq!((0..4).map(|i| complex.side(TetId(0), i)).collect::<Vec<_>>(), [Side::Firm; 4]);
@@ -260,7 +262,7 @@ fn the_best_that_an_angle_allows_is_reached_within_a_millionth() {
     assert_eq!([0.0, 30.0, 60.0, 120.0, 180.0].map(best_at), [0.0, 0.5, 1.0, 0.5, 0.0]);
     assert!(is_reached(0.1, 0.1) && is_reached(0.1, 0.1 + 0.9e-6) && !is_reached(0.1, 0.1 + 1.1e-6));
     assert!(!is_reached(0.0, 0.0) && !is_reached(-1e-9, 0.0));
-    // Nothing is spared that is next to flat.
+    // Nearly flat tets are never exempt.
     let flat = wedge(1e-5);
     assert!(eas(flat) < FLATTEST);
     let tets = vec![[0, 1, 2, 3].map(VertexId)];

@@ -1,5 +1,5 @@
-//! The kernel where walls and lines may change: whatever is done, every invariant holds, every line runs from where it began to where it
-//! ended, and undoing it gives back every bit.
+//! The kernel where walls and lines may change: whatever is done, every invariant holds, every line keeps its
+//! ends, and undoing it restores every bit.
 
 mod common;
 
@@ -12,7 +12,7 @@ use motet::kernel::{Complex, NEW};
 use motet::mesh::TetMesh;
 use proptest::prelude::*;
 
-/// Some edges made lines of three labels.
+/// Makes some edges lines of three labels.
 fn with_lines(mut mesh: TetMesh) -> TetMesh {
     mesh.lines = mesh.tets.iter().step_by(7).flat_map(|&[a, b, c, _]| [[a, b], [c, b]]).collect();
     mesh.line_labels = (0..mesh.lines.len() as i32).map(|i| i % 3).collect();
@@ -31,7 +31,7 @@ fn ends(complex: &Complex, mesh: &TetMesh) -> Vec<(i32, VertexId)> {
     times.into_iter().filter(|(_, n)| n % 2 == 1).map(|(end, _)| end).collect()
 }
 
-/// All that there is to tell; lines by their edges, since a map has no order.
+/// The whole state as text; lines by their edges, since a map has no order.
 fn state(complex: &Complex, mesh: &TetMesh) -> String {
     match complex.has_lines() {
         true => format!("{:?} {:?}", complex.extract(mesh), complex.lines()),
@@ -52,7 +52,7 @@ proptest! {
         let mesh = if has_lines { with_lines(plain) } else { plain };
         let mut complex = Complex::new(&mesh).unwrap();
         complex.adapt_surface();
-        // Measures every tet: what is known of qualities is a part of the state.
+        // Measures every tet: cached qualities are part of the state.
         complex.verify().map_err(TestCaseError::fail)?;
         let ends_at_first = ends(&complex, &mesh);
         let (mut numbers, mut editor) = (Numbers(seed ^ 0x5eed), Editor::default());

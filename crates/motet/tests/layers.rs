@@ -1,7 +1,7 @@
 //! Modules import only downward: an upward or circular import fails here.
 //!
-//! The floors are those of the table in `src/lib.rs`. Two modules of one floor do
-//! not see each other; nothing imports through the crate root.
+//! The floors are those of the table in `src/lib.rs`. Two modules on one floor do not import each other;
+//! nothing imports through the crate root.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// The modules that one line names behind `crate::`, groups in braces taken apart.
+/// The modules that a line names after `crate::`, with groups in braces expanded.
 fn imports(line: &str) -> Vec<String> {
     let code = line.split("//").next().unwrap_or_default();
     let mut found = Vec::new();
@@ -64,7 +64,7 @@ fn imports(line: &str) -> Vec<String> {
     found
 }
 
-/// What is wrong with one line of a file of `module`, if anything.
+/// The fault in a line of a file of `module`, if any.
 fn fault(module: &str, line: &str) -> Option<String> {
     let here = floor(module)?;
     imports(line).into_iter().find_map(|target| match floor(&target) {

@@ -28,7 +28,7 @@ fn facet_distance_squared(t: &Triangulation, facet: [motet::base::VertexId; 3], 
     distance_squared(triangle::at(corners, triangle::closest(corners, q)), q)
 }
 
-/// Asserts that `located` is right by looking at all tets and all facets of the hull.
+/// Asserts that `located` is right, by checking all tets and all facets of the hull.
 fn assert_located(t: &Triangulation, q: Point, located: Located) {
     match located {
         Located::Inside(tet) => assert!(holds(corners(t, tet), q), "{q:?} in tet {tet}"),
@@ -87,7 +87,7 @@ proptest! {
         (thickness, offset) in (-18..1i32, prop_oneof![Just(0.0), Just(100.0)]),
         mix in prop::array::uniform4(0.0..1.0f64),
     ) {
-        // The fourth vertex as near the plane of the others as one likes.
+        // The fourth vertex arbitrarily near the plane of the others.
         let mut tet = base;
         let [a, b, c, d] = base;
         let part = 10f64.powi(thickness);

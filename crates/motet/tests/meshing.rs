@@ -1,4 +1,4 @@
-//! Volume meshes of surfaces: sizes inside, regions by their places, numbers and names.
+//! Volume meshes of surfaces: sizes inside; regions by their places, numbers and names.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::quality::eas;
@@ -21,7 +21,7 @@ fn filled(surfaces: &Surfaces, options: &Options) -> Result<Filled> {
     fill(surfaces, &surfaces.preflight(&threads), options, &threads)
 }
 
-/// The boundary of a mesh, larger by a factor and moved along x.
+/// The boundary of a mesh, scaled by a factor and shifted along x.
 fn skin(mesh: &Mesh, factor: f64, along: f64) -> Mesh {
     let surface = Surface::boundary_of(mesh);
     let mut cells = Cells::new();
@@ -48,7 +48,7 @@ fn is_on_surface(mesh: &Mesh) -> Vec<bool> {
     on
 }
 
-/// Sizes along x, on the surface of a box.
+/// The surface of a box, with sizes that vary along x.
 fn graded_box() -> (Mesh, Vec<f64>) {
     let mesh = skin(&box_grid([6, 6, 6], [[0.0; 3], [1.0, 1.1, 0.9]]), 1.0, 0.0);
     let sizes = mesh.points.iter().map(|p| 0.04 + 0.2 * p[0]).collect();
@@ -68,7 +68,8 @@ fn edges_inside_follow_the_sizes() {
     let result = filled(&surfaces, &graded(Some(sizes.clone()), growth, None)).unwrap();
     let mesh = &result.mesh;
     assert!(check(mesh).is_empty() && result.report.not_positive == 0);
-    // Of many places of the surface; linear sizes along the faces of a box make the same of all of them.
+    // A sample of many places of the surface; sizes that are linear along the faces of a box give the same
+    // minimum over all places.
     let places: Vec<Point> = (0..6000)
         .map(|i| {
             let (u, v) = (f64::from(i / 6 % 32) / 31.0, f64::from(i / 192) / 31.0);
@@ -179,14 +180,14 @@ fn bodies_are_numbered_from_the_outside_in_whatever_the_order_of_files() {
         for (body, shell) in bodies.iter().zip(shells) {
             assert!((body.volume - shell).abs() < 1e-12, "{body:?} {shell}");
         }
-        // The same with the middle one left out, and the innermost named.
+        // The same shells with the middle one left out, and the innermost named.
         let seeds = vec![Seed { place: [0.01, 0.0, 0.0], name: "core".into() }];
         let options = Options { seeds, holes: vec![[0.45, 0.0, 0.0]], ..Options::default() };
         let result = filled(&surfaces, &options).unwrap();
         let told: Vec<_> = result.report.bodies.iter().map(|b| b.name.as_deref().unwrap()).collect();
         assert_eq!(told, ["large", "core"]);
         assert!((result.report.bodies[1].volume - shells[2]).abs() < 1e-12);
-        // What is left lies apart, and nothing else is to be said of it.
+        // The remaining parts are separate, and there are no other defects.
         let defects = check(&result.mesh);
         assert!(defects.iter().all(|d| d.kind == DefectKind::SeparatePart), "{defects:?}");
         assert_eq!(result.mesh.regions().unwrap().find("core"), Some(2));
@@ -218,7 +219,7 @@ fn names_survive_improving_and_one_surface_gives_none() {
     assert!((bodies.iter().map(|b| b.volume).sum::<f64>() - whole).abs() < 1e-9 * whole);
 }
 
-/// What a tube and its wall enclose: all patches but the one between them.
+/// The volume that a tube and its wall enclose: all patches except the one between them.
 fn enclosed_by_outside(mesh: &Mesh) -> f64 {
     let surface = Surface::of(mesh);
     let interface = mesh.patches().unwrap().find("interface").unwrap();

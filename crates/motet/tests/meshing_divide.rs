@@ -1,4 +1,5 @@
-//! Surfaces that are far coarser than the sizes inside: divided in their own planes, nothing of their shape lost.
+//! Surfaces that are far coarser than the sizes inside: divided in their own planes, with their shape
+//! preserved.
 
 mod common;
 
@@ -51,7 +52,7 @@ fn edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     edges
 }
 
-/// How long the edges are at which triangles meet at more than a degree.
+/// The total length of edges at which triangles meet at more than a degree.
 fn crease_length(mesh: &Mesh) -> f64 {
     let mut at: BTreeMap<[VertexId; 2], Vec<Point>> = BTreeMap::new();
     let point = |v: VertexId| mesh.points[v.index()];
@@ -82,7 +83,8 @@ fn close(x: f64, y: f64, part: f64) -> bool {
     (x - y).abs() <= part * y.abs()
 }
 
-/// Volume, area and creases are those of the surface that was given, but for rounding; no tet is bad; edges of the surface are about as long as `size`, or shorter.
+/// Asserts that volume, area and creases are those of the given surface up to rounding, that no tet is bad,
+/// and that edges of the surface have about the length `size`, or less.
 fn assert_divided(what: &str, surface: &Mesh, size: f64, rounding: f64) {
     let filled = filled(&joined(&[(surface, Role::Boundary)]), size);
     let mesh = &filled.mesh;
@@ -124,7 +126,7 @@ fn a_box_is_divided_finely_and_evenly() {
     for size in [0.1, 0.17, 0.29] {
         assert_divided(&format!("{size}"), &given, size, 1e-9);
     }
-    // Faces stay faces: in exactly their planes.
+    // Faces stay exactly in their planes.
     let filled = filled(&joined(&[(&given, Role::Boundary)]), 0.15);
     let on_face =
         |p: Point| [[0.0, 1.0], [0.0, 2.0], [0.0, 0.5]].iter().zip(p).any(|(at, x)| at.contains(&x));
@@ -175,7 +177,7 @@ fn the_rule_decides_and_what_means_nothing_is_refused() {
         let options = Options { dividing, ..Options::with_sizes(sizes, None) };
         fill(&surfaces, &surfaces.preflight(&threads), &options, &threads)
     };
-    // A size that the edges are not far longer than.
+    // A size of which the edges are no large multiple.
     let size = Some(Sizes::Uniform(0.5));
     let kept = with(size.clone(), Dividing::Coarse).unwrap();
     assert_eq!((kept.report.divided, kept.report.triangles_kept), (None, 12));

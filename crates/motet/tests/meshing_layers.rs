@@ -1,5 +1,5 @@
-//! Boundary layers, held against what they promise: every tet positive, all conforming, no volume lost, walls kept, thickness as asked
-//! wherever there is room.
+//! Boundary layers, compared with what they promise: every tet positive, the mesh conforming, no volume lost,
+//! walls kept, thickness as requested wherever there is space.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ fn try_fill_all(surfaces: &Surfaces, layers: Layers, size: Option<f64>) -> motet
     fill(surfaces, &surfaces.preflight(&threads), &options, &threads)
 }
 
-/// Fills and holds the result against all that holds for any.
+/// Fills and checks what must hold for any result.
 fn filled(mesh: &Mesh, layers: Layers, size: Option<f64>) -> Filled {
     let made = try_fill(mesh, layers, size).unwrap();
     let faults = faults(mesh, &made);
@@ -52,7 +52,7 @@ fn rising(mut t: [VertexId; 3]) -> [VertexId; 3] {
     t
 }
 
-/// The triangles of a surface by their places: it needs no numbers in common.
+/// The triangles of a surface by their coordinates, independent of numbering.
 fn places(points: &[Point], t: [VertexId; 3]) -> [[u64; 3]; 3] {
     let mut corners = t.map(|v| points[v.index()].map(|x| (x + 0.0).to_bits()));
     corners.sort_unstable();
@@ -107,7 +107,7 @@ fn faults(surface: &Mesh, made: &Filled) -> Vec<String> {
     faults
 }
 
-/// What the boundary of everything encloses: of the surface, triangles with nothing on one side.
+/// The volume that the outer boundary encloses: triangles of the surface with nothing on one side.
 fn enclosed(surface: &Mesh) -> f64 {
     let labels = surface.patches().unwrap();
     let inner: Vec<i32> = ["interface", "flap"].iter().filter_map(|name| labels.find(name)).collect();
@@ -115,7 +115,8 @@ fn enclosed(surface: &Mesh) -> f64 {
     outer.map(|(_, t)| t.map(|v| surface.points[v.index()])).map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
 }
 
-/// Triangles that are not there as they came, with their patches, though they lie in no flat patch's plane: there edges of layers may slide.
+/// Triangles of walls that are lost or have another patch, except in the planes of flat patches, where edges
+/// of layers may slide.
 fn lost_walls(surface: &Mesh, made: &Filled) -> Vec<String> {
     let (before, after) = (surface.patches().unwrap(), made.mesh.patches().unwrap());
     let there: HashMap<_, i32> =
@@ -141,7 +142,7 @@ fn lost_walls(surface: &Mesh, made: &Filled) -> Vec<String> {
     faults
 }
 
-/// A point in the plane of a patch, and the normal of that; `None` where it is not flat.
+/// A point in the plane of a patch, and the plane's normal; `None` where the patch is not flat.
 fn plane(surface: &Mesh, patch: i32) -> Option<[Point; 2]> {
     let labels = surface.patches().unwrap();
     let of_patch = triangles(surface).filter(|(cell, _)| labels.ids[*cell] == patch);
@@ -152,7 +153,7 @@ fn plane(surface: &Mesh, patch: i32) -> Option<[Point; 2]> {
     is_flat.then(|| [centroid(corners[0]), scale(sum, 1.0 / norm(sum))])
 }
 
-/// A tube whose radius is this along z, with flat ends; patches `wall`, `inlet`, `outlet`.
+/// A tube with this radius as a function of z, with flat ends; patches `wall`, `inlet`, `outlet`.
 fn vessel(radius: impl Fn(f64) -> f64, around: usize, slices: usize) -> Mesh {
     let mut mesh = Flap { around, slices, ..Flap::default() }.mesh().unwrap();
     let labels = mesh.patches().unwrap();
@@ -174,7 +175,7 @@ fn vessel(radius: impl Fn(f64) -> f64, around: usize, slices: usize) -> Mesh {
     }
 }
 
-/// The columns of layers, found in a mesh of prisms alone: from each vertex of the wall up, level by level.
+/// The columns of layers, found in a mesh of prisms: from each vertex of the wall up, level by level.
 fn columns(mesh: &Mesh) -> Vec<Vec<VertexId>> {
     let (mut above, mut is_above) = (BTreeMap::new(), HashSet::new());
     for (_, kind, v) in mesh.cells.iter() {
@@ -208,7 +209,8 @@ fn on_a_straight_tube_every_layer_is_as_thick_as_asked() {
     let columns = columns(&prisms);
     assert_eq!(columns.len(), 24 * 25);
     for column in columns {
-        // Walls are flat between the lines of vertices: their distance from the axis is that of the middle of a chord.
+        // Walls are flat between the lines of vertices: their distance from the axis is that of the middle of
+        // a chord.
         let heights: Vec<f64> = column
             .iter()
             .map(|v| prisms.points[v.index()])
@@ -227,7 +229,8 @@ fn filled_prisms(mesh: &Mesh, layers: Layers) -> Mesh {
     made.mesh
 }
 
-/// The heights of the levels of a column over the planes of the wall around its foot: for each level the least, as the planes are told apart.
+/// The heights of the levels of a column over the planes of the wall around its foot: for each level the
+/// least over the planes.
 fn heights(mesh: &Mesh, walls: &HashMap<VertexId, Vec<[Point; 3]>>, column: &[VertexId]) -> Vec<f64> {
     let over = |p: Point, [a, b, c]: [Point; 3]| {
         let normal = cross(sub(b, a), sub(c, a));
@@ -269,7 +272,7 @@ fn bent() -> Mesh {
     part(&whole, &[("lumen_inlet", "inlet"), ("lumen_outlet", "outlet"), ("interface", "wall")])
 }
 
-/// Some patches of a surface, named anew.
+/// Some patches of a surface, renamed.
 fn part(whole: &Mesh, names: &[(&str, &str)]) -> Mesh {
     let labels = whole.patches().unwrap();
     let (mut cells, mut patches) = (Cells::new(), Vec::new());
@@ -337,7 +340,8 @@ fn corners_of_a_box_carry_layers() {
     let mesh = Mesh { ..surface_of(&box_grid([4, 4, 4], [[0.0; 3], [1.0; 3]])) };
     let told = filled(&mesh, everywhere(Stack { count: 2, first: 0.04, growth: 1.0 }), None).layers.unwrap();
     assert_eq!((told.reduced, told.vertices), (0, 98));
-    // At edges and corners columns lean, and are longer: over every side of the box around their foot they are as high as asked, or higher.
+    // At edges and corners columns lean, and are longer: over every side of the box around their foot they
+    // are at least as high as requested.
     let prisms = filled_prisms(&mesh, everywhere(Stack { count: 2, first: 0.04, growth: 1.0 }));
     let mut around: HashMap<VertexId, Vec<[Point; 3]>> = HashMap::new();
     for patch in ["xmin", "xmax", "ymin", "ymax", "zmin", "zmax"] {
@@ -350,7 +354,7 @@ fn corners_of_a_box_carry_layers() {
             .zip([0.0, 0.04, 0.08])
             .for_each(|(h, e)| assert!((h - e).abs() < 1e-13, "{heights:?}"));
     }
-    // On one side alone, the others carry edges of layers.
+    // With layers on one side only, the others carry edges of layers.
     let stack = Stack { count: 2, first: 0.1, growth: 1.0 };
     let patch = mesh.patches().unwrap().find("zmin").unwrap();
     let one = Layers { by_patch: [(patch, stack)].into(), ..Layers::default() };
@@ -396,7 +400,7 @@ fn patches_with_different_layers_meet() {
     for layers in [
         Layers { by_patch, ..Layers::default() },
         Layers { by_patch: [(9, more)].into(), ..everywhere(STACK) },
-        // Nothing on the other half: there layers run out.
+        // No layers on the other half: they run out there.
         Layers { by_patch: [(9, more)].into(), ..Layers::default() },
     ] {
         let told = filled(&mesh, layers.clone(), None).layers.unwrap();
@@ -419,7 +423,7 @@ fn in_a_thick_tube_layers_grow_in_the_lumen() {
     let volumes = |of: &Filled| of.report.bodies.iter().map(|body| body.volume).collect::<Vec<_>>();
     let (with, without) = (volumes(&made), volumes(&plain));
     assert!(with.iter().zip(&without).all(|(a, b)| (a - b).abs() < 1e-10 * b), "{with:?} {without:?}");
-    // Both bodies: in the wall from outside.
+    // Layers in both bodies: in the wall from outside.
     let thin = Stack { count: 2, first: 0.02, growth: 1.0 };
     let both = Layers { by_patch: [(interface, STACK), (outer, thin)].into(), ..Layers::default() };
     let told = filled(&mesh, both.clone(), None).layers.unwrap();
@@ -488,13 +492,14 @@ fn layers_that_mean_nothing_are_refused() {
     for layers in [Layers::default(), Layers { by_patch: [(77, STACK)].into(), ..Layers::default() }] {
         assert_eq!(try_fill(&mesh, layers, None).unwrap_err().kind(), motet::ErrorKind::Options);
     }
-    // Far too thin or thick for the digits of coordinates: nothing tangles, and what there is no room for gives way.
+    // Too thin or thick for the digits of coordinates: nothing tangles, and layers give way where there is no
+    // space.
     for first in [1e-300, 1e-17, 1e9, 1e50] {
         filled(&mesh, everywhere(stack(2, first, 1.0)), None);
     }
 }
 
-/// The folder of real surfaces, where there is one.
+/// The folder of real surfaces, where it exists.
 fn data() -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let folder = std::env::var_os("MOTET_DATA").map_or_else(default, PathBuf::from);
@@ -518,7 +523,7 @@ fn real_vessels_get_layers() {
         println!("{name}: {told:?}");
         assert!(told.full as f64 > least_full * told.vertices as f64, "{told:?}");
         assert!(told.without * 100 < told.vertices, "{told:?}");
-        // Caps are flat in single precision only.
+        // Caps are flat only in single precision.
         let faults: Vec<_> = faults(&mesh, &made).into_iter().filter(|f| !f.starts_with("volume")).collect();
         assert!(faults.is_empty(), "{} faults, {}", faults.len(), faults[0]);
     }

@@ -1,4 +1,5 @@
-//! Cavities: bodies that closed surfaces turned inward enclose; and surfaces that are far coarser than the sizes inside.
+//! Cavities enclosed by closed surfaces turned inward, and surfaces that are far coarser than the sizes
+//! inside.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::mesh::shapes::box_grid;
@@ -14,7 +15,7 @@ fn cube(n: usize, side: f64, is_inward: bool) -> Mesh {
     Mesh::new(surface.points, Cells::uniform(CellKind::TRIANGLE, triangles.into_flattened()).unwrap())
 }
 
-/// Surfaces in one file.
+/// All surfaces in one mesh.
 fn one_of(meshes: &[Mesh]) -> Mesh {
     let (mut points, mut ids): (Vec<Point>, Vec<VertexId>) = Default::default();
     for mesh in meshes {
@@ -72,7 +73,7 @@ fn surfaces_that_face_outward_or_all_inward_enclose_no_void() {
 
 #[test]
 fn shells_alternate_and_a_seed_keeps_a_void() {
-    // A cavity with a body within, and one beside another in the same room.
+    // A cavity with a body inside, and one beside another in the same space.
     let shells = [cube(2, 4.0, false), cube(2, 3.0, true), cube(1, 1.0, false)];
     let surfaces = joined(&shells);
     let without = filled(&surfaces, &VOIDS);
@@ -102,7 +103,7 @@ fn a_surface_far_coarser_than_the_size_is_named_with_its_edges() {
         filled(&surfaces, &Options::with_sizes(Some(Sizes::Uniform(0.2)), None)).report.coarse,
         Some(coarse)
     );
-    // One face of many is no coarse surface, and one as fine as the size is none.
+    // One coarse face of many does not make a surface coarse, nor is a surface as fine as the size.
     assert_eq!(Sizes::Uniform(0.5).coarse(&surfaces), None);
     assert_eq!(Sizes::Uniform(0.2).coarse(&joined(&[cube(4, 1.0, false)])), None);
 }

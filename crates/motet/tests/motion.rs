@@ -14,8 +14,8 @@ use proptest::prelude::*;
 
 // ---------------------------------------------------------------- meshes
 
-/// A grid of `n^3` cubes of side 1, less those for which `is_hole` holds, each cut
-/// into cells of one kind; inner points are moved about a little, those of holes stay.
+/// A grid of `n^3` cubes of side 1, without those for which `is_hole` holds, each cut into cells of one kind;
+/// inner points are displaced a little, those of holes are not.
 fn grid(n: usize, kind: CellKind, is_hole: impl Fn([usize; 3]) -> bool) -> Mesh {
     let m = n + 1;
     let id = |i: usize, j: usize, k: usize| VertexId::new(i + m * (j + m * k));
@@ -72,7 +72,7 @@ fn solid(n: usize, kind: CellKind) -> Mesh {
     grid(n, kind, |_| false)
 }
 
-/// A box with a cubic hole: `n` cells along, `hole` of them hollow in the middle.
+/// A box with a cubic hole: `n` cells along each side, `hole` of them hollow in the middle.
 fn hollow(n: usize, hole: usize, kind: CellKind) -> Mesh {
     let inner = (n - hole) / 2..(n + hole) / 2;
     grid(n, kind, |at| at.iter().all(|i| inner.contains(i)))
@@ -143,7 +143,7 @@ fn mover(mesh: &Mesh, options: &Options) -> Mover {
     Mover::new(mesh, options, &Threads::single()).unwrap()
 }
 
-/// Where `displacement` of every driven vertex takes the mesh in one step.
+/// Moves the mesh in one step, with `displacement` of every driven vertex.
 fn step(mover: &Mover, displacement: impl Fn(Point) -> Point) -> Vec<Point> {
     let driven: Vec<Point> =
         mover.boundary().iter().map(|v| displacement(mover.reference()[v.index()])).collect();
@@ -163,7 +163,7 @@ fn affine(rows: [[f64; 4]; 3]) -> impl Fn(Point) -> Point {
     move |p| map.displacement(p, 1.0)
 }
 
-/// The largest distance of any vertex from where the affine map takes it.
+/// The largest distance of any vertex from its image under the affine map.
 fn affine_error(mesh: &Mesh, rows: [[f64; 4]; 3]) -> f64 {
     let mover = mover(mesh, &Options::default());
     let moved = step(&mover, affine(rows));
@@ -387,7 +387,7 @@ fn prisms_at_a_pulsating_wall_keep_their_thickness() {
             if depth > 1e-9 && depth < 0.015 * radius {
                 n += 1;
                 let after = 1.2 * radius - r(*q);
-                // The facets are chords: beneath them the depth is less than that of the cylinder.
+                // The facets are chords: the depth beneath them is less than that of the cylinder.
                 assert!((after - depth).abs() < 0.01 * depth, "{p:?} {q:?}: {depth} {after}");
             }
         }
@@ -466,7 +466,7 @@ fn layer(extent: Extent, wall: Option<FacetSet>) -> Options {
     Options { rigid_layer: Some(RigidLayer { extent, wall }), ..Options::default() }
 }
 
-/// The part of the boundary of a hollow box that is the hole's.
+/// The part of the boundary of a hollow box that belongs to the hole.
 fn hole_of(mesh: &Mesh) -> FacetSet {
     let [low, high] = mesh.bounds().unwrap();
     let boundary = Boundary::of(&mesh.cells);
@@ -483,7 +483,7 @@ fn a_rigid_layer_moves_rigidly_with_a_wall_that_does() {
         let turn = Prescribed::Turn { axis: [0.2, 0.3, 1.0], angle: 0.3, centre: [4.5, 4.5, 4.5] };
         let is_hole = |p: Point| hole.vertices.iter().any(|v| mesh.points[v.index()] == p);
         let moved = step(&mover, |p| if is_hole(p) { turn.displacement(p, 1.0) } else { [0.0; 3] });
-        // Every vertex of a cell that touches the hole, and no other.
+        // The layer has every vertex of a cell that touches the hole, and no other.
         let mut in_layer = vec![false; mesh.points.len()];
         for (_, _, vertices) in mesh.cells.iter() {
             if vertices.iter().any(|v| hole.vertices.binary_search(v).is_ok()) {
@@ -523,7 +523,7 @@ fn a_layer_by_distance_holds_the_vertices_within_it_and_keeps_their_distance() {
     assert_eq!(n, mover.setup().layer);
 }
 
-/// A square tube along z as a grid of `n x n x m`; its sides are the wall, its ends open.
+/// A square tube along z as a grid of `n x n x m`; its sides are the wall, its ends are open.
 fn tube_ends(mesh: &Mesh) -> [FacetSet; 2] {
     let [low, high] = mesh.bounds().unwrap();
     let boundary = Boundary::of(&mesh.cells);
@@ -549,7 +549,7 @@ fn ends_slide_in_their_planes_with_a_wall_that_widens() {
             assert_eq!(moved[v][2], p[2], "it leaves its plane");
         }
     }
-    // With a layer one cell thick the first vertices inside go along with the wall, in the plane.
+    // With a layer one cell thick, the first vertices inside move with the wall, in the plane.
     options.rigid_layer = Some(RigidLayer { extent: Extent::Distance(1.0), wall: None });
     let mover = mover(&mesh, &options);
     let moved = step(&mover, widen);
@@ -596,7 +596,7 @@ fn a_motion_that_fits_is_done_in_one_step_and_certified() {
     let mut stepped = mesh.points.clone();
     mover.step(&driven, &mut stepped, &Threads::single()).unwrap();
     assert_eq!(bits(&out), bits(&stepped));
-    // The worst tet, looked for the plain way.
+    // The worst tet, by brute force.
     let quality = |t: [VertexId; 4]| motet::geometry::quality::eas(t.map(|v| out[v.index()]));
     let worst = mesh.cells.tets().map(|(id, t)| (quality(t), id)).min_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
     let told = certificate.quality.worst_eas.unwrap();
@@ -610,7 +610,7 @@ fn pushed_through_a_wall_it_stops_before_it_and_says_how_far_it_got() {
     let mesh = hollow(8, 2, CellKind::TETRA);
     let (hole, mut mover) = (hole_of(&mesh), mover(&mesh, &Options::default()));
     let mut out = mesh.points.clone();
-    // The hole ends 3 from the wall.
+    // The hole is 3 from the wall.
     let certificate = push_hole(&mut mover, &hole, 4.0, &mut out);
     assert!(!certificate.complete);
     assert!(certificate.substeps > 1);
@@ -618,12 +618,12 @@ fn pushed_through_a_wall_it_stops_before_it_and_says_how_far_it_got() {
     assert!(certificate.fraction > 0.3 && certificate.fraction < 0.75, "{}", certificate.fraction);
     assert_eq!(certificate.inverted, 0);
     assert!(!certificate.blocked_by.is_empty());
-    // The mesh is where it says.
+    // The mesh is where the certificate says.
     for v in &hole.vertices {
         let gone = sub(out[v.index()], mesh.points[v.index()]);
         assert!(distance(gone, [4.0 * certificate.fraction, 0.0, 0.0]) < 1e-12);
     }
-    // And the way back is free: all the way, in one step, to the very first bits.
+    // And the way back is free: all of it, in one step, to the initial bits.
     let back = push_hole(&mut mover, &hole, 0.0, &mut out);
     assert!(back.complete && back.substeps == 0);
     assert_eq!(bits(&out), bits(&mesh.points));
@@ -760,12 +760,14 @@ fn points_follow_nodes_as_vertices_follow_the_boundary() {
         points.step(displacement, &mut out, &threads).unwrap();
         out
     };
-    // Given the other way round, and half of them twice, nodes make the same graph: a process that has them in another order gets the same bits.
+    // Given in reverse order, and half of them twice, nodes make the same graph: a process that has them in
+    // another order gets the same bits.
     let first = step(&nodes, &displacement);
     let turned =
         |list: &[Point]| list.iter().rev().chain(&list[..list.len() / 2]).copied().collect::<Vec<_>>();
     assert_eq!(step(&turned(&nodes), &turned(&displacement)), first);
-    // The boundary goes where it is told, and an affine motion moves all by the same map, whatever the graph.
+    // The boundary goes where it is driven, and an affine motion moves everything by the same map, whatever
+    // the graph.
     for (v, d) in mover.boundary().iter().zip(&displacement) {
         let expected = add(mesh.points[v.index()], *d);
         assert!(distance(first[v.index()], expected) < 1e-14);

@@ -1,4 +1,4 @@
-//! Motion carried along by rigid bodies: turns, shifts, several bodies, what does not move rigidly, bad input.
+//! Motion carried by rigid bodies: rotations, shifts, several bodies, non-rigid motion, bad input.
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
@@ -44,7 +44,7 @@ fn turned(degrees: f64, shift: Point) -> impl Fn(Point) -> Point {
     move |p| if is_sphere(p) { add(turn.apply(p, 1.0), shift) } else { p }
 }
 
-/// A box with two holes, each a box of cells taken out.
+/// A box with two holes, each made by removing a box of cells.
 fn two_holes() -> (Mesh, [Vec<VertexId>; 2]) {
     let grid = box_grid([15, 8, 8], [[0.0; 3], [15.0, 8.0, 8.0]]);
     let hole = |p: Point| {
@@ -92,7 +92,7 @@ fn a_sphere_turns_by_a_right_angle_and_shifts_and_no_cell_inverts() {
         assert_eq!(n_inverted(&mesh, &by_bodies), 0, "{degrees} {shift:?}");
         assert!(by_bodies == step(&carried, &map, &Threads::new(3).unwrap()));
     }
-    // What it is for: the graph alone does not get there.
+    // The purpose of the method: the graph alone fails here.
     assert!(n_inverted(&mesh, &step(&graph, turned(90.0, [0.0; 3]), &Threads::single())) > 100);
 }
 
@@ -116,7 +116,7 @@ fn the_way_does_not_matter_and_what_comes_back_is_the_first_mesh_to_the_bit() {
 fn what_is_not_rigid_is_left_to_the_graph() {
     let mesh = sphere_in_box(8, 5);
     let (graph, carried) = (mover(&mesh, &Options::default()), mover(&mesh, &bodies(Vec::new())));
-    // The sphere swells, and the box is pressed: neither is a rigid motion of the sphere.
+    // The sphere swells, and the box is compressed: neither is a rigid motion of the sphere.
     let map = |p: Point| if is_sphere(p) { p.map(|x| 1.3 * x) } else { [p[0], p[1], 0.8 * p[2]] };
     let [a, b] = [&graph, &carried].map(|mover| step(mover, map, &Threads::single()));
     let apart = a.iter().zip(&b).map(|(p, q)| distance(*p, *q)).fold(0.0, f64::max);
@@ -139,7 +139,7 @@ fn bodies_that_move_alike_take_along_what_is_between_them() {
         let moved = shifted[v][1] - mesh.points[v][1];
         assert!(moved > 0.4 && moved < 0.5 + 1e-9, "{moved}");
     }
-    // Each on its own: one turns, one shifts.
+    // Each by itself: one rotates, one shifts.
     let turn = Prescribed::Turn { axis: [1.0, 0.0, 0.0], angle: 0.8, centre: [5.0, 4.0, 4.0] };
     let map = |p: Point| match () {
         () if is_hole(p) && p[0] < 7.5 => turn.apply(p, 1.0),
@@ -163,7 +163,8 @@ fn a_rigid_layer_turns_with_its_body() {
     assert_eq!(n_inverted(&mesh, &moved), 0);
 }
 
-/// A box of which the tets within a smaller one are a region of their own, the vertices between the two, and whether a place is of the smaller one.
+/// A box with a smaller box inside whose tets are a region of their own, the vertices between the two, and
+/// whether a place belongs to the smaller one.
 fn solid_in_fluid() -> (Mesh, Vec<VertexId>, impl Fn(Point) -> bool) {
     let is_solid = |p: Point| (0..3).all(|k| p[k].abs() < 1.01 - 0.25 * k as f64);
     let mut mesh = box_grid([16; 3], [[-2.0; 3], [2.0; 3]]);
@@ -199,7 +200,7 @@ fn an_interface_that_is_moved_is_a_body_and_what_it_encloses_goes_along_rigidly(
         assert_eq!(n_inverted(&mesh, &moved), 0);
         let solid = mesh.points.iter().zip(&moved).filter(|(p, _)| is_solid(**p));
         assert!(solid.clone().count() > 2 * between.len() / 3);
-        // Even shares are solved for.
+        // With even strain, shares come from an iterative solution.
         let nearly = if strain == Strain::Even { 1e-6 } else { 1e-12 };
         solid.for_each(|(&p, &q)| assert!(distance(q, turn.apply(p, 1.0)) < nearly, "{strain:?}"));
     }
@@ -236,7 +237,7 @@ fn after_a_thousand_cycles_the_mesh_is_the_first_one_to_the_bit() {
     let mesh = sphere_in_box(5, 3);
     let methods = [Method::Delaunay, Method::Bodies(Vec::new()), Method::Guided];
     let graphs = methods.into_iter().flat_map(|m| [(m.clone(), false), (m, true)]);
-    // With a factor that is kept, a system forgets the step before, too.
+    // With a factor that is kept, a system does not depend on the step before, either.
     let elastic = Method::Elastic(Elastic { factor_bytes: 1 << 26, ..Elastic::default() });
     for (method, within_walls) in graphs.chain([(elastic, false)]) {
         let options = Options { smoothing: 2, within_walls, method, ..Options::default() };
@@ -254,7 +255,7 @@ fn after_a_thousand_cycles_the_mesh_is_the_first_one_to_the_bit() {
         let first = phases.map(|phase| at(&mut mover, phase));
         assert!(first[1] != first[0]);
         for cycle in 1..=1000 {
-            // The whole of the last cycle, of the others the place farthest away and the first.
+            // All of the last cycle; of the others, only the farthest place and the first.
             let looked_at = if cycle == 1000 { 0..4 } else { 2..4 };
             for k in looked_at {
                 assert!(at(&mut mover, phases[k]) == first[k], "cycle {cycle}, {options:?}");

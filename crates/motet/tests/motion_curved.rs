@@ -12,7 +12,8 @@ use motet::motion::{
 
 const TET_EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-/// The space between a box and a sphere of radius 1, of quadratic tets whose middle nodes on the sphere are on it.
+/// The space between a box and a sphere of radius 1, of quadratic tets whose middle nodes on the sphere are
+/// on it.
 fn curved_sphere() -> Mesh {
     let linear = sphere_in_box(4, 3);
     let mut mesh = quadratic(&linear);
@@ -37,7 +38,7 @@ fn methods() -> Vec<Method> {
     ]
 }
 
-/// The least `det J` of a quadratic tet over a grid of places, by its definition.
+/// The least `det J` of a quadratic tet over a grid of places, by definition.
 fn sampled(nodes: &[Point]) -> f64 {
     let n = 8;
     let mut least = f64::INFINITY;
@@ -86,7 +87,7 @@ fn advance(mover: &mut Mover, displacement: &[Point]) -> (Vec<Point>, Certificat
     (out, certificate)
 }
 
-/// The largest distance of a middle node of an edge inside from the middle of its ends.
+/// The largest distance of a middle node of an inner edge from the midpoint of its ends.
 fn off_the_middle(mesh: &Mesh, points: &[Point]) -> f64 {
     let on_boundary = Boundary::of(&mesh.cells).vertices;
     let mut most: f64 = 0.0;
@@ -122,19 +123,20 @@ fn straight_edges_inside_stay_straight_by_every_method() {
         let least = nodes(&mesh, &out).iter().map(|nodes| sampled(nodes)).fold(f64::INFINITY, f64::min);
         assert!(least > 0.0, "{name}: {least}");
         assert!(certificate.quality.worst_curved_jacobian.unwrap().value > 0.0);
-        // Velocities are those of the middles, too: each is the mean of those of the ends.
+        // Velocities of middle nodes are consistent, too: each is the mean of those of the ends.
         let velocity = mesh_velocity(&mesh.points, &out, 0.25).unwrap();
         let moved: Vec<Point> =
             mesh.points.iter().zip(&velocity).map(|(&p, &v)| add(p, scale(v, 0.25))).collect();
         assert!(off_the_middle(&mesh, &moved) < 1e-12, "{name}");
-        // And the way back leads to the very first bits, but where iterations begin with the last ones.
+        // And the way back restores the initial bits, except where iterations start from the last solution.
         let back = driven(&mover, |p| p);
         let (out, _) = advance(&mut mover, &back);
         assert!(matches!(name, "elastic" | "laplace") || out == mesh.points, "{name}");
     }
 }
 
-/// Shifted far, turned and written in `f32`, edges are straight within other roundings.
+/// Even if shifted far, rotated and written in `f32`, edges are recognised as straight within the larger
+/// rounding.
 #[test]
 fn straight_edges_are_found_within_the_rounding_of_their_coordinates() {
     let sizes =
@@ -154,7 +156,7 @@ fn straight_edges_are_found_within_the_rounding_of_their_coordinates() {
     }
 }
 
-/// Sub-steps and all, the motion stops before a quadratic cell folds, though no corner moves.
+/// Including sub-steps, the motion stops before a quadratic cell folds, though no corner moves.
 #[test]
 fn a_motion_stops_before_a_cell_folds_between_its_corners() {
     let mesh = quadratic(&box_grid([2; 3], [[0.0; 3], [2.0; 3]]));
@@ -171,7 +173,7 @@ fn a_motion_stops_before_a_cell_folds_between_its_corners() {
     assert!(certificate.fraction > 0.05 && certificate.fraction < 1.0, "{}", certificate.fraction);
     assert!(!certificate.blocked_by.is_empty());
     assert!(nodes(&mesh, &out).iter().all(|nodes| sampled(nodes) > 0.0));
-    // All the way it would fold just those cells.
+    // The whole motion would fold just those cells.
     let mut all = mesh.points.clone();
     mover.step(&displacement, &mut all, &Threads::single()).unwrap();
     let folded: Vec<usize> = (nodes(&mesh, &all).iter().enumerate())
@@ -202,7 +204,8 @@ fn what_is_folded_from_the_start_is_counted_and_stops_nothing() {
     assert!(distance(out[pushed], add(mesh.points[pushed], [0.25, 0.5, 0.0])) < 1e-12);
 }
 
-/// Linear and quadratic cells of all kinds that hang together: middle nodes of wedges and hexahedra, of faces and of the volume.
+/// Connected linear and quadratic cells of all kinds: middle nodes of wedges and hexahedra, of faces and of
+/// the volume.
 #[test]
 fn middles_of_edges_faces_and_volumes_stay_where_they_are_between_their_corners() {
     let n = 4;
@@ -227,7 +230,7 @@ fn middles_of_edges_faces_and_volumes_stay_where_they_are_between_their_corners(
         let name = method.name();
         let mover = Mover::new(&mesh, &Options { method, ..Options::default() }, &Threads::single());
         let Ok(mut mover) = mover else { continue };
-        // The top is pressed in, most in its middle.
+        // The top is pressed in, most in its centre.
         let map = |[x, y, z]: Point| [0.0, 0.0, -0.02 * z * x * (4.0 - x) * y * (4.0 - y) / 4.0];
         let displacement: Vec<Point> = mover.boundary().iter().map(|v| map(mesh.points[v.index()])).collect();
         let (out, certificate) = advance(&mut mover, &displacement);

@@ -1,4 +1,4 @@
-//! Motion by distances from the boundary: against its definition, rigid motions, threads.
+//! Motion by distances from the boundary: compared with its definition, rigid motions, threads.
 
 use motet::Mesh;
 use motet::base::{Point, Threads};
@@ -50,7 +50,7 @@ fn inverse_distance_is_the_weighted_mean_that_it_is_defined_as() {
         for n in (0..mesh.points.len()).filter(|n| is_node(*n)) {
             let r = distance(mesh.points[v], mesh.points[n]);
             let weight = areas[n] * ((extent / r).powi(3) + (0.25 * extent / r).powi(5));
-            // What only shifts does not turn.
+            // A pure shift has no rotation.
             sum = add(sum, scale(sub(shifted(mesh.points[n]), mesh.points[n]), weight));
             weights += weight;
         }
@@ -76,7 +76,7 @@ fn radial_functions_meet_the_boundary_and_leave_cells_upright() {
     let moved = step(&radial, shifted, &Threads::single());
     let inverted = mesh.cells.tets().filter(|(_, t)| volume(t.map(|v| moved[v.index()])) <= 0.0).count();
     assert_eq!(inverted, 0);
-    // Near the sphere vertices go along, near the box they hardly move.
+    // Vertices near the sphere move with it, those near the box hardly move.
     for (p, q) in mesh.points.iter().zip(&moved).filter(|(p, _)| norm(**p) > 1.01) {
         let way = q[0] - p[0];
         let gap = norm(*p) - 1.0;

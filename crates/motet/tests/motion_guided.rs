@@ -1,4 +1,4 @@
-//! Motion by a graph whose nodes turn: rigid motions, a flap that bends, the same bits on every way.
+//! Motion by a graph whose nodes turn: rigid motions, a flap that bends, the same bits on every path.
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
@@ -59,7 +59,7 @@ fn channel(n: usize) -> (Mesh, impl Fn(Point) -> bool) {
     (mesh, move |p| in_slot(p, 1e-9))
 }
 
-/// As an arc of so many radians.
+/// A map that bends the flap to an arc of this many radians.
 fn bent(angle: f64, is_flap: impl Fn(Point) -> bool) -> impl Fn(Point) -> Point {
     move |p| {
         if !is_flap(p) || angle == 0.0 {

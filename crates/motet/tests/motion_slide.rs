@@ -1,4 +1,5 @@
-//! Patches that slide: in planes, along the lines of two planes, at corners; nearly flat ones; what drives beside them.
+//! Patches that slide: in planes, along the lines of two planes, at corners; nearly flat patches; driven
+//! vertices beside them.
 
 use std::collections::BTreeMap;
 
@@ -14,20 +15,20 @@ const SIDES: [&str; 6] = ["xmin", "xmax", "ymin", "ymax", "zmin", "zmax"];
 const LOW: Point = [0.0, 0.0, 0.0];
 const HIGH: Point = [2.0, 1.5, 1.0];
 
-/// `x' = A x + b`, a row each.
+/// `x' = A x + b`, by rows.
 type Affine = [[f64; 4]; 3];
 
 fn apply(rows: &Affine, p: Point) -> Point {
     rows.map(|[a, b, c, d]| a * p[0] + b * p[1] + c * p[2] + d)
 }
 
-/// First `first`, then `then`.
+/// The composition: first `first`, then `then`.
 fn after(then: &Affine, first: &Affine) -> Affine {
     let entry = |row: &[f64; 4], k: usize| (0..3).map(|i| row[i] * first[i][k]).sum::<f64>();
     then.map(|row| [entry(&row, 0), entry(&row, 1), entry(&row, 2), entry(&row, 3) + row[3]])
 }
 
-/// A turn about no axis of coordinates, and its inverse, each with this shift.
+/// A rotation about an axis that is not a coordinate axis, and its inverse, each with this shift.
 fn turned(shift: f64) -> [Affine; 2] {
     let x = scale([2.0, -1.0, 3.0], 1.0 / 14f64.sqrt());
     let y = cross(x, [0.0, 1.0, 0.0]);
@@ -39,7 +40,7 @@ fn turned(shift: f64) -> [Affine; 2] {
     [to, from]
 }
 
-/// A map that makes a leaning parallelepiped of a box, and its inverse.
+/// A map from a box to a leaning parallelepiped, and its inverse.
 fn leaning() -> [Affine; 2] {
     let to = [[1.0, 0.4, 0.3, 0.0], [0.0, 1.0, -0.5, 0.0], [0.0, 0.0, 1.0, 0.0]];
     let from = [[1.0, -0.4, -0.5, 0.0], [0.0, 1.0, 0.5, 0.0], [0.0, 0.0, 1.0, 0.0]];
@@ -68,7 +69,7 @@ fn sides(mesh: &Mesh, slides: usize) -> Vec<FacetSet> {
     named.map(|(_, name)| FacetSet::find(mesh, name).unwrap()).collect()
 }
 
-/// What the caller gives for each driven vertex: the motion on sides that do not slide, else nothing.
+/// The input for each driven vertex: the motion on sides that do not slide, zero on others.
 fn told(mesh: &Mesh, mover: &Mover, sliding: &[FacetSet], motion: &Affine) -> Vec<Point> {
     let boundary = Boundary::of(&mesh.cells);
     let keys: Vec<Vec<VertexId>> = sliding.iter().flat_map(|s| s.rings.iter().map(sorted)).collect();
@@ -87,7 +88,8 @@ fn sorted(ring: &[VertexId]) -> Vec<VertexId> {
     ring
 }
 
-/// Moves `mesh` by what is driven, and asks for the same affine motion of every vertex, to `tolerance`.
+/// Moves `mesh` by its driven vertices, and asserts the same affine motion of every vertex, within
+/// `tolerance`.
 fn is_affine(mesh: &Mesh, options: &Options, motion: &Affine, tolerance: f64) {
     let threads = Threads::single();
     let mut mover = Mover::new(mesh, options, &threads).unwrap();
@@ -181,7 +183,7 @@ fn other_methods_that_keep_affine_motions_keep_them_with_sides_that_slide() {
     }
 }
 
-/// The boundary facets of each plane of coordinates, those of one plane as one set.
+/// The boundary facets in each coordinate plane, as one set per plane.
 fn planes_of(mesh: &Mesh) -> BTreeMap<String, FacetSet> {
     let boundary = Boundary::of(&mesh.cells);
     let plane = |i: usize| {
@@ -195,7 +197,7 @@ fn planes_of(mesh: &Mesh) -> BTreeMap<String, FacetSet> {
     names.iter().map(set).collect()
 }
 
-/// A box without the cells for which `is_out` holds of the middle.
+/// A box without the cells whose centre satisfies `is_out`.
 fn notched(n: [usize; 3], high: Point, is_out: impl Fn(Point) -> bool) -> Mesh {
     let whole = shapes::box_grid(n, [LOW, high]);
     let middle = |tet: &[VertexId; 4]| {
@@ -214,7 +216,8 @@ fn notched(n: [usize; 3], high: Point, is_out: impl Fn(Point) -> bool) -> Mesh {
 
 #[test]
 fn edges_that_turn_inward_and_lines_in_several_parts_slide() {
-    // An L, and a block with a groove through its top, whose walls slide, too. All but the ends along x slide.
+    // An L, and a block with a groove through its top, whose walls slide, too. All faces but the ends along x
+    // slide.
     let l = notched([3, 4, 4], [3.0, 2.0, 2.0], |p| p[1] > 1.0 && p[2] > 1.0);
     let groove = notched([3, 4, 4], [3.0, 2.0, 2.0], |p| (0.5..1.5).contains(&p[1]) && p[2] > 1.0);
     let motion = [[0.5, 0.0, 0.0, 0.0], SAME[1], SAME[2]];
@@ -231,7 +234,7 @@ fn edges_that_turn_inward_and_lines_in_several_parts_slide() {
 
 #[test]
 fn patches_side_by_side_in_one_plane_slide_as_one() {
-    // Each side that slides is cut in two along a zigzag.
+    // Each sliding side is cut in two along a zigzag.
     let mesh = small_box();
     let boundary = Boundary::of(&mesh.cells);
     let mut sets = Vec::new();
@@ -270,13 +273,13 @@ fn a_patch_that_is_nearly_flat_slides_and_is_reported_and_stays_as_far_off() {
     let threads = Threads::single();
     let mut mover = Mover::new(&mesh, &sliding(vec![top.clone()]), &threads).unwrap();
     let [plane] = mover.sliding() else { panic!("one plane") };
-    // The mean of the heights is somewhere between the rim and the bottom of the dish.
+    // The mean height is between those of the rim and the bottom of the dish.
     assert!(plane.deviation > 0.015 && plane.deviation < 0.03, "{plane:?}");
     assert!(plane.radius > 1.3 && plane.radius < 1.5 && plane.sliding == 25, "{plane:?}");
     let mut out = vec![[9.0; 3]; mesh.points.len()];
     mover.advance(&vec![[0.0; 3]; mover.boundary().len()], &mut out, &threads).unwrap();
     assert_eq!(out, mesh.points, "no motion is the identity, to the bit");
-    // Widened in the plane, every vertex keeps its height.
+    // When widened in the plane, every vertex keeps its height.
     let widen = |v: &VertexId| {
         let [x, y, _] = mesh.points[v.index()];
         [0.2 * x, 0.1 * y, 0.0]
@@ -356,7 +359,8 @@ fn a_rim_that_leaves_its_plane_is_reported_with_its_farthest_vertex() {
     };
     assert_eq!(leaving(&|_| [0.0; 3]), None);
     assert_eq!(leaving(&|p| [0.0, 0.1 * p[1], 0.2 * p[2]]), None, "within the plane");
-    // The upper side along z is pushed over: its edge with the side that slides leaves the plane most at its upper end.
+    // The upper side along z is sheared: its edge with the sliding side leaves the plane most at its upper
+    // end.
     let told = leaving(&|p| [0.1 * p[2] * (1.0 + p[1]), 0.0, 0.0]).unwrap();
     assert_eq!((told.patch.as_str(), told.place), ("xmin", [0.0, 1.5, 1.0]));
     assert!((told.distance - 0.25).abs() < 1e-15 && told.is_significant, "{told:?}");
@@ -372,7 +376,7 @@ fn what_a_rigid_layer_holds_stays_on_its_line() {
     let options = Options { rigid_layer: Some(rigid), ..sliding(sides(&mesh, 0b1111)) };
     let threads = Threads::single();
     let mut mover = Mover::new(&mesh, &options, &threads).unwrap();
-    // The wall bends, so that offsets turn; at the ends it would lead out of the planes.
+    // The wall bends, so that offsets rotate; at the ends this would lead out of the planes.
     let bend = |v: &VertexId| match wall.vertices.binary_search(v) {
         Ok(_) => [0.0, 0.0, 0.1 * mesh.points[v.index()][0] * mesh.points[v.index()][0]],
         Err(_) => [0.0; 3],
@@ -412,7 +416,7 @@ fn an_array_moves_the_interface_of_regions_where_it_is_not_zero_there() {
         (0..mesh.points.len()).map(VertexId::new).filter(|v| mesh.points[v.index()][0] == 1.0).collect();
     let mut rows = vec![[0.0; 3]; mesh.points.len()];
     assert_eq!(Interface::moved(&mesh, &boundary, &rows).unwrap(), []);
-    // On the boundary alone, or off the interface: nothing is asked of the interface.
+    // On the boundary alone, or off the interface: nothing is prescribed on the interface.
     rows[on_plane[0].index()] = [0.1; 3];
     let beside = (0..mesh.points.len()).find(|&v| mesh.points[v] == [0.5, 0.5, 1.0 / 3.0]).unwrap();
     rows[beside] = [0.1; 3];

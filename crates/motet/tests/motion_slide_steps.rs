@@ -1,4 +1,4 @@
-//! Patches that slide in motions of several sub-steps: their vertices are hung anew at each.
+//! Patches that slide in motions of several sub-steps: their vertices get new weights in each.
 
 use motet::Mesh;
 use motet::base::{Point, Threads};
@@ -6,7 +6,7 @@ use motet::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 use motet::mesh::shapes;
 use motet::motion::{Certificate, FacetSet, Mover, Options};
 
-/// A turned, scaled and shifted system of coordinates.
+/// A rotated, scaled and shifted system of coordinates.
 #[derive(Clone, Copy)]
 struct Frame {
     axes: [Point; 3],
@@ -18,7 +18,7 @@ impl Frame {
     const PLAIN: Self =
         Self { axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], unit: 1.0, origin: [0.0; 3] };
 
-    /// Turned about no axis of coordinates.
+    /// Rotated about an axis that is not a coordinate axis.
     fn turned(unit: f64, origin: Point) -> Self {
         let x = scale([2.0, -1.0, 3.0], 1.0 / 14f64.sqrt());
         let y = cross(x, [0.0, 1.0, 0.0]);
@@ -36,8 +36,8 @@ impl Frame {
     }
 }
 
-/// A block between the waves `z = w(x, y)` and `z = 1 - w(x, y)` over a square, its sides upright planes; and where each vertex is when the
-/// waves have become planes.
+/// A block between the waves `z = w(x, y)` and `z = 1 - w(x, y)` over a square, with vertical planes as
+/// sides; and the position of each vertex once the waves have become planes.
 fn wavy(n: [usize; 3], height: f64, frame: &Frame) -> (Mesh, Vec<Point>) {
     use std::f64::consts::PI;
     let wave = |x: f64, y: f64| height * (1.5 * PI * x).cos() * (PI * y).cos();
@@ -55,14 +55,15 @@ fn sliding(mesh: &Mesh, names: &[&str]) -> Options {
     Options { sliding, ..Options::default() }
 }
 
-/// Moves top and bottom to where they are flat.
+/// Moves top and bottom to their flat positions.
 fn flatten(mesh: &Mesh, mover: &mut Mover, flat: &[Point], out: &mut [Point]) -> Certificate {
     let move_of = |v: &motet::base::VertexId| sub(flat[v.index()], mesh.points[v.index()]);
     let driven: Vec<Point> = mover.boundary().iter().map(move_of).collect();
     mover.advance(&driven, out, &Threads::single()).unwrap()
 }
 
-/// The triangles between vertices of a rim that becomes straight lose their area; what hangs in them must not.
+/// The triangles between vertices of a rim that becomes straight lose their area; vertices that depend on
+/// them must not.
 #[test]
 fn rims_that_become_straight_leave_no_flat_cells() {
     let frames = [
@@ -84,7 +85,8 @@ fn rims_that_become_straight_leave_no_flat_cells() {
         assert!(worst > 0.05, "{worst}");
         for v in mover.boundary() {
             let [told, reached] = [&flat, &out].map(|points| frame.coordinates(points[v.index()]));
-            // Sides keep their planes, and what is neither on top nor at the bottom goes up or down.
+            // Sides keep their planes, and vertices that are neither on top nor at the bottom only move up or
+            // down.
             assert!(
                 (0..2).all(|k| (told[k] - reached[k]).abs() <= 10.0 * rounding),
                 "{v}: {told:?} {reached:?}"

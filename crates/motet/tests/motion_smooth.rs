@@ -1,4 +1,5 @@
-//! Smoothing after a motion: the vertices of bad tets and no others, the same way back, no jumps.
+//! Smoothing after a motion: only the vertices of bad tets move, the way back is the same, and there are no
+//! jumps.
 
 use motet::base::{Point, Threads};
 use motet::geometry::quality::eas;
@@ -91,6 +92,6 @@ fn no_vertex_jumps_when_its_tets_turn_bad() {
         fastest[1] / of_wall
     );
     assert!(fastest[0] < 1.001 * of_wall, "{fastest:?}");
-    // Without the fading a vertex that enters the list jumps by a part of its edges, whatever the step.
+    // Without the fading, a vertex that enters the list jumps by a part of its edges, however small the step.
     assert!(fastest[1] < 2.0 * of_wall, "{fastest:?}");
 }

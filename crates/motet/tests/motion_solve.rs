@@ -27,7 +27,7 @@ fn laplace(exponent: f64) -> Options {
     }
 }
 
-/// The same with a factor that is kept.
+/// The options with a factor that is kept.
 fn factorised(options: Options) -> Options {
     let factor_bytes = 1 << 28;
     let method = match options.method {
@@ -50,7 +50,7 @@ fn step(mover: &Mover, displacement: impl Fn(Point) -> Point, threads: &Threads)
     out
 }
 
-/// How far the mesh is from where a map takes it, when its boundary is there.
+/// The largest distance of the mesh from its image under a map that its boundary follows.
 fn error(mesh: &Mesh, options: &Options, map: impl Fn(Point) -> Point) -> f64 {
     let moved = step(&mover(mesh, options), &map, &Threads::single());
     let expected = mesh.points.iter().map(|&p| add(p, map(p)));
@@ -76,14 +76,15 @@ fn what_strains_nothing_is_exact() {
     assert!(error(&mesh, &elastic(1.0), shift) < 1e-9);
     assert!(error(&mesh, &elastic(1.0), turn) < 1e-9);
     assert!(error(&mesh, &laplace(1.0), shift) < 1e-9);
-    // What is as stiff everywhere passes the patch test (Irons 1965).
+    // Uniform stiffness passes the patch test (Irons 1965).
     assert!(error(&mesh, &elastic(0.0), |p| affine.displacement(p, 1.0)) < 1e-9);
     assert!(error(&mesh, &laplace(0.0), |p| affine.displacement(p, 1.0)) < 1e-9);
-    // And what is not does not: it is stiff where it should be.
+    // Non-uniform stiffness does not: it is stiff where it should be.
     assert!(error(&mesh, &elastic(1.0), |p| affine.displacement(p, 1.0)) > 1e-3);
 }
 
-/// The elastic energy from the strain of each tet, written down another way than the matrix is: deformed edges times the inverse of the first ones.
+/// The elastic energy from the strain of each tet, by another formula than the matrix: deformed edges times
+/// the inverse of the reference ones.
 fn energy(mesh: &Mesh, moved: &[Point], law: &Elastic) -> f64 {
     let lambda = law.poisson / ((1.0 + law.poisson) * (1.0 - 2.0 * law.poisson));
     let mu = 0.5 / (1.0 + law.poisson);
@@ -127,7 +128,7 @@ fn an_elastic_step_has_the_least_energy() {
         .collect();
     assert!(least > 0.0 && inside.len() > 100);
     for k in 0..20 {
-        // At the least value the energy rises alike on both sides, and only by the square.
+        // At the minimum, the energy rises equally on both sides, and only quadratically.
         let shifted = |by: f64| {
             let mut points = moved.clone();
             for (i, &v) in inside.iter().enumerate().filter(|(i, _)| (i * 7 + k) % 20 < 5) {
@@ -150,7 +151,7 @@ fn the_number_of_threads_changes_no_bit_and_a_step_back_leads_back() {
         let mover = mover(&mesh, &options);
         let three = Threads::new(3).unwrap();
         assert!(one == step(&mover, away, &three));
-        // The second time it begins at the solution.
+        // The second time it starts from the solution.
         let again = step(&mover, away, &three);
         assert!(one.iter().zip(&again).all(|(p, q)| distance(*p, *q) < 1e-9));
         assert_eq!(step(&mover, |_| [0.0; 3], &three), mesh.points);
@@ -206,7 +207,7 @@ fn a_rigid_layer_is_given_and_not_solved_for() {
 
 #[test]
 fn cells_of_other_kinds_are_as_stiff_as_their_corners() {
-    // Hexahedra, two by two by two, and a vertex inside.
+    // Hexahedra, two by two by two, with a vertex inside.
     let n = 3;
     let points: Vec<Point> = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9].map(|x| f64::from(x as u8))).collect();
     let mut cells = Cells::default();
@@ -245,7 +246,7 @@ fn what_cannot_be_solved_is_refused_with_a_remedy() {
         let error = Mover::new(&mesh, &options, &Threads::single()).unwrap_err();
         assert!(error.remedy_text().is_some(), "{error}");
     }
-    // All flat: nothing resists.
+    // All cells flat: nothing resists.
     let mut flat = box_grid([2, 2, 2], [[0.0; 3], [1.0; 3]]);
     let middle = flat.points.iter().position(|p| p.iter().all(|x| (x - 0.5).abs() < 0.2)).unwrap();
     let at = VertexId::new(middle);
@@ -268,7 +269,7 @@ fn a_factor_gives_what_iterations_give() {
         let first = step(&exact, push, &Threads::single());
         let other = step(&iterated, push, &Threads::single());
         assert!(first.iter().zip(&other).all(|(&p, &q)| distance(p, q) < 1e-9));
-        // Whatever came between, and however many threads.
+        // Independent of the steps between, and of the number of threads.
         step(&exact, |p| cross([0.0, 0.1, 0.2], p), &Threads::single());
         assert_eq!(step(&exact, push, &Threads::new(2).unwrap()), first);
     }

@@ -1,4 +1,4 @@
-//! The graph within its walls: branches and flaps, the same maps as without, refusals.
+//! The graph within its walls: branches and flaps, the same maps as without walls, refusals.
 
 use motet::Mesh;
 use motet::base::{Point, Threads, VertexId};
@@ -27,17 +27,18 @@ fn step(mover: &Mover, map: impl Fn(Point) -> Point, threads: &Threads) -> Vec<P
     out
 }
 
-/// Where the channels are one, in grid steps.
+/// Where the channels are joined, in grid steps.
 const JOINED: f64 = 6.0;
 
-/// Two channels one over the other, joined at one end, with less between them than their walls' edges are long: nothing, or cells and two flaps, whose vertices come along.
+/// Two channels one above the other, joined at one end, with a gap smaller than the edges of their walls:
+/// empty, or with cells and two flaps, whose vertices are returned.
 fn channels(with_flaps: bool) -> (Mesh, Vec<VertexId>) {
     const HEIGHTS: [f64; 10] = [0.0, 0.5, 0.9, 0.97, 1.0, 1.1, 1.13, 1.2, 1.6, 2.1];
     let grid = box_grid([14, 9, 6], [[0.0; 3], [7.0, 9.0, 3.0]]);
     let place = |[x, y, z]: Point| {
-        // The upper channel's vertices stand over the middle of the lower one's edges.
+        // The upper channel's vertices are above the middle of the lower one's edges.
         let off = if y > 4.5 { 0.25 * (0.5 * (JOINED - x)).clamp(0.0, 1.0) } else { 0.0 };
-        // And those inside not under the vertices of the wall.
+        // Vertices inside are not below the vertices of the wall.
         let inner = if [0.0, 4.0, 5.0, 9.0].contains(&y) { 0.0 } else { 0.25 };
         let (along, across) = (inner * x.min(1.0).min(7.0 - x), inner * z.min(1.0).min(3.0 - z));
         [2.0 * (x + off + along), HEIGHTS[y as usize], 2.0 * (z + across)]
@@ -78,7 +79,7 @@ fn walls(mesh: &Mesh) -> Vec<[VertexId; 3]> {
     outer.rings.iter().chain(inner.rings.iter()).map(triangle).collect()
 }
 
-/// How often a vertex hangs on a node that a wall parts it from.
+/// Counts the dependences of vertices on nodes behind a wall.
 fn n_through_walls(mesh: &Mesh, mover: &Mover) -> usize {
     let walls = walls(mesh);
     let place = |v: VertexId| mesh.points[v.index()];
@@ -103,7 +104,7 @@ fn n_through_walls(mesh: &Mesh, mover: &Mover) -> usize {
 #[test]
 fn a_branch_that_moves_alone_takes_nothing_of_the_other_along() {
     let mesh = branches();
-    // The upper channel bends off, farther and farther.
+    // The upper channel bends away, more and more.
     let is_upper = |p: Point| p[0] < 10.0 && p[1] > 1.05;
     let map = |p: Point| if is_upper(p) { [p[0], p[1] + 0.1 * (10.0 - p[0]), p[2]] } else { p };
     let is_lower = |v: &usize| mesh.points[*v][0] < 10.0 && mesh.points[*v][1] < 1.05;
@@ -163,7 +164,7 @@ fn threads_change_nothing_and_other_methods_keep_within_too() {
 
 #[test]
 fn walls_that_cross_each_other_are_refused() {
-    // Two tets that go through each other: the boundary crosses itself.
+    // Two tets that intersect: the boundary crosses itself.
     let points = vec![
         [0.0, 0.0, 0.0],
         [1.0, 0.0, 0.0],

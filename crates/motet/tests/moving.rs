@@ -1,4 +1,5 @@
-//! A mesh that moves with its walls: repaired on the way, arrays and maps carried, saved and gone on with, watched.
+//! A mesh that moves with its walls: repaired on the way, arrays and maps carried, saved and resumed,
+//! watched.
 
 use motet::base::{Point, Threads, VertexId, Watch};
 use motet::contact;
@@ -49,7 +50,8 @@ fn box_mesh() -> Mesh {
     mesh
 }
 
-/// Back and forth along x, as far as three radii of the sphere from the middle, where one radius is left to the wall; and half a turn there.
+/// Back and forth along x, as far as three radii of the sphere from the middle, where one radius is left to
+/// the wall; with half a turn there.
 fn cycle(k: usize) -> Prescribed {
     let angle = k as f64 / 12.0 * std::f64::consts::TAU;
     let turn = Prescribed::Turn { axis: [0.1, 0.2, 1.0], angle: 1.6 * angle.sin(), centre: [0.0; 3] };
@@ -89,7 +91,7 @@ fn a_sphere_goes_far_and_comes_back_again_and_again_and_no_tet_is_bad() {
         n_changes += step.changes.len();
         let now = moving.mesh();
         assert!(check::check(now).is_empty(), "{:?}", check::check(now));
-        // The walls are where they were told to be.
+        // The walls are where they were driven.
         let all = now.points.iter().zip(moving.displacement()).map(|(&p, d)| (sub(p, d), d));
         let mut n = 0;
         for (first, d) in all.filter(|(first, _)| is_sphere(*first)) {
@@ -126,7 +128,7 @@ fn as_long_as_nothing_changes_a_step_depends_on_where_the_walls_are_alone() {
 fn histories_lead_from_any_step_to_the_present_one() {
     let mesh = box_mesh();
     let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
-    // Arrays of the caller's own, one set at first and one later, each where vertices were at that time.
+    // Arrays kept by the caller, one set at first and one later, each with the vertex positions of its time.
     let mut kept: Vec<(usize, Field)> = vec![(0, Field::vectors("place", &mesh.points))];
     for k in 1..=6 {
         let displacement = sphere_goes(&moving, along(cycle(k)));
@@ -144,7 +146,7 @@ fn histories_lead_from_any_step_to_the_present_one() {
         let history = moving.history_since(step).unwrap().expect("there were changes");
         let carried = history.transfer_points(&field).unwrap().to_vectors().unwrap();
         assert_eq!(carried.len(), moving.mesh().points.len());
-        // Kept vertices have the very place that they had then.
+        // Kept vertices have exactly the position that they had then.
         let vertices =
             history.vertices.kept().iter().zip(&carried).filter(|(old, _)| **old != motet::base::Id::NONE);
         let old = field.to_vectors().unwrap();
@@ -164,7 +166,8 @@ fn histories_lead_from_any_step_to_the_present_one() {
     assert!(told.contains("step 13") && told.contains("the last one is 12"), "{told}");
 }
 
-/// The steps of [`cycle`] that end with tets that have no volume where their vertices were as the step began, counted again from the history; with the worst EAS of all steps.
+/// The number of steps of [`cycle`] that end with tets without positive volume at the vertex positions at the
+/// start of the step, recomputed from the history; with the worst EAS of all steps.
 fn steps_off_at_start(options: Options) -> (usize, f64) {
     let mut moving = MovingMesh::new(&box_mesh(), options, &threads()).unwrap();
     let (mut n_off, mut worst) = (0, f64::INFINITY);
@@ -196,7 +199,7 @@ fn steps_off_at_start(options: Options) -> (usize, f64) {
 
 #[test]
 fn tets_that_are_inverted_where_the_step_began_are_reported_and_avoided_on_request() {
-    // A mesh that is improved, too, has none in these steps.
+    // A mesh that is improved as well has none in these steps.
     let options = Options { improve_below: 0.0, ..options() };
     let (n_off, _) = steps_off_at_start(options.clone());
     assert!(n_off > 0, "steps are large enough for some");
@@ -228,7 +231,7 @@ fn a_run_that_is_saved_and_loaded_ends_with_the_same_bytes() {
         let displacement = sphere_goes(&whole, along(cycle(k)));
         let a = whole.advance(k as f64, &displacement, &threads()).unwrap();
         broken.save(&file).unwrap();
-        // Every other time with more threads.
+        // Every second time with more threads.
         let threads = Threads::new(1 + k % 2).unwrap();
         broken = MovingMesh::load(&file, watched(), &threads).unwrap();
         assert_eq!(broken.driven_places(), whole.driven_places());
@@ -245,7 +248,7 @@ fn a_state_keeps_the_arrays_in_their_order_and_knows_its_options() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("state.vtu");
     let mut mesh = box_mesh();
-    // Labels under a name that writers add their own to.
+    // Labels under a name for which writers add their own field.
     let labels = mesh.cell_data.iter_mut().find(|field| field.name == "patch").unwrap();
     labels.name = "gmsh:physical".into();
     mesh.cell_data.retain(|field| field.name != "region");
@@ -262,7 +265,7 @@ fn a_state_keeps_the_arrays_in_their_order_and_knows_its_options() {
     let told = loaded.history_since(0).unwrap_err().to_string();
     assert!(told.contains("since step 0 are not known, only those since step 1"), "{told}");
     assert!(loaded.history_since(1).unwrap().is_none());
-    // Other options are no way to go on.
+    // Other options cannot resume.
     let mut other = options();
     other.motion.smoothing = 0;
     let told = MovingMesh::load(&file, other, &threads()).unwrap_err();
@@ -334,7 +337,7 @@ fn without_repair_a_motion_ends_where_a_cell_would_turn_over() {
     assert!(!step.complete && step.fraction > 0.5 && step.fraction < 1.0 && step.inverted == 0);
     assert_eq!(step.time, step.fraction);
     assert_eq!(moving.mesh().cells.len(), n_cells);
-    // With it the sphere goes through the wall as little.
+    // With repair, the sphere does not go through the wall, either.
     let mut moving = MovingMesh::new(&mesh, options(), &threads()).unwrap();
     let step = moving.advance(1.0, &through, &threads()).unwrap();
     assert!(!step.complete && step.inverted == 0, "{step:?}");
@@ -354,7 +357,8 @@ fn what_is_refined_moves_on_and_comes_back() {
     assert!(change.why == Why::Refinement && change.tets_after > change.tets_before && change.time == 1.0);
     let n_divided = moving.mesh().cells.len();
     assert!(check::check(moving.mesh()).is_empty());
-    // Displacements are still those of the first walls: new vertices of the sphere follow the triangles that they divide.
+    // Displacements are still those of the initial walls: new vertices of the sphere follow the triangles
+    // that they divide.
     for k in 2..=6 {
         let by = [0.3 * k as f64, 0.0, 0.0];
         let step = moving.advance(k as f64, &sphere_goes(&moving, shift(by)), &threads()).unwrap();
@@ -391,7 +395,7 @@ fn what_cells_hold_stays_where_divisions_are_taken_back_after_a_motion() {
     for (k, by) in [0.4, 0.9, 1.5].into_iter().enumerate() {
         let displacement = sphere_goes(&moving, shift([by, 0.2 * by, 0.0]));
         moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
-        // Some of it is taken back where it is now.
+        // Divisions near its current position are taken back.
         let near = Criterion::Ball { centre: [2.0 - by, 0.0, 0.0], radius: 1.0 };
         let back = Wanted { criteria: vec![near], coarsen: true, generations: Some(0), ..Wanted::default() };
         let change = moving.refine(&back, &threads()).unwrap().pop();
@@ -447,7 +451,7 @@ fn what_comes_near_is_warned_of_before_it_is_there() {
         let step =
             moving.advance(f64::from(k), &sphere_goes(&moving, shift([by, 0.0, 0.0])), &threads()).unwrap();
         let gaps = step.gaps.unwrap();
-        // The sphere's triangles lie within it, vertices on it.
+        // The sphere's triangles lie within it, with their vertices on it.
         assert!((gaps.least.unwrap() - (4.0 - by)).abs() < 1e-12);
         assert_eq!(gaps.warned > 0, by > 2.8, "{by}: {gaps:?}");
         let touch = gaps.touch_not_before.unwrap();
@@ -473,7 +477,7 @@ fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
     let file = folder.path().join("state.vtu");
     let mesh = box_mesh();
     let mut moving = MovingMesh::new(&mesh, kept_apart(0.5), &threads()).unwrap();
-    // In a corner of the box, nearer to both of its walls at last than it may be, and back.
+    // In a corner of the box, finally nearer to both of its walls than permitted, and back.
     for (k, by) in [1.0, 2.0, 3.0, 3.6, 3.8, 3.6, 2.0, 0.0].into_iter().enumerate() {
         let displacement = sphere_goes(&moving, shift([by, by, 0.0]));
         let step = moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
@@ -481,7 +485,7 @@ fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
         assert!(step.complete && step.inverted == 0);
         assert_eq!(gaps.held > 0, by > 3.5, "{by}");
         assert!((gaps.least.unwrap() - (4.0 - by).max(0.5)).abs() < 1e-12, "{by}: {:?}", gaps.least);
-        // What was saved goes on alike.
+        // The saved state continues alike.
         moving.save(&file).unwrap();
         moving = MovingMesh::load(&file, kept_apart(0.5), &threads()).unwrap();
     }
@@ -493,7 +497,7 @@ fn what_is_told_to_go_through_a_wall_stops_in_front_of_it() {
 #[test]
 fn what_is_requested_to_be_beyond_a_wall_stops_in_front_of_it() {
     let mut moving = MovingMesh::new(&box_mesh(), kept_apart(0.5), &threads()).unwrap();
-    // From one side of the box to beyond the other one in a step, and back.
+    // From one side of the box to beyond the opposite one in a step, and back.
     for (k, by) in [2.0, 3.0, 5.0, 40.0, 5.0, -7.0, 0.0].into_iter().enumerate() {
         let displacement = sphere_goes(&moving, shift([by, 0.0, 0.0]));
         let step = moving.advance(1.0 + k as f64, &displacement, &threads()).unwrap();
@@ -507,7 +511,7 @@ fn what_is_requested_to_be_beyond_a_wall_stops_in_front_of_it() {
         );
         if let Some(held) = gaps.farthest_held {
             assert_eq!(held.patch, "sphere");
-            // Pushes go back by a quarter of the distance at most.
+            // Pushes fall short by a quarter of the distance at most.
             let beyond = held.short - (by.abs() - 3.5);
             assert!((-1e-9..0.125).contains(&beyond), "{by}: {held:?}");
         }
@@ -521,7 +525,7 @@ fn walls_that_cannot_be_kept_apart_are_told() {
         let told = MovingMesh::new(&mesh, kept_apart(hold), &threads()).unwrap_err();
         assert_eq!(told.kind(), ErrorKind::Options);
     }
-    // Saved without: there is nothing to keep apart.
+    // Saved without `hold`: there is nothing to keep apart.
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("state.vtu");
     MovingMesh::new(&mesh, options(), &threads()).unwrap().save(&file).unwrap();
@@ -531,7 +535,7 @@ fn walls_that_cannot_be_kept_apart_are_told() {
 
 #[test]
 fn what_comes_bad_is_repaired_before_the_first_step() {
-    // The vertices inside go astray, a little farther each time, until tets are bad.
+    // The vertices inside are displaced, a little farther each time, until tets are bad.
     let astray = |by: f64| {
         let mut mesh = box_mesh();
         let inner = |p: Point| norm(p) > 1.01 && p.iter().all(|x| x.abs() < 4.99);

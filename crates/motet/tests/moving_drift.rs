@@ -1,4 +1,5 @@
-//! Over long motions a mesh stays the mesh that it was: its counts, its mean quality, and where a wall comes back the mesh itself.
+//! Over long motions a mesh keeps its counts and its mean quality, and where a wall comes back, the mesh
+//! itself is restored.
 
 mod common;
 
@@ -28,14 +29,14 @@ fn paddle_in_box() -> Mesh {
     without(&box_grid([12, 12, 6], [[-2.0, -2.0, -1.0], [2.0, 2.0, 1.0]]), is_paddle)
 }
 
-/// A mesh without the tets whose middles are in a body about the origin.
+/// A mesh without the tets whose centres are in a body about the origin.
 fn without(grid: &Mesh, is_body: impl Fn(Point) -> bool) -> Mesh {
     let mut cells = Cells::new();
     for (_, tet) in grid.cells.tets().filter(|(_, tet)| !is_body(middle(grid, tet))) {
         cells.push(CellKind::TETRA, tet);
     }
     let mut mesh = Mesh::new(grid.points.clone(), cells);
-    // Points within the body are of no tet.
+    // Points within the body belong to no tet.
     let is_used: Vec<bool> = {
         let mut is_used = vec![false; mesh.points.len()];
         mesh.cells.tets().flat_map(|(_, tet)| tet).for_each(|v| is_used[v.index()] = true);
@@ -58,7 +59,7 @@ fn turned([x, y, z]: Point, angle: f64) -> Point {
     [c * x - s * y, s * x + c * y, z]
 }
 
-/// Turns the paddle by an angle; all else of the boundary stays.
+/// Rotates the paddle by an angle; the rest of the boundary stays.
 fn turn(moving: &mut MovingMesh, time: f64, angle: f64) -> Step {
     let goes = |&p: &Point| {
         let to = if is_paddle(p) { turned(p, angle) } else { p };
@@ -77,21 +78,22 @@ fn options(method: Method, strain: Strain) -> Options {
     Options { motion: Motion { method, strain, ..Motion::default() }, ..Options::default() }
 }
 
-/// How far counts may be off those of the first mesh, and the mean EAS below that of the first.
+/// How far counts may deviate from those of the first mesh, and how far the mean EAS may fall below that of
+/// the first.
 struct Limits {
     vertices: f64,
     tets: f64,
     mean: f64,
 }
 
-/// Turns the paddle in steps of ten degrees.
+/// Rotates the paddle in steps of ten degrees.
 fn turn_on(n_steps: i32, options: Options, limits: &Limits) {
     advance_and_check(&paddle_in_box(), n_steps, options, limits, |moving, k| {
         turn(moving, f64::from(k), f64::from(10 * k).to_radians())
     });
 }
 
-/// Moves a body in so many steps, checks counts and qualities after each, and returns the mesh.
+/// Moves a body in `n_steps` steps, checks counts and qualities after each, and returns the mesh.
 fn advance_and_check(
     mesh: &Mesh,
     n_steps: i32,
@@ -119,7 +121,7 @@ fn advance_and_check(
 
 #[test]
 fn a_paddle_that_turns_in_a_band_leaves_counts_and_quality_as_they_were() {
-    // Mean EAS 0.588 at first, the same for each tet of the lattice.
+    // The mean EAS is 0.588 at first, the same for each tet of the lattice.
     let limits = Limits { vertices: 0.02, tets: 0.08, mean: 0.04 };
     turn_on(72, options(Method::Bodies(Vec::new()), Strain::Band), &limits);
 }
@@ -242,12 +244,13 @@ fn a_paddle_that_swings_keeps_counts_and_quality_cycle_after_cycle() {
             ends.push(step.quality.mean);
         }
     }
-    // From the second cycle on nothing is lost. Single ends differ by up to 0.04.
+    // From the second cycle on nothing is lost. The ends of single cycles differ by up to 0.04.
     let mean = |some: &[f64]| some.iter().sum::<f64>() / some.len() as f64;
     assert!((mean(&ends[1..5]) - mean(&ends[5..])).abs() < 0.02, "{ends:?}");
 }
 
-/// A box with a hole in it about the origin: a cylinder as a CAD program writes it, whose rims have edges of a tenth of its radius and whose sides are thirty times as long.
+/// A box with a hole about the origin: a cylinder as a CAD program writes it, whose rims have edges of a
+/// tenth of its radius and whose sides are thirty times as long.
 fn cylinder_in_box() -> Mesh {
     let cylinder = moved(&prism(64, 1.0, 3.0), |[x, y, z]| [x, y, z - 1.5]);
     let walls = Surface::boundary_of(&box_grid([9; 3], [[-3.3; 3], [3.3; 3]]));
@@ -286,7 +289,7 @@ fn a_cylinder_with_fine_rims_that_turns_keeps_counts_and_sizes() {
     assert!((spread_last / spread - 1.0).abs() < 0.06, "{spread_last}, {spread} at first");
 }
 
-/// The mean of how long edges are at vertices, and the standard deviation of its logarithm.
+/// The mean of the edge lengths at vertices, and the standard deviation of its logarithm.
 fn edges(mesh: &Mesh) -> [f64; 2] {
     let mut lengths = mean_edge_lengths(&mesh.points, mesh.cells.tets().map(|(_, tet)| tet));
     lengths.retain(|length| *length > 0.0);
@@ -295,12 +298,13 @@ fn edges(mesh: &Mesh) -> [f64; 2] {
     [mean(&|l| l), mean(&|l| (l.ln() - log).powi(2)).sqrt()]
 }
 
-/// Twists a cube of two by two by two about z, its top against its bottom, to both sides, eight steps a cycle.
+/// Twists a cube of edge length 2 about z, its top against its bottom, to both sides, in eight steps per
+/// cycle.
 fn twist(moving: &mut MovingMesh, k: i32) -> Step {
     twist_by(moving, k, 0.75, 0.0)
 }
 
-/// Twists the cube by up to `most` to each side, and shifts it by so much. The same to the bit in each cycle.
+/// Twists the cube by up to `most` to each side, and shifts it by `shift`. The same to the bit in each cycle.
 fn twist_by(moving: &mut MovingMesh, k: i32, most: f64, shift: f64) -> Step {
     let far = (std::f64::consts::TAU * f64::from(k % 8) / 8.0).sin() * most;
     let goes = |&p: &Point| {
@@ -339,7 +343,7 @@ fn walls_that_come_back_go_on_from_a_state_to_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.vtu");
     let mut moving = cube_that_returns();
-    // Changed after the walls were at rest: the place of rest is not that of the first mesh.
+    // Changed after the walls were at rest: the rest positions are not those of the first mesh.
     (1..=13).for_each(|k| _ = twist(&mut moving, k));
     moving.save(&path).unwrap();
     let mut again = MovingMesh::load(&path, that_returns(), &threads()).unwrap();
@@ -354,7 +358,7 @@ fn walls_that_come_back_go_on_from_a_state_to_the_same_bits() {
     assert_eq!(moving.mesh().cells, again.mesh().cells);
 }
 
-/// A cube, eight steps a cycle of a twist, whose mesh changes in each cycle and loses.
+/// A cube with a twist of eight steps per cycle, whose mesh changes and gets worse in each cycle.
 fn restless() -> MovingMesh {
     restless_with(that_returns())
 }
@@ -363,7 +367,7 @@ fn restless_with(options: Options) -> MovingMesh {
     MovingMesh::new(&well_filled(RESTLESS.0), options, &threads()).unwrap()
 }
 
-/// A cube whose tets are as good as repair gets them: a lattice gains by each change.
+/// A cube whose tets are as good as repair can make them: a lattice improves by each change.
 fn well_filled(n: usize) -> Mesh {
     let mut mesh = box_grid([n; 3], [[-1.0; 3], [1.0; 3]]);
     for (i, p) in mesh.points.iter_mut().enumerate() {
@@ -375,7 +379,7 @@ fn well_filled(n: usize) -> Mesh {
     remesh_mesh(&mesh, &best, &Rules::default(), &threads()).unwrap().mesh
 }
 
-/// Edges along a side, and the angle.
+/// The number of edges along a side, and the angle.
 const RESTLESS: (usize, f64) = (5, 0.75);
 
 fn twist_restless(moving: &mut MovingMesh, k: i32) -> Step {
@@ -400,7 +404,7 @@ fn where_a_mesh_does_not_settle_the_first_one_is_put_back_and_cycles_repeat_to_t
             assert!(k % 4 == 0 && moving.mesh().cells == first.cells, "{k}");
         }
         if k % 8 == 0 && !put_back.is_empty() {
-            // Its walls are exactly where they were, and its way is the one from the first mesh.
+            // Its walls are exactly where they were, and its path is the one from the first mesh.
             assert_eq!(moving.mesh().points, first.points, "{k}");
             assert!(step.changes.len() <= 1);
         }
@@ -429,7 +433,7 @@ fn walls_that_come_back_only_nearly_count() {
     assert!(n_put_back > 0);
 }
 
-/// Of a cell array: its integral, with the vertices at `points`.
+/// The integral of a cell array, with the vertices at `points`.
 fn integral(mesh: &Mesh, points: &[Point], name: &str) -> f64 {
     let values = mesh.cell_field(name).unwrap().values.to_f64().unwrap();
     let of = |(cell, tet): (motet::base::CellId, [motet::base::VertexId; 4])| {
@@ -490,7 +494,8 @@ fn walls_that_come_back_and_may_change_leave_the_same_mesh_at_the_ends_of_cycles
     }
 }
 
-/// What changes of a cube on its way make of a field, each by itself: the sum of the squares of the errors off the exact function at new and moved vertices.
+/// The effect of the changes of a cube on a field, each change by itself: the sum of squared deviations from
+/// the exact function at new and moved vertices.
 fn errors_of_changes(of: impl Fn(Point) -> f64, rules: [Rule; 2]) -> [f64; 2] {
     let mut moving = restless();
     let (mut errors, mut n_changed) = ([0.0; 2], 0);
@@ -582,7 +587,7 @@ fn what_is_improved_has_an_entry_for_each_point() {
 
 #[test]
 fn tets_that_a_narrow_place_made_bad_are_good_again_when_it_widens() {
-    // A bar, pinched about its middle to a thirtieth of its height, eight steps a cycle.
+    // A bar, pinched about its middle to a thirtieth of its height, eight steps per cycle.
     let mesh = box_grid([10, 2, 2], [[0.0, -0.5, -0.5], [3.0, 0.5, 0.5]]);
     let mut moving = MovingMesh::new(&mesh, that_returns(), &threads()).unwrap();
     let (mut most_bad, mut counts) = (0, Vec::new());
@@ -599,7 +604,8 @@ fn tets_that_a_narrow_place_made_bad_are_good_again_when_it_widens() {
         }
     }
     assert!(most_bad > 0, "nothing became bad");
-    // Of 99 vertices 9 are inside. What the narrow place needs may wait for the next change, and does not grow.
+    // Of 99 vertices 9 are inside. Vertices that the narrow place needs may stay until the next change, but
+    // their number does not grow.
     let (earlier, later) = counts.split_at(counts.len() / 2);
     assert!(later.iter().max() <= earlier.iter().max(), "{counts:?}");
     assert!(counts.last().is_some_and(|n| n.abs_diff(mesh.points.len()) <= 2), "{counts:?}");

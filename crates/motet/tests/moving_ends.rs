@@ -1,4 +1,4 @@
-//! Where a step ends early, and what goes on from a state: on a small mesh, to the bit.
+//! Steps that end early, and resuming from a state: on a small mesh, to the bit.
 
 use motet::base::{Point, Threads};
 use motet::contact;
@@ -42,7 +42,7 @@ fn without_repair_a_step_ends_on_its_way_and_says_how_far_it_went() {
         assert!(norm(sub(moving.mesh().points[v], add(*p, by))) < 1e-12);
         assert!(norm(sub(moving.velocity()[v], velocity)) < 1e-9, "{:?}", moving.velocity()[v]);
     }
-    // From there it may go back at once.
+    // From there the walls may go back at once.
     assert!(go(&mut moving, 4.0, [0.0; 3]).complete);
 }
 
@@ -87,7 +87,7 @@ fn a_state_goes_on_to_the_same_bits_where_walls_are_kept_apart() {
         n_changes += a.changes.len();
     }
     assert!(n_held > 0 && n_changes > 0, "{n_held} {n_changes}");
-    // What is saved with a distance is not gone on with without.
+    // A state saved with a distance cannot be resumed without one.
     moving.save(&file).unwrap();
     assert!(MovingMesh::load(&file, Options::default(), &threads()).is_err());
 }

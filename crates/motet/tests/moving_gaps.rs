@@ -1,4 +1,5 @@
-//! Gaps between watched walls as sizes: a mesh that moves is divided where they are narrow, and back where they are wide again.
+//! Gaps between watched walls as sizes: a moving mesh is divided where they are narrow, and coarsened where
+//! they are wide again.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::contact;
@@ -22,7 +23,7 @@ fn watched() -> Options {
     Options { watch: Some(watch), ..Options::default() }
 }
 
-/// As short as gaps are wide, and taken back where they are wider.
+/// Edges no longer than gaps; divisions taken back where gaps are wider.
 fn by_gaps() -> Wanted {
     let criteria = vec![Criterion::Size(Size::Array(GAP.into()))];
     let limits = Limits { smallest: Some(0.2), ..Limits::default() };
@@ -34,7 +35,7 @@ fn sphere_goes(moving: &MovingMesh, by: f64) -> Vec<Point> {
     moving.driven_places().iter().map(goes).collect()
 }
 
-/// The longest edge of tets whose ends all have a gap below a limit.
+/// The longest edge of tets all of whose vertices have a gap below a limit.
 fn longest_in_gap(moving: &MovingMesh, below: f64) -> f64 {
     let mesh = moving.mesh();
     let gaps = moving.gaps().unwrap().at_points(mesh.points.len());
@@ -73,7 +74,8 @@ fn edges_of_walls_are_as_short_as_gaps_are_wide() {
     assert!(n_back < n_fine && (n_back as f64) < 1.5 * n_first as f64, "{n_first} {n_fine} {n_back}");
 }
 
-/// How many tets are left, and the longest edge in the gap, where a mesh that was divided by its gaps is coarsened down to a length.
+/// The number of tets and the longest edge in the gap, before and after a mesh that was divided by its gaps
+/// is coarsened down to a length.
 fn coarsened(smallest: f64) -> [(usize, f64); 2] {
     let mut moving = MovingMesh::new(&sphere_in_box(4, 4), watched(), &threads()).unwrap();
     moving.advance(1.0, &sphere_goes(&moving, 2.0), &threads()).unwrap();

@@ -1,4 +1,4 @@
-//! Patches inside that are driven, repairs that are remembered, and numbers that mean nothing refused.
+//! Inner patches that are driven, histories of repairs, and invalid numbers that are refused.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::contact;
@@ -73,7 +73,7 @@ fn a_sheet_inside_goes_where_it_is_requested_also_where_it_was_divided() {
     for (p, q) in before.iter().zip(&moving.mesh().points) {
         assert!(distance(add(*p, shear(p)), *q) < 1e-9, "{p:?} {q:?}");
     }
-    // The sheet alone: what else is driven stays.
+    // Only the sheet moves: the other driven vertices stay.
     let bulge = |p: &Point| {
         if p[0] == 0.5 && p[1] * p[2] * (1.0 - p[1]) * (1.0 - p[2]) > 0.0 {
             [0.1, 0.0, 0.0]
@@ -87,7 +87,7 @@ fn a_sheet_inside_goes_where_it_is_requested_also_where_it_was_divided() {
     assert!(middle, "the middle of the sheet");
 }
 
-/// Vertices inside astray until tets are bad.
+/// A mesh with inner vertices displaced until tets are bad.
 fn astray() -> Mesh {
     let mut mesh = sphere_in_box(3, 3);
     for (i, p) in mesh.points.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! What a moving mesh says of itself: where it is in time, how fast its vertices are, how far they went, how long it took.
+//! Reports of a moving mesh: its time, the velocities and displacements of its vertices, timings.
 
 use std::time::Instant;
 
@@ -17,7 +17,7 @@ fn mesh() -> Mesh {
     sphere_in_box(3, 3)
 }
 
-/// All walls go by the same.
+/// Moves all walls by the same vector.
 fn all_go(moving: &mut MovingMesh, time: f64, by: Point) -> Step {
     let displacement = vec![by; moving.driven_places().len()];
     moving.advance(time, &displacement, &threads()).unwrap()
@@ -73,7 +73,7 @@ fn stages_take_no_longer_than_the_whole() {
         assert!(step.changes.is_empty() || taken.repair > 0.0 && taken.setup > 0.0, "{taken:?}");
         assert!(stages.iter().sum::<f64>() <= taken.total && taken.total <= all, "{taken:?} of {all}");
         times.extend(step.changes.iter().map(|change| change.time));
-        // What was changed on the way was changed at a time on the way.
+        // Changes on the way have a time on the way.
         assert!(step.changes.iter().all(|c| c.time > f64::from(k - 1) && c.time <= f64::from(k)));
         assert!(step.complete, "{}", step.fraction);
     }
@@ -93,7 +93,7 @@ fn lengths_to_go_back_to_are_numbers_from_zero_on() {
         assert!(moving.coarsen(smallest, &threads()).is_err(), "{smallest}");
     }
     assert!(moving.coarsen(0.0, &threads()).unwrap().is_none(), "nothing is short");
-    // What was divided has the lengths that it is to have from now on.
+    // Divided edges keep their new lengths from now on.
     let near = Criterion::Ball { centre: [2.0, 0.0, 0.0], radius: 1.5 };
     let fine = Wanted { criteria: vec![near], generations: Some(1), ..Wanted::default() };
     assert_eq!(moving.refine(&fine, &threads()).unwrap().len(), 1);

@@ -1,4 +1,4 @@
-//! What walls do in time, and what a step says where it ends early.
+//! The motion of walls over time, and contradictions in it.
 
 use motet::base::{Point, VertexId};
 use motet::geometry::vector::norm;
@@ -43,7 +43,7 @@ fn frames_are_spread_over_a_period_or_from_begin_to_end() {
         again.go(&DRIVEN, vec![[0.0; 3]; 2], InTime::Table(Vec::new())).is_err(),
         "a course that is none"
     );
-    // One frame is where they are all the time.
+    // With one frame the walls are there all the time.
     for is_periodic in [true, false] {
         let mut one = still([0.0; 3]);
         one.frames(&DRIVEN, vec![vec![[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]]], is_periodic).unwrap();
@@ -65,19 +65,19 @@ fn parts_contradict_each_other_where_they_differ_by_more_than_rounding() {
             assert_eq!(script.contradicted(), expected, "{off} of {size}");
         }
     }
-    // Where a course is at rest at the begin and the end of a period, in between.
+    // For a course at rest at the beginning and the end of a period, in between.
     for in_time in [InTime::Beat, InTime::Swing] {
         let mut script = still([1.0; 3]);
         script.follow(&DRIVEN, Prescribed::Shift([1.0, 0.0, 0.0]), in_time.clone()).unwrap();
         script.follow(&DRIVEN, Prescribed::Shift([2.0, 0.0, 0.0]), in_time).unwrap();
         assert_eq!(script.contradicted(), DRIVEN);
     }
-    // At the origin it is the displacements that say what rounding is.
+    // At the origin, the displacements determine what counts as rounding.
     let mut script = still([0.0; 3]);
     script.follow(&DRIVEN, Prescribed::Shift([1.0, 0.0, 0.0]), InTime::Ramp).unwrap();
     script.go(&DRIVEN, vec![[1.0, 1e-13, 0.0], [1.0, 1e-11, 0.0]], InTime::Ramp).unwrap();
     assert_eq!(script.contradicted(), DRIVEN[1..]);
-    // What stays is contradicted by nothing; nor is what has one part.
+    // What stays is not contradicted; nor is what has one part.
     let mut script = still([1.0; 3]);
     assert!(script.contradicted().is_empty());
     script.hold(&DRIVEN);
@@ -93,7 +93,7 @@ fn normals_lead_out_of_a_box_and_are_none_where_there_is_no_area() {
         let facets = FacetSet::of_patch(&mesh, label);
         let all = normals(&facets, &mesh.points);
         assert_eq!(all.len(), facets.vertices.len());
-        // A side of the box: all normals are one axis, out of the middle.
+        // A side of the box: all normals point along one axis, away from the centre.
         let place = mesh.points[facets.vertices[0].index()];
         for normal in &all {
             assert!(

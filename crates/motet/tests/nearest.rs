@@ -1,4 +1,4 @@
-//! Nearest triangles: against brute force, and by what closest means.
+//! Nearest triangles: compared with brute force, and checked by the definition of closest points.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::triangle;
@@ -153,7 +153,7 @@ fn the_surface_cells_and_the_boundary_found_are_one_surface() {
 
 #[test]
 fn surface_cells_of_every_kind_keep_their_area_and_their_side() {
-    // The unit square, in every way in which VTK can hold it; area vector (0, 0, 1).
+    // The unit square, in every form that VTK supports; area vector (0, 0, 1).
     let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
     let middle = |i: usize, j: usize| scale(add(square[i], square[j]), 0.5);
     let middles = [middle(0, 1), middle(1, 2), middle(2, 3), middle(3, 0)];
@@ -197,7 +197,7 @@ fn surface_cells_of_every_kind_keep_their_area_and_their_side() {
     assert_eq!(none, 0);
 }
 
-/// Triangles with all that can be wrong with them: without area, needles, one on the other, corners that are not finite.
+/// Triangles with every flaw: without area, needles, coincident ones, corners that are not finite.
 fn rough_soup() -> impl Strategy<Value = (Vec<Point>, Vec<[VertexId; 3]>)> {
     let x = prop_oneof![8 => coordinate(), 1 => Just(1e-9)];
     let wrong = prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY)];
@@ -214,7 +214,8 @@ fn rough_soup() -> impl Strategy<Value = (Vec<Point>, Vec<[VertexId; 3]>)> {
     )
 }
 
-/// The least squared distance and the first triangle that has it, of those with finite corners.
+/// The least squared distance and the first triangle that has it, among those with finite corners, by brute
+/// force.
 fn by_look(points: &[Point], triangles: &[[VertexId; 3]], p: Point) -> Option<(f64, usize)> {
     let is_finite = |t: &&[VertexId; 3]| t.iter().all(|v| points[v.index()].iter().all(|x| x.is_finite()));
     let sound: Vec<[VertexId; 3]> = triangles.iter().filter(is_finite).copied().collect();
@@ -294,7 +295,7 @@ proptest! {
         let a: Vec<Point> = a.iter().map(|p| p.map(|x| (x + offset) * unit)).collect();
         let b: Vec<Point> = b.iter().map(|p| p.map(|x| (0.01 * x + offset + apart) * unit)).collect();
         let (one, two) = (NearestTriangle::new(&a, &s, &Threads::single()), NearestTriangle::new(&b, &t, &Threads::single()));
-        // Of the corners: any distance of things inside the triangles will do.
+        // Distances of corners: any distance between places of the triangles will do.
         let squared = |i: u32, j: u32| {
             let (p, q) = (s[i as usize].map(|v| a[v.index()]), t[j as usize].map(|v| b[v.index()]));
             let all = p.iter().flat_map(|p| q.iter().map(move |q| dot(sub(*p, *q), sub(*p, *q))));

@@ -1,4 +1,5 @@
-//! The operations propose what they promise: the best of all ways where that can be counted out, the right tets, and nothing at or below the bar.
+//! The operations propose what they promise: the best of all options where these can be enumerated, the right
+//! tets, and nothing at or below the bar.
 
 mod common;
 
@@ -14,11 +15,11 @@ use motet::ops::{
     defect, split_crossed, split_edge, split_onto,
 };
 
-/// The ends of the edge that rings lie round.
+/// The ends of the edge that rings surround.
 const A: VertexId = VertexId(0);
 const B: VertexId = VertexId(1);
 
-/// The ends of an edge along z, and points in a ring round it, over a part of a turn.
+/// The ends of an edge along z, and points in a ring around it, over a part of a turn.
 fn ring(n: usize, turn: f64, numbers: &mut Numbers) -> Vec<Point> {
     let mut points = vec![[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]];
     for i in 0..n {
@@ -29,7 +30,7 @@ fn ring(n: usize, turn: f64, numbers: &mut Numbers) -> Vec<Point> {
     points
 }
 
-/// A mesh of tets that are turned to be positive.
+/// A mesh of tets, reordered to be positive.
 fn mesh(points: Vec<Point>, tets: impl IntoIterator<Item = [usize; 4]>) -> TetMesh {
     let turned = |mut tet: [usize; 4]| {
         if volume(tet.map(|v| points[v])) < 0.0 {
@@ -48,7 +49,7 @@ fn round_edge(points: Vec<Point>, is_closed: bool) -> TetMesh {
     mesh(points, (0..last).map(|i| [0, 1, 2 + i, 2 + (i + 1) % n]))
 }
 
-/// All ways to cut the polygon of places `i` to `j` into triangles.
+/// All triangulations of the polygon of places `i` to `j`.
 fn triangulations(i: usize, j: usize) -> Vec<Vec<[usize; 3]>> {
     if j < i + 2 {
         return vec![Vec::new()];

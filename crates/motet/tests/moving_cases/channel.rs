@@ -9,14 +9,14 @@ use super::harmonic::harmonic;
 use super::measure::{Quality, quality};
 use super::meshes::INNER;
 
-/// A mesh after motion from its first place by a part of the whole way.
+/// A mesh moved from its reference by a part of the whole motion.
 pub struct Stretched {
     pub shift: f64,
     pub mesh: TetMesh,
     pub quality: Quality,
 }
 
-/// What the vertices are told: those of the sphere to move, those of the box to stay.
+/// The prescribed displacements: vertices of the sphere move, those of the box stay.
 fn told(mesh: &TetMesh, shift: Point) -> Vec<Option<Point>> {
     let mut told = vec![None; mesh.points.len()];
     for (triangle, &patch) in mesh.triangles.iter().zip(&mesh.patches) {
@@ -31,7 +31,7 @@ fn moved(mesh: &TetMesh, displacement: &[Point], by: f64) -> TetMesh {
     TetMesh { points, ..mesh.clone() }
 }
 
-/// The mesh at each of some shifts along x, all from its first place.
+/// The mesh at each of several shifts along x, all from the reference.
 pub fn stretched(mesh: &TetMesh, shifts: &[f64]) -> Vec<Stretched> {
     let unit = harmonic(mesh, &told(mesh, [1.0, 0.0, 0.0]));
     let at = |&shift: &f64| {
@@ -49,7 +49,8 @@ pub struct Step {
     pub report: Report,
 }
 
-/// Repairs after each of `n` steps of `step`: the next one starts from there. `see` gets each.
+/// Moves the mesh by `n` steps of `step` and repairs it after each; the next one starts from there. Calls
+/// `see` with each.
 pub fn repaired_as_it_moves(
     mesh: &TetMesh,
     step: f64,

@@ -1,4 +1,4 @@
-//! A cube that is distorted and brought back, again and again: every vertex goes where the map of the cube takes it.
+//! A cube that is distorted and restored again and again: every vertex moves by the map of the cube.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::mesh::TetMesh;
@@ -7,7 +7,7 @@ use motet::remesh::{Options, Reason, Report, remesh};
 use super::measure::{features, length, on_patches, quality, volumes};
 use super::meshes::{Stack, prepared};
 
-/// How the cube `[-0.5, 0.5]^2 x [0, 1]` is distorted; 1 is the whole of it, 0 none.
+/// The distortion of the cube `[-0.5, 0.5]^2 x [0, 1]`; a part of 1 is the whole of it, 0 none.
 #[derive(Clone, Copy, Debug)]
 pub enum Distortion {
     /// The top moves along x until the sides lean by an angle in degrees.
@@ -17,7 +17,7 @@ pub enum Distortion {
 }
 
 impl Distortion {
-    /// Where a point of the cube is taken.
+    /// The image of a point of the undistorted cube.
     pub fn map(&self, [x, y, z]: Point, part: f64) -> Point {
         match self {
             Self::Shear(degrees) => [x + part * degrees.to_radians().tan() * z, y, z],
@@ -28,7 +28,7 @@ impl Distortion {
         }
     }
 
-    /// Where in the cube a point comes from. Both maps are turned back by their opposites.
+    /// The preimage of a point of the distorted cube. Both maps are inverted by their opposites.
     pub fn back(&self, p: Point, part: f64) -> Point {
         self.map(p, -part)
     }
@@ -40,29 +40,29 @@ pub fn cube_mesh(size: f64, seed: u64) -> TetMesh {
     prepared(&stack.even_mesh(size, seed))
 }
 
-/// What must not drift. Lengths are in the cube's own coordinates.
+/// Quantities that must not drift. Lengths are in the cube's own coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct State {
     pub n_tets: usize,
     pub volume: f64,
-    /// How far vertices of a side lie from its plane.
+    /// The largest distance of vertices of a side from its plane.
     pub off_side: f64,
-    /// How far vertices where sides meet lie from the edge there.
+    /// The largest distance of vertices where sides meet from the edge there.
     pub off_edge: f64,
-    /// How long the edges where sides meet are in sum: 12 when all is well.
+    /// The total length of the edges where sides meet: 12 if correct.
     pub edges: f64,
     /// How many corners of the cube have a vertex within 1e-9.
     pub corners: usize,
 }
 
-/// How far a point of the cube is from the plane of a side, 1 to 6.
+/// The distance of a point of the cube from the plane of a side, 1 to 6.
 fn off_side(p: Point, side: i32) -> f64 {
     let planes = [-0.5, 0.5, -0.5, 0.5, 0.0, 1.0];
     let side = side as usize - 1;
     (p[side / 2] - planes[side]).abs()
 }
 
-/// How the mesh of a cube is that is distorted by `part`.
+/// The state of a cube mesh distorted by `part`.
 pub fn state(mesh: &TetMesh, distortion: &Distortion, part: f64) -> State {
     let own = |v: VertexId| distortion.back(mesh.points[v.index()], part);
     let features = features(mesh);
@@ -94,13 +94,14 @@ pub struct Step {
     pub inverted_before: usize,
     pub bad: usize,
     pub report: Report,
-    /// Of these, between walls that meet at too sharp an angle for any tet; on a wall with such an angle; others.
+    /// Numbers of remaining bad tets: between walls that meet at too sharp an angle for any tet; on a wall
+    /// with such an angle; others.
     pub reasons: [usize; 3],
     pub worst: f64,
     pub state: State,
 }
 
-/// Distorts the cube in `n` steps and brings it back in as many, repairing after each.
+/// Distorts the cube in `n` steps and restores it in as many, repairing after each.
 pub fn cycle(
     mesh: &mut TetMesh,
     distortion: &Distortion,

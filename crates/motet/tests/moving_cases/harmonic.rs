@@ -1,4 +1,5 @@
-//! Harmonic motion: linear tets as springs, the stiffer the smaller they are; what "pseudo-elastic" solvers do at its plainest.
+//! Harmonic motion: linear tets as springs, the stiffer the smaller they are; the simplest form of
+//! "pseudo-elastic" solvers.
 
 use motet::base::{Point, VertexId};
 use motet::geometry::tet::{EDGES, FACETS, volume};
@@ -6,11 +7,11 @@ use motet::geometry::triangle::area_vector;
 use motet::geometry::vector::{dot, scale};
 use motet::mesh::TetMesh;
 
-/// Where the residual has become so small, as a part of the first, the solution is good enough.
+/// The relative residual at which the solution is accepted.
 const TOLERANCE: f64 = 1e-10;
 
-/// The displacement of every vertex: as prescribed, else with the least energy of
-/// `sum over tets of integral of |grad u|^2 / volume`.
+/// The displacement of every vertex: as prescribed, otherwise minimising the energy `sum over tets of
+/// integral of |grad u|^2 / volume`.
 pub fn harmonic(mesh: &TetMesh, prescribed: &[Option<Point>]) -> Vec<Point> {
     let system = System::of(mesh, prescribed);
     let mut displacement: Vec<Point> = prescribed.iter().map(|d| d.unwrap_or_default()).collect();
@@ -24,7 +25,7 @@ pub fn harmonic(mesh: &TetMesh, prescribed: &[Option<Point>]) -> Vec<Point> {
     displacement
 }
 
-/// The rows of the matrix that belong to unknowns.
+/// The rows of the matrix for the unknowns.
 struct System {
     unknowns: Vec<VertexId>,
     offsets: Vec<usize>,
@@ -41,7 +42,7 @@ impl System {
         let mut entries: Vec<(u64, f64)> = Vec::with_capacity(12 * mesh.tets.len());
         for tet in &mesh.tets {
             let corners = tet.map(|v| mesh.points[v.index()]);
-            // The gradient of a vertex' hat is its facet's area vector over three volumes.
+            // The gradient of a vertex's hat function is its facet's area vector over three volumes.
             let gradients = FACETS
                 .map(|facet| scale(area_vector(facet.map(|i| corners[i])), 1.0 / (3.0 * volume(corners))));
             for [i, j] in EDGES {
@@ -80,7 +81,7 @@ impl System {
         (0..self.unknowns.len()).map(row).collect()
     }
 
-    /// Conjugate gradients, scaled by the diagonal. What is known stays.
+    /// Conjugate gradients, scaled by the diagonal. Known values stay.
     fn solve(&self, u: &mut [f64]) {
         let mut residual: Vec<f64> = self.times(u).iter().map(|r| -r).collect();
         let mut way = vec![0.0; u.len()];

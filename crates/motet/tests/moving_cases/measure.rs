@@ -1,4 +1,4 @@
-//! What must not change, or not for the worse, while a mesh is moved and repaired.
+//! Quantities that must not change, or not get worse, while a mesh is moved and repaired.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use motet::mesh::tet_facets::{NO_TET, tet_neighbors};
 /// The EAS below which a tet is bad.
 pub const BAD: f64 = 0.2;
 
-/// How good the tets of a mesh are.
+/// The quality of the tets of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct Quality {
     pub bad: usize,
@@ -42,7 +42,7 @@ pub fn volumes(mesh: &TetMesh) -> BTreeMap<i32, f64> {
     volumes
 }
 
-/// How many triangles each patch has, and their area.
+/// The number and the total area of the triangles of each patch.
 pub fn patches(mesh: &TetMesh) -> BTreeMap<i32, (usize, f64)> {
     let mut patches: BTreeMap<i32, (usize, f64)> = BTreeMap::new();
     for (vertices, &patch) in mesh.triangles.iter().zip(&mesh.patches) {
@@ -52,7 +52,7 @@ pub fn patches(mesh: &TetMesh) -> BTreeMap<i32, (usize, f64)> {
     patches
 }
 
-/// The facets that one tet has, as the bits of their points, in an order of their own: equal for equal surfaces.
+/// The facets of one tet only, as the sorted bits of their points: equal for equal surfaces.
 pub fn boundary(mesh: &TetMesh) -> Vec<[[u64; 3]; 3]> {
     let neighbors = tet_neighbors(&mesh.tets);
     let mut facets = Vec::new();
@@ -89,7 +89,7 @@ pub fn features(mesh: &TetMesh) -> Vec<([VertexId; 2], Vec<i32>)> {
     edges.into_iter().filter(|(_, patches)| patches.len() > 1).collect()
 }
 
-/// Their length in sum, with vertices where `place` has them.
+/// The total length of feature edges, with vertices at the positions given by `place`.
 pub fn length(features: &[([VertexId; 2], Vec<i32>)], place: impl Fn(VertexId) -> Point) -> f64 {
     features.iter().map(|([a, b], _)| distance(place(*a), place(*b))).sum()
 }
@@ -100,7 +100,7 @@ pub fn on_patches(mesh: &TetMesh) -> impl Iterator<Item = (Point, i32)> {
     corners.map(|(v, patch)| (mesh.points[v.index()], patch))
 }
 
-/// Whether every tet is positive, no facet has three tets, and every labelled triangle is a facet.
+/// Asserts that every tet is positive, no facet has three tets, and every labelled triangle is a facet.
 pub fn assert_valid(mesh: &TetMesh) {
     mesh.validate().expect("the arrays fit");
     let complex = motet::kernel::Complex::new(mesh).expect("tets join");

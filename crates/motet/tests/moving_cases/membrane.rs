@@ -1,4 +1,4 @@
-//! A box in two by a membrane, which bends until it nearly touches a wall, and back, again and again.
+//! A box divided by a membrane, which bends until it nearly touches a wall, and back, again and again.
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -15,7 +15,7 @@ use super::meshes::{INNER, Stack, prepared};
 /// The membrane lies in the plane z = 0.5 of the unit cube when at rest.
 pub const LEVEL: f64 = 0.5;
 
-/// How far it bends, and in how many steps there and back.
+/// How far the membrane bends, and in how many steps there and back.
 #[derive(Clone, Copy, Debug)]
 pub struct Bending {
     pub amplitude: f64,
@@ -36,25 +36,25 @@ pub fn membrane_mesh(size: f64, seed: u64) -> TetMesh {
     prepared(&stack.even_mesh(size, seed))
 }
 
-/// What may drift.
+/// Quantities that may drift.
 #[derive(Clone, Debug)]
 pub struct State {
     pub n_tets: usize,
     pub volumes: BTreeMap<i32, f64>,
     /// Triangles and area of each patch.
     pub patches: BTreeMap<i32, (usize, f64)>,
-    /// Edges where patches meet: how many, and their length in sum.
+    /// The number and total length of edges where patches meet.
     pub features: (usize, f64),
-    /// How far membrane vertices lie from where the membrane should be.
+    /// The largest distance of membrane vertices from the exact membrane.
     pub off_membrane: f64,
 }
 
-/// A cycle in numbers.
+/// Statistics of a cycle.
 #[derive(Clone, Debug)]
 pub struct Cycle {
-    /// Bad tets before a repair: the most in a step.
+    /// The largest number of bad tets before a repair in any step.
     pub most_bad: usize,
-    /// Inverted tets before a repair: the most in a step.
+    /// The largest number of inverted tets before a repair in any step.
     pub most_inverted: usize,
     /// Steps after which some tet was still bad with the surface kept.
     pub n_adapted: usize,
@@ -62,7 +62,7 @@ pub struct Cycle {
     pub n_left: usize,
     /// The worst EAS after repair, of all steps.
     pub worst: f64,
-    /// At its end.
+    /// The state at the end of the cycle.
     pub state: State,
 }
 
@@ -74,7 +74,7 @@ fn membrane_vertices(mesh: &TetMesh) -> Vec<VertexId> {
     vertices
 }
 
-/// How a mesh is that has made whole cycles.
+/// The state of a mesh after whole cycles.
 pub fn state(mesh: &TetMesh) -> State {
     let features = features(mesh);
     let place = |v: VertexId| mesh.points[v.index()];
@@ -106,7 +106,8 @@ pub fn moved(mesh: &TetMesh, bending: &Bending, step: usize) -> TetMesh {
     TetMesh { points, ..mesh.clone() }
 }
 
-/// Goes through a cycle, repairing after each step: with the surface kept, and where that leaves bad tets with a surface that adapts.
+/// Makes a cycle, repairing after each step: with the surface kept, and where that leaves bad tets, with a
+/// surface that adapts.
 pub fn cycle(
     mesh: &mut TetMesh,
     bending: &Bending,

@@ -1,4 +1,4 @@
-//! The meshes that are moved: Delaunay tets of scattered points, of ordinary quality, labelled.
+//! The meshes that are moved: labelled Delaunay tets of scattered points, of ordinary quality.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::delaunay::Triangulation;
@@ -13,19 +13,19 @@ use super::scatter::{Numbers, Scatter};
 /// Patches 1 to 6 are the sides of the box, xmin to zmax; this is the sphere or the membrane.
 pub const INNER: i32 = 7;
 
-/// The nearest that two points are, as a part of the wanted length of edges.
+/// The least distance between points, relative to the requested edge length.
 const NEAREST: f64 = 0.8;
-/// How far points inside stay from walls, as a part of the wanted length of edges.
+/// The least distance of inner points from walls, relative to the requested edge length.
 const FROM_WALLS: f64 = 0.6;
 
-/// The space between a sphere and a box: what the channel and the sphere in it are.
+/// The space between a sphere and a box: a channel with a sphere in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Channel {
     pub low: Point,
     pub high: Point,
     pub centre: Point,
     pub radius: f64,
-    /// Length of edges at the sphere, far from it, and how fast it grows with the distance.
+    /// Edge length at the sphere and far from it.
     pub sizes: [f64; 2],
     pub growth: f64,
 }
@@ -35,7 +35,7 @@ impl Channel {
         norm(sub(p, self.centre)) - self.radius
     }
 
-    /// The mesh, before anything has been done about slivers.
+    /// The mesh, before slivers are removed.
     pub fn mesh(&self, seed: u64) -> TetMesh {
         let [near, far] = self.sizes;
         let size = |p: Point| (near + self.growth * self.height(p)).clamp(near, far);
@@ -65,7 +65,7 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// The mesh with edges of about this length, before anything has been done about slivers.
+    /// The mesh with edges of about this length, before slivers are removed.
     pub fn even_mesh(&self, size: f64, seed: u64) -> TetMesh {
         let mut scatter = Scatter::new(seed, NEAREST * size);
         self.scatter(&mut scatter, &|_| size, |_| true);
@@ -112,7 +112,8 @@ impl Stack {
         }
     }
 
-    /// The Delaunay tets of each layer but those left out, a region each, with labelled walls.
+    /// The Delaunay tets of each layer, without those for which `is_out` holds; each layer is a region, with
+    /// labelled walls.
     fn mesh(&self, points: Vec<Point>, is_out: impl Fn(&[VertexId; 4]) -> bool) -> TetMesh {
         let mut mesh = TetMesh { points, ..TetMesh::default() };
         for (region, z) in (1..).zip(self.levels.windows(2)) {
@@ -151,7 +152,7 @@ impl Stack {
     }
 }
 
-/// Puts points on the inside of an edge, about evenly.
+/// Adds points to the interior of an edge, about evenly.
 fn divide(scatter: &mut Scatter, size: &dyn Fn(Point) -> f64, from: Point, to: Point) {
     let at =
         |t: f64| [0, 1, 2].map(|i| if from[i] == to[i] { from[i] } else { from[i] + t * (to[i] - from[i]) });
@@ -162,7 +163,7 @@ fn divide(scatter: &mut Scatter, size: &dyn Fn(Point) -> f64, from: Point, to: P
     }
 }
 
-/// Rid of slivers, and no more: what any generator of meshes does before it hands one out.
+/// Removes slivers and nothing else, as any mesh generator does before it returns a mesh.
 pub fn prepared(mesh: &TetMesh) -> TetMesh {
     remesh(mesh, &super::keep(), &Threads::single()).expect("it is a mesh").extract.mesh
 }

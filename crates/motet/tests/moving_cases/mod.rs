@@ -11,12 +11,13 @@ pub mod transfer;
 
 use motet::remesh::{Options, SurfaceRule};
 
-/// Bad tets repaired, the surface kept. None of the meshes has boundary layers: what motion makes thin is not to be spared.
+/// Repair of bad tets with the surface kept. None of the meshes has boundary layers: tets that motion makes
+/// thin are not exempt.
 pub fn keep() -> Options {
     Options { keep_layers: false, ..Options::default() }
 }
 
-/// The same with a surface that adapts.
+/// Repair of bad tets with a surface that adapts.
 pub fn adapt() -> Options {
     Options { surface: SurfaceRule::Adapt { distance: None }, ..keep() }
 }

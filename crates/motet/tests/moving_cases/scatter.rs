@@ -1,11 +1,11 @@
-//! Points thrown at random, none nearer to another than asked: what makes meshes of ordinary quality.
+//! Random points with a minimum distance, for meshes of ordinary quality.
 
 use std::collections::HashMap;
 
 use motet::base::Point;
 use motet::geometry::vector::distance;
 
-/// A stream of numbers without end.
+/// An endless stream of random numbers.
 pub struct Numbers(pub u64);
 
 impl Numbers {
@@ -16,7 +16,7 @@ impl Numbers {
         z ^ z >> 31
     }
 
-    /// From 0 to 1.
+    /// A number from 0 to 1.
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -27,10 +27,10 @@ impl Numbers {
     }
 }
 
-/// So many throws in a row must fail before an area counts as full.
+/// The number of failed throws in a row after which an area counts as full.
 const FULL: usize = 20_000;
 
-/// Points, and a grid to find those nearby.
+/// Points, with a grid to find neighbours.
 pub struct Scatter {
     pub points: Vec<Point>,
     pub numbers: Numbers,
@@ -39,7 +39,7 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// No points yet; no distance asked for later is larger than `largest`.
+    /// An empty set; distances requested later must not exceed `largest`.
     pub fn new(seed: u64, largest: f64) -> Self {
         Self { points: Vec::new(), numbers: Numbers(seed), cell: largest, places: HashMap::new() }
     }
@@ -53,7 +53,7 @@ impl Scatter {
         self.points.push(p);
     }
 
-    /// Whether no point is nearer than that.
+    /// Whether no point is nearer than `least`.
     fn is_free(&self, p: Point, least: f64) -> bool {
         let [i, j, k] = self.place(p);
         let cells = (0..27).map(|n| [i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1]);
@@ -61,7 +61,7 @@ impl Scatter {
         near.map(|&v| distance(self.points[v], p)).all(|d| d >= least)
     }
 
-    /// Throws points until the place is full, `least(p)` apart; `None` is a miss.
+    /// Throws points, `least(p)` apart, until the area is full; `None` is a miss.
     pub fn fill(&mut self, least: impl Fn(Point) -> f64, throw: impl Fn(&mut Numbers) -> Option<Point>) {
         let mut n_missed = 0;
         while n_missed < FULL {

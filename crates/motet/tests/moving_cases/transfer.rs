@@ -1,8 +1,8 @@
-//! Fields on a mesh that is moved and repaired, again and again: what they must keep.
+//! Fields on a mesh that is moved and repaired again and again, and what they must preserve.
 //!
 //! | field | on | while the mesh moves | in a repair |
 //! |---|---|---|---|
-//! | density, momentum | cells | what each tet holds stays: value times volume | integrals over regions stay |
+//! | density, momentum | cells | the content of each tet stays: value times volume | integrals over regions stay |
 //! | constant | cells | stays | stays, to the bit |
 //! | id | cells | stays | is that of an old cell of the same region |
 //! | linear | points | set anew, linear in space | stays linear |
@@ -24,16 +24,16 @@ const CONSTANT: f64 = 0.1;
 /// Density, and the three components of momentum.
 const N: usize = 4;
 
-/// A mesh with fields, and what became of them so far.
+/// A mesh with fields, and statistics of their changes so far.
 pub struct Loaded {
     pub mesh: Mesh,
     pub tally: Tally,
     first: BTreeMap<i32, Amounts>,
-    /// The region that each id started in.
+    /// The initial region of each id.
     id_regions: Vec<i32>,
 }
 
-/// What a region holds.
+/// The contents of a region.
 #[derive(Clone, Copy, Debug, Default)]
 struct Amounts {
     /// The integral of each component.
@@ -44,38 +44,41 @@ struct Amounts {
     largest: [f64; N],
 }
 
-/// The worst over all regions and components. Amounts are relative to the integral of the absolute value at first.
+/// The worst values over all regions and components. Amounts are relative to the initial integral of the
+/// absolute value.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
-    /// How far integrals are from their first values, now.
+    /// The current deviation of integrals from their initial values.
     pub drift: f64,
     pub kept: Repairs,
     pub adapted: Repairs,
     /// Steps after which a tet was inverted.
     pub n_inverted: usize,
-    /// The largest error of the linear field, relative to its range, where no vertex was outside of the old tets.
+    /// The largest error of the linear field, relative to its range, in steps where no vertex was outside the
+    /// old tets.
     pub linear: f64,
-    /// The same where one was, less what the way to there explains.
+    /// The largest error of the linear field in steps where a vertex was outside, minus what its distance
+    /// explains.
     pub linear_outside: f64,
-    /// How far the constant is from what it was.
+    /// The deviation of the constant field.
     pub off_constant: f64,
-    /// Tets that came, of all repairs.
+    /// The number of new tets in all repairs.
     pub n_new_tets: usize,
 }
 
-/// What repairs did, those with the surface kept or those with one that adapts.
+/// Statistics of the repairs with the surface kept, or with an adapting one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Repairs {
     pub n: usize,
     /// Bad tets that were left, summed over the repairs.
     pub n_left: usize,
-    /// How far integrals went in one repair: all added up without sign.
+    /// Changes of integrals in single repairs: the sum of absolute values.
     pub drift: f64,
-    /// What the ledger allows: all added up.
+    /// The changes that the ledger allows: the sum.
     pub allowed: f64,
-    /// The most that one repair went beyond what the ledger allows.
+    /// The largest excess of one repair over what the ledger allows.
     pub beyond: f64,
-    /// Volume that the ledger calls deviation: all added up, by the volume at first.
+    /// The volume that the ledger counts as deviation: the sum, relative to the initial volume.
     pub deviation: f64,
     /// Vertices outside of the old tets, and how far the farthest was.
     pub n_outside: usize,
@@ -86,7 +89,7 @@ fn linear(p: Point) -> f64 {
     3.0 - 2.0 * p[0] + 0.5 * p[1] + 7.0 * p[2]
 }
 
-/// How steep that is.
+/// The slope of the linear field.
 const SLOPE: f64 = 7.5;
 
 /// Tets and triangles as a mesh that files can hold.
@@ -110,7 +113,7 @@ impl Loaded {
         let mut mesh = whole(tets);
         let n = mesh.cells.len();
         let id_regions = mesh.regions().expect("it has regions").ids;
-        // Far apart in the regions, so that nothing can cross unseen.
+        // Very different in the two regions, so that no exchange goes unnoticed.
         let density = id_regions.iter().map(|&r| numbers.between(0.5, 1.5) * if r == 1 { 1.0 } else { 1e3 });
         mesh.set_cell_field(Field::scalars("density", density.collect::<Vec<f64>>()));
         let momentum: Vec<Point> = (0..n).map(|_| [(); 3].map(|()| numbers.between(-1.0, 1.0))).collect();
@@ -126,7 +129,7 @@ impl Loaded {
         TetPart::of(&self.mesh).expect("it has tets").mesh
     }
 
-    /// Moves the points. What each tet holds stays; the linear field is set anew.
+    /// Moves the points. The content of each tet is preserved; the linear field is set anew.
     pub fn move_to(&mut self, points: Vec<Point>) {
         let old = solids(&self.mesh);
         self.mesh.points = points;
@@ -147,7 +150,7 @@ impl Loaded {
         self.tally.n_inverted += usize::from(!new.iter().all(Solid::is_positive));
     }
 
-    /// Repairs, and notes what became of the fields. Gives the number of bad tets that are left.
+    /// Repairs, and records the effect on fields. Returns the number of bad tets that are left.
     pub fn repair(&mut self, options: &Options) -> usize {
         let before = amounts(&self.mesh);
         let outcome = remesh_mesh(&self.mesh, options, &Rules::default(), &Threads::single()).unwrap();
@@ -231,7 +234,7 @@ fn solids(mesh: &Mesh) -> Vec<Solid> {
     mesh.cells.tets().map(|(_, tet)| Solid::new(tet.map(|v| mesh.points[v.index()]))).collect()
 }
 
-/// What each region holds, with volumes right to the last digits.
+/// The contents of each region, with accurate volumes.
 fn amounts(mesh: &Mesh) -> BTreeMap<i32, Amounts> {
     let array = |name| mesh.cell_field(name).and_then(|f| f.values.to_f64()).expect("it was carried");
     let (density, momentum) = (array("density"), array("momentum"));
@@ -250,7 +253,8 @@ fn amounts(mesh: &Mesh) -> BTreeMap<i32, Amounts> {
     amounts
 }
 
-/// Bends the membrane and brings it back, repaired with the surface kept; where that leaves bad tets, `then` repairs them.
+/// Bends the membrane and restores it, repaired with the surface kept; where that leaves bad tets, `then`
+/// repairs them.
 pub fn bend(
     loaded: &mut Loaded,
     bending: &Bending,
@@ -270,7 +274,7 @@ pub fn bend(
     }
 }
 
-/// Distorts the cube and brings it back, repaired with a surface that adapts.
+/// Distorts the cube and restores it, repaired with a surface that adapts.
 pub fn distort(
     loaded: &mut Loaded,
     distortion: &Distortion,
