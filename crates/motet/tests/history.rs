@@ -432,7 +432,8 @@ fn rows_for_quadratic_fields_have_to_fit() {
     let field = |values: [f64; 3]| Field::scalars("u", values.to_vec());
     assert_eq!(history.transfer_points(&field([4.0, 8.0, 4.0])).unwrap().values, vec![4.0, 6.0].into());
     assert_eq!(history.transfer_points(&field([4.0, 8.0, 0.0])).unwrap().values, vec![0.0, 7.0].into());
-    // Not beyond the values around, and not where those of the first row are equal, or another one is no number.
+    // The result stays within the values around, and is the value of the first row where those are equal, or
+    // another one is not finite.
     assert_eq!(history.transfer_points(&field([4.0, 8.0, -1e6])).unwrap().values, vec![-1e6, 8.0].into());
     assert_eq!(history.transfer_points(&field([0.0, 0.0, 4.0])).unwrap().values, vec![4.0, 0.0].into());
     let carried = history.transfer_points(&field([4.0, 8.0, f64::NAN])).unwrap();
@@ -477,7 +478,7 @@ fn what_does_not_fit_is_refused_with_its_name_and_counts() {
     let error = history.transfer(&Mesh::default(), &mut Mesh::default(), &Rules::default()).unwrap_err();
     assert!(error.to_string().starts_with("old mesh: has 0 points, but the history is of one with 3"));
 
-    // Regions do not mix, so a new one has nothing to come from.
+    // Regions do not mix, so a new region has no source.
     let (old, mut new) = (two_regions(81, 4), two_regions(82, 4));
     let ids = new.regions().unwrap().ids.iter().map(|&r| if r == 2 { 3 } else { r }).collect::<Vec<i32>>();
     new.set_cell_field(Field::scalars("region", ids));
@@ -506,7 +507,7 @@ fn origins_that_do_not_fit_are_refused() {
     assert!(Origins::new(2, vec![VertexId(2), Id::NONE], fine.clone()).is_err());
     assert!(Origins::new(2, vec![VertexId(0), VertexId(1)], fine).is_err());
     assert!(Origins::new(2, vec![Id::NONE, VertexId(1)], row(&[])).is_err());
-    // Without a share above 0 the main one gives everything.
+    // Without a positive share, the main vertex gives everything.
     for empty in [vec![], vec![(VertexId(1), 0.0)], vec![(VertexId(1), f64::NAN)]] {
         let origins = Origins::new(2, kept.clone(), row(&empty)).unwrap();
         assert_eq!(origins.of(VertexId(1)).parts(), ([VertexId(0)].as_slice(), [1.0].as_slice()));
@@ -544,7 +545,7 @@ proptest! {
         on_grid in any::<bool>(),
     ) {
         let round = |p: Point| if on_grid { p.map(|x| (x * 4.0).round() / 4.0) } else { p };
-        // Slivers by the score where points lie on a grid.
+        // Many slivers where points lie on a grid.
         let mut old: Vec<Point> = cloud(seed, n).into_iter().map(round).collect();
         old.sort_by(|a, b| a.partial_cmp(b).unwrap());
         old.dedup();

@@ -65,7 +65,8 @@ fn triangulations(i: usize, j: usize) -> Vec<Vec<[usize; 3]>> {
     all
 }
 
-/// The worst quality of the tets from triangles of a ring to both ends of the edge. The ring runs counter-clockwise round it.
+/// The worst quality of the tets from triangles of a ring to both ends of the edge. The ring runs
+/// counter-clockwise around it.
 fn worst_on(points: &[Point], triangles: &[[usize; 3]]) -> f64 {
     let of = |t: &[usize; 3]| {
         let [p, q, r] = t.map(|place| points[place + 2]);
@@ -87,7 +88,7 @@ fn corners(complex: &Complex, change: &Change, tet: [VertexId; 4]) -> [Point; 4]
     tet.map(|v| change.point(complex, v))
 }
 
-/// A proposal that is full of what an earlier one left.
+/// A proposal with leftovers of an earlier one.
 fn dirty() -> Change {
     let fill = Fill { vertices: [7; 4].map(VertexId), region: 3, quality: 0.5 };
     let wall = NewWall { vertices: [7; 3].map(VertexId), patch: 1, triangle: 0 };
@@ -96,7 +97,8 @@ fn dirty() -> Change {
     Change { cavity: vec![TetId(0)], fill: vec![fill], vertex, walls: vec![wall], lines: vec![line] }
 }
 
-/// Every tet of the fill is measured where it will be, and all together fill the cavity; the kernel takes it.
+/// Asserts that every tet of the fill has the quality that it will have in place, that the fill covers the
+/// cavity, and that the kernel accepts it.
 fn assert_sound(complex: &Complex, change: &Change) {
     for tet in &change.fill {
         assert_eq!(tet.quality, eas(corners(complex, change, tet.vertices)));
@@ -111,7 +113,7 @@ fn assert_sound(complex: &Complex, change: &Change) {
 
 #[test]
 fn edge_removal_finds_the_best_of_all_triangulations() {
-    // Room for tables and lists is used again and again: what was there before must not matter.
+    // Buffers are reused: their previous contents must not matter.
     let (mut removal, mut change) = (EdgeRemoval::default(), dirty());
     let mut numbers = Numbers(1);
     let mut n_removed = 0;
@@ -130,7 +132,7 @@ fn edge_removal_finds_the_best_of_all_triangulations() {
                 assert_sound(&complex, &change);
             }
         }
-        // In place of the worst that goes nothing at or below the bar comes.
+        // Nothing at or below the bar replaces the worst removed tet.
         let first = TetId(0);
         assert!(!removal.propose(&complex, first, [A, B], best.max(0.0) + 1e-12, &mut change));
         assert_eq!(removal.propose(&complex, first, [A, B], best - 1e-12, &mut change), best - 1e-12 > -1.0);
@@ -138,7 +140,7 @@ fn edge_removal_finds_the_best_of_all_triangulations() {
     assert!(n_removed > 200, "{n_removed}");
 }
 
-/// The sum of the defects of the fill is to be low, and no tet as bad as `bar`.
+/// An objective: a low sum of the defects of the fill, and no tet as bad as `bar`.
 struct Sum {
     limit: f64,
     bar: f64,
@@ -184,7 +186,7 @@ fn edge_removal_finds_the_triangulation_of_the_least_sum() {
                 assert_sound(&complex, &change);
             }
         }
-        // None that costs as much as the limit.
+        // No fill that costs as much as the limit is accepted.
         for (limit, is_below) in [(least - 1e-12, false), (least + 1e-12, least.is_finite())] {
             let mut objective = Sum { limit, bar: 0.1 };
             assert_eq!(
@@ -247,7 +249,7 @@ fn walls_within_a_ring_are_swapped_if_they_are_of_one_patch() {
     let mut numbers = Numbers(3);
     let mut n_swapped = 0;
     for k in 0..100 {
-        // Four quarters of a turn with more of the ring between; the walls go to the first and the third.
+        // Four quarters of a turn with more of the ring between; the walls are at the first and the third.
         let n = 6;
         let mut points = ring(n, std::f64::consts::TAU, &mut numbers);
         let half = 2 + n / 2;
@@ -296,7 +298,7 @@ fn face_removal_finds_the_best_of_all_connected_facets() {
         let tets = triangles.iter().flat_map(|&t| [at(t, 0), at(t, 1)]);
         let complex = Complex::new(&mesh(points.clone(), tets)).unwrap();
         let first = 2 * numbers.below(triangles.len());
-        // Each set of facets that hang together, by bits: its outer edges get a tet each.
+        // Each connected set of facets, by bits: its outer edges get a tet each.
         let mut best = 0.0;
         for set in (0u32..1 << triangles.len()).filter(|set| set >> (first / 2) & 1 == 1) {
             let taken: Vec<[usize; 3]> =
@@ -304,7 +306,8 @@ fn face_removal_finds_the_best_of_all_connected_facets() {
             let edges: Vec<[usize; 2]> =
                 taken.iter().flat_map(|&[p, q, r]| [[p, q], [q, r], [r, p]]).collect();
             let outer: Vec<_> = edges.iter().filter(|[p, q]| !edges.contains(&[*q, *p])).collect();
-            // A polygon of so many triangles has two edges more: fewer facets hang together by vertices alone.
+            // A polygon of this many triangles has two edges more; with fewer, facets are connected only by
+            // vertices.
             if outer.len() != taken.len() + 2 {
                 continue;
             }
@@ -328,7 +331,8 @@ fn face_removal_finds_the_best_of_all_connected_facets() {
     assert!(sizes[1..].iter().all(|&n| n > 5), "{sizes:?}");
 }
 
-/// A ball of tets round a vertex, which is the last one: triangles of an octahedron, divided once, joined to it.
+/// A ball of tets around a vertex, which is the last one: triangles of an octahedron, divided once, joined to
+/// it.
 fn ball_round(centre: Point) -> TetMesh {
     let axes: Vec<Point> = (0..6)
         .map(|i| [0, 1, 2].map(|k| if k == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }))
@@ -353,7 +357,7 @@ fn ball_round(centre: Point) -> TetMesh {
     mesh(points, tets.into_iter().map(|[a, b, c]| [a, b, c, apex]))
 }
 
-/// Only in a plane of one z.
+/// Restricts moves to a plane of constant z.
 struct InPlane(f64);
 
 impl Track for InPlane {
@@ -385,7 +389,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
         let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
         assert!(change.worst() > before && change.worst() > 0.9 * best, "{} of {best}", change.worst());
         assert!((change.worst() - worst(place)).abs() < 1e-14);
-        // What is best already is not proposed again.
+        // An optimal position is not proposed again.
         let at_best = change.worst();
         assert!(!smoothing.propose(
             &complex,
@@ -396,7 +400,7 @@ fn smoothing_goes_to_where_the_worst_is_best_and_no_farther_than_is_enough() {
             &mut change
         ));
 
-        // Where a little more is enough, it stops on the way.
+        // Where a smaller improvement is enough, it stops on the way.
         let enough = before + 0.1 * (at_best - before);
         assert!(smoothing.propose(&complex, &star.tets, vertex, [before, enough], &Anywhere, &mut change));
         let VertexChange::Move(_, near) = change.vertex else { panic!("{:?}", change.vertex) };
@@ -424,7 +428,7 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_another_p
         let start = [(); 3].map(|()| 0.8 * numbers.unit() - 0.4);
         let complex = Complex::new(&ball_round(start)).unwrap();
         star.gather(&complex, vertex);
-        // In the other pose all is stretched and sheared.
+        // In the other pose everything is stretched and sheared.
         let stretched = |[x, y, z]: Point| [0.6 * x + 0.3 * y, y, 1.5 * z];
         let sum = |place: Point, moved: &dyn Fn(Point) -> Point| -> f64 {
             let at = |v: VertexId| if v == vertex { place } else { complex.point(v) };
@@ -457,7 +461,7 @@ fn relaxation_lowers_the_sum_of_the_defects_where_the_vertex_is_and_in_another_p
             &mut change
         ));
         let VertexChange::Move(_, place) = change.vertex else { panic!("{:?}", change.vertex) };
-        // What is linear is found as it is.
+        // The linear map between the poses is found exactly.
         assert!(relaxation.place_in_pose().is_some_and(|in_pose| distance(in_pose, stretched(place)) < 1e-9));
         assert!(both(place) < both(start) && both(place) < both(alone) + 0.02 * both(start));
     }
@@ -501,7 +505,7 @@ fn splits_of_an_edge_make_two_tets_of_each() {
         assert!(!split_edge(&complex, &shell, [A, B], middle, worst, &mut change));
         assert!(split_edge(&complex, &shell, [A, B], middle, worst.next_down(), &mut change));
 
-        // A vertex of the ring in place of the middle: the triangulation that fans out from it.
+        // A vertex of the ring in place of the midpoint: the triangulation that fans out from it.
         let onto = VertexId(2);
         if split_onto(&complex, &shell, onto, 0.0, &mut change) {
             n_onto += 1;
@@ -513,7 +517,8 @@ fn splits_of_an_edge_make_two_tets_of_each() {
     assert!(n_onto > 10, "{n_onto}");
 }
 
-/// Two edges that cross at right angles, 01 over 23, with the tet between them; round the first, and with `both` round the second, the tets that close the ring.
+/// Two edges that cross at right angles, 01 over 23, with the tet between them; around the first, and with
+/// `both` around the second, the tets that close the ring.
 fn crossing(both: bool) -> TetMesh {
     let points = [
         [-1.0, 0.0, -0.1],
@@ -549,7 +554,7 @@ fn crossed_edges_are_split_where_they_pass_each_other() {
     assert!(is_split);
     assert_sound(&complex, &change);
     assert_eq!((change.cavity.len(), change.fill.len()), (5, 8));
-    // Where one of them is at a wall or on the boundary, it may not be split.
+    // An edge at a wall or on the boundary may not be split.
     let mut walled = crossing(true);
     walled.triangles = vec![[2, 3, 5].map(VertexId)];
     walled.patches = vec![1];

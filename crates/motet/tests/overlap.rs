@@ -1,4 +1,5 @@
-//! The volume that two tets share: against whole-number geometry, against itself, and as parts of a whole.
+//! The volume that two tets share: compared with exact geometry and with itself, and summed over the parts of
+//! a whole.
 
 use motet::base::{Point, Threads};
 use motet::delaunay::Triangulation;
@@ -63,7 +64,7 @@ fn clipped(polygon: &[Exact], facet: &[Exact; 3]) -> Vec<Exact> {
     kept
 }
 
-/// Whether two facets lie in one plane and face the same way.
+/// Whether two facets lie in one plane and have the same orientation.
 fn agree(f: &[Exact; 3], g: &[Exact; 3]) -> bool {
     let normal = |f: &[Exact; 3]| {
         let (u, v) = (minus(&f[1], &f[0]), minus(&f[2], &f[0]));
@@ -74,8 +75,8 @@ fn agree(f: &[Exact; 3], g: &[Exact; 3]) -> bool {
     g.iter().all(|p| inside(f, p).is_zero()) && dot.is_positive()
 }
 
-/// Another route: the surface of what is shared is made of the facets of each tet within the other; the
-/// divergence theorem gives its volume, without rounding.
+/// The shared volume by another method: its surface consists of the parts of each tet's facets inside the
+/// other; the divergence theorem gives its volume, without rounding.
 fn overlap_by_surface(a: [Point; 4], b: [Point; 4]) -> f64 {
     let (a, b) = (facets(a), facets(b));
     let mut volume_6 = BigRational::zero();

@@ -1,4 +1,5 @@
-//! What stops surfaces from being meshed: against a look at everything in rational numbers, and on real surfaces.
+//! What prevents surfaces from being meshed: compared with brute force in rational numbers, and on real
+//! surfaces.
 
 mod common;
 mod preflight_oracle;
@@ -33,7 +34,7 @@ fn soup(n_points: u32, n: usize) -> impl Strategy<Value = Triangles> {
     prop::collection::vec(prop::array::uniform3((0..n_points).prop_map(VertexId)), 1..n)
 }
 
-/// The sides of tets: closed parts, turned both ways, glued at vertices, edges and facets.
+/// The sides of tets: closed parts, with either orientation, glued at vertices, edges and facets.
 fn tets(n_points: u32, n: usize) -> impl Strategy<Value = Triangles> {
     let tets = prop::collection::vec(prop::array::uniform4((0..n_points).prop_map(VertexId)), 1..n);
     tets.prop_map(|tets| {
@@ -46,7 +47,7 @@ fn roles() -> impl Strategy<Value = Vec<Role>> {
     prop::collection::vec(prop_oneof![Just(Role::Boundary), Just(Role::Membrane)], 3)
 }
 
-/// The whole list, kind by kind, fault by fault.
+/// Compares the whole list of faults with that of the oracle.
 fn holds_against_everything(points: &[Point], triangles: &Triangles, of: &[u32], roles: &[Role]) {
     let surface_of: Vec<u32> = (0..triangles.len()).map(|t| of[t % of.len()]).collect();
     let report = preflight(points, triangles, &surface_of, roles, &Threads::single());
@@ -65,7 +66,7 @@ fn holds_against_everything(points: &[Point], triangles: &Triangles, of: &[u32],
     }
 }
 
-/// Coordinates that are hard: not finite, as large and as small as there are, and plain ones.
+/// Difficult coordinates: not finite, of extreme sizes, and ordinary ones.
 fn any_coordinate() -> impl Strategy<Value = f64> {
     let hard = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, 5e-324, -0.0, 1e300, 1e-300];
     prop_oneof![1 => prop::sample::select(hard.to_vec()), 6 => (-2i8..=2).prop_map(f64::from), 2 => -1.0..1.0]
@@ -106,7 +107,8 @@ proptest! {
         holds_against_everything(&points, &triangles, &of, &roles);
     }
 
-    /// Nothing panics and nothing hangs, whatever comes; threads change nothing; what was not asked for is not done.
+    /// Whatever the input, nothing panics or hangs; the number of threads makes no difference; only what was
+    /// requested is done.
     #[test]
     fn anything_is_looked_at_and_repaired(
         points in prop::collection::vec(prop::array::uniform3(any_coordinate()), 10),
@@ -120,7 +122,7 @@ proptest! {
         culprits(&points, &triangles, &report).validate().unwrap();
         let mended = repair(&points, &triangles, &surface_of, &roles, &repairs, &one).unwrap();
         let again = repair(&points, &triangles, &surface_of, &roles, &repairs, &two).unwrap();
-        // Places are compared as texts, since NaN is not NaN.
+        // Points are compared as text, since NaN is not equal to NaN.
         prop_assert_eq!(format!("{mended:?}"), format!("{again:?}"));
         if repairs == Repairs::default() {
             prop_assert_eq!(&mended.triangles, &triangles);
@@ -178,7 +180,8 @@ fn culprits_are_the_faulty_cells_and_survive_a_file() {
     assert_eq!(named.values.to_i64().unwrap(), [i64::from(FaultKind::Crossing.code())]);
 }
 
-/// What the README of the data folder says of a surface, pymeshlab's count of self-intersecting faces last.
+/// What the README of the data folder reports about a surface; the last is pymeshlab's count of
+/// self-intersecting faces.
 struct Known {
     name: &'static str,
     open_edges: usize,
@@ -231,7 +234,7 @@ const SURFACES: &[Known] = &[
     known("devices/endobeams_braided_stent/arcStretchObj.obj", [0, 0], [None, None, None], true),
 ];
 
-/// Edges of one triangle and of more than two, duplicates counted as often as they are there.
+/// Numbers of edges of one triangle and of more than two, with duplicate triangles counted.
 fn plain_edges(triangles: &Triangles) -> [usize; 2] {
     let mut uses: BTreeMap<[VertexId; 2], usize> = BTreeMap::new();
     for [a, b, c] in triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a) {
@@ -242,7 +245,7 @@ fn plain_edges(triangles: &Triangles) -> [usize; 2] {
     [uses.values().filter(|&&n| n == 1).count(), uses.values().filter(|&&n| n > 2).count()]
 }
 
-/// Some pairs of triangles whose boxes touch, evenly chosen.
+/// A sample of pairs of triangles whose boxes touch.
 fn some_near_pairs(points: &[Point], triangles: &Triangles, n: usize) -> Vec<[u32; 2]> {
     let boxes: Vec<[Point; 2]> = triangles
         .iter()
@@ -255,7 +258,7 @@ fn some_near_pairs(points: &[Point], triangles: &Triangles, n: usize) -> Vec<[u3
         })
         .collect();
     let touch = |a: &[Point; 2], b: &[Point; 2]| (0..3).all(|k| a[0][k] <= b[1][k] && b[0][k] <= a[1][k]);
-    // Of large surfaces the triangles of one in a few.
+    // For large surfaces, a sample of the triangles.
     let step = triangles.len() / 3000 + 1;
     let mut pairs = Vec::new();
     for i in (0..triangles.len()).step_by(step) {
@@ -266,7 +269,7 @@ fn some_near_pairs(points: &[Point], triangles: &Triangles, n: usize) -> Vec<[u3
     pairs.into_iter().step_by(step).collect()
 }
 
-/// Reported pairs do cross, and others do not, by rational numbers.
+/// Asserts in rational numbers that reported pairs cross, and others do not.
 fn check_crossings(points: &[Point], triangles: &Triangles, report: &Preflight) -> usize {
     let is_crossing = |f: &&Fault| f.kind == FaultKind::Crossing;
     let found: Vec<[u32; 2]> =
@@ -289,12 +292,14 @@ fn check_crossings(points: &[Point], triangles: &Triangles, report: &Preflight) 
     faces.len()
 }
 
-/// Where our counts are not those of the README:
-/// - pairs are counted here and faces there: the number of different triangles in pairs is set beside it;
+/// Differences between our counts and those of the README:
+/// - pairs are counted here and faces there: the number of different triangles in pairs is compared with it;
 /// - duplicates count as self-intersecting there (seqseg_shawn_260: 252 are 2 x 126), not here;
-/// - areas below some bound are zero there, here those that are exactly zero;
-/// - manifold_Cray_right overflows in single precision, in which it was measured there; as doubles it is a sound prism;
-/// - edges of duplicates count there as often as they are; that count is made here too, and has to be the same.
+/// - areas below some bound are zero there, here only those that are exactly zero;
+/// - manifold_Cray_right overflows in single precision, in which it was measured there; in double precision
+///   it is a valid prism;
+/// - edges of duplicates count there as often as they occur; that count is made here too, and has to be the
+///   same.
 #[test]
 fn real_surfaces_are_refused_or_fit() {
     let Some(folder) = common::data_folder() else { return };

@@ -1,4 +1,5 @@
-//! Surfaces that meet without sharing vertices and edges: divided on request, with the same area and volume, and reported by kind.
+//! Surfaces that meet without shared vertices and edges: divided on request, with area and volume preserved,
+//! and reported by kind.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::triangle::area;
@@ -51,7 +52,7 @@ fn together(soups: &[Soup]) -> Soup {
     all
 }
 
-/// What rounding does: as it is; turned; turned and shifted; in `f32`; with six decimals; small.
+/// Several kinds of rounding: none; rotated; rotated and shifted; in `f32`; with six decimals; small.
 fn rounded(case: usize, p: Point) -> Point {
     let turned = || {
         let ([x, y, z], (s, c), (t, d)) = (p, 0.7f64.sin_cos(), 1.1f64.sin_cos());
@@ -74,7 +75,7 @@ fn moved(case: usize, (points, triangles): &Soup) -> Soup {
     (points.iter().map(|&p| rounded(case, p)).collect(), triangles.clone())
 }
 
-/// How much coordinates may be off, and the length of a unit.
+/// The permitted error of coordinates, and the length of a unit.
 fn scale_of(case: usize) -> (f64, f64) {
     match case {
         2 => (1e-11, 1.0),
@@ -96,7 +97,7 @@ fn total_area(surfaces: &Surfaces) -> f64 {
     surfaces.triangles.iter().map(|t| area(t.map(|v| surfaces.points[v.index()]))).sum()
 }
 
-/// The volumes of the regions, rising.
+/// The volumes of the regions, ascending.
 fn volumes(surfaces: &Surfaces) -> Vec<f64> {
     let threads = Threads::single();
     let report = surfaces.preflight(&threads);
@@ -120,7 +121,8 @@ fn assert_volumes(case: usize, surfaces: &Surfaces, expected: &[f64]) {
     }
 }
 
-/// A box of twelve triangles; those on both sides of one edge have vertices on it at these parts of the way, and are fans around them.
+/// A box of twelve triangles; on each side of one edge, the triangles have vertices at these fractions of the
+/// edge, with fans around them.
 fn with_vertices_on_edge(on_sides: [&[f64]; 2]) -> Soup {
     let (mut points, mut triangles) = box_of([1; 3], [[0.0; 3], [1.0, 2.0, 3.0]]);
     let [u, v, _] = triangles[0];
@@ -156,7 +158,7 @@ fn edges_are_divided_at_vertices_on_them() {
         let (surfaces, done) = repaired(&[(&soup, Role::Boundary)], &IMPRINT);
         let report = surfaces.preflight(&Threads::single());
         assert!(report.is_fit() && report.faults.is_empty(), "case {case}: {report}");
-        // Nothing is new, and each vertex is on the edge of the other side.
+        // No points are new, and each vertex is on the edge of the other side.
         assert_eq!(surfaces.points.len(), before.points.len());
         let n = on_sides[0].len() + on_sides[1].len();
         assert_eq!(done.count(RepairKind::TJunction), n, "case {case}");
@@ -171,7 +173,7 @@ fn edges_are_divided_at_vertices_on_them() {
 #[test]
 fn bodies_side_by_side_share_their_wall() {
     let beside = [
-        // The same face in other triangles; a smaller face within a larger one; faces that overlap in part.
+        // The same face with other triangles; a smaller face within a larger one; faces that overlap in part.
         ([3, 3, 3], [[1.0, 0.0, 0.0], [2.0, 1.0, 1.0]], [1.0, 1.0]),
         ([2, 2, 2], [[1.0, 0.2, 0.3], [2.0, 0.7, 0.9]], [0.3, 1.0]),
         ([1, 2, 1], [[1.0, 0.4, 0.3], [1.5, 1.4, 1.3]], [0.5, 1.0]),
@@ -183,7 +185,7 @@ fn bodies_side_by_side_share_their_wall() {
         assert!(done.count(RepairKind::Imprinted) > 0 && done.count(RepairKind::CutCrossing) == 0);
         assert!(done.count(RepairKind::KeptWall) > 0);
         assert_volumes(case, &surfaces, &expected);
-        // From two files they share the facets instead.
+        // From two files, they share the facets instead.
         let [a, b] = bodies.map(|body| moved(case, &body));
         let (surfaces, done) = repaired(&[(&a, Role::Boundary), (&b, Role::Boundary)], &IMPRINT);
         let n_shared = surfaces.preflight(&Threads::single()).count(FaultKind::SharedFacet);
@@ -204,7 +206,7 @@ fn bodies_that_go_through_each_other_are_divided_on_request_only() {
         assert!(report.count(FaultKind::Crossing) > 0 && error.contains("--cut"), "{error}");
         let (surfaces, done) = repaired(&[(&both, Role::Boundary)], &CUT);
         assert!(done.count(RepairKind::CutCrossing) > 0);
-        // What both have is 0.6 by 0.5 by 0.7.
+        // The intersection is 0.6 by 0.5 by 0.7.
         let (off, unit) = scale_of(case);
         let whole = 6.0 + 2.0 * (1.5 * 0.5 + 0.5 * 0.9 + 0.9 * 1.5);
         assert!((total_area(&surfaces) / unit.powi(2) - whole).abs() < 100.0 * off);

@@ -1,4 +1,5 @@
-//! Surfaces repaired on request: closed, outward, of the volume that they had; and what cannot be repaired is told.
+//! Surfaces repaired on request: closed, facing outward, with the original volume; what cannot be repaired is
+//! reported.
 
 mod common;
 
@@ -42,13 +43,14 @@ fn look(points: &[Point], triangles: &Triangles) -> Preflight {
     preflight(points, triangles, &vec![0; triangles.len()], &[Role::Boundary], &Threads::single())
 }
 
-/// Each triangle with corners of its own.
+/// The surface with separate corners for each triangle.
 fn apart(points: &[Point], triangles: &Triangles) -> (Vec<Point>, Triangles) {
     let corners = triangles.as_flattened().iter().map(|v| points[v.index()]).collect();
     (corners, (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2].map(VertexId)).collect())
 }
 
-/// A ball without some triangles that share no vertex, the others turned at random, all apart.
+/// A ball without some triangles that share no vertex, the others oriented at random, all with separate
+/// corners.
 fn damaged_ball(seed: u64) -> (Vec<Point>, Triangles, f64, usize) {
     let surface = Surface::boundary_of(&ball(5, 1));
     let whole = volume(&surface.points, &surface.triangles);
@@ -84,7 +86,7 @@ fn a_ball_of_loose_turned_triangles_with_holes_is_whole_again() {
             let [a, b, c] = triangles[t as usize].map(|v| mended.vertex_to_kept[v.index()]);
             assert_eq!(mended.triangles[new], [a, c, b]);
         }
-        // Labels: what fills a hole takes after a triangle that shares an edge with it.
+        // Labels: a triangle that fills a hole gets the label of one that shares an edge with it.
         let labels = mended.labels(&(0..triangles.len()).collect::<Vec<_>>());
         for (new, old) in mended.new_to_old.iter().enumerate() {
             let beside = triangles[labels[new]].map(|v| mended.vertex_to_kept[v.index()]);
@@ -104,7 +106,7 @@ fn near_vertices_are_merged_and_no_farther_than_asked() {
     assert!(look(&points, &mended.triangles).is_fit());
     assert!((volume(&points, &mended.triangles) - whole).abs() < 1e-7);
     assert_eq!(mended.count(RepairKind::ClosedHole), n_holes);
-    // A chain of vertices does not run together: each goes to one that stays, nearer than asked.
+    // A chain of vertices does not collapse: each is merged into a remaining one within the distance.
     let chain: Vec<Point> = (0..10).map(|i| [f64::from(i), 0.0, 0.0]).collect();
     let all: Triangles = (0..8).map(|i| [i, i + 1, i + 2].map(VertexId)).collect();
     let mended = mend(&chain, &all, &Repairs { merge: Some(1.5), ..Repairs::default() });
@@ -114,7 +116,7 @@ fn near_vertices_are_merged_and_no_farther_than_asked() {
 #[test]
 fn a_plane_hole_is_filled_within_its_plane() {
     let surface = Surface::boundary_of(&box_grid([4, 4, 4], [[0.0; 3], [1.0, 1.0, 1.0]]));
-    // All triangles of one side round a vertex within, and one more: a rim with a dent.
+    // All triangles of one side around an inner vertex, and one more: a rim with a dent.
     let middle = surface.points.iter().position(|p| *p == [0.5, 0.5, 1.0]).unwrap();
     let corner = surface.points.iter().position(|p| *p == [0.25, 0.25, 1.0]).unwrap();
     let is_hole = |t: &[VertexId; 3]| {
@@ -129,14 +131,14 @@ fn a_plane_hole_is_filled_within_its_plane() {
     assert!(report.is_fit() && report.faults.is_empty(), "{report}");
     assert!((volume(&surface.points, &mended.triangles) - 1.0).abs() < 1e-12);
     assert_eq!(mended.count(RepairKind::ClosedHole), 1);
-    // Too long a rim stays, and so does one that only a membrane has.
+    // A rim that is too long stays, and so does one of a membrane only.
     let few = Repairs { close_holes: Some(4), ..ALL };
     assert_eq!(mend(&surface.points, &left, &few).count(RepairKind::LeftLong), 1);
     let surface_of = vec![0; left.len()];
     let membrane =
         repair(&surface.points, &left, &surface_of, &[Role::Membrane], &ALL, &Threads::single()).unwrap();
     assert_eq!(membrane.triangles, left);
-    // Something that stands through the hole keeps it open.
+    // Something that sticks through the hole keeps it open.
     let mut points = surface.points.clone();
     let first = points.len() as u32;
     points.extend([[0.5, 0.5, 0.5], [0.52, 0.5, 0.5], [0.5, 0.52, 0.5], [0.5, 0.5, 2.0]]);
@@ -148,7 +150,8 @@ fn a_plane_hole_is_filled_within_its_plane() {
     assert!(mended.triangles == left);
 }
 
-/// A tetrahedron of which one edge has vertices on one side only; flat triangles fill the gap of no width.
+/// A tetrahedron with vertices on one side of one of its edges only; flat triangles fill the gap of zero
+/// width.
 #[test]
 fn flat_triangles_go_and_what_was_closed_stays_closed() {
     let mut points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -182,7 +185,7 @@ fn duplicates_go_singly_or_in_pairs() {
     let only = Repairs { drop_duplicates: true, ..Repairs::default() };
     assert_eq!(look(&points, &twice).count(FaultKind::Duplicate), 1);
     assert_eq!(mend(&points, &twice, &only).triangles, tet);
-    // Two tets glued at a facet, which both have: a closed surface round both is left.
+    // Two tets glued at a facet that both have: a closed surface around both is left.
     let glued = [tet, ids([[0, 1, 2], [0, 4, 1], [0, 2, 4], [1, 4, 2]])].concat();
     let mended = mend(&points, &glued, &only);
     assert_eq!((mended.triangles.len(), mended.count(RepairKind::DroppedDuplicate)), (6, 2));
@@ -229,7 +232,7 @@ fn real_surfaces_after_all_repairs() {
     let Some(folder) = common::data_folder() else { return };
     let mut surprises = Vec::new();
     for (name, is_fit) in [
-        // A triangle that hangs on by one edge.
+        // A triangle attached by one edge only.
         ("vessels/pescio_AbdominalAorticAneurysm.stl", false),
         ("vessels/endobeams_ica_model.stl", true),
         ("hostile_surfaces/pescio_AbdominalAorta.stl", false),

@@ -1,4 +1,5 @@
-//! Refinement: meshes that fit together, keep their shape over generations, and come back bit for bit.
+//! Refinement: conforming meshes that keep their shapes over generations, and coarsening that restores them
+//! bit for bit.
 
 mod common;
 
@@ -73,7 +74,7 @@ fn the_mesh_follows_from_what_is_divided_whatever_came_before() {
     let (mut straight, mut astray) = (new(), new());
     let there = nearest(&first, [0.2; 3], 60);
     straight.refine(&there, &threads).unwrap();
-    // Elsewhere first, then there, and elsewhere taken back.
+    // First elsewhere, then there, then the divisions elsewhere are taken back.
     astray.refine(&nearest(&first, [0.9; 3], 60), &threads).unwrap();
     let centres: Vec<Point> =
         there.iter().map(|t| centroid(corners(&first, first.tets[t.index()]))).collect();
@@ -99,7 +100,7 @@ fn points_that_moved_stay_where_they_are() {
     let moved: Vec<Point> = refinement.mesh().points.iter().map(sheared).collect();
     refinement.set_points(&moved).unwrap();
     refinement.refine(&nearest(refinement.mesh(), sheared(&place), 200), &threads).unwrap();
-    // A shear takes middles to middles.
+    // A shear maps midpoints to midpoints.
     let mut straight = Refinement::new(&first, Options::default(), &threads).unwrap();
     straight.refine(&nearest(&first, place, 200), &threads).unwrap();
     let mut again = first.clone();
@@ -147,7 +148,7 @@ fn a_linear_field_has_no_error_and_its_gradient_everywhere() {
 #[test]
 fn estimates_are_the_integrals_that_they_are_said_to_be() {
     let threads = Threads::single();
-    // Two tets at one facet in the plane z = 0, one above and one below.
+    // Two tets that share a facet in the plane z = 0, one above and one below.
     let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -2.0]];
     let mesh = TetMesh::new(points, vec![[0, 1, 2, 3].map(VertexId), [0, 1, 2, 4].map(VertexId)]);
     // The field z above and -3 z below: its derivative jumps by 4 across a triangle of area 1/2.
@@ -155,7 +156,8 @@ fn estimates_are_the_integrals_that_they_are_said_to_be() {
     let jump = estimate::gradient_jump(&mesh, &values, &threads);
     let expected = [2f64.sqrt(), 5f64.sqrt()].map(|h| (h / 24.0 * 16.0 * 0.5).sqrt());
     assert!(jump.iter().zip(expected).all(|(x, y)| (x - y).abs() < 1e-14), "{jump:?} {expected:?}");
-    // Recovered at the three shared vertices: (1/6 - 3 * 2/6) / (3/6); at the others their own.
+    // Recovered at the three shared vertices: (1/6 - 3 * 2/6) / (3/6); at the others the gradient of their
+    // own tet.
     let recovered = (1.0 / 6.0 - 1.0) / 0.5;
     let by_quadrature = |own: f64, volume: f64| {
         // Four points integrate squares of linear functions exactly.
@@ -204,7 +206,7 @@ fn marks_are_those_that_are_asked_for() {
     let marked = mark::in_ball(&mesh, centre, 0.2, &threads);
     let (mut surely, mut n) = (0, 0);
     for (i, t) in (0..).zip(&mesh.tets) {
-        // What a sample finds is marked, and what is marked is found within a little more.
+        // Tets found by a sample are marked, and marked tets are found within a slightly larger distance.
         let is_marked = marked.binary_search(&TetId(i)).is_ok();
         assert!(is_marked || !by_samples(t, 0.2));
         assert!(!is_marked || by_samples(t, 0.2 + 0.2));
@@ -213,7 +215,7 @@ fn marks_are_those_that_are_asked_for() {
     }
     assert!(surely > 50 && n >= surely && n < mesh.tets.len() / 2, "{surely} {n}");
     let estimates = [3.0, 0.0, 1.0, 3.0, f64::NAN, 2.0];
-    // 9, 9, 4, 1 of 23.
+    // 9, 9, 4 and 1 of a total of 23.
     assert_eq!(mark::largest_share(&estimates, 0.35), [TetId(0)]);
     assert_eq!(mark::largest_share(&estimates, 0.5), [TetId(0), TetId(3)]);
     assert_eq!(mark::largest_share(&estimates, 1.0), [0, 2, 3, 5].map(TetId));
@@ -243,7 +245,7 @@ fn edges_get_as_short_as_is_wanted_near_a_surface() {
     }
     assert!(n > 2);
     fits(&first, refinement.mesh());
-    // By the definition: no edge of a tet is longer than what is wanted at its place nearest to the surface.
+    // By definition: no edge of a tet is longer than the size at its place nearest to the surface.
     let mesh = refinement.mesh();
     for t in &mesh.tets {
         let c = corners(mesh, *t);
@@ -251,7 +253,7 @@ fn edges_get_as_short_as_is_wanted_near_a_surface() {
             .flat_map(|i| (0..i).map(move |j| (i, j)))
             .map(|(i, j)| distance(c[i], c[j]))
             .fold(0.0, f64::max);
-        // Of the tet, the place nearest to the place of the surface that is nearest to the centre.
+        // The place of the tet nearest to the point of the surface that is nearest to its centre.
         let near = |p: Point| surface.closest(p).unwrap();
         let foot = near(centroid(c)).point;
         let weights = tet::closest(c, foot);
@@ -260,8 +262,8 @@ fn edges_get_as_short_as_is_wanted_near_a_surface() {
     }
 }
 
-/// How many shapes there are, like each other but for size, place and which way round: by all distances of corners, in an order that does not
-/// depend on how the tet is numbered.
+/// The number of shapes up to size, position and reflection: by all distances of corners, in an order
+/// independent of numbering.
 fn n_shapes(mesh: &TetMesh) -> usize {
     let key = |t: &[VertexId; 4]| {
         let c = corners(mesh, *t);
@@ -276,7 +278,7 @@ fn n_shapes(mesh: &TetMesh) -> usize {
     };
     let mut all: Vec<_> = mesh.tets.iter().map(key).collect();
     all.sort_unstable();
-    // Rounding may go either way.
+    // Allow for rounding in either direction.
     all.dedup_by(|x, y| x.iter().zip(y).all(|(x, y)| x.abs_diff(*y) <= 2));
     all.len()
 }
@@ -309,7 +311,7 @@ fn few_shapes_come_of_one() {
         counts.iter().sum::<usize>() as f64 / 40.0
     );
     assert!(*most <= 40);
-    // By Bey's rule never more than three, and mostly worse ones.
+    // Bey's rule never produces more than three, and mostly worse ones.
     for tet in mesh.tets.iter().take(40) {
         assert!(divided_by(Rule::Bey, &one(corners(&mesh, *tet)), 4) <= 3);
     }
@@ -326,7 +328,7 @@ fn tets_that_no_division_keeps_are_told() {
         for _ in 0..2 {
             refinement.refine(&nearest(refinement.mesh(), first.points[0], 2), &threads).unwrap();
         }
-        // Of a tet that is not bad no part is to be bad.
+        // No part of a tet that is not bad may be bad.
         let (root, now) = (worst(&first, eas), refinement.mesh());
         let floor = if root >= 0.2 { (0.95 * root).max(0.2) } else { 0.95 * root };
         let is_bad = |i: &u32| eas(corners(now, now.tets[*i as usize])) < floor * (1.0 - 1e-9);

@@ -1,4 +1,5 @@
-//! What to refine in whole meshes: each criterion against its definition, what may be coarsened, and what is refused.
+//! Criteria for refinement of whole meshes: each compared with its definition; what may be coarsened, and
+//! what is refused.
 
 mod common;
 
@@ -51,7 +52,7 @@ fn criteria_of_place_mark_what_they_say() {
         assert!(!expected.is_empty() && expected.len() < all.len());
         assert_eq!(marks(Criterion::Region(word.into())), expected);
     }
-    // The sphere has radius 1 and the box is far.
+    // The sphere has radius 1 and the box is far away.
     let is_on = |v: VertexId| norm(part.mesh.points[v.index()]) < 1.0 + 1e-9;
     let expected = those(&part, |t| part.mesh.tets[t].into_iter().any(is_on));
     assert!(!expected.is_empty() && expected.len() < all.len());
@@ -115,7 +116,7 @@ fn conditions_hold_for_cells_by_value_and_for_points_at_any_corner() {
     assert_eq!(marks("x>2.5"), those(&part, |t| x[part.tet_to_cell[t].index()] > 2.5));
     assert_eq!(marks("region==7"), those(&part, |t| part.mesh.regions[t] == 7));
     assert_eq!(marks("region!=7"), those(&part, |t| part.mesh.regions[t] == 3));
-    // Of an array by that very name no component is meant.
+    // If an array has exactly that name, no component is meant.
     let mut odd = mesh.clone();
     odd.set_point_field(Field::scalars("v:y", vec![1.0; mesh.points.len()]));
     let condition = Criterion::Where("v:y>0".parse().unwrap());
@@ -151,7 +152,7 @@ fn criteria_of_fields_mark_by_their_estimates() {
         assert_eq!(marks(amount(Amount::Share(0.4))), mark::largest_share(&estimates, 0.4));
         let n = part.mesh.tets.len() + 700;
         assert_eq!(marks(amount(Amount::Tets(n))), mark::to_count(&estimates, n));
-        // Of a vector all components count.
+        // For a vector, all components count.
         let of_axis = |k: usize| of(&part.mesh, &v.iter().map(|v| v[k]).collect::<Vec<_>>(), &threads);
         let of_axes = [0, 1, 2].map(of_axis);
         let all: Vec<f64> = (0..part.mesh.tets.len())
@@ -199,7 +200,7 @@ fn what_is_not_there_is_told_with_what_is() {
         (hessian(&["p", "nothing"], Aim::RangePart(0.1)), ["no array `nothing`", "point arrays"]),
         (hessian(&[], Aim::Error(1.0)), ["need an array", "second derivatives"]),
     ] {
-        // Numbers and patches are words of the call; what arrays hold is not.
+        // Labels and patches are arguments of the call; contents of arrays are not.
         let is_place = matches!(criterion, Criterion::Region(_) | Criterion::Patch { .. });
         let is_word = is_place || criterion.check().is_err();
         let kind = if is_word { ErrorKind::Options } else { ErrorKind::Input };
@@ -219,7 +220,7 @@ fn what_is_not_there_is_told_with_what_is() {
     assert!(tet::volume([[0.0; 3]; 4]) == 0.0);
 }
 
-/// Values that are no numbers mark nothing and stop nothing.
+/// Values that are not finite mark nothing and stop nothing.
 #[test]
 fn values_that_are_no_numbers_are_passed_over() {
     let threads = Threads::single();

@@ -1,4 +1,4 @@
-//! Line cells in refinement: divided with their edges, taken back with them, remembered in files.
+//! Line cells in refinement: divided with their edges, merged with them, remembered in files.
 
 use motet::base::{TetId, Threads, VertexId};
 use motet::geometry::vector::distance;
@@ -8,7 +8,8 @@ use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Field, Mesh};
 use motet::refine::{MeshRefinement, Options};
 
-/// A box with lines along an edge of it, on one edge twice, and one across its inside, and a vertex cell.
+/// A box with lines along one of its edges, with a duplicate on one edge, one line across its interior, and a
+/// vertex cell.
 fn with_lines() -> Mesh {
     let mut mesh = box_grid([2; 3], [[0.0; 3], [1.0; 3]]);
     let at =
@@ -65,7 +66,7 @@ fn lines_are_divided_and_taken_back_with_their_edges() {
         assert!(
             history.cells.main().all(|old| old.index() < 48 + first.cells.len() * (1 << (3 * generation)))
         );
-        // A file remembers what the handle does.
+        // A file remembers the same as the handle.
         io::write(&file, &one.with_memory(&threads), &WriteOptions::default()).unwrap();
         one = MeshRefinement::new(&io::read(&file).unwrap(), Options::default(), &threads).unwrap();
     }
@@ -82,7 +83,7 @@ fn of_a_divided_edge_all_parts_are_lines_or_none() {
     let mut one = MeshRefinement::new(&first, Options::default(), &threads).unwrap();
     one.refine(&all(&one), &Rules::default(), &threads).unwrap();
     let mut mesh = one.with_memory(&threads);
-    // One half of the line inside is no line any more.
+    // One half of the inner line is removed.
     let last = mesh.cells.iter().filter(|(_, kind, _)| *kind == CellKind::LINE).nth(4).unwrap().0.index();
     let kept: Vec<usize> = (0..mesh.cells.len()).filter(|&cell| cell != last).collect();
     let mut cells = motet::mesh::Cells::new();

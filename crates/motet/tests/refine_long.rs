@@ -1,5 +1,5 @@
-//! Long refinement: towards something, generation after generation, and behind a front, each step held against what is promised; and how many
-//! shapes come of one.
+//! Long refinement: towards a target, generation after generation, and behind a front, with each step checked
+//! against the promises; and the number of shapes that result.
 
 mod common;
 
@@ -13,7 +13,8 @@ use motet::mesh::{TetMesh, TetPart};
 use motet::refine::{Options, Refinement};
 use proptest::prelude::*;
 
-/// A box with a region on either side of a jagged interface, which is a patch as its sides are. Vertices inside are a little off the grid.
+/// A box with a region on either side of a jagged interface, which is a patch as its sides are. Inner
+/// vertices are a little off the grid.
 fn box_of_two() -> TetMesh {
     let high = [5.0, 4.0, 4.0];
     let mut mesh = TetPart::of(&box_grid([5, 4, 4], [[0.0; 3], high])).unwrap().mesh;
@@ -48,8 +49,8 @@ fn those(mesh: &TetMesh, is_marked: impl Fn(TetId, [Point; 4]) -> bool) -> Vec<T
     all.filter(|t| is_marked(*t, corners(mesh, mesh.tets[t.index()]))).collect()
 }
 
-/// Eight generations: the tets in an ellipsoid about a place, with half axes in such proportions, that shrinks by these factors and holds
-/// twelve tets at first.
+/// Eight generations: divides the tets in an ellipsoid about a place, with half axes in these proportions,
+/// that shrinks by these factors and holds twelve tets at first.
 fn towards(axes: Point, factors: Point) {
     let threads = Threads::single();
     for (name, mesh) in meshes() {
@@ -91,7 +92,8 @@ fn towards_a_surface_all_is_kept() {
     towards([4.0, 4.0, 1.0], [0.62, 0.62, 0.5]);
 }
 
-/// In an even box all tets are as bad as the worst, and any cut is worse: were the worst kept, the whole box would be divided.
+/// In a uniform box all tets are as bad as the worst, and any cut is worse: if the worst were kept, the whole
+/// box would be divided.
 #[test]
 fn in_an_even_box_a_division_stays_where_it_is() {
     let threads = Threads::single();
@@ -102,7 +104,8 @@ fn in_an_even_box_a_division_stays_where_it_is() {
     assert!(summary.n_promoted < mesh.tets.len() / 4);
 }
 
-/// A front at x: what it reaches is divided, down to generation 2, what it has left is taken back.
+/// A front at x: tets that it reaches are divided, up to generation 2; divisions that it has left are taken
+/// back.
 fn pass(refinement: &mut Refinement, x: f64, stride: f64, threads: &Threads) {
     let reach = |c: [Point; 4]| {
         let [low, high] = [f64::min, f64::max].map(|of| c.map(|p| p[0]).into_iter().reduce(of).unwrap());
@@ -144,7 +147,7 @@ fn a_front_leaves_the_first_mesh_behind() {
         assert!(most > 4 * first.mesh.tets.len());
         take_back(&mut refinement, &threads);
         assert_eq!(refinement.mesh(), &first.mesh);
-        // A front that passes once more meets what is remembered.
+        // A front that passes once more meets remembered divisions.
         let memory = refinement.memory();
         (0..50).for_each(|step| pass(&mut refinement, f64::from(step) * stride, stride, &threads));
         take_back(&mut refinement, &threads);
@@ -153,13 +156,13 @@ fn a_front_leaves_the_first_mesh_behind() {
     }
 }
 
-/// The lengths of the edges of a tet, which is scaled to volume 1.
+/// The edge lengths of a tet scaled to volume 1.
 fn lengths(c: [Point; 4]) -> [f64; 6] {
     let size = volume(c).abs().cbrt();
     EDGES.map(|[i, j]| distance(c[i], c[j]) / size)
 }
 
-/// Whether two tets have the same shape, mirror images included: some order of the corners gives the same lengths.
+/// Whether two tets have the same shape up to reflection: some order of the corners gives the same lengths.
 fn is_alike(x: [Point; 4], y: [Point; 4]) -> bool {
     let expected = lengths(x);
     let orders = (0..4).flat_map(|a| (0..4).flat_map(move |b| (0..4).map(move |c| [a, b, c])));
@@ -169,7 +172,7 @@ fn is_alike(x: [Point; 4], y: [Point; 4]) -> bool {
     })
 }
 
-/// How many shapes there are after each generation of dividing all, from one tet.
+/// The number of shapes after each generation of uniform division, from one tet.
 fn n_shapes(tet: [Point; 4], generations: usize) -> Vec<usize> {
     let threads = Threads::single();
     let first = TetMesh::new(tet.to_vec(), vec![[0, 1, 2, 3].map(VertexId)]);
@@ -200,7 +203,7 @@ fn regular_and_path_tets_have_few_shapes_for_good() {
     assert_eq!(n_shapes(regular, 5), [2; 5]);
     let path = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]];
     assert_eq!(n_shapes(path, 5), [1; 5]);
-    // Sommerville's second space-filler is alike itself eight times.
+    // Sommerville's second space-filler is divided into eight tets of its own shape.
     let sommerville = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]];
     assert_eq!(n_shapes(sommerville, 5), [1; 5]);
 }
@@ -219,7 +222,8 @@ fn random_tets_have_more() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// Four of eight have the shape of the whole, and the other four come in two pairs. So a shape brings at most two new ones.
+    /// Four of eight have the shape of the whole, and the other four come in two pairs. So a shape gives at
+    /// most two new ones.
     #[test]
     fn each_shape_brings_at_most_two(tet in prop::array::uniform4(prop::array::uniform3(0.0..1.0f64))) {
         prop_assume!(volume(tet).abs() > 0.01);

@@ -1,5 +1,5 @@
-//! The loop of solving, sizes from the second derivatives of the solution, and adapting, against refinement everywhere. Files are what goes on from one
-//! round to the next: each mesh remembers what was divided.
+//! The adaptation loop (solve, compute sizes from second derivatives, adapt), compared with uniform
+//! refinement. Files carry the mesh from round to round, with the memory of divisions.
 
 mod common;
 
@@ -28,7 +28,8 @@ fn three_rounds_resolve_a_jet_twice_as_well_as_as_many_tets_everywhere() {
     let uniform = everywhere(&TetPart::of(&mesh).unwrap().mesh, 90_000, jet, &threads).unwrap();
     uniform.iter().for_each(|[n, mean]| println!("all: {n} tets, error {mean:.2e}"));
     let [mut last, mut part_of_uniform] = [uniform[0][1], 1.0];
-    // Two and a half times as many tets from round to round: a coarse mesh says of the rim only about where it is.
+    // Two and a half times as many tets from round to round: a coarse mesh shows only roughly where the rim
+    // is.
     for n_tets in [10_000, 25_000, 60_000] {
         solved(&mut mesh);
         let arrays = vec!["pressure".into(), "velocity".into()];
@@ -39,7 +40,7 @@ fn three_rounds_resolve_a_jet_twice_as_well_as_as_many_tets_everywhere() {
         let expected = with_as_many(&uniform, tets.tets.len() as f64);
         println!("{} tets, error {mean:.2e}, most {most:.2e}; everywhere {expected:.2e}", tets.tets.len());
         assert!(mean < last);
-        // What the closing adds comes on top.
+        // Tets of the closure are additional.
         assert!(tets.tets.len() < n_tets + n_tets / 2);
         [last, part_of_uniform] = [mean, mean / expected];
     }
@@ -57,9 +58,9 @@ fn sizes_that_are_put_are_finite_and_those_of_the_solution() {
     let expected = sizes("velocity").sizes(&mesh, &part, &threads).unwrap();
     sizes("velocity").put(&mut mesh, &part, "size", &threads).unwrap();
     let found = mesh.point_field("size").unwrap().values.to_f64().unwrap();
-    // The tube is as long as 5 and as wide as 2.
+    // The tube has length 5 and width 2.
     assert!(found.iter().zip(&expected).all(|(h, of)| *h == of.min(33f64.sqrt())));
-    // The pressure does not bend.
+    // The pressure has no second derivatives.
     let criterion = sizes("pressure").put(&mut mesh, &part, "size", &threads).unwrap();
     assert!(mesh.point_field("size").unwrap().values.to_f64().unwrap().iter().all(|h| h.is_finite()));
     assert!(criterion.marks(&mesh, &part, &threads).unwrap().is_empty());

@@ -1,4 +1,4 @@
-//! What is remembered of a refined mesh: told, recalled, and recalled after others have changed the mesh.
+//! The memory of a refined mesh: stored, restored, and restored after others have changed the mesh.
 
 mod common;
 
@@ -28,7 +28,7 @@ fn refined(first: &TetMesh, place: Point, generations: usize) -> Refinement {
     refinement
 }
 
-/// Little is divided for its shape alone.
+/// Options by which little is divided for shape alone.
 fn loose() -> Options {
     Options { keep: 0.5, share: 0.3, ..Options::default() }
 }
@@ -37,7 +37,7 @@ fn all(mesh: &TetMesh) -> Vec<TetId> {
     (0..mesh.tets.len()).map(TetId::new).collect()
 }
 
-/// Takes back all that can be.
+/// Takes back all divisions that can be.
 fn coarsest(refinement: &mut Refinement) {
     loop {
         let n = refinement.mesh().tets.len();
@@ -57,7 +57,7 @@ fn some(n: usize, numbers: &mut Numbers, share: u64) -> Vec<TetId> {
     (0..n).filter(|_| numbers.next() % 100 < share).map(TetId::new).collect()
 }
 
-/// A mesh whose tets are numbered the other way round, but for some.
+/// A mesh in which all tets but the first are numbered the other way round.
 fn turned(mut mesh: TetMesh) -> TetMesh {
     for tet in mesh.tets.iter_mut().skip(1) {
         tet.swap(1, 3);
@@ -116,7 +116,7 @@ fn motion_in_between_changes_nothing_of_what_is_remembered() {
     assert_eq!(other.mesh().points, moved(&first.points));
 }
 
-/// Forgets the tets around some places, as others would who put their own there.
+/// Removes the tets around some places from the memory, as if others had inserted theirs there.
 fn forgets(memory: &Memory, mesh: &TetMesh, places: &[Point], radius: f64) -> (Memory, HashSet<usize>) {
     let is_gone = |t: &usize| {
         let centre = centroid(corners(mesh, mesh.tets[*t]));
@@ -152,7 +152,7 @@ fn what_others_put_in_between_fits_whatever_is_divided_and_taken_back() {
             let place = |v: VertexId| given.points[v.index()].map(f64::to_bits);
             let at = |v: VertexId| other.mesh().points[v.index()].map(f64::to_bits);
             let there: HashSet<[[u64; 3]; 4]> = coarse.iter().map(|t| t.map(at)).collect();
-            // Those of others are still there, whole or divided.
+            // The tets of others are still there, whole or divided.
             let n_there = gone.iter().filter(|t| there.contains(&given.tets[**t].map(place))).count();
             assert_eq!(n_there, gone.len(), "round {round}");
             assert!(
@@ -173,7 +173,7 @@ fn what_others_put_in_between_fits_whatever_is_divided_and_taken_back() {
     }
 }
 
-/// The same with its tets numbered anew.
+/// The mesh and its memory with the tets renumbered.
 fn shuffled(mesh: &TetMesh, memory: &Memory, numbers: &mut Numbers) -> (TetMesh, Memory) {
     let mut order: Vec<usize> = (0..mesh.tets.len()).collect();
     (1..order.len()).for_each(|i| order.swap(i, numbers.next() as usize % (i + 1)));
@@ -192,7 +192,7 @@ fn shuffled(mesh: &TetMesh, memory: &Memory, numbers: &mut Numbers) -> (TetMesh,
     (TetMesh { tets, regions, ..mesh.clone() }, memory)
 }
 
-/// With triangles between the tets on both sides of a plane.
+/// Adds triangles between the tets on both sides of a plane.
 fn with_sheet(mut mesh: TetMesh) -> TetMesh {
     let is_left: Vec<bool> = mesh.tets.iter().map(|t| centroid(corners(&mesh, *t))[0] < 0.5).collect();
     let sorted = |mut t: [VertexId; 3]| {
@@ -272,7 +272,7 @@ fn a_moved_and_remeshed_mesh_is_coarsened_where_it_was_not_touched() {
     fits(mesh, other.mesh());
     println!("{} tets coarsened, {} at first", other.mesh().tets.len(), first.tets.len());
 
-    // Of the first mesh, all but what lies where others were.
+    // All tets of the first mesh, except where others were.
     let bits = |mesh: &TetMesh| -> HashSet<[[u64; 3]; 4]> {
         mesh.tets.iter().map(|t| corners(mesh, *t).map(|p| p.map(f64::to_bits))).collect()
     };
@@ -298,7 +298,7 @@ fn a_memory_of_another_mesh_is_refused_or_falls_apart() {
     let error = recall(fine.mesh(), &short).unwrap_err().to_string();
     assert!(error.contains("not an entry for each"), "{error}");
 
-    // Any numbers: refused, or a mesh that fits.
+    // Arbitrary numbers: either refused, or the mesh conforms.
     let mut numbers = Numbers(11);
     let (mut n_refused, n) = (0, fine.mesh().tets.len());
     for _ in 0..200 {

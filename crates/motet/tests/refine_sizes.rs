@@ -38,7 +38,7 @@ fn second_derivatives_of_a_quadratic_field_are_exact_in_a_lattice() {
     let found = hessians(&mesh, &values(&mesh, quadratic), &threads);
     let worst = found.iter().map(|h| off(*h, SECOND)).fold(0.0, f64::max);
     println!("lattice: off by {worst:.1e}");
-    // At the boundary, too.
+    // At the boundary as well.
     assert!(worst < 1e-11, "{worst}");
     let straight = hessians(&mesh, &values(&mesh, |[x, y, z]| 3.0 + x - 2.0 * y + 0.1 * z), &threads);
     assert!(straight.iter().all(|h| off(*h, [0.0; 6]) < 1e-11));
@@ -64,14 +64,14 @@ fn second_derivatives_come_nearer_in_finer_lattices() {
         pairs.filter(|(p, _)| is_inner(p)).map(|(p, h)| off(*h, second(*p))).fold(0.0, f64::max)
     });
     println!("errors inside, each lattice twice as fine: {errors:?}");
-    // Of second order, away from the boundary.
+    // Second order, away from the boundary.
     assert!(errors[1] < 0.3 * errors[0] && errors[2] < 0.3 * errors[1]);
 }
 
 #[test]
 fn curvature_is_about_right_in_any_mesh() {
     let threads = Threads::single();
-    // Eigenvalues -3, 1 and 2, along other axes than those of coordinates.
+    // Eigenvalues -3, 1 and 2, along axes other than the coordinate axes.
     let f = |[x, y, z]: Point| {
         let [u, v] = [(x + y) / 2f64.sqrt(), (x - y) / 2f64.sqrt()];
         0.5 * (-3.0 * u * u + v * v + 2.0 * z * z)
@@ -82,7 +82,7 @@ fn curvature_is_about_right_in_any_mesh() {
         let at = |share: f64| bends[(share * (bends.len() - 1) as f64) as usize];
         println!("{name}: 3 is found as {:.2} to {:.2}, median {:.2}", at(0.05), at(0.95), at(0.5));
         assert!((2.6..3.5).contains(&at(0.5)), "{name}");
-        // The gradients of flat tets are beyond all bounds.
+        // The gradients of flat tets are unbounded.
         assert!(name == "random" || at(0.05) > 2.4 && at(0.95) < 3.6);
     }
 }
@@ -99,7 +99,8 @@ fn a_size_for_an_error_keeps_it() {
     let centre = at(corners, [0.25; 4]);
     let linear = corners.iter().map(|p| field(*p)).sum::<f64>() / 4.0;
     let error = linear - field(centre);
-    // Half the curvature times the square of the radius, sqrt(3/8) of an edge; the bound is that of the worst shape.
+    // Half the curvature times the square of the radius, sqrt(3/8) of an edge; the bound is for the worst
+    // shape.
     assert!((error - 3.0 / 16.0 * 4.0 * size[0] * size[0]).abs() < 1e-12);
     assert!(error < 0.01 && error > 0.005);
 }
@@ -113,7 +114,7 @@ fn sizes_grow_no_faster_than_they_may() {
     let first = sizes.clone();
     limit_growth(&mesh, &mut sizes, 0.3);
     let edges = || mesh.tets.iter().flat_map(|t| EDGES.map(|[i, j]| [t[i].index(), t[j].index()]));
-    // By the definition, rounds until nothing changes (Bellman and Ford).
+    // By definition, with rounds until nothing changes (Bellman and Ford).
     let mut expected = first;
     loop {
         let mut is_changed = false;
@@ -159,16 +160,17 @@ fn front(p: Point) -> f64 {
 
 #[test]
 fn sizes_for_the_mean_square_leave_the_least_of_it() {
-    // Two places with as much room: bends 1 and 100, sizes h and g, h^-3 and g^-3 tets, errors h^2 and 100 g^2.
+    // Two places of equal volume: second derivatives 1 and 100, sizes h and g, h^-3 and g^-3 tets, errors h^2
+    // and 100 g^2.
     let sizes = for_mean_square(&[1.0, 100.0, 0.0, f64::NAN]);
     assert_eq!(sizes[2..], [f64::INFINITY, f64::INFINITY]);
     let ratio = sizes[0] / sizes[1];
     let squares = |ratio: f64| {
-        // One of both sizes is free where the number of tets is given.
+        // With a given number of tets, only one of the sizes is free.
         let g = (1.0 + ratio.powi(-3)).cbrt();
         (ratio * g).powi(4) + (100.0 * g * g).powi(2)
     };
     assert!(squares(ratio) < squares(1.01 * ratio) && squares(ratio) < squares(0.99 * ratio));
-    // Equal errors everywhere cost more of the mean.
+    // Equal errors everywhere give a larger mean.
     assert!(squares(ratio) < 0.75 * squares(10.0));
 }

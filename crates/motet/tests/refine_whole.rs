@@ -1,4 +1,5 @@
-//! Refinement of whole meshes: labels, arrays and cells of other kinds go along, and files remember.
+//! Refinement of whole meshes: labels, arrays and cells of other kinds are carried along, and files remember
+//! divisions.
 
 mod common;
 
@@ -131,7 +132,7 @@ fn remeshing_in_between_is_known_from_the_file() {
         one.refine(&marked, &Rules::default(), &threads()).unwrap();
     }
     let mut moved = one.with_memory(&threads());
-    // One vertex inside goes almost through a facet.
+    // One inner vertex moves almost through a facet.
     let inside =
         |p: &Point| p.iter().all(|x| *x > 0.01 && *x < 0.99) && p.iter().all(|x| (x - 0.8).abs() < 0.2);
     let v = moved.points.iter().position(inside).unwrap();

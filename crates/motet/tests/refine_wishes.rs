@@ -1,4 +1,4 @@
-//! What is wished of each tet: several criteria together, what may be taken back, counts that are expected, limits.
+//! Wishes for each tet: several criteria together, what may be taken back, expected counts, limits.
 
 mod common;
 
@@ -30,7 +30,7 @@ fn several_criteria_mark_what_any_of_them_does_on_any_number_of_threads() {
     assert_eq!((marked(&none), coarser(&none).len()), (vec![], part.mesh.tets.len()));
 }
 
-/// One of each kind.
+/// One criterion of each kind.
 fn all_criteria(threads: &Threads) -> Vec<Criterion> {
     let hessian = |aim| {
         let arrays = vec!["p".into(), "v".into()];

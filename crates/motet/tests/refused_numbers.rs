@@ -1,4 +1,4 @@
-//! Numbers of options that mean nothing are refused before any work, whatever they would have done.
+//! Invalid numbers in options are refused before any work, whatever their effect would be.
 
 use motet::Error;
 use motet::base::Threads;
@@ -70,7 +70,7 @@ fn limits_of_refinement() {
 #[test]
 fn shapes_of_too_many_points_and_of_no_size() {
     let coil = |turns| Coil { centre: [0.0; 3], radius: 1.0, pitch: 0.3, turns, wire_radius: 0.1 };
-    // Of no sides it has no points, but its line has.
+    // With no sides there are no surface points, but the centre line has points.
     for (turns, steps, around) in [(1e9, 16, 8), (1e9, 16, 0), (1.0, usize::MAX, 0), (1.0, 16, usize::MAX)] {
         refused(coil(turns).mesh(steps, around), "points");
     }

@@ -1,4 +1,4 @@
-//! Remeshing: what is bad gets good, what is not stays to the bit, and what is left is explained.
+//! Remeshing: bad tets become good, the others stay to the bit, and what is left is explained.
 
 mod common;
 
@@ -40,10 +40,10 @@ fn shake(mesh: &mut TetMesh, part: f64, seed: u64) {
     }
 }
 
-/// What must hold of every outcome.
+/// Checks what must hold for every outcome.
 fn hold_to_the_promise(mesh: &TetMesh, outcome: &Outcome, keep: bool) -> Result<(), TestCaseError> {
     let (new, report) = (&outcome.extract.mesh, &outcome.report);
-    // Which turns tets that are numbered the other way round.
+    // This reorders tets that are numbered the other way round.
     let complex = Complex::new(new).unwrap();
     complex.verify().map_err(TestCaseError::fail)?;
     let qualities: Vec<f64> = complex.tets().map(|t| eas(complex.corners(t))).collect();
@@ -222,7 +222,7 @@ fn walls(mesh: &TetMesh) -> Vec<[VertexId; 3]> {
     complex.walls().map(|(_, wall)| complex.facet(wall.sides[0])).collect()
 }
 
-/// How far the corners and centres of some walls lie from others, at most.
+/// The largest distance of the corners and centres of some walls from others.
 fn strays(walls: &[[VertexId; 3]], points: &[Point], from: &NearestTriangle) -> f64 {
     let mut farthest = 0.0f64;
     for corners in walls.iter().map(|wall| wall.map(|v| points[v.index()])) {
@@ -234,7 +234,7 @@ fn strays(walls: &[[VertexId; 3]], points: &[Point], from: &NearestTriangle) -> 
     farthest
 }
 
-/// Meshes whose very surface is bad, with a surface that may give way by a hundredth of their extent.
+/// Meshes with a bad surface that may stray by a hundredth of their extent.
 #[test]
 fn bad_surfaces_give_way_within_the_distance() {
     for (name, mesh) in data_meshes().into_iter().filter(|(name, _)| name.contains("bad_tets")) {
@@ -253,15 +253,16 @@ fn bad_surfaces_give_way_within_the_distance() {
             "{name}: bad {} -> {}, new walls stray by {out:.3} of the distance allowed, old ones by {back:.3}",
             report.before.bad, report.after.bad
         );
-        // Which tets are left, one or none, hangs on the last digits of distances.
+        // Whether one tet or none is left depends on the last digits of distances.
         assert!(report.after.bad <= 1 && report.after.inverted == 0);
-        // The other way only what vertices leave is watched.
+        // In the opposite direction only the area that vertices leave is monitored.
         assert!(out <= 1.0 + 1e-9 && back < 2.0);
         hold_to_the_promise(&part, &outcome, false).unwrap();
     }
 }
 
-/// Between two plates that are nearer than their triangles are wide there is no room for a good tet on any of these.
+/// Between two plates whose distance is smaller than the width of their triangles, there is no space for a
+/// good tet on any of these.
 #[test]
 fn a_narrow_gap_is_told_as_the_cause() {
     for (height, is_narrow) in [(0.01, true), (0.02, true), (0.5, false)] {

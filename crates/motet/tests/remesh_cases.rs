@@ -1,4 +1,4 @@
-//! The cases of the paper on dynamic remeshing, small and short: what must hold after every step.
+//! The cases of the paper on dynamic remeshing, small and short: checks after every step.
 
 #[allow(dead_code, unreachable_pub, reason = "the example shares it, and uses other parts of it")]
 mod moving_cases;
@@ -34,7 +34,8 @@ fn assert_close(x: f64, y: f64, tolerance: f64) {
     assert!((x - y).abs() <= tolerance * y.abs(), "{x} {y}");
 }
 
-/// Boundary and labelled triangles are those of `before` to the bit, the volume is the same, and no tet is bad.
+/// Asserts that boundary and labelled triangles are those of `before` to the bit, the volume is the same, and
+/// no tet is bad.
 fn assert_repaired(before: &TetMesh, after: &TetMesh) {
     assert_valid(after);
     assert_eq!(quality(after).bad, 0);
@@ -53,7 +54,8 @@ fn meshes_are_what_they_are_meant_to_be() {
         .iter()
         .zip(1..)
         .for_each(|(&a, side)| assert_close(areas[&side].1, a, 1e-12));
-    // A convex polyhedron between the sphere and one within, of radius 0.478: no circle free of vertices is wider than they lie apart, 0.144.
+    // A convex polyhedron between the sphere and one inside it, of radius 0.478: no circle free of vertices
+    // is wider than their distance, 0.144.
     let sphere = std::f64::consts::PI;
     assert!(areas[&INNER].1 < sphere && areas[&INNER].1 > 0.91 * sphere, "{}", areas[&INNER].1);
     let membrane = membrane_mesh(0.2, 1);
@@ -77,7 +79,8 @@ fn harmonic_motion_reproduces_a_shift_and_a_linear_field() {
     for d in displacement {
         (0..3).for_each(|i| assert_close(d[i], [0.5, -0.25, 1.0][i], 1e-7));
     }
-    // With weights 1 / volume a linear field is not the solution, but no value leaves the range of the boundary's by much.
+    // With weights 1 / volume a linear field is not the solution, but no value exceeds the range of the
+    // boundary's by much.
     for (told, p) in told.iter_mut().zip(&mesh.points).filter(|(told, _)| told.is_some()) {
         *told = Some(linear(*p));
     }
@@ -130,13 +133,14 @@ fn a_membrane_bends_and_comes_back_and_nothing_drifts() {
         }
         assert_close(last.features.1, first.features.1, 1e-12);
         assert!(last.off_membrane < 1e-12);
-        // Where the surface could be kept throughout, it is the same one.
+        // Where the surface could be kept throughout, it is unchanged.
         assert!(cycle.n_adapted > 0 || last.patches[&INNER].0 == first.patches[&INNER].0);
     }
     assert!(most_bad > 10, "{most_bad}");
 }
 
-/// Distorts a small cube and brings it back; the cube's sides, edges, corners and volume are there after every step.
+/// Distorts a small cube and restores it; asserts that the cube's sides, edges, corners and volume are
+/// preserved after every step.
 fn distort(distortion: Distortion, n_steps: usize, n_cycles: usize, see: impl Fn(&cube::Step)) -> usize {
     let mut mesh = cube_mesh(0.2, 1);
     let (first, mut most_bad) = (mesh.tets.len(), 0);
@@ -175,7 +179,8 @@ fn a_twisted_cube_comes_back_whole() {
     distort(Distortion::Twist(90.0), 16, 2, assert_no_bad);
 }
 
-/// Linear fields stay linear, constants stay to the bit, integrals change by no more than what the ledger says.
+/// Asserts that linear fields stay linear, constants stay to the bit, and integrals change by no more than
+/// the ledger states.
 fn assert_carried(tally: &Tally) {
     assert!(tally.n_new_tets > 100, "{tally:?}");
     assert!(tally.linear < 1e-12 && tally.linear_outside < 1e-12, "{tally:?}");

@@ -1,4 +1,5 @@
-//! What a remeshing holds: regions and patches by name, what is marked as required, and facets that have a twin.
+//! What remeshing holds: regions and patches by name, required cells and vertices, and facets that have a
+//! twin.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +17,7 @@ fn remeshed(mesh: &Mesh, options: &Options) -> MeshOutcome {
     remesh_mesh(mesh, options, &Rules::default(), &Threads::single()).unwrap()
 }
 
-/// The corners of cells, to the bit, whatever their order.
+/// The corners of cells, to the bit, in any order.
 fn places<'a>(mesh: &'a Mesh, is_one: impl Fn(usize) -> bool + 'a) -> BTreeSet<Vec<[u64; 3]>> {
     let all = mesh.cells.iter().filter(|(cell, ..)| is_one(cell.index()));
     let corner = |v: &VertexId| mesh.points[v.index()].map(f64::to_bits);
@@ -32,7 +33,7 @@ fn labels(mesh: &Mesh, name: &str) -> Vec<i64> {
     mesh.cell_field(name).unwrap().values.to_i64().unwrap()
 }
 
-/// A box of two halves, `left` and `right`, its inner vertices shaken.
+/// A box of two halves, `left` and `right`, with displaced inner vertices.
 fn halves() -> Mesh {
     let mut mesh = box_grid([6, 3, 3], [[0.0; 3], [2.0, 1.0, 1.0]]);
     let centre = |mesh: &Mesh, vertices: &[VertexId]| {
@@ -127,7 +128,7 @@ fn what_is_required_stays_and_is_marked_once() {
     }
 }
 
-/// A box whose halves meet in a plane where every point is there twice.
+/// A box whose halves meet in a plane with duplicate points.
 fn doubled() -> Mesh {
     let mut mesh = halves();
     let cells: Vec<_> = mesh.cells.iter().map(|(_, kind, v)| (kind, v.to_vec())).collect();
@@ -153,7 +154,7 @@ fn doubled() -> Mesh {
 #[test]
 fn facets_that_lie_on_others_stay_so() {
     let first = doubled();
-    // Of each half, its facets in the plane.
+    // The facets of each half in the plane.
     let sides = |mesh: &Mesh| -> [BTreeSet<Vec<[u64; 3]>>; 2] {
         let mut sides = [BTreeSet::new(), BTreeSet::new()];
         for (_, tet) in mesh.cells.tets() {
@@ -183,7 +184,7 @@ fn lines_that_are_required_stay_where_others_are_merged() {
     let vertex = |mesh: &Mesh, at: Point| {
         VertexId::new(mesh.points.iter().position(|p| (0..3).all(|k| (p[k] - at[k]).abs() < 1e-9)).unwrap())
     };
-    // Along two edges of the box; those of the second are required.
+    // Lines along two edges of the box; those of the second are required.
     for z in [0.0, 1.0] {
         let place = |i: usize| [i as f64 / n as f64, 0.0, z];
         for i in 0..n {

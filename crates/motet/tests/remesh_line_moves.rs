@@ -1,4 +1,4 @@
-//! Vertices of lines where the surface adapts: they move along their line, and lines keep their places.
+//! Vertices of lines where the surface adapts: they move along their line, and lines keep their positions.
 
 use motet::base::{Point, Threads, VertexId};
 use motet::geometry::vector::{distance, norm, sub};
@@ -9,7 +9,8 @@ use motet::remesh::{Options, Outcome, Sizes, SurfaceRule, remesh};
 
 const N: usize = 5;
 
-/// The unit cube with lines between grid points, each vertex of which is drawn along x to near its neighbour.
+/// The unit cube with lines between grid points; each vertex in `drawn` is moved along x towards its
+/// neighbour.
 fn lined(ends: &[[[usize; 3]; 2]], drawn: &[([usize; 3], f64)]) -> TetMesh {
     let mut mesh = TetPart::of(&box_grid([N; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
     let place = |at: [usize; 3]| at.map(|i| i as f64 / N as f64);
@@ -33,7 +34,7 @@ fn length(mesh: &TetMesh) -> f64 {
     mesh.lines.iter().map(|[a, b]| distance(mesh.points[a.index()], mesh.points[b.index()])).sum()
 }
 
-/// Along x from one end of the cube to the other, in a side or inside.
+/// A line along x from one end of the cube to the other, in a side or inside.
 fn along(y: usize, z: usize) -> Vec<[[usize; 3]; 2]> {
     (0..N).map(|i| [[i, y, z], [i + 1, y, z]]).collect()
 }
@@ -41,7 +42,7 @@ fn along(y: usize, z: usize) -> Vec<[[usize; 3]; 2]> {
 #[test]
 fn vertices_of_a_line_go_along_it_and_the_line_stays_where_it_is() {
     let mut n_moved = 0;
-    // On an edge of the cube, within a side, inside.
+    // On an edge of the cube, in a side, and inside.
     for (y, z) in [(0, 0), (2, 0), (2, 3)] {
         let mesh = lined(&along(y, z), &[([2, y, z], 0.8)]);
         let Outcome { extract, report } = adapted(&mesh);
@@ -106,7 +107,8 @@ fn lines_are_merged_wherever_they_lie() {
 
 #[test]
 fn a_line_that_bends_a_little_is_not_cut_short() {
-    // In a side of the cube: the middle of the line is drawn aside, too little for a corner and farther than the distance allowed.
+    // In a side of the cube: the middle of the line is displaced, too little for a corner but farther than
+    // the permitted distance.
     let mut mesh = lined(&along(2, 0), &[]);
     let middle = mesh.lines[2][0];
     mesh.points[middle.index()][1] += 0.08;

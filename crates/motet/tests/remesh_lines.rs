@@ -1,4 +1,5 @@
-//! Line cells in remeshing: they are divided and merged with the edges that they are, and never lost; cells of other kinds hold theirs, and spoil nothing beside them.
+//! Line cells in remeshing: they are divided and merged with their edges, and never lost; cells of other
+//! kinds hold their own vertices, without affecting nearby repair.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +25,7 @@ fn remeshed(mesh: &Mesh, options: &Options) -> MeshOutcome {
     outcome
 }
 
-/// Adds lines between points at given places, each with the number of its curve and a real number of its own.
+/// Adds lines between points at given places, each with the number of its curve and a real-valued weight.
 fn with_lines(mut mesh: Mesh, lines: &[([[f64; 3]; 2], i32)]) -> Mesh {
     let n = mesh.cells.len();
     let vertex = |place: [f64; 3]| {
@@ -51,7 +52,7 @@ fn lines(mesh: &Mesh) -> Vec<([VertexId; 2], i32)> {
     all.map(|(cell, _, v)| ([v[0], v[1]], curves[cell.index()])).collect()
 }
 
-/// Every line is an edge of a tet and no edge is a line twice; the length of each curve.
+/// Asserts that every line is an edge of a tet and no edge has two lines; returns the length of each curve.
 fn lengths(mesh: &Mesh) -> BTreeMap<i32, f64> {
     let rising = |[a, b]: [VertexId; 2]| [a.min(b), a.max(b)];
     let mut edges = BTreeSet::new();
@@ -91,7 +92,8 @@ const XYZ: [f64; 3] = [1.0; 3];
 #[test]
 fn lines_are_divided_with_their_edges() {
     let cube = || box_grid([1; 3], [O, XYZ]);
-    // An edge of the cube, three of them with labels of their own that meet, the diagonal of a face, and that of the cube inside.
+    // An edge of the cube, three edges with different labels that meet, the diagonal of a face, and that of
+    // the cube inside.
     let cases = [
         vec![([O, X], 3)],
         vec![([O, X], 1), ([O, Y], 2), ([X, XY], 2)],
@@ -107,7 +109,7 @@ fn lines_are_divided_with_their_edges() {
             .into_iter()
             .map(|(l, _)| distance(mesh.points[l[0].index()], mesh.points[l[1].index()]));
         assert!(longest.fold(0.0, f64::max) <= 1.5 * 0.3);
-        // Arrays go along: to each curve belongs one weight.
+        // Arrays are carried along: each curve has one weight.
         let Values::F64(weights) = &mesh.cell_field("weight").unwrap().values else { panic!("real numbers") };
         let of_lines = mesh.cells.iter().filter(|(_, kind, _)| *kind == CellKind::LINE);
         for ((cell, ..), (_, curve)) in of_lines.zip(lines(&mesh)) {
@@ -120,7 +122,7 @@ fn lines_are_divided_with_their_edges() {
 fn lines_are_merged_with_their_edges() {
     let n = 8;
     let at = |k: usize| [k as f64 / n as f64, 0.0, 0.0];
-    // Two curves along one edge of the box: they meet in a vertex that stays.
+    // Two curves along one edge of the box: the vertex where they meet stays.
     let along: Vec<_> = (0..n).map(|k| ([at(k), at(k + 1)], if k < 3 { 1 } else { 2 })).collect();
     let first = with_lines(box_grid([n; 3], [O, XYZ]), &along);
     let MeshOutcome { mesh, report, .. } = remeshed(&first, &options(0.5));
@@ -132,7 +134,7 @@ fn lines_are_merged_with_their_edges() {
 #[test]
 fn a_surface_that_is_kept_keeps_its_lines() {
     let mut first = with_lines(box_grid([3; 3], [O, XYZ]), &[([O, [1.0 / 3.0, 0.0, 0.0]], 1)]);
-    // A tet that is bad, so that something happens.
+    // A bad tet, so that there is something to repair.
     let inner =
         (0..first.points.len()).find(|&v| first.points[v].iter().all(|&x| x > 0.1 && x < 0.5)).unwrap();
     first.points[inner] = [0.34, 0.34, 0.02];

@@ -1,4 +1,4 @@
-//! What a remeshing says of itself: in cells of the mesh whatever their order, in seconds that add up, in shares of the mesh before.
+//! Reports of a remeshing: cells of the mesh in any order, seconds that add up, shares of the mesh before.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use motet::mesh::shapes::box_grid;
 use motet::mesh::{CellKind, Cells, Mesh};
 use motet::remesh::{MeshOutcome, Options, Report, Seconds, Sizes, SurfaceRule, remesh_mesh};
 
-/// A box whose triangles come before its tets, some vertices inside drawn near others.
+/// A box whose triangles come before its tets, with some inner vertices near others.
 fn triangles_first(n: [usize; 3], size: Point) -> Mesh {
     let mesh = box_grid(n, [[0.0; 3], size]);
     let mut cells = Cells::new();
@@ -54,7 +54,7 @@ fn tets_are_numbered_by_their_cells_also_where_triangles_come_first() {
     let MeshOutcome { mesh, report, .. } = remeshed(&old);
     assert!(report.before.bad > 10 && report.after.bad == 0, "{:?}", report.before);
     assert_places(&old, &mesh, &report);
-    // Between two plates nothing helps: what is left is numbered by its cells, too.
+    // Between two plates nothing helps: the tets left are also reported by their cells.
     let old = triangles_first([4, 4, 1], [2.0, 2.0, 0.01]);
     let MeshOutcome { mesh, report, .. } = remeshed(&old);
     assert!(report.left.len() > 10);

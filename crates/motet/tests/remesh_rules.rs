@@ -1,4 +1,5 @@
-//! What a remeshing may not touch, what it may, and why what is left is bad: on meshes so small that all of it can be looked at.
+//! What a remeshing may not touch, what it may, and why tets are left bad: on meshes small enough for brute
+//! force.
 
 mod common;
 
@@ -17,7 +18,8 @@ use motet::spatial::NearestTriangle;
 
 const N: usize = 5;
 
-/// The unit cube, regions 5 and 9 on both sides of x = 2/5; vertices off that plane shaken, those of sides within them.
+/// The unit cube, regions 5 and 9 on both sides of x = 2/5; vertices off that plane are displaced, those of
+/// sides within them.
 fn shaken(part: f64, on_sides: bool) -> TetMesh {
     let mut mesh = TetPart::of(&box_grid([N; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh;
     let centre =
@@ -110,7 +112,7 @@ fn a_patch_that_is_held_stays_while_others_adapt() {
     assert!(!changed(&some).contains(&held), "{held} of {:?}", changed(&some));
     for outcome in [&free, &some] {
         let new = &outcome.extract.mesh;
-        // Flat sides and straight edges stay what they are.
+        // Flat sides and straight edges are preserved.
         for &label in &labels {
             assert!((area(new, label) - area(&mesh, label)).abs() < 1e-12, "patch {label}");
         }
@@ -152,7 +154,7 @@ fn a_mesh_without_bad_tets_is_as_it_was() {
     }
 }
 
-/// Prisms on a triangle with a corner of so many degrees, one on the other, each of three tets.
+/// Stacked prisms on a triangle with a corner of this many degrees, each of three tets.
 fn wedge(degrees: f64, n: usize) -> TetMesh {
     let (sin, cos) = degrees.to_radians().sin_cos();
     let points = (0..=n)
@@ -203,13 +205,13 @@ fn walls_that_meet_at_an_angle_or_have_one_are_named_as_the_cause() {
         }
     }
     assert!(n_angles > 0 && n_meets >= n - 2, "{n_angles} {n_meets}");
-    // Where they meet at a wide angle nothing is forced.
+    // At a wide angle nothing is forced.
     assert!(remeshed(&wedge(60.0, 3), Options::default()).report.left.is_empty());
 }
 
 #[test]
 fn a_surface_that_gives_way_stays_within_the_distance() {
-    // A ball, its vertices on the surface drawn along it; coarser sizes, so that walls are merged.
+    // A ball with its surface vertices moved along the surface; coarser sizes, so that walls are merged.
     let mut mesh = TetPart::of(&sphere_in_box(4, 3)).unwrap().mesh;
     let mut numbers = Numbers(5);
     for p in &mut mesh.points {
@@ -238,7 +240,7 @@ fn a_surface_that_gives_way_stays_within_the_distance() {
                 assert!(stray <= allowed + 1e-9, "{stray} of {allowed}");
             }
         }
-        // And what is no more lies near to what is.
+        // And the removed surface lies near the present one.
         let now = NearestTriangle::new(&new.points, &after, &Threads::single());
         let left =
             mesh.points.iter().map(|&p| (p, now.closest(p).unwrap().point)).filter(|(p, _)| norm(*p) < 1.1);

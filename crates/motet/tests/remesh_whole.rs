@@ -1,4 +1,4 @@
-//! Remeshing of whole meshes: what stays stays to the bit, labels and arrays go along.
+//! Remeshing of whole meshes: unaffected parts stay to the bit, labels and arrays are carried along.
 
 mod common;
 
@@ -34,8 +34,8 @@ fn corners(mesh: &Mesh, tet: [VertexId; 4]) -> [Point; 4] {
     tet.map(|v| mesh.points[v.index()])
 }
 
-/// The unit cube, regions 5 below x = 1/2 and 9 above; vertices within a region shaken by up to `shake` cells, and
-/// those within a side in it where `on_sides` holds. Arrays of all sorts.
+/// The unit cube, regions 5 below x = 1/2 and 9 above; vertices within a region are displaced by up to
+/// `shake` cells, and if `on_sides`, those within a side as well, in the side. It has arrays of all sorts.
 fn shaken_box(shake: f64, on_sides: bool) -> Mesh {
     let mut mesh = box_grid([N; 3], [[0.0; 3], [1.0; 3]]);
     let mut chance = Chance(0x9e37_79b9_7f4a_7c15);
@@ -90,7 +90,8 @@ fn integrals(mesh: &Mesh, name: &str) -> BTreeMap<i32, [f64; 2]> {
     sums
 }
 
-/// Every point, cell and row of an array that the history calls kept is what it was, to the bit, and in order.
+/// Asserts that every point, cell and row of an array that the history calls kept is unchanged, to the bit,
+/// and in order.
 fn assert_kept(old: &Mesh, outcome: &MeshOutcome) {
     let MeshOutcome { mesh: new, history, .. } = outcome;
     let kept = |ids: &[CellId]| ids.iter().copied().filter(|c| *c != Id::NONE).collect::<Vec<_>>();
@@ -147,7 +148,7 @@ fn assert_carried(old: &Mesh, outcome: &MeshOutcome) {
     assert!(report.before.inverted == 0 && report.after.bad < report.before.bad / 4, "{report:?}");
     assert!(!history.cells.changed().is_empty());
     assert_kept(old, outcome);
-    // Linear fields stay linear, constants constant, to the bit.
+    // Linear fields stay linear; constant ones stay constant, to the bit.
     let velocity = new.point_field("velocity").unwrap().to_vectors().unwrap();
     for (value, point) in velocity.iter().zip(&new.points) {
         let expected = linear(*point);
@@ -163,7 +164,7 @@ fn assert_carried(old: &Mesh, outcome: &MeshOutcome) {
         assert!(close(*integral, after[region][1]), "region {region}: {integral} {:?}", after[region]);
     }
     assert_eq!(new.label_names, old.label_names);
-    // Whole numbers are those of some old cell; a type stays.
+    // Integers come from some old cell; types are preserved.
     assert!(matches!(new.cell_field("number").unwrap().values, Values::U16(_)));
 }
 
@@ -193,7 +194,7 @@ fn the_ledger_of_fields_tells_integrals_by_region() {
         assert!(close(before[&told.region][1], told.before[0]), "{told:?}");
         assert!(close(after[&told.region][1], told.after[0]), "{told:?}");
     }
-    // Values that did not come from there.
+    // Values that do not come from the old mesh.
     let mut other = outcome.mesh.clone();
     other.set_cell_field(Field::scalars("pressure", vec![0.5; other.cells.len()]));
     assert!(field_ledger(&old, &other, &rules)[2].deviation() > 0.1);
@@ -244,7 +245,7 @@ fn a_surface_that_adapts_keeps_its_patches() {
         for (cell, kind, v) in mesh.cells.iter().filter(|c| c.1 == CellKind::TRIANGLE) {
             let triangle = [0, 1, 2].map(|i| mesh.points[v[i].index()]);
             *areas.entry(patches.ids[cell.index()]).or_default() += area(triangle);
-            // As the sides of the box do, triangles look away from its middle.
+            // As for the sides of the box, triangles face away from its centre.
             let outward = triangle[0].map(|x| x - 0.5);
             assert!(dot(area_vector(triangle), outward) > 0.0, "{kind:?} {cell}");
         }
@@ -269,7 +270,7 @@ fn a_surface_that_adapts_keeps_its_patches() {
     assert_eq!(triangles, facets);
 }
 
-/// A shaken box with cells of other kinds before, between and behind its tets.
+/// A shaken box with cells of other kinds before, between and after its tets.
 fn box_and_others() -> Mesh {
     let plain = shaken_box(0.45, false);
     let mut points = plain.points.clone();
@@ -291,7 +292,7 @@ fn box_and_others() -> Mesh {
         }
     }
     cells.push(CellKind::HEXAHEDRON, [0, 1, 3, 2, 4, 5, 7, 6].map(|k| beside[k]));
-    // A facet of no tet, and one that stands there already.
+    // A triangle that is not a facet of a tet, and a duplicate.
     cells.push(CellKind::TRIANGLE, [inside[0], inside[9], inside[22]]);
     let again = plain.cells.iter().find(|c| c.1 == CellKind::TRIANGLE).unwrap().2;
     cells.push(CellKind::TRIANGLE, again.iter().copied());
@@ -309,7 +310,7 @@ fn cells_of_other_kinds_stay_with_their_points() {
         let MeshOutcome { mesh: new, history, report, .. } = &outcome;
         assert!(report.before.bad > report.after.bad);
         assert_kept(&old, &outcome);
-        // Of the triangles the last two, which are no facet or a second one.
+        // Of the triangles, only the last two: one that is no facet, and the duplicate.
         let first_extra = old.cells.len() as i64 - 2;
         let others = |mesh: &Mesh| -> Vec<(i64, CellKind, Vec<[u64; 3]>)> {
             let numbers = mesh.cell_field("number").unwrap().values.to_i64().unwrap();
@@ -372,7 +373,7 @@ fn a_rule_of_the_callers_is_obeyed_and_one_for_no_array_is_refused() {
 
 #[test]
 fn what_makes_no_mesh_is_told_with_its_cell() {
-    // Three tets at one facet; two line cells stand before them.
+    // Three tets at one facet, after two line cells.
     let points =
         vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3], [0.0, 0.0, -1.0]];
     let mut cells = Cells::new();
@@ -401,7 +402,7 @@ fn a_conforming_mesh_stays_conforming() {
     assert!(is_conforming(&defects), "{defects:?}");
 }
 
-/// A shaken box whose arrays are labels alone.
+/// A shaken box whose only arrays are labels.
 fn labelled_box() -> Mesh {
     let mut mesh = shaken_box(0.35, true);
     mesh.point_data.clear();

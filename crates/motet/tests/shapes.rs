@@ -35,7 +35,7 @@ fn is_volume(kind: CellKind) -> bool {
     kind.dim() == Some(3)
 }
 
-/// A facet whatever its orientation and first vertex.
+/// The vertices of a facet, independent of its orientation and first vertex.
 fn as_set(facet: &[VertexId]) -> BTreeSet<VertexId> {
     facet.iter().copied().collect()
 }
@@ -64,7 +64,8 @@ fn no_facet_has_more_than_two_cells_and_the_patches_are_the_boundary() {
 
 #[test]
 fn the_boundary_is_closed_and_turns_outward() {
-    // Divergence: the cones over the boundary from any point enclose what the cells sum to.
+    // By the divergence theorem, the cones over the boundary from any point have the total volume of the
+    // cells.
     for (name, mesh) in all_shapes() {
         let cells: f64 = cell_volumes(&mesh.cells, &mesh.points).iter().sum();
         let surface = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
@@ -120,7 +121,7 @@ fn volumes_are_those_of_the_geometry() {
         let options = TubeOptions { wall_layers, radius: 2.0, ..TubeOptions::default() };
         assert!((volume(&tube(&options)) - 4.0 * section * 5.0).abs() < 1e-11);
     }
-    // Inscribed in the ball: less than it, and closer by the square of the cell size.
+    // Inscribed in the ball: smaller, with an error of second order in the cell size.
     let exact = 4.0 / 3.0 * std::f64::consts::PI;
     let missing = [4, 8].map(|n| exact - volume(&ball(n, 2)));
     assert!(missing[0] > 0.0 && (3.5..4.5).contains(&(missing[0] / missing[1])), "{missing:?}");
@@ -169,7 +170,7 @@ fn splitting_any_kind_keeps_the_volume_and_conforms() {
         let (before, after): (f64, f64) = (cell_volumes(cells, points).iter().sum(), volumes.iter().sum());
         assert!((before - after).abs() < 1e-13 * before);
         Facets::of(&tets).for_each_shared(|uses| assert!(uses.len() <= 2));
-        // Were two cells to disagree on a diagonal, their walls would be boundary.
+        // If two cells disagreed on a diagonal, their common walls would be boundary.
         let facets = |cells: &Cells| Boundary::of(cells).facets.iter().map(|f| f.len() - 2).sum::<usize>();
         assert_eq!(facets(&tets), facets(cells));
     }

@@ -1,4 +1,4 @@
-//! Sizes: edges come to the lengths that are asked for, and nothing is lost on the way.
+//! Sizes: edges reach the requested lengths, and nothing is lost on the way.
 
 mod common;
 #[allow(dead_code, unreachable_pub, reason = "other tests use other parts of it")]
@@ -30,7 +30,7 @@ fn cube(n: usize) -> TetMesh {
     TetPart::of(&box_grid([n; 3], [[0.0; 3], [1.0; 3]])).unwrap().mesh
 }
 
-/// Lengths of all edges as parts of their sizes.
+/// Lengths of all edges relative to their sizes.
 fn ratios(mesh: &TetMesh, size: impl Fn(Point) -> f64) -> Vec<f64> {
     let mut edges: Vec<[VertexId; 2]> =
         mesh.tets.iter().flat_map(|t| EDGES.map(|[i, j]| [t[i].min(t[j]), t[i].max(t[j])])).collect();
@@ -47,7 +47,7 @@ fn close(x: f64, y: f64) -> bool {
     (x - y).abs() <= 1e-12 * y.abs()
 }
 
-/// Volumes, areas, features and labels are those that came; the report is true.
+/// Asserts that volumes, areas, features and labels are preserved, and that the report is true.
 fn assert_kept(old: &TetMesh, outcome: &Outcome, size: impl Fn(Point) -> f64) {
     let (new, report) = (&outcome.extract.mesh, &outcome.report);
     assert_valid(new);
@@ -110,7 +110,7 @@ fn what_has_its_sizes_stays() {
         let second = remesh(&first.extract.mesh, &options, &Threads::single()).unwrap();
         let after = tell("second time", &second);
         println!("    kept {:.4}", second.report.kept_share);
-        // Where short edges are left, it is tried once more to make their surroundings better.
+        // Where short edges are left, it tries once more to improve their surroundings.
         let n_short = first.report.sizes.unwrap().after.too_short;
         assert!(second.report.kept_share >= if n_short == 0 { 1.0 } else { 0.8 });
         assert!(after.too_long == 0 && after.too_short <= n_short);
@@ -137,7 +137,7 @@ fn an_interface_between_regions_stays_where_it_is() {
 #[test]
 fn sizes_may_differ_from_vertex_to_vertex() {
     let mesh = cube(5);
-    // Linear, as it is between the vertices: known everywhere.
+    // A linear size field, exactly interpolated between vertices.
     let size = |p: Point| 0.06 + 0.3 * p[0];
     let sizes = mesh.points.iter().map(|p| size(*p)).collect();
     let outcome = remesh(&mesh, &asked(Sizes::Vertices(sizes), ADAPT), &Threads::single()).unwrap();
@@ -204,7 +204,7 @@ fn sizes_that_no_memory_can_hold_are_refused_at_once() {
     }
 }
 
-/// A real mesh to three quarters and to twice the mean length of their edges.
+/// Real meshes are brought to three quarters of, and to twice, the mean length of their edges.
 #[test]
 fn real_meshes_come_to_their_sizes() {
     let few = |name: &str| name.contains("house");
@@ -254,7 +254,7 @@ fn mean_eas(mesh: &TetMesh) -> f64 {
 
 #[test]
 fn tets_of_new_sizes_are_good_on_the_whole_and_edges_about_as_long_as_requested() {
-    // Finer; what is coarsened has a mean EAS of about 0.6 on so few tets.
+    // Finer sizes; coarsened meshes have a mean EAS of about 0.6 with so few tets.
     for (n, size) in [(4, 0.1), (4, 0.07)] {
         let outcome = remesh(&cube(n), &asked(Sizes::Uniform(size), ADAPT), &Threads::single()).unwrap();
         let after = tell(&format!("cube of {n} to {size}"), &outcome);

@@ -1,4 +1,5 @@
-//! Vessels as surfaces: closed, free of crossings, of fair triangles, with flat caps, and of the right volume.
+//! Vessels as surfaces: closed, free of crossings, with triangles of fair quality, flat caps, and the right
+//! volume.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -13,7 +14,7 @@ use motet::mesh::shapes::{Aneurysm, Bifurcation, Flap, ThickTube};
 use motet::mesh::{Surface, cone_volume};
 use motet::preflight::own_crossings;
 
-/// All of them, made once.
+/// All vessels, made once.
 fn vessels() -> &'static [(&'static str, Surface)] {
     static VESSELS: OnceLock<Vec<(&'static str, Surface)>> = OnceLock::new();
     VESSELS.get_or_init(make_vessels)
@@ -46,7 +47,7 @@ fn make_vessels() -> Vec<(&'static str, Surface)> {
     all.into_iter().map(|(name, mesh)| (name, Surface::of(&mesh.expect("the options are sound")))).collect()
 }
 
-/// The triangles of the patches whose names one asks for.
+/// The triangles of the patches whose names satisfy `wanted`.
 fn of_patches(surface: &Surface, wanted: impl Fn(&str) -> bool) -> Vec<[VertexId; 3]> {
     let all = surface.triangles.iter().zip(&surface.patches);
     all.filter(|(_, patch)| wanted(&surface.patch_names[patch])).map(|(t, _)| *t).collect()
@@ -74,7 +75,7 @@ fn nothing_crosses_and_triangles_are_fair() {
         let least = angles.iter().copied().fold(90.0, f64::min);
         let mean = angles.iter().sum::<f64>() / angles.len() as f64;
         println!("{name}: {} triangles, smallest angle {least:.1}, in the mean {mean:.1}", angles.len());
-        // Half squares have 45 degrees at most, and a bend stretches them.
+        // Half squares have at most 45 degrees, and a bend stretches them.
         assert!(mean > 35.0 && least > 12.0, "{name}: {mean} {least}");
         assert_eq!(surface.vertices().len(), surface.points.len(), "{name} has points without triangles");
     }
@@ -121,7 +122,7 @@ fn volumes_are_those_of_prisms() {
     assert!((volume(&tube, &outside) - 6.0 * section(1.3)).abs() < 1e-11);
 }
 
-/// How often each edge of some triangles is used.
+/// The number of uses of each edge of some triangles.
 fn edges(triangles: &[[VertexId; 3]]) -> BTreeMap<[VertexId; 2], usize> {
     let mut edges = BTreeMap::new();
     for &[a, b, c] in triangles {

@@ -1,4 +1,4 @@
-//! Who watches a call sees how far it is, and ends it.
+//! A watched call reports its progress, and can be stopped.
 
 use motet::base::{Threads, Watch};
 use motet::implant::{self, Device, Inside};
@@ -13,7 +13,7 @@ use motet::{ErrorKind, Result};
 
 type Verb = fn(&Threads) -> Result<()>;
 
-/// Each verb that takes long, and what it is at first.
+/// Each verb that takes long, with its first stage.
 const VERBS: &[(&str, Verb)] = &[
     ("joining tets", repair),
     ("joining tets", bring_to_sizes),

@@ -1,4 +1,4 @@
-//! Broken meshes end as meshes, or are refused with a place, or the report counts what is left.
+//! Broken meshes end as valid meshes, or are refused with a place, or the report counts what is left.
 
 mod common;
 
@@ -24,7 +24,8 @@ fn wrecks_end_valid_told_or_refused() {
     assert!(n_valid > 30, "{n_valid} of 100 are meshes again");
 }
 
-/// Where a tet has a wrong vertex and is positive, it overlaps others: a change can insert edges and facets that exist elsewhere already, though every tet has a volume.
+/// A positive tet with a wrong vertex overlaps others: a change can then insert edges and facets that exist
+/// elsewhere already, though every tet has a positive volume.
 #[test]
 fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
     for seed in [6206, 9573] {
@@ -33,7 +34,7 @@ fn a_positive_tet_with_a_wrong_vertex_leaves_no_facet_with_three_tets() {
     }
 }
 
-/// Most tets are inverted, and hardly any can be mended: repair ends, and counts them.
+/// Most tets are inverted, and hardly any can be repaired: the repair ends, and counts them.
 #[test]
 fn a_box_shaken_beyond_repair_is_told() {
     for part in [1.5, 3.0] {
@@ -82,7 +83,8 @@ fn a_tet_folded_over_a_mesh_is_removed_and_the_rest_stays() {
     assert!(labelled(new) == labelled(&mesh), "every triangle keeps its patch");
 }
 
-/// A tet with a facet to each of four more, so that each of those is at the boundary with three of its facets.
+/// A tet with another one at each of its four facets, each of which has its other three facets on the
+/// boundary.
 fn star() -> TetMesh {
     let points = vec![
         [1., 1., 1.],
@@ -125,7 +127,8 @@ fn a_folded_tet_with_a_labelled_triangle_stays_and_a_heap_of_others_is_removed()
         }
         tet
     };
-    // On the facet 1, 2, 4 of the second tet, on the side of that tet; and one more on it, on its far side.
+    // On the facet 1, 2, 4 of the second tet, on the side of that tet; and another one on it, on the far
+    // side.
     folded.points.extend([[-0.5, -0.5, 0.4], [-1.0, -1.0, 2.0]]);
     folded.tets.push(positive(&folded.points, [1, 2, 4, 8].map(VertexId)));
     folded.tets.push(positive(&folded.points, [1, 2, 8, 9].map(VertexId)));
@@ -141,7 +144,7 @@ fn a_folded_tet_with_a_labelled_triangle_stays_and_a_heap_of_others_is_removed()
     assert!(outcome.report.after.inverted > 0);
 }
 
-/// Of this one a tet named a vertex that had been removed.
+/// A former failure: a tet of this mesh referred to a removed vertex.
 #[test]
 fn a_shaken_mesh_that_lost_a_vertex_keeps_it() {
     for part in [0.07662673500271387, 0.5, 0.9] {

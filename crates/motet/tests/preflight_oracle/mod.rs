@@ -1,4 +1,4 @@
-//! Faults of surfaces by looking at everything, in rational numbers, by routes that the library does not take.
+//! Faults of surfaces by brute force, in rational numbers, by methods that the library does not use.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ use num_traits::{Signed, Zero};
 type Exact = [BigRational; 3];
 type Triangle = [VertexId; 3];
 
-/// What the library calls a fault, without place.
+/// A fault as the library reports it, without its place.
 pub(crate) type Told = (FaultKind, bool, u32, Vec<u32>, Vec<VertexId>);
 
 pub(crate) fn exact(p: Point) -> Exact {
@@ -32,8 +32,8 @@ fn dot(a: &Exact, b: &Exact) -> BigRational {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// What a convex polygon has on the side of `from` to which `normal` points, border included (Sutherland and Hodgman 1974, *Reentrant
-/// polygon clipping*).
+/// The part of a convex polygon on the side of `from` to which `normal` points, border included (Sutherland
+/// and Hodgman 1974, *Reentrant polygon clipping*).
 fn clipped(polygon: &[Exact], from: &Exact, normal: &Exact) -> Vec<Exact> {
     let heights: Vec<BigRational> = polygon.iter().map(|p| dot(&sub(p, from), normal)).collect();
     let mut left = Vec::new();
@@ -51,7 +51,8 @@ fn clipped(polygon: &[Exact], from: &Exact, normal: &Exact) -> Vec<Exact> {
     left
 }
 
-/// The corners of what two triangles with area have in common: the first is cut down to the plane of the second, then to each side of its edges.
+/// The corners of the intersection of two triangles with area: the first is clipped to the plane of the
+/// second, then by each of its edges.
 fn common(a: &[Exact; 3], b: &[Exact; 3]) -> Vec<Exact> {
     let normal = cross(&sub(&b[1], &b[0]), &sub(&b[2], &b[0]));
     let back = [0, 1, 2].map(|k| -&normal[k]);
@@ -69,7 +70,8 @@ fn is_on(p: &Exact, u: &Exact, v: &Exact) -> bool {
     cross(&way, &from).iter().all(Zero::is_zero) && !along.is_negative() && along <= dot(&way, &way)
 }
 
-/// Whether two triangles with area and of different vertices have more in common than their common vertices and edge.
+/// Whether two triangles with area and different vertices have more in common than their common vertices and
+/// edge.
 pub(crate) fn crosses(points: &[Point], a: &Triangle, b: &Triangle) -> bool {
     let apart = |k: usize| {
         let side = |t: &Triangle| t.map(|v| points[v.index()][k]);
@@ -101,7 +103,7 @@ fn sorted(mut t: Triangle) -> Triangle {
     t
 }
 
-/// Surfaces and what is asked about them again and again.
+/// Surfaces, with the queries on them.
 struct Scene<'a> {
     points: &'a [Point],
     triangles: &'a [Triangle],
@@ -141,7 +143,7 @@ impl Scene<'_> {
         a != b && b != c && c != a
     }
 
-    /// The first triangle with the same vertices, of the same surface if that is asked.
+    /// The first triangle with the same vertices, of the same surface if requested.
     fn first(&self, t: usize, own: bool) -> usize {
         let same = |u: &usize| {
             sorted(self.triangles[*u]) == sorted(self.triangles[t])
@@ -150,7 +152,8 @@ impl Scene<'_> {
         if self.has_three(t) { self.ids().find(same).unwrap_or(t) } else { t }
     }
 
-    /// Whether a triangle is the first of those that are more than the others of its surface with the same vertices that face the other side.
+    /// Whether a triangle is the first in its surface with its vertices and orientation, and these outnumber
+    /// the ones of opposite orientation.
     fn stays(&self, t: usize) -> bool {
         let turns = |[a, b, c]: Triangle| [[a, b, c], [b, c, a], [c, a, b]];
         let is_like = |u: &usize| turns(self.triangles[*u]).contains(&self.triangles[t]);
@@ -205,7 +208,7 @@ impl Scene<'_> {
         told
     }
 
-    /// The triangles of each edge of a surface, and whether they run up it.
+    /// The triangles at each edge of a surface, with the direction in which each runs along it.
     fn around(&self, surface: u32) -> BTreeMap<[VertexId; 2], Vec<(u32, bool)>> {
         let mut around: BTreeMap<_, Vec<_>> = BTreeMap::new();
         let counts = |t: &usize| self.surface_of[*t] == surface && self.has_three(*t) && self.stays(*t);
@@ -233,7 +236,7 @@ impl Scene<'_> {
         told
     }
 
-    /// Sets of things that hang together, each sorted; by joining until nothing changes.
+    /// Connected sets, each sorted; by merging until nothing changes.
     fn joined(things: BTreeSet<u32>, pairs: &[(u32, u32)]) -> Vec<Vec<u32>> {
         let mut name: BTreeMap<u32, u32> = things.iter().map(|&t| (t, t)).collect();
         let mut changes = true;

@@ -54,13 +54,13 @@ pub(crate) fn bodies(shapes: &[Shape]) -> (Vec<Point>, Vec<Body>) {
     (points, bodies)
 }
 
-/// Triangles anywhere in the unit cube.
+/// Random triangles in the unit cube.
 pub(crate) fn soup(numbers: &mut Numbers, n: usize) -> Shape {
     let points = (0..3 * n).map(|_| [(); 3].map(|()| numbers.unit())).collect();
     Shape { points, triangles: (0..n as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect() }
 }
 
-/// A grid over the unit square, `n` cells a side, at `height(x, y)`.
+/// A grid over the unit square, with `n` cells per side, at `height(x, y)`.
 pub(crate) fn sheet(n: u32, mut height: impl FnMut(f64, f64) -> f64) -> Shape {
     let mut shape = Shape::default();
     for i in 0..=n {
@@ -92,7 +92,8 @@ pub(crate) fn torus(around: u32, along: u32, [large, small]: [f64; 2]) -> Shape 
     coil(around, along, [large, small], 0.0, 1.0)
 }
 
-/// A wire of radius `small` on a helix of radius `large`, so many turns, rising by `rise` a turn; closed where that is 0.
+/// A wire of radius `small` on a helix of radius `large`, with `turns` turns, rising by `rise` per turn;
+/// closed if that is 0.
 pub(crate) fn coil(around: u32, along: u32, [large, small]: [f64; 2], rise: f64, turns: f64) -> Shape {
     let mut shape = Shape::default();
     let is_closed = rise == 0.0;

@@ -1,11 +1,12 @@
-//! Distances by looking at everything, by formulas that the library does not use.
+//! Distances by brute force, with formulas that the library does not use.
 
 use motet::base::Point;
 use motet::geometry::vector::{add, cross, dot, scale, sub};
 
 use super::Shape;
 
-/// Point and triangle by regions of the plane (Ericson 2005, *Real-time collision detection*, 5.1.5), in numbers relative to the point.
+/// The distance from a point to a triangle by regions of the plane (Ericson 2005, *Real-time collision
+/// detection*, 5.1.5), in coordinates relative to the point.
 pub(crate) fn point_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
     let edges = segment_point(a, b, p).min(segment_point(b, c, p)).min(segment_point(c, a, p));
     let n = cross(sub(b, a), sub(c, a));
@@ -24,7 +25,8 @@ fn segment_point(a: Point, b: Point, p: Point) -> f64 {
     dot(off, off).sqrt()
 }
 
-/// Two segments: ends against segments, and where the common perpendicular has both feet inside, its length by the triple product.
+/// The distance of two segments: of ends from segments, and where the common perpendicular has both feet
+/// inside, its length by the triple product.
 pub(crate) fn segments([a, b]: [Point; 2], [c, d]: [Point; 2]) -> f64 {
     let ends = segment_point(a, b, c)
         .min(segment_point(a, b, d))
@@ -44,7 +46,7 @@ pub(crate) fn segments([a, b]: [Point; 2], [c, d]: [Point; 2]) -> f64 {
     }
 }
 
-/// Whether a segment goes through the inside of a triangle, by signs of volumes in plain numbers.
+/// Whether a segment passes through the interior of a triangle, by signs of volumes in floating point.
 fn pierces([p, q]: [Point; 2], [a, b, c]: [Point; 3]) -> bool {
     let volume = |u: Point, v: Point, w: Point, x: Point| dot(cross(sub(v, u), sub(w, u)), sub(x, u));
     if volume(a, b, c, p) * volume(a, b, c, q) >= 0.0 {
@@ -69,18 +71,18 @@ pub(crate) fn triangles(a: [Point; 3], b: [Point; 3]) -> f64 {
     least
 }
 
-/// From a point to the nearest triangle of a shape.
+/// The distance from a point to the nearest triangle of a shape.
 pub(crate) fn to_shape(p: Point, shape: &Shape) -> f64 {
     (0..shape.triangles.len()).map(|t| point_triangle(p, shape.corners(t))).fold(f64::INFINITY, f64::min)
 }
 
-/// Of two shapes.
+/// The distance of two shapes.
 pub(crate) fn shapes(a: &Shape, b: &Shape) -> f64 {
     let pairs = (0..a.triangles.len()).flat_map(|i| (0..b.triangles.len()).map(move |j| (i, j)));
     pairs.map(|(i, j)| triangles(a.corners(i), b.corners(j))).fold(f64::INFINITY, f64::min)
 }
 
-/// How far points and origin lie from each other: what rounding is measured by.
+/// The largest distance of a point from the origin or from the first point, to which rounding is relative.
 pub(crate) fn size(shapes: &[Shape]) -> f64 {
     let points = || shapes.iter().flat_map(|shape| &shape.points);
     let length = |p: Point| dot(p, p).sqrt();
