@@ -9,7 +9,7 @@ use motet::geometry::quality::eas;
 use motet::mesh::history::{Carry, History, Rules};
 use motet::{Error, Mesh, Result, io};
 
-use crate::verbs::convert::WritingArgs;
+use crate::writing::WritingArgs;
 
 /// How arrays are carried, and what is written along with the mesh.
 #[derive(Debug, Args)]

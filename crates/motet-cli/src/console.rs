@@ -10,8 +10,8 @@ use motet::Error;
 use motet::base::printable;
 use serde::Serialize;
 
-use crate::args::Common;
-use crate::exit::Outcome;
+use crate::common::Common;
+use crate::outcome::Outcome;
 use crate::progress::Meter;
 
 /// Writes to the terminal, as verbosely as the call requests. A closed pipe is not a failure: the text is

@@ -4,31 +4,8 @@ use motet::{Error, ErrorKind};
 use serde_json::json;
 
 use crate::console::Console;
+use crate::outcome::Outcome;
 use crate::words::shown;
-
-/// The outcome of a verb that did not fail.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
-    /// Everything that was requested.
-    Done,
-    /// Less than was requested, with the reason; what was reached is written and reported.
-    NotReached(String),
-}
-
-impl Outcome {
-    /// The outcome for the reason why the requested result was not reached; `None` means that it was.
-    pub(crate) fn of(not_reached: Option<String>) -> Self {
-        not_reached.map_or(Self::Done, Self::NotReached)
-    }
-
-    /// Why the requested result was not reached.
-    pub(crate) fn not_reached(&self) -> Option<&str> {
-        match self {
-            Self::Done => None,
-            Self::NotReached(why) => Some(why),
-        }
-    }
-}
 
 const DONE: u8 = 0;
 const ELSE: u8 = 1;

@@ -6,14 +6,17 @@
 
 mod args;
 mod arrays;
+mod common;
 mod console;
 mod exit;
+mod outcome;
 mod outputs;
 mod progress;
 mod quality;
 mod table;
 mod verbs;
 mod words;
+mod writing;
 
 use std::ffi::OsString;
 

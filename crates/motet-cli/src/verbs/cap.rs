@@ -8,11 +8,11 @@ use motet::{Error, Mesh, Result, io};
 use serde_json::json;
 
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 use crate::table::{count, counted, short};
-use crate::verbs::convert::WritingArgs;
 use crate::words::shown;
+use crate::writing::WritingArgs;
 
 /// Close the open rims of a surface, or of every frame of a moving one
 ///

@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde_json::json;
 
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{Table, count, short, time as time_of};
 use crate::words::{self, shown};

@@ -6,7 +6,7 @@ use clap::Args;
 use motet_report::{InputReport, Options};
 
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 
 /// Write one HTML page with pictures, charts and tables of meshes, series and logs
 ///

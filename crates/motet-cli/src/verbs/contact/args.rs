@@ -6,8 +6,8 @@ use clap::{Args, ValueEnum};
 use motet::contact::Options;
 use motet::{Error, Result};
 
-use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
+use crate::writing::WritingArgs;
 
 /// Measure how far apart surfaces are, where, and when they will touch
 ///

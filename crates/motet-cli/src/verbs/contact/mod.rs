@@ -22,9 +22,9 @@ use self::args::Method;
 use self::delaunay::Beside;
 use self::frames::{Frame, Frames};
 use self::report::{Report, Step};
-use crate::args::Common;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 
 pub(crate) fn run(args: &ContactArgs, common: &Common, console: &Console) -> Result<Outcome> {

@@ -4,7 +4,7 @@ use super::delaunay::Beside;
 use super::histogram::Histogram;
 use super::report::{InRoom, Pair, Report, Stages, Step};
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::table::{Table, count, seconds, short, time as time_of};
 
 /// How many groups of vertices with warnings are listed without `--verbose`.

@@ -5,14 +5,14 @@ mod shapes;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use clap::{Args, Parser as _};
+use clap::{Args, Parser};
 use motet::moving::WorstTet;
 use motet::{Error, Result};
 use serde_json::json;
 
-use crate::args::{Call, Common, Verb};
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::table::{Table, count, seconds, short};
 use crate::verbs::{implant, meshing, report, run};
 use crate::words::shown;
@@ -103,6 +103,21 @@ fn as_typed(call: &[String]) -> String {
     call.iter().map(word).collect::<Vec<_>>().join(" ")
 }
 
+/// The arguments of one verb, parsed by themselves.
+#[derive(Parser)]
+struct Alone<A: Args> {
+    #[command(flatten)]
+    args: A,
+}
+
+/// Parses what follows the verb in a call.
+fn parsed<A: Args>(call: &[String]) -> Result<A> {
+    match Alone::try_parse_from(&call[1..]) {
+        Ok(alone) => Ok(alone.args),
+        Err(_) => Err(Error::options("this name of a folder cannot be part of a call")),
+    }
+}
+
 /// Makes a call and keeps the reports of runs.
 fn make(
     call: &[String],
@@ -112,18 +127,17 @@ fn make(
 ) -> Result<Outcome> {
     // One object at the end is enough; those of the single calls are left out.
     let quiet = console.without_reports();
-    match Call::try_parse_from(call).map(|call| call.verb) {
-        Ok(Verb::Mesh(args)) => meshing::run(&args, common, &quiet),
-        Ok(Verb::Implant(args)) => implant::run(&args, common, &quiet),
-        Ok(Verb::Run(args)) => {
-            let report = run::carry_out(&args, common, &quiet)?;
+    match call[1].as_str() {
+        "mesh" => meshing::run(&parsed(call)?, common, &quiet),
+        "implant" => implant::run(&parsed(call)?, common, &quiet),
+        "report" => report::run(&parsed(call)?, &quiet),
+        _ => {
+            let report = run::carry_out(&parsed(call)?, common, &quiet)?;
             report.tell(&quiet);
             let outcome = report.outcome();
             cycles.push(report);
             Ok(outcome)
         }
-        Ok(Verb::Report(args)) => report::run(&args, &quiet),
-        _ => Err(Error::options("this name of a folder cannot be part of a call")),
     }
 }
 

@@ -8,9 +8,9 @@ use motet::implant::{self, Options};
 use motet::remesh;
 
 use crate::arrays::ArrayArgs;
-use crate::verbs::convert::WritingArgs;
 use crate::verbs::remesh::eas;
 use crate::words::{named, not_negative, numbers, positive};
+use crate::writing::WritingArgs;
 
 /// Put devices into a mesh: a coil into an aneurysm, a stent into a vessel; one conforming mesh comes out
 ///

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::args::ImplantArgs;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;

@@ -10,8 +10,8 @@ use motet::preflight::Repairs;
 
 use super::layer_words::{LayersWord, layers, stacks};
 use super::words::{self, Size};
-use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
+use crate::writing::WritingArgs;
 
 /// Fill closed surfaces with tets: every triangle becomes a facet of the mesh
 ///

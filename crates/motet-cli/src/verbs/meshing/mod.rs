@@ -16,9 +16,9 @@ use motet::{Mesh, io};
 pub(crate) use args::MeshArgs;
 
 use self::report::Report;
-use crate::args::Common;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 use crate::table::seconds;
 use crate::words::stem;

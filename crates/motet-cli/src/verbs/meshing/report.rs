@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::args::MeshArgs;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{count, seconds, short};
 use crate::words;

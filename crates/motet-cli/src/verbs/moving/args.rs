@@ -6,8 +6,8 @@ use clap::{ArgGroup, Args, ValueEnum};
 use motet::motion::{Extent, SlideTolerance};
 
 use super::words::{self, PatchFile, Rotate, Translate};
-use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
+use crate::writing::WritingArgs;
 
 /// Move the boundary of a mesh, and let the volume follow
 ///

@@ -25,9 +25,9 @@ use self::patches::Patches;
 use self::plan::Plan;
 use self::report::{Chosen, Report, Step};
 use self::sink::Sink;
-use crate::args::Common;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 
 pub(crate) fn run(args: &MoveArgs, common: &Common, console: &Console) -> motet::Result<Outcome> {

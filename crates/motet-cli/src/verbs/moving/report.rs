@@ -14,7 +14,7 @@ use super::args::MoveArgs;
 use super::inverted;
 use super::plan::Plan;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;

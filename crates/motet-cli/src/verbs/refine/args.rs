@@ -8,8 +8,8 @@ use motet::refine::{Condition, Criterion, HessianSizes, Limits, Target, Wanted};
 
 use super::words::{self, Near, NearSize};
 use crate::arrays::ArrayArgs;
-use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
+use crate::writing::WritingArgs;
 
 /// Divide tets where criteria request it, many generations deep, without loss of shape; and coarsen again
 ///

@@ -14,10 +14,10 @@ pub(crate) use args::RefineArgs;
 pub(crate) use criteria::target;
 
 use self::report::Report;
-use crate::args::Common;
 use crate::arrays::Written;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 use crate::table::seconds;
 

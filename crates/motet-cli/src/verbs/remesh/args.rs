@@ -8,8 +8,8 @@ use motet::Mesh;
 use motet::remesh::{self, Held, Options, Sizes, SurfaceRule};
 
 use crate::arrays::ArrayArgs;
-use crate::verbs::convert::WritingArgs;
 use crate::words::positive;
+use crate::writing::WritingArgs;
 
 /// Find the bad tets of a mesh and repair them, leaving the others alone
 ///

@@ -12,10 +12,10 @@ use motet::remesh::{MeshOutcome, has_only_labels, remesh_labelled, remesh_mesh};
 pub(crate) use args::{RemeshArgs, eas};
 
 use self::report::Report;
-use crate::args::Common;
 use crate::arrays::Written;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::outputs;
 use crate::table::seconds;
 

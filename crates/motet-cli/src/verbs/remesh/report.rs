@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use super::args::{RemeshArgs, Surface};
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{Table, count, seconds, short};
 use crate::words;

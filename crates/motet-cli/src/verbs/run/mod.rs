@@ -21,9 +21,9 @@ pub(crate) use report::Report;
 use self::begin::Begin;
 use self::job::Job;
 use self::output::Output;
-use crate::args::Common;
+use crate::common::Common;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 
 pub(crate) fn run(args: &RunArgs, common: &Common, console: &Console) -> Result<Outcome> {
     let report = carry_out(args, common, console)?;

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::job::Job;
 use super::output::Output;
 use crate::console::Console;
-use crate::exit::Outcome;
+use crate::outcome::Outcome;
 use crate::quality;
 use crate::table::{Table, count, seconds, short, time};
 use crate::words;

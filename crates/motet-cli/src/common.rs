@@ -1,0 +1,29 @@
+//! Options common to all verbs.
+
+use clap::Args;
+use motet::base::Threads;
+
+/// Options common to all verbs.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Everywhere")]
+pub(crate) struct Common {
+    /// Print one JSON object on standard output and everything else on standard error
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Number of threads; 0 = one per core. Results do not depend on it
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// Print only errors (and the JSON object)
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Print more: what is read, found and written, with times
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+}
+
+impl Common {
+    /// The threads that the call requests.
+    pub(crate) fn threads(&self) -> motet::Result<Threads> {
+        Threads::new(self.threads)
+    }
+}
