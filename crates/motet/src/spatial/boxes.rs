@@ -1,4 +1,4 @@
-//! A tree of boxes with sides along the axes: what touches a box, and what is nearest to a point.
+//! A tree of axis-aligned boxes: finds what touches a box, and what is nearest to a point.
 
 use crate::base::Point;
 use crate::geometry::vector::sub;
@@ -6,34 +6,35 @@ use crate::geometry::vector::sub;
 /// A box by its two extreme corners.
 pub type Bounds = [Point; 2];
 
-/// Things in a leaf. A search near a surface of triangles takes 22 k instructions at 4, 17 k at 2,
-/// 15 k at 1, which needs twice the boxes.
+/// Items in a leaf. A search near a surface of triangles takes 22 k instructions at 4, 17 k at 2, and 15 k at
+/// 1, which needs twice the boxes.
 const LEAF: usize = 2;
 
-/// Halving keeps the depth below 32, and each level leaves one box behind.
+/// The size of the stack: halving keeps the depth below 32, and each level leaves one box behind.
 const DEPTH: usize = 33;
 
-/// Boxes within boxes. Things are known by the order of the leaves, their *places*.
+/// Boxes within boxes. Items are known by the order of the leaves, their *places*.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tree {
     nodes: Vec<Node>,
-    /// The caller's id of the thing at each place.
+    /// The caller's id of the item at each place.
     pub(super) ids: Vec<u32>,
 }
 
-/// A box with either two subtrees (the left one follows at once) or a run of things.
+/// A box with either two subtrees (the left one follows directly) or a run of items.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     low: Point,
     high: Point,
-    /// The right subtree, or the first thing.
+    /// The right subtree, or the first item.
     start: u32,
-    /// How many things; 0 for a box with subtrees.
+    /// How many items; 0 for a box with subtrees.
     count: u32,
 }
 
 impl Tree {
-    /// From centres and ids: sorted by the longest side of the box of centres, halved until few are left. `n log n`.
+    /// Builds the tree from centres and ids, in `O(n log n)`: halved across the longest side of the box of
+    /// the centres until few are left.
     pub(super) fn new(mut items: Vec<(Point, u32)>, bounds_of: &impl Fn(u32) -> Bounds) -> Self {
         let mut tree = Self::default();
         if !items.is_empty() {
@@ -60,8 +61,9 @@ impl Tree {
         self.build(right, bounds_of);
     }
 
-    /// The thing nearest to `p` within the square root of `reach`, of those equally near the one of smallest id.
-    /// `measure` gives the squared distance of the thing at a place, and what else there is to say; `None` for things to skip.
+    /// The item nearest to `p` within the square root of `reach`; among equally near ones, that of smallest
+    /// id. `measure` returns the squared distance of the item at a place, with any further data; `None` for
+    /// items to skip.
     #[inline(always)]
     pub(super) fn nearest<T: Copy>(
         &self,
@@ -110,7 +112,7 @@ impl Tree {
         best
     }
 
-    /// The places in all leaves whose box touches `bounds`.
+    /// Visits the places in all leaves whose box touches `bounds`.
     fn touching(&self, bounds: Bounds, mut visit: impl FnMut(usize)) {
         let mut open = [0u32; DEPTH];
         let mut n_open = usize::from(!self.nodes.is_empty());
@@ -133,7 +135,7 @@ impl Tree {
 }
 
 impl Node {
-    /// From `p` to the box; 0 within.
+    /// The squared distance from `p` to the box; 0 inside.
     #[inline(always)]
     fn distance_squared(&self, p: Point) -> f64 {
         let mut sum = 0.0;
@@ -150,12 +152,13 @@ impl Node {
 #[derive(Clone, Debug)]
 pub struct BoxTree {
     tree: Tree,
-    /// In the order of the leaves.
+    /// The boxes, in the order of the leaves.
     boxes: Vec<Bounds>,
 }
 
 impl BoxTree {
-    /// Boxes are known by their places in `boxes`; those with a corner that is not finite are left out. `n log n`.
+    /// Builds the tree, in `O(n log n)`. Boxes are known by their indices in `boxes`; those with a corner
+    /// that is not finite are left out.
     pub fn new(boxes: &[Bounds]) -> Self {
         let finite = |b: &Bounds| b.as_flattened().iter().all(|x| x.is_finite());
         let centre = |[low, high]: Bounds| [0, 1, 2].map(|k| 0.5 * low[k] + 0.5 * high[k]);
@@ -165,7 +168,7 @@ impl BoxTree {
         Self { tree, boxes }
     }
 
-    /// Puts the ids of all boxes that touch `bounds` into `found`, in place of what it held; rising.
+    /// Replaces the contents of `found` by the ids of all boxes that touch `bounds`, in ascending order.
     pub fn touching(&self, bounds: Bounds, found: &mut Vec<u32>) {
         found.clear();
         self.tree.touching(bounds, |place| {
@@ -176,9 +179,9 @@ impl BoxTree {
         found.sort_unstable();
     }
 
-    /// What is nearest to `p` of the things that lie in the boxes: its squared distance, its id, and what `measure` says of
-    /// it beside its squared distance; `None` when there is nothing. Things for which `measure` says `None` are
-    /// skipped; of those equally near the one of smallest id is found.
+    /// The nearest to `p` of the items in the boxes: its squared distance, its id, and what `measure` returns
+    /// beside the squared distance; `None` if there is none. Items for which `measure` returns `None` are
+    /// skipped; among equally near ones, that of smallest id is found.
     pub fn nearest<T: Copy>(
         &self,
         p: Point,
@@ -187,7 +190,8 @@ impl BoxTree {
         self.nearest_within(p, f64::INFINITY, measure)
     }
 
-    /// The same, looking no farther than the square root of `reach`.
+    /// The nearest to `p` of the items in the boxes, as by [`nearest`](Self::nearest), within the square root
+    /// of `reach`.
     pub fn nearest_within<T: Copy>(
         &self,
         p: Point,
@@ -205,12 +209,12 @@ pub(crate) fn around(points: impl IntoIterator<Item = Point>) -> Bounds {
     })
 }
 
-/// A box that reaches farther by a length on every side.
+/// A box grown by a length on every side.
 pub(crate) fn widened([low, high]: Bounds, by: f64) -> Bounds {
     [low.map(|x| x - by), high.map(|x| x + by)]
 }
 
-/// Whether two boxes have a place in common.
+/// Whether two boxes have a point in common.
 pub(crate) fn touch([a, b]: Bounds, [c, d]: Bounds) -> bool {
     (0..3).all(|k| a[k] <= d[k] && c[k] <= b[k])
 }
@@ -243,7 +247,7 @@ mod tests {
             let expected: Vec<u32> = (0u32..).zip(&boxes).filter(|(_, b)| touch(**b, asked)).map(|b| b.0).collect();
             prop_assert_eq!(found, expected);
 
-            // Of the lower corners of every other box.
+            // Measures the lower corners of every other box.
             let measure = |id: u32| {
                 let d = sub(boxes[id as usize][0], p);
                 id.is_multiple_of(2).then_some((d[0] * d[0] + d[1] * d[1] + d[2] * d[2], id))

@@ -1,21 +1,21 @@
 //! The Hilbert curve through a box, by table: neighbours on the curve are neighbours in space.
 //!
-//! One level of the curve visits the eight octants in the order of a Gray code that has been
-//! turned; which turn applies within an octant depends on the turn outside and on the octant alone.
-//! A turn is an entry corner and a direction, 24 in all (Hamilton 2006, *Compact Hilbert
-//! indices*, section 2). A table lookup a level takes half the time of the bit loops.
+//! One level of the curve visits the eight octants in the order of a rotated Gray code; which rotation, or
+//! turn, applies within an octant depends only on the turn outside and on the octant. A turn is an entry
+//! corner and a direction, 24 in all (Hamilton 2006, *Compact Hilbert indices*, section 2). One table lookup
+//! per level takes half the time of the bit loops.
 
 use crate::base::Point;
 
-/// Levels of the curve: cells an axis are `2^LEVELS`.
+/// Levels of the curve: there are `2^LEVELS` cells along each axis.
 pub(crate) const LEVELS: u32 = 11;
 /// Bits of a key.
 pub(crate) const KEY_BITS: u32 = 3 * LEVELS;
 
-/// For each turn and octant: place of the octant on the curve, and 8 times the turn within.
+/// For each turn and octant: the place of the octant on the curve, and the turn within it.
 type Table = [[(u8, u8); 8]; 24];
 
-/// The keys of points in one box.
+/// Computes the keys of points in one box.
 pub(crate) struct Curve {
     table: Table,
     corner: Point,
@@ -23,8 +23,8 @@ pub(crate) struct Curve {
 }
 
 impl Curve {
-    /// The curve through a cube at `corner` whose edge is `extent`; one out of the range of its inverse only coarsens the
-    /// keys.
+    /// The curve through a cube at `corner` whose edge is `extent`; an extent outside the range of its
+    /// inverse only coarsens the keys.
     pub(crate) fn new(corner: Point, extent: f64) -> Self {
         Self {
             table: table(),
@@ -33,7 +33,7 @@ impl Curve {
         }
     }
 
-    /// Where along the curve the cell of `p` comes: [`KEY_BITS`] bits.
+    /// The position along the curve of the cell that contains `p`, in [`KEY_BITS`] bits.
     #[inline]
     pub(crate) fn key(&self, p: Point) -> u64 {
         let cell = |i: usize| {
@@ -53,7 +53,7 @@ impl Curve {
     }
 }
 
-/// Smallest corner of the box around the points and its longest side.
+/// The smallest corner of the box around the points, and its longest side.
 pub(crate) fn cube(points: impl Iterator<Item = Point>) -> (Point, f64) {
     let start = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     let (low, high) = points.fold(start, |(low, high), p| {
@@ -62,7 +62,7 @@ pub(crate) fn cube(points: impl Iterator<Item = Point>) -> (Point, f64) {
     (low, (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max))
 }
 
-/// Turn number `3 * entry + direction`.
+/// The table of all turns; turn number `3 * entry + direction`.
 fn table() -> Table {
     std::array::from_fn(|turn| {
         let (entry, direction) = ((turn / 3) as u8, (turn % 3) as u32);
@@ -75,7 +75,7 @@ fn table() -> Table {
     })
 }
 
-/// Three bits turned left.
+/// Three bits rotated left.
 fn rotate(bits: u8, by: u32) -> u8 {
     let by = by % 3;
     (bits << by | bits >> (3 - by)) & 7

@@ -1,8 +1,9 @@
-//! Which tet of a triangulation holds a point: a walk through plain arrays, every step decided exactly.
+//! Which tet of a triangulation contains a point: a walk through plain arrays, every step decided exactly.
 //!
-//! The walk crosses any facet that has the point strictly on its other side (Devillers, Pion and Teillaud 2002); the facet
-//! to try first changes from step to step, so it ends in any triangulation of a convex set (with probability 1), and always in a Delaunay
-//! one. Because no sign is rounded, a point of the hull is always found, also on facets, edges and vertices.
+//! The walk crosses any facet that has the point strictly on its other side (Devillers, Pion and Teillaud
+//! 2002). The facet to try first changes from step to step, so the walk ends in any triangulation of a convex
+//! set (with probability 1), and always in a Delaunay triangulation. Because no sign is rounded, a point of
+//! the hull is always found, also on facets, edges and vertices.
 
 use super::hilbert::{Curve, cube};
 use crate::base::{Point, TetId, Threads, VertexId};
@@ -11,14 +12,14 @@ use crate::geometry::triangle;
 use crate::geometry::vector::{dot, sub};
 use rayon::prelude::*;
 
-/// What stands in an array of neighbours for no tet: the facet lies on the hull.
+/// Stands for no tet in an array of neighbours: the facet lies on the hull.
 pub const OUTSIDE: TetId = TetId(u32::MAX);
 
 /// Vertices of facet `i`, seen from outside the tet.
 const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [0, 2, 1]];
 
-/// Points looked up one after the other, each from where the one before was found. Fixed, so that answers do not
-/// depend on the number of threads.
+/// Points located one after the other, each from where the previous one was found. The number is fixed, so
+/// that results do not depend on the number of threads.
 const CHUNK: usize = 1024;
 
 /// Where a point lies.
@@ -36,7 +37,7 @@ pub enum Located {
 }
 
 impl Located {
-    /// The tet that holds the point, or the one behind the nearest facet of the hull.
+    /// The tet that contains the point, or the one behind the nearest facet of the hull.
     pub fn tet(self) -> TetId {
         match self {
             Self::Inside(tet) | Self::Outside { tet, .. } => tet,
@@ -58,13 +59,13 @@ pub struct Locator<'a> {
 }
 
 impl<'a> Locator<'a> {
-    /// `tets` are positively oriented and fill the convex hull of their points; `neighbors[t][i]` is the tet across the
-    /// facet opposite vertex `i` of tet `t`, or [`OUTSIDE`]. There is at least one tet.
+    /// `tets` must be positively oriented and fill the convex hull of their points; `neighbors[t][i]` is the
+    /// tet across the facet opposite vertex `i` of tet `t`, or [`OUTSIDE`]. There must be at least one tet.
     pub fn new(points: &'a [Point], tets: &'a [[VertexId; 4]], neighbors: &'a [[TetId; 4]]) -> Self {
         Self { points, tets, neighbors }
     }
 
-    /// Where `q` (finite) lies; the walk starts at `hint`, any tet.
+    /// Locates `q` (finite), by a walk that starts at `hint`, any tet.
     pub fn locate(&self, q: Point, hint: TetId) -> Located {
         let mut tet = hint;
         let mut from = OUTSIDE;
@@ -80,7 +81,7 @@ impl<'a> Locator<'a> {
         }
     }
 
-    /// [`Self::locate`] for many points: near ones one after the other, in parallel where `threads` allow.
+    /// [`Self::locate`] for many points: neighbours one after the other, in parallel where `threads` allow.
     pub fn locate_all(&self, queries: &[Point], threads: &Threads) -> Vec<Located> {
         let order = along_curve(queries);
         let chunk = |ids: &[u32]| -> Vec<Located> {
@@ -110,7 +111,7 @@ impl<'a> Locator<'a> {
         [self.points[a.index()], self.points[b.index()], self.points[c.index()], self.points[d.index()]]
     }
 
-    /// A facet that has `q` strictly beyond it, but not the one to the tet `from`.
+    /// A facet that has `q` strictly beyond it, other than the one to the tet `from`.
     #[inline]
     fn exit(&self, tet: TetId, from: TetId, q: Point, first: usize) -> Option<usize> {
         let corners = self.corners(tet);
@@ -124,8 +125,8 @@ impl<'a> Locator<'a> {
         None
     }
 
-    /// One of a few tets spread over the array whose first vertex is nearest: a start for a walk (Mücke, Saias and
-    /// Zhu 1999, *Fast randomized point location without preprocessing*).
+    /// A start for a walk: of a few tets spread over the array, the one whose first vertex is nearest (Mücke,
+    /// Saias and Zhu 1999, *Fast randomized point location without preprocessing*).
     fn near(&self, q: Point) -> TetId {
         let step = self.tets.len().div_ceil(64);
         let distance_squared = |tet: usize| {
@@ -138,8 +139,8 @@ impl<'a> Locator<'a> {
         TetId::new(nearest.unwrap_or(0))
     }
 
-    /// The hull facet nearest to `q`, given one that `q` sees. The nearest one is seen too, and what a point sees of a convex
-    /// hull hangs together, so it is enough to look at that.
+    /// The hull facet nearest to `q`, given one that `q` sees. The nearest one is visible too, and the part
+    /// of a convex hull that is visible from a point is connected, so it is enough to search that part.
     fn nearest_of_hull(&self, tet: TetId, facet: usize, q: Point) -> Located {
         let mut seen = vec![(tet, facet)];
         let mut known: std::collections::HashSet<(TetId, usize)> = seen.iter().copied().collect();
@@ -162,11 +163,12 @@ impl<'a> Locator<'a> {
         Located::Outside { tet: nearest.1, facet: nearest.2 as u8 }
     }
 
-    /// The other hull facet at an edge of a hull facet: round the edge, from tet to tet. `edge` are places in the tet.
+    /// The other hull facet at an edge of a hull facet, found by going around the edge from tet to tet.
+    /// `edge` are local indices in the tet.
     fn across_hull_edge(&self, tet: TetId, facet: usize, edge: [usize; 2]) -> (TetId, usize) {
         let edge = edge.map(|i| self.tets[tet.index()][i]);
-        // The tets at the edge lie between two facets each: `behind` is the vertex off the facet last
-        // crossed, and the next one crossed is the facet that has it.
+        // Each tet at the edge has two facets there: `behind` is the vertex off the facet last crossed, and
+        // the next one crossed is the facet that contains it.
         let mut tet = tet;
         let mut behind = self.tets[tet.index()][facet];
         loop {

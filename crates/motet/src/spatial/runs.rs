@@ -1,4 +1,5 @@
-//! Many triangles looked at in runs: their corners, their boxes, and answers that come in order, whatever the number of threads.
+//! Many triangles processed in runs: their corners, their boxes, and results in order, whatever the number of
+//! threads.
 
 use std::ops::Range;
 
@@ -6,10 +7,11 @@ use super::boxes::{self, Bounds};
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::is_finite;
 
-/// Things that a thread does in one go: a few microseconds each, so that sharing out costs nothing beside.
+/// Items that a thread processes at a time: a few microseconds each, so that the cost of sharing them out is
+/// negligible.
 const RUN: usize = 128;
 
-/// [`Threads::in_runs`] of so many.
+/// [`Threads::in_runs`] with runs of [`RUN`] items.
 pub(crate) fn in_runs<S: Default, T: Send>(
     n: usize,
     threads: &Threads,
@@ -23,7 +25,7 @@ pub(crate) fn corners(points: &[Point], triangle: [VertexId; 3]) -> [Point; 3] {
     triangle.map(|v| points[v.index()])
 }
 
-/// The box around points; one that touches nothing where one of them is not finite.
+/// The box around points; one that touches nothing if any of them is not finite.
 pub(crate) fn around(points: &[Point]) -> Bounds {
     if !points.iter().all(|&p| is_finite(p)) {
         return [[f64::NAN; 3]; 2];

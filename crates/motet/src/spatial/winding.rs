@@ -1,8 +1,10 @@
-//! How often a surface goes round a point, also where it has holes, crosses itself or is there twice.
+//! How often a surface goes around a point, also if it has holes, crosses itself or exists twice.
 //!
-//! The solid angle under which a triangle is seen, summed and divided by that of the sphere: a whole number where the surface is closed, and between where it is
-//! not (Jacobson, Kavan and Sorkine-Hornung 2013, *Robust inside-outside segmentation using generalized winding numbers*). Triangles far away are seen together, as one
-//! with the sum of their areas and normals (Barill, Dickson, Schmidt, Levin and Jacobson 2018, *Fast winding numbers for soups and clouds*).
+//! The solid angles of the triangles are summed and divided by that of the sphere: a whole number for a
+//! closed surface, a number in between for an open one (Jacobson, Kavan and Sorkine-Hornung 2013, *Robust
+//! inside-outside segmentation using generalized winding numbers*). Distant triangles are treated together,
+//! as one with the sum of their area vectors (Barill, Dickson, Schmidt, Levin and Jacobson 2018, *Fast
+//! winding numbers for soups and clouds*).
 
 use std::f64::consts::PI;
 
@@ -10,10 +12,11 @@ use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{area_vector, centroid};
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 
-/// From so many times its radius on a group of triangles is seen as one. The sum is then right to a hundredth: the test below prints 0.0057 for a ball.
+/// From this multiple of its radius on, a group of triangles is treated as one. The sum is then correct to a
+/// hundredth: the test below prints 0.0057 for a ball.
 const FAR: f64 = 4.0;
 
-/// A group of so few triangles is not parted.
+/// A group of no more triangles than this is not split.
 const FEW: usize = 8;
 
 /// A surface, its triangles in groups within groups.
@@ -26,19 +29,20 @@ pub struct WindingNumber {
 
 #[derive(Clone, Copy, Debug)]
 struct Group {
-    /// The mean of the centres by their areas, and a radius round it that holds all corners.
+    /// The area-weighted mean of the centroids, and a radius around it that contains all corners.
     centre: Point,
     radius: f64,
-    /// The sum of the areas times the normals.
+    /// The sum of the area vectors.
     dipole: Point,
     /// The triangles, `begin..end`.
     range: [u32; 2],
-    /// The second of the two groups that it is parted into; the first follows it. 0 where it is not.
+    /// The second of the two groups that this one is split into; the first follows it directly. 0 if it is
+    /// not split.
     second: u32,
 }
 
 impl WindingNumber {
-    /// Of triangles with finite corners.
+    /// Builds the groups of triangles with finite corners.
     ///
     /// Panics when a triangle names a point beyond `points`.
     pub fn new(points: &[Point], triangles: &[[VertexId; 3]]) -> Self {
@@ -50,7 +54,7 @@ impl WindingNumber {
         tree
     }
 
-    /// Makes the group of some triangles, and those within it.
+    /// Makes the group of triangles `begin..end`, and those within it; returns its number.
     fn part(&mut self, begin: usize, end: usize) -> u32 {
         let number = self.groups.len();
         self.groups.push(Group::of(&self.triangles[begin..end], [begin as u32, end as u32]));
@@ -66,7 +70,8 @@ impl WindingNumber {
         number as u32
     }
 
-    /// How often the surface goes round `p`: 1 inside of one that faces outward, 0 outside. On the surface something between.
+    /// How often the surface goes around `p`: 1 inside a surface that faces outward, 0 outside, and something
+    /// between on it.
     pub fn at(&self, p: Point) -> f64 {
         if self.groups.is_empty() { 0.0 } else { self.of_group(0, p) / (4.0 * PI) }
     }
@@ -146,7 +151,7 @@ mod tests {
         for p in [[0.0; 3], [0.1, 0.2, 0.5], [2.0, 1.0, -3.0], [0.0, 0.0, -0.9]] {
             assert!((open.at(p) - exact(&half, p)).abs() < 1e-2, "{p:?}");
         }
-        // There twice, it counts twice.
+        // A surface that exists twice counts twice.
         let twice = [&surface.triangles[..], &surface.triangles[..]].concat();
         assert!((WindingNumber::new(&surface.points, &twice).at([0.0; 3]) - 2.0).abs() < 2e-2);
         assert_eq!(WindingNumber::new(&[], &[]).at([0.0; 3]), 0.0);

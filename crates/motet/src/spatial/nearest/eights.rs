@@ -1,29 +1,32 @@
-//! Eight boxes and eight triangles, and how far from a point they are at least.
+//! Eight boxes or eight triangles at a time, and lower bounds of their distances from a point.
 //!
-//! Everything here is in 32 bits, in units in which the surface fits between -1 and 1. So an instruction does eight things where
-//! it would do four, and half the memory is read. What rounding does to a distance is at most [`ROUNDING`] a unit.
+//! Everything here is in 32 bits, in units in which the surface fits between -1 and 1. So an instruction
+//! processes eight numbers instead of four, and half as much memory is read. Rounding changes a distance by
+//! at most [`ROUNDING`] a unit.
 
 use pulp::Simd;
 
 use super::lanes::{Eight, Lanes, Vector, cross, dot, load, parts, splat, sub};
 
-/// Half the distance from 1 to the next number of 32 bits.
+/// The unit round-off: half the distance from 1 to the next `f32`.
 const U: f64 = 1.0 / 16_777_216.0;
 
-/// How far a lower bound can be above the distance, or an upper one below it, over 1 + the largest coordinate of the point.
-/// Coordinates are rounded: `sqrt(3) U` for the point and for the surface. A triangle: three scalar products of vectors up to
-/// `3 sqrt(3)` long in all, 5 U of that, `26 U`; with the point at `s`, a point of it is taken from there by `(3 s + 11) U` an
-/// axis, and lies off the triangle by `6 U` an axis. A turned box: 3 U of `sqrt(3)` for the point and as much for its
+/// How far a lower bound can exceed the distance, or an upper one fall below it, relative to 1 + the largest
+/// coordinate of the point. Coordinates are rounded: `sqrt(3) U` for the point and for the surface. A
+/// triangle: three scalar products of vectors up to `3 sqrt(3)` long in all, 5 U of that, `26 U`; with the
+/// point at `s`, its difference to a point of the triangle is off by `(3 s + 11) U` per axis, and that point
+/// lies off the triangle by `6 U` per axis. A turned box: 3 U of `sqrt(3)` for the point and as much for its
 /// sides, `18 U` along the three axes.
 pub(super) const ROUNDING: f64 = 32.0 * U;
 
-/// How much larger the square of a bound can be by rounding, or smaller.
+/// The relative rounding error of the square of a bound.
 pub(super) const ROUNDING_OF_SQUARE: f64 = 16.0 * U;
 
-/// The square of a normal times a corner, `24 x^3`, is still a number of 32 bits.
+/// The largest coordinate for slabs: the square of a normal times a corner, `24 x^3`, must not overflow 32
+/// bits.
 pub(super) const MOST_OF_SLABS: f64 = 1e5;
 
-/// Eight boxes with sides along the axes. One without an inside holds nothing.
+/// Eight axis-aligned boxes. A box with `low` above `high` is empty.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct Boxes {
@@ -34,13 +37,14 @@ pub(super) struct Boxes {
 impl Boxes {
     pub(super) const EMPTY: Self = Self { low: [[f32::INFINITY; 8]; 3], high: [[f32::NEG_INFINITY; 8]; 3] };
 
-    /// From `p` to each box: 0 within, infinite where there is no box.
+    /// Squared distances from `p` to each box: 0 inside, infinite for an empty box.
     #[inline(always)]
     pub(super) fn distances_squared<S: Simd>(&self, simd: S, p: [f32; 3]) -> Eight {
         self.distances_squared_to(simd, [p, p])
     }
 
-    /// The same for a box, given by its corners.
+    /// Squared distances from a box, given by its corners, to each box: 0 where they touch, infinite for an
+    /// empty box.
     #[inline(always)]
     pub(super) fn distances_squared_to<S: Simd>(&self, simd: S, [low, high]: [[f32; 3]; 2]) -> Eight {
         let mut out = [0.0; 8];
@@ -64,7 +68,7 @@ impl Boxes {
         (self.low.map(least), self.high.map(most))
     }
 
-    /// The box around some of them, which are told by bits.
+    /// The box around some of them, which are selected by bits.
     #[inline(always)]
     pub(super) fn around_some(&self, mut which: u32) -> [[f32; 3]; 2] {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -91,7 +95,7 @@ impl Boxes {
     }
 }
 
-/// One instruction each, where `f32::min` heeds NaN and takes three.
+/// The smaller of two numbers, in one instruction; `f32::min` heeds NaN and takes three.
 #[inline(always)]
 pub(super) fn smaller(x: f32, y: f32) -> f32 {
     if x < y { x } else { y }
@@ -112,7 +116,7 @@ pub(super) struct Triangles {
 impl Triangles {
     pub(super) const NONE: Self = Self { corners: [[[f32::NAN; 8]; 3]; 3] };
 
-    /// The box of each; anything around one with a corner that is NaN.
+    /// The box around each triangle; arbitrary for one with a corner that is NaN.
     #[inline(always)]
     pub(super) fn boxes<S: Simd>(&self, simd: S) -> Boxes {
         let mut boxes = Boxes::EMPTY;
@@ -128,7 +132,7 @@ impl Triangles {
         boxes
     }
 
-    /// Where along a direction the first corner is and where the last, of those that are not NaN.
+    /// The interval that the corners cover along a direction, ignoring those that are NaN.
     #[inline(always)]
     pub(super) fn along<S: Simd>(&self, simd: S, direction: [f32; 3]) -> [f32; 2] {
         let direction = splat(simd, direction);
@@ -143,13 +147,14 @@ impl Triangles {
         [low.least(), high.most()]
     }
 
-    /// A square below that of the distance from `p` to each, but for rounding: mostly equal to it. And one above that of
-    /// the nearest: infinite where there is none.
+    /// Squared lower bounds of the distances from `p` to each triangle, but for rounding (mostly equal to the
+    /// distances), and a squared upper bound of the least distance, infinite if there is no triangle.
     ///
-    /// Along any direction `u`, the triangle is no nearer than the nearest of its corners. So however `u` was found and rounded,
-    /// the bound holds; the better `u` points to the closest point, the better it is. The closest point is that of the plane, where it lies within
-    /// (Ericson 2005, *Real-Time Collision Detection*, section 3.4), or the best of those of the edges; all from five scalar products.
-    /// Whatever it is, `u` leads to a point of the triangle, so its length is a bound above.
+    /// Along any direction `u`, the triangle is no nearer than the nearest of its corners. So the bound holds
+    /// however `u` was found and rounded; the better `u` points to the closest point, the better the bound.
+    /// The closest point is that of the plane if it lies in the triangle (Ericson 2005, *Real-Time Collision
+    /// Detection*, section 3.4), or else the best of those of the edges; all are computed from five scalar
+    /// products. In any case `u` leads to a point of the triangle, so its length is an upper bound.
     #[inline(always)]
     pub(super) fn bounds_squared<S: Simd>(&self, simd: S, p: [f32; 3]) -> (Eight, f32) {
         let mut out = [0.0; 8];
@@ -163,8 +168,8 @@ impl Triangles {
             let ap = sub(p, a);
             let (bb, bc, cc) = (dot(ab, ab), dot(ab, ac), dot(ac, ac));
             let (pb, pc) = (dot(ab, ap), dot(ac, ap));
-            // The closest point is a + v ab + w ac. On an edge it lies at a share between 0 and 1; the squared distance is that of a and
-            // a height, of which the least is wanted.
+            // The closest point is a + v ab + w ac. On an edge its parameter is between 0 and 1; the squared
+            // distance is that of a plus a height, the least of which is wanted.
             let v1 = (pb / bb).max(zero).min(one);
             let w2 = (pc / cc).max(zero).min(one);
             let w3 = ((bb - bc + pc - pb) / (bb - bc + cc - bc)).max(zero).min(one);
@@ -181,7 +186,7 @@ impl Triangles {
             let v0 = (cc * pb - bc * pc) * per_area;
             let w0 = (bb * pc - bc * pb) * per_area;
             let least = v0.min(w0).min(one - v0 - w0);
-            // NaN, as of triangles without area, is not above zero.
+            // NaN, from triangles without area, is not above zero.
             v = zero.if_below(least, v0, v);
             w = zero.if_below(least, w0, w);
             let mut u = [zero; 3];
@@ -189,7 +194,7 @@ impl Triangles {
                 u[axis] = ap[axis] - v * ab[axis] - w * ac[axis];
             }
             let nearest_corner = dot(ap, u) - dot(ab, u).max(dot(ac, u)).max(zero);
-            // Also keeps lengths that underflow from counting.
+            // Also disregards lengths that underflow.
             let square = dot(u, u) + Lanes::splat(simd, 1e-30);
             above = square.if_below(above, square, above);
             let along = nearest_corner.max(zero);
@@ -198,10 +203,11 @@ impl Triangles {
         (out, above.least())
     }
 
-    /// A square below that of the distance of each from another triangle, but for rounding.
+    /// Squared lower bounds of the distances of each triangle from another one, but for rounding.
     ///
-    /// Seen along any direction, triangles are as far apart as the intervals of their corners. Taken are the normal of the other one and
-    /// the way between the centres. No coordinate may be above [`MOST_OF_SLABS`].
+    /// Triangles are at least as far apart as their projections onto any direction. Two directions are tried:
+    /// the normal of the other triangle, and the vector between the centroids. No coordinate may be above
+    /// [`MOST_OF_SLABS`].
     #[inline(always)]
     pub(super) fn slabs_squared<S: Simd>(&self, simd: S, other: [[f32; 3]; 3]) -> Eight {
         let mut out = [0.0; 8];
@@ -226,7 +232,7 @@ impl Triangles {
     }
 }
 
-/// How far two triangles are apart along a direction, squared.
+/// The squared distance of the projections of two triangles onto a direction.
 #[inline(always)]
 fn slab_squared<S: Simd>(simd: S, along: Vector<S>, a: [Vector<S>; 3], b: [Vector<S>; 3]) -> Lanes<S> {
     let [a0, a1, a2] = [dot(along, a[0]), dot(along, a[1]), dot(along, a[2])];
@@ -234,6 +240,6 @@ fn slab_squared<S: Simd>(simd: S, along: Vector<S>, a: [Vector<S>; 3], b: [Vecto
     let above = a0.min(a1).min(a2) - b0.max(b1).max(b2);
     let below = b0.min(b1).min(b2) - a0.max(a1).max(a2);
     let apart = above.max(below).max(Lanes::splat(simd, 0.0));
-    // Lengths that underflow do not count.
+    // Lengths that underflow are disregarded.
     apart * apart / (dot(along, along) + Lanes::splat(simd, 1e-30))
 }

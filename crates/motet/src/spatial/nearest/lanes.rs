@@ -1,4 +1,4 @@
-//! Eight numbers of 32 bits, as many at a time as the machine takes.
+//! Eight 32-bit numbers, processed as many at a time as the machine can.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -6,10 +6,10 @@ use pulp::Simd;
 
 use crate::base::lanewise;
 
-/// A number for each of eight things.
+/// A number for each of eight items.
 pub(super) type Eight = [f32; 8];
 
-/// A number for each of as many of the eight things as the machine takes at a time.
+/// A number for each of as many of the eight items as the machine processes at a time.
 #[derive(Clone, Copy)]
 pub(super) struct Lanes<S: Simd>(S, S::f32s);
 
@@ -51,7 +51,7 @@ impl<S: Simd> Lanes<S> {
         Self(self.0, self.0.max_f32s(self.1, other.1))
     }
 
-    /// Without the sign.
+    /// The absolute value.
     #[inline(always)]
     pub(super) fn size(self) -> Self {
         Self(self.0, self.0.abs_f32s(self.1))
@@ -63,7 +63,7 @@ impl<S: Simd> Lanes<S> {
         Self(self.0, self.0.mul_add_e_f32s(self.1, factor.1, summand.1))
     }
 
-    /// All of this part together.
+    /// The sum of this part.
     #[inline(always)]
     pub(super) fn sum(self) -> f32 {
         self.0.reduce_sum_f32s(self.1)
@@ -81,7 +81,7 @@ impl<S: Simd> Lanes<S> {
         self.0.reduce_max_f32s(self.1)
     }
 
-    /// Where this is below `limit`: `yes`, elsewhere `no`, as where either is NaN.
+    /// `yes` where this is below `limit`; elsewhere, and where either is NaN, `no`.
     #[inline(always)]
     pub(super) fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f32s(self.1, limit.1);
@@ -89,7 +89,8 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-/// A bit for each of the eight that is at most `limit`. A sum of powers of two, where eight comparisons take 40 instructions.
+/// A bit for each of the eight that is at most `limit`. They are summed as powers of two; eight comparisons
+/// would take 40 instructions.
 #[inline(always)]
 pub(super) fn at_most<S: Simd>(simd: S, eight: &Eight, limit: f32) -> u32 {
     const BITS: Eight = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
@@ -103,7 +104,7 @@ pub(super) fn at_most<S: Simd>(simd: S, eight: &Eight, limit: f32) -> u32 {
     bits as u32
 }
 
-/// How many parts the eight are worked on in.
+/// How many parts the eight are processed in.
 #[inline(always)]
 pub(super) fn parts<S: Simd>() -> usize {
     8 / S::F32_LANES

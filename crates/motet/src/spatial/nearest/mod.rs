@@ -1,4 +1,4 @@
-//! The triangle nearest to a point, by a tree of boxes over a surface.
+//! Finds the triangle nearest to a point, by a tree of boxes over a surface.
 
 mod eights;
 mod lanes;
@@ -17,25 +17,25 @@ use packed::Packed;
 use pairs::{Pairs, Reach};
 use search::{Admit, All, Search, Where};
 
-/// The answer to a search.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The triangle, by its place in the list that the tree was built from.
+    /// The triangle, by its index in the list that the tree was built from.
     pub triangle: usize,
-    /// Weights of its vertices that give the closest point: each in [0, 1], 1 in sum.
+    /// Weights of its vertices that give the closest point: each in [0, 1], with sum 1.
     pub weights: [f64; 3],
     /// The closest point.
     pub point: Point,
-    /// Its squared distance from where the search started.
+    /// The squared distance of the closest point from the query point.
     pub distance_squared: f64,
 }
 
-/// Finds the point of a surface closest to any other.
+/// Finds the point of a surface closest to a given point.
 ///
-/// No tolerance anywhere, so it works alike in metres and in millimetres: every answer is, to the bit, the one that a look at all
-/// triangles with [`triangle::closest`](crate::geometry::triangle::closest) gives.
-/// Triangles without area count as segments or points; those with a corner that
-/// is not finite are left out. Of triangles equally near the first one is found.
+/// No tolerance is used, so it works alike in metres and in millimetres: every result is, to the bit, that of
+/// a search of all triangles with [`triangle::closest`](crate::geometry::triangle::closest). Triangles
+/// without area count as segments or points; triangles with a corner that is not finite are left out. Among
+/// equally near triangles, the first one is found.
 ///
 /// For a surface that moves, build once and [`refit`](Self::refit).
 #[derive(Clone, Debug)]
@@ -43,25 +43,26 @@ pub struct NearestTriangle {
     tree: Packed,
 }
 
-/// As a guess: none.
+/// Stands for no guess.
 const NO_GUESS: u32 = u32::MAX;
 
-/// Queries that are asked one after the other, each with the answer before as its guess.
+/// Queries done one after the other, each with the previous answer as its guess.
 const RUN: usize = 256;
 
-/// Eights of leaves whose pairs one thread looks at in one go.
+/// Groups of eight leaves whose pairs one thread examines at a time.
 const EIGHTS: usize = 16;
 
 impl NearestTriangle {
-    /// Builds the tree. `n log n`.
+    /// Builds the tree, in `O(n log n)`.
     ///
     /// Panics when a triangle names a point beyond `points`.
     pub fn new(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Self {
         Self { tree: Packed::new(points, triangles, threads) }
     }
 
-    /// Takes over points that moved, of the same triangles: a fraction of the time of [`new`](Self::new).
-    /// Answers stay exact however far points go; a motion that leaves no neighbours together makes searches slow.
+    /// Takes over points that moved, of the same triangles, in a fraction of the time of [`new`](Self::new).
+    /// Answers stay exact however far points move; a motion that leaves no neighbours together makes searches
+    /// slow.
     ///
     /// Panics when a triangle names a point beyond `points`.
     pub fn refit(&mut self, points: &[Point], threads: &Threads) {
@@ -73,21 +74,24 @@ impl NearestTriangle {
         self.tree.memory()
     }
 
-    /// The point of the surface closest to `p`; `None` when there is no
-    /// triangle, `p` is not finite or the distance has no finite square.
+    /// The point of the surface closest to `p`; `None` if there is no triangle, `p` is not finite or the
+    /// distance has no finite square.
     pub fn closest(&self, p: Point) -> Option<Closest> {
         self.closest_within(p, f64::INFINITY)
     }
 
-    /// The same, looking no farther than `distance`: `None` when everything is beyond.
+    /// The point of the surface closest to `p`, if it is no farther than `distance`; `None` if everything is
+    /// beyond.
     pub fn closest_within(&self, p: Point, distance: f64) -> Option<Closest> {
         Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit: All })
     }
 
-    /// The closest of those triangles that `admit` admits, by its number and what a search for it alone would find.
+    /// The closest of those triangles within `distance` that `admit` admits. `admit` receives the index of a
+    /// triangle and the result that a search for it alone would give.
     ///
-    /// Only triangles better than all admitted before are asked about, none twice: nearer, or as near and of a smaller number.
-    /// A search that refuses much looks at much: at everything nearer than its answer.
+    /// It is called only for triangles better than all admitted before (nearer, or as near and of a smaller
+    /// index), and never twice for one. A search that refuses many triangles examines everything nearer than
+    /// its answer.
     pub fn closest_where(
         &self,
         p: Point,
@@ -98,12 +102,12 @@ impl NearestTriangle {
         Arch::new().dispatch(One { tree: &self.tree, p, reach: distance * distance, admit })
     }
 
-    /// What [`closest`](Self::closest) says of each of many points.
+    /// The points of the surface closest to each of many points, as by [`closest`](Self::closest).
     ///
-    /// `guesses` are triangles near the points, one for each, best those of the last answers; no answer depends on
-    /// them, nor on the number of threads. Guesses beyond the triangles count as none: then the last answer is
-    /// the guess for the next point.
-    /// Points are asked in an order in which neighbours follow each other, so that what a search reads is still at hand.
+    /// `guesses` are triangles near the points, one for each, ideally from the previous answers. No answer
+    /// depends on them, nor on the number of threads. Guesses of triangles that do not exist are ignored:
+    /// then the last answer is the guess for the next point. Points are processed in an order in which
+    /// neighbours follow each other, so that what a search reads is still cached.
     ///
     /// Panics when there are guesses, but not one for each point.
     pub fn closest_all(
@@ -122,7 +126,7 @@ impl NearestTriangle {
         let runs = order.chunks(RUN).map(|order| Run { tree: &self.tree, points, guesses, order });
         let arch = Arch::new();
         let Some(pool) = threads.pool() else {
-            // Each run is put in its place at once: its memory serves the next.
+            // Each run is stored at once, so that the next one reuses its memory.
             let mut found = vec![None; points.len()];
             for run in runs {
                 let answers = arch.dispatch(run);
@@ -137,12 +141,14 @@ impl NearestTriangle {
         threads.map(points.len(), |i| answers[place[i] as usize / RUN][place[i] as usize % RUN])
     }
 
-    /// The nearest pair of a triangle of this surface and one of another: the squared distance and the two triangles; of pairs equally near the
-    /// first one. `None` when no pair is within the root of `start`.
+    /// The nearest pair of a triangle of this surface and one of another: the squared distance and the two
+    /// triangles. Among equally near pairs, the first one is found. `None` if no pair is within the square
+    /// root of `start`.
     ///
-    /// `pair(state, i, j, bound)` says the squared distance of triangle `i` of this surface from triangle `j` of the other, or `None` where
-    /// that is above `bound`. It is asked for those pairs alone whose boxes are near enough, on each thread with a state of its own. A good
-    /// `start`, such as the squared distance of any pair of points of the two surfaces, saves most of them.
+    /// `pair(state, i, j, bound)` returns the squared distance of triangle `i` of this surface from triangle
+    /// `j` of the other, or `None` if that is above `bound`. It is called only for pairs whose boxes are near
+    /// enough, with a state of its own on each thread. A good `start`, such as the squared distance of any
+    /// pair of points of the two surfaces, avoids most of the calls.
     pub fn closest_pair<T: Default>(
         &self,
         other: &Self,
@@ -167,7 +173,7 @@ impl NearestTriangle {
     }
 }
 
-/// One search, and many, compiled for the instructions that the machine has.
+/// One search, compiled for the instruction set of the machine, as is [`Run`] for many.
 struct One<'a, A> {
     tree: &'a Packed,
     p: Point,
@@ -191,7 +197,7 @@ struct Run<'a> {
     tree: &'a Packed,
     points: &'a [Point],
     guesses: Option<&'a [u32]>,
-    /// Which of the points.
+    /// Indices of the points to search from.
     order: &'a [u32],
 }
 

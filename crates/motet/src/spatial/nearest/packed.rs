@@ -1,8 +1,8 @@
 //! Triangles packed by eights, and boxes by eights above them.
 //!
-//! Triangles are put into an order in which neighbours follow each other. The tree then needs no links, since box `i` of a level
-//! lies around boxes or triangles `8 i` to `8 i + 7` of the level below (packed R-trees: Kamel and Faloutsos 1993, *On packing R-trees*).
-//! When points move, one pass from the leaves to the root makes it fit again.
+//! Triangles are ordered so that neighbours follow each other. The tree then needs no links: box `i` of a
+//! level lies around boxes or triangles `8 i` to `8 i + 7` of the level below (packed R-trees: Kamel and
+//! Faloutsos 1993, *On packing R-trees*). When points move, one pass from the leaves to the root refits it.
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -14,20 +14,21 @@ use crate::geometry::vector::{add, is_finite, scale, sub};
 use crate::spatial::around;
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
 
-/// What is farther off than 2^30 in a frame is brought there.
+/// Coordinates in a frame are clamped to this, 2^30.
 pub(super) const FARTHEST: f64 = 1_073_741_824.0;
 
-/// What to take from coordinates, and by what to multiply then, so that all lie between -1 and 1.
+/// The shift (subtract `centre`) and the factor (multiply by `scale`) that bring all coordinates between -1
+/// and 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     pub(super) centre: Point,
     pub(super) scale: f64,
-    /// The largest coordinate, without the sign.
+    /// The largest absolute coordinate.
     pub(super) largest: f64,
 }
 
 impl Frame {
-    /// The scale is a power of two, so that multiplying does not round.
+    /// The frame of the finite points. Its scale is a power of two, so that multiplying does not round.
     fn around(points: &[Point]) -> Self {
         let [low, high] = around(points.iter().copied().filter(|p| is_finite(*p)));
         let half = (0..3).map(|k| 0.5 * high[k] - 0.5 * low[k]).fold(0.0, f64::max);
@@ -39,7 +40,8 @@ impl Frame {
         Self { centre, scale: 2f64.powi(-exponent), largest }
     }
 
-    /// In units of the frame; what is far off is brought to its border at 2^30, which is no farther from anything inside.
+    /// Converts a point to units of the frame. It is clamped to 2^30, which brings it no farther from
+    /// anything inside.
     #[inline(always)]
     pub(super) fn of(&self, p: Point) -> [f32; 3] {
         let x = scale(sub(p, self.centre), self.scale);
@@ -50,14 +52,14 @@ impl Frame {
         ]
     }
 
-    /// Where a place in units of the frame is.
+    /// Converts a place in units of the frame back to a point.
     #[inline(always)]
     pub(super) fn back(&self, x: [f32; 3]) -> Point {
         add(scale(x.map(f64::from), 1.0 / self.scale), self.centre)
     }
 }
 
-/// Boxes of the lowest level, each with 512 triangles, that a thread fits in one go.
+/// Boxes of the lowest level, each with 512 triangles, that a thread fits at a time.
 const BOXES: usize = 8;
 
 /// The tree. A triangle is known by its *place* in the order; leaf `i` has places `8 i` to `8 i + 7`.
@@ -66,9 +68,10 @@ pub(super) struct Packed {
     pub(super) frame: Frame,
     /// The caller's ids of the triangles, by place.
     pub(super) ids: Vec<u32>,
-    /// And the other way round.
+    /// The place of each triangle, by the caller's id.
     pub(super) id_to_place: Vec<u32>,
-    /// By place; vertices are numbered as they come first, so that neighbours lie together.
+    /// The vertices of each triangle, by place. They are numbered in the order of first use, so that
+    /// neighbours lie together.
     triangles: Vec<[u32; 3]>,
     points: Vec<Point>,
     /// The caller's ids of the points.
@@ -76,17 +79,17 @@ pub(super) struct Packed {
     /// One more than the caller's largest id.
     n_points: usize,
     pub(super) leaves: Vec<Triangles>,
-    /// Which triangles of a leaf have finite corners.
+    /// For each leaf, a bit for each triangle whose corners are finite.
     pub(super) is_sound: Vec<u8>,
-    /// Around the leaves.
+    /// The boxes around the leaves.
     pub(super) turned: Vec<TurnedBoxes>,
-    /// From the root down to those around eight leaves each.
+    /// All boxes above, from the root down to those around eight leaves each.
     pub(super) boxes: Vec<Boxes>,
     /// Where in `boxes` each level starts, from the lowest up.
     levels: Vec<usize>,
-    /// What is the first in each of `boxes`, counting all `boxes`, then `turned`, then leaves.
+    /// The first child of each of `boxes`, numbered through all `boxes`, then `turned`, then leaves.
     pub(super) first_within: Vec<u32>,
-    /// Points in units of the frame; kept, since memory that was written before is cheaper.
+    /// Points in units of the frame; kept as a buffer, since memory that was written before is cheaper.
     framed: Vec<[f32; 3]>,
 }
 
@@ -104,7 +107,7 @@ impl Packed {
         for &id in &ids {
             let mut triangle = [0; 3];
             for (own, v) in triangle.iter_mut().zip(triangles[id as usize]) {
-                // One more than the number; 0 where there is none yet.
+                // One more than the number; 0 if there is none yet.
                 let number = &mut number[v.index()];
                 if *number == 0 {
                     vertices.push(v);
@@ -137,7 +140,7 @@ impl Packed {
         tree
     }
 
-    /// Takes over points that moved.
+    /// Refits the tree to points that moved.
     pub(super) fn fit(&mut self, points: &[Point], threads: &Threads) {
         assert!(points.len() >= self.n_points, "{} points, not {}", points.len(), self.n_points);
         self.points.clear();
@@ -157,7 +160,7 @@ impl Packed {
         }
     }
 
-    /// How many boxes of eight a level has.
+    /// How many groups of eight boxes a level has.
     fn n_at(&self, level: usize) -> usize {
         let end = if level == 0 { self.boxes.len() } else { self.levels[level - 1] };
         end - self.levels[level]
@@ -188,7 +191,7 @@ impl Packed {
         self.boxes[self.levels[0] + turned / 8].get(turned % 8)
     }
 
-    /// The box around the sound triangles of a leaf, which is not kept.
+    /// The box around the sound triangles of a leaf; computed, since it is not stored.
     #[inline(always)]
     pub(super) fn around_leaf<S: Simd>(&self, simd: S, leaf: usize) -> [[f32; 3]; 2] {
         self.leaves[leaf].boxes(simd).around_some(self.is_sound[leaf].into())
@@ -198,14 +201,15 @@ impl Packed {
         (id as usize) < self.ids.len()
     }
 
-    /// Numbers of the triangles in the order of their places; those that are none come last.
+    /// Indices into `triangles` in the order of the triangles' places; those of ids that do not exist come
+    /// last.
     pub(super) fn along_places(&self, triangles: &[u32]) -> Vec<u32> {
         let place =
             |&id: &u32| self.id_to_place.get(id as usize).map_or(u64::from(u32::MAX), |&place| place.into());
         sorted_by_key(triangles.iter().map(place))
     }
 
-    /// Bytes.
+    /// Bytes that the tree takes.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.ids[..])
             + size_of_val(&self.id_to_place[..])
@@ -226,7 +230,7 @@ impl Packed {
     }
 }
 
-/// Some of the leaves, with what is around them.
+/// Some of the leaves, with the boxes around them.
 struct FitLeaves<'a> {
     triangles: &'a [[u32; 3]],
     framed: &'a [[f32; 3]],
@@ -257,7 +261,7 @@ impl WithSimd for FitLeaves<'_> {
 }
 
 impl FitLeaves<'_> {
-    /// The box around the leaf.
+    /// Fits a leaf, and returns the box around its sound triangles.
     #[inline(always)]
     fn fit_leaf(&mut self, leaf: usize) -> ([f32; 3], [f32; 3]) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -286,7 +290,8 @@ impl FitLeaves<'_> {
     }
 }
 
-/// Where each level starts, from the lowest up, with the root first in memory; and how many boxes of eight there are.
+/// Where each level starts, from the lowest up (the root is first in memory), and how many groups of eight
+/// boxes there are.
 fn levels(n_turned: usize) -> (Vec<usize>, usize) {
     let mut counts = vec![n_turned.div_ceil(8)];
     while counts[counts.len() - 1] > 1 {
@@ -298,7 +303,7 @@ fn levels(n_turned: usize) -> (Vec<usize>, usize) {
     (starts, n)
 }
 
-/// What is the first in each of the boxes.
+/// The first child of each group of eight boxes.
 fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
     let mut first = vec![0; n_boxes];
     let mut start_below = n_boxes;
@@ -312,19 +317,21 @@ fn first_within(levels: &[usize], n_boxes: usize) -> Vec<u32> {
     first
 }
 
-/// The middle of the longest edge of a triangle, in whole numbers of the same order, and its id. In 32 bits, as all that matters is which are neighbours.
+/// The midpoint of the longest edge of a triangle, as integers of the same order, and the id of the triangle.
+/// 32 bits suffice, since all that matters is which triangles are neighbours.
 type Item = ([i32; 3], u32);
 
-/// A whole number for each number, larger for larger ones; and back, by its bits.
+/// Maps the bits of a number to an integer, in the order of the numbers. It is its own inverse.
 #[inline(always)]
 fn ordered(bits: u32) -> i32 {
     let bits = bits as i32;
     bits ^ ((bits >> 31) as u32 >> 1) as i32
 }
 
-/// Ids of the triangles, neighbours together: halved across the longest side of the box of their middles, down to eights.
+/// Ids of the triangles, neighbours together: halved across the longest side of the box of their midpoints,
+/// down to eights.
 ///
-/// A Hilbert curve takes a third of the time of this, but a search then looks at twice the boxes.
+/// A Hilbert curve takes a third of the time, but searches then examine twice as many boxes.
 fn by_halves(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<u32> {
     let used = || triangles.iter().map(|t| points[t[0].index()]).filter(|p| is_finite(*p));
     let (corner, extent) = cube(used());
@@ -341,8 +348,9 @@ fn by_halves(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -
     items.into_iter().map(|item| item.1).collect()
 }
 
-/// Twice the middle of the longest edge. Triangles that share it, as the two of a quad do, have the same one to the bit,
-/// and halving leaves them together: with centres of gravity, leaves overlap, and searches near a tube take 10 % longer.
+/// Twice the midpoint of the longest edge. Triangles that share this edge, as the two of a quad do, have the
+/// same midpoint to the bit, so halving keeps them together. With centroids instead, leaves overlap, and
+/// searches near a tube take 10 % longer.
 #[inline(always)]
 fn middle_of_longest([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
     let squared = |x: [f32; 3], y: [f32; 3]| {
@@ -360,12 +368,14 @@ fn middle_of_longest([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
     [x[0] + y[0], x[1] + y[1], x[2] + y[2]]
 }
 
-/// No more items than this are halved by one thread.
+/// Up to this many items are halved by one thread.
 const SHARED: usize = 2048;
 
-/// Halves are of eight times a power of two, so that leaves and boxes of leaves are halves, too.
+/// Sorts by halving. The first half has eight times a power of two items, so that leaves and boxes of leaves
+/// are halves, too.
 ///
-/// Every other time, the box is what the halving before left of it: 4 % of the time of a build.
+/// On every other level the box is the one that the previous halving left, which saves 4 % of the time of a
+/// build.
 fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     if items.len() <= 8 {
         return;
@@ -382,7 +392,7 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     let side = [0, 1, 2].map(|k| back(high[k]) - back(low[k]));
     let axis = (0..3).fold(0, |most, k| if side[k] > side[most] { k } else { most });
     let half = 4 * items.len().div_ceil(8).next_power_of_two();
-    // One comparison, of numbers none of which are equal.
+    // A single comparison of integers, no two of which are equal.
     items.select_nth_unstable_by_key(half, |x| i64::from(x.0[axis]) << 32 | i64::from(x.1));
     let cut = items[half].0[axis];
     let (left, right) = items.split_at_mut(half);
@@ -400,7 +410,7 @@ fn halve(items: &mut [Item], known: Option<[[i32; 3]; 2]>, is_shared: bool) {
     }
 }
 
-/// Numbers of the points along a Hilbert curve through the finite ones.
+/// Indices of the points in their order along a Hilbert curve through the finite ones.
 pub(super) fn along_curve(points: &[Point], threads: &Threads) -> Vec<u32> {
     assert!(points.len() < 1 << (64 - KEY_BITS), "{} are too many", points.len());
     let (corner, extent) = cube(points.iter().copied().filter(|p| is_finite(*p)));
@@ -408,13 +418,13 @@ pub(super) fn along_curve(points: &[Point], threads: &Threads) -> Vec<u32> {
     sorted_by_key(threads.map(points.len(), |i| curve.key(points[i])).into_iter())
 }
 
-/// Numbers in the order of keys of at most [`KEY_BITS`].
+/// Indices in the order of the keys, which have at most [`KEY_BITS`] bits.
 fn sorted_by_key(keys: impl Iterator<Item = u64>) -> Vec<u32> {
     let keyed = keys.zip(0u64..).map(|(key, id)| key << (64 - KEY_BITS) | id).collect();
     radix_sorted(keyed).into_iter().map(|x| (x & ((1 << (64 - KEY_BITS)) - 1)) as u32).collect()
 }
 
-/// Sorts by the upper [`KEY_BITS`], least digits first; equal keys stay in order.
+/// Sorts by the upper [`KEY_BITS`] bits, least significant digit first; equal keys stay in order.
 fn radix_sorted(mut keyed: Vec<u64>) -> Vec<u64> {
     const DIGIT: u32 = 11;
     if keyed.len() < 4096 {

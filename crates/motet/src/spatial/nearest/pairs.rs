@@ -1,7 +1,8 @@
-//! The nearest pair of triangles of two surfaces: which pairs are worth an exact look.
+//! The nearest pair of triangles of two surfaces: finds the pairs that are worth an exact computation.
 //!
-//! Eight leaves of one tree go down the other together, as one box. Two leaves are then seen along the direction in which each lies
-//! flat, which parts most surfaces that are a small gap apart. What two triangles are apart is the caller's to say.
+//! Eight leaves of one tree descend the other together, as one box. Two leaves are then compared along the
+//! direction in which each lies flat, which separates most surfaces that are a small gap apart. The caller
+//! computes the distance of two triangles.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -14,7 +15,8 @@ use super::packed::{FARTHEST, Packed};
 use super::search::{ROUNDING_OF_EXACT, UNDERFLOW, bound};
 use crate::geometry::vector::{scale, sub};
 
-/// The square of the least distance so far, which all threads share. Whoever reads it late looks at more pairs, and finds the same.
+/// The square of the smallest distance so far, shared by all threads. A thread that reads it late examines
+/// more pairs, but finds the same result.
 pub(super) struct Reach(AtomicU64);
 
 impl Reach {
@@ -27,18 +29,19 @@ impl Reach {
         f64::from_bits(self.0.load(Relaxed))
     }
 
-    /// Bits of numbers that are not negative are in the order of the numbers.
+    /// Lowers the reach to `to` if that is smaller. Bits of non-negative numbers are in the order of the
+    /// numbers.
     fn lower(&self, to: f64) {
         self.0.fetch_min(to.to_bits(), Relaxed);
     }
 }
 
-/// The search from some eights of leaves of `from`.
+/// The search from some groups of eight leaves of `from`.
 pub(super) struct Pairs<'a, F> {
     pub(super) from: &'a Packed,
     pub(super) to: &'a Packed,
     pub(super) eights: Range<usize>,
-    /// What is farther does not count.
+    /// The square of the distance beyond which pairs do not count.
     pub(super) reach: &'a Reach,
     pub(super) pair: F,
 }
@@ -73,7 +76,8 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> WithSimd for Pairs<'_, F> {
 }
 
 impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
-    /// Which of `to.turned` are near eight leaves of `from`, and near which of the eight, by bits.
+    /// Finds those of `to.turned` that are near eight leaves of `from`, with a bit for each of the eight that
+    /// they are near.
     #[inline(always)]
     fn descend<S: Simd>(&self, simd: S, eight: usize, open: &mut Vec<u32>, nearby: &mut Vec<(usize, u32)>) {
         nearby.clear();
@@ -92,7 +96,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
                 continue;
             }
             let turned = node - self.to.boxes.len();
-            // No closure: it would not be compiled for the instructions that are at hand.
+            // Not a closure, which would not be compiled for the instruction set in use.
             let own = match leaves {
                 None => self.leaves(simd, eight),
                 Some(known) => known,
@@ -106,7 +110,8 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         }
     }
 
-    /// Around each of eight leaves of `from`, in the frame of `to`; nothing around those without a sound triangle.
+    /// The boxes around eight leaves of `from`, in the frame of `to`; empty for leaves without a sound
+    /// triangle.
     #[inline(always)]
     fn leaves<S: Simd>(&self, simd: S, eight: usize) -> Boxes {
         let mut out = Boxes::EMPTY;
@@ -134,7 +139,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
     #[inline(always)]
     fn triangles(&self, leaf: usize) -> Triangles {
         let (from, to) = (&self.from.frame, &self.to.frame);
-        // Of a larger ratio, too, all but 0 is brought to the border.
+        // With a larger ratio, too, everything but 0 is clamped.
         let ratio = (to.scale / from.scale).min(1e300);
         let shift = scale(sub(from.centre, to.centre), to.scale);
         let mut out = self.from.leaves[leaf];
@@ -148,7 +153,7 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         out
     }
 
-    /// How far rounding may bring a bound off, for what is in this box of the frame of `to`.
+    /// How far rounding may move a bound, for whatever lies in this box of the frame of `to`.
     #[inline(always)]
     fn rounding(&self, around: [[f32; 3]; 2]) -> f64 {
         let (from, to) = (&self.from.frame, &self.to.frame);
@@ -157,13 +162,14 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         ROUNDING * (1.0 + size + to.scale / from.scale) + exact
     }
 
-    /// What has a lower bound above this is farther than `reach`, whatever rounding did.
+    /// The threshold above which a lower bound proves that a pair is farther apart than `reach`, whatever
+    /// rounding did.
     #[inline(always)]
     fn bound(&self, rounding: f64) -> f32 {
         bound(self.reach.get().sqrt() * self.to.frame.scale + rounding)
     }
 
-    /// All pairs of two leaves whose boxes are near enough, and whose triangles are not clearly farther.
+    /// Calls `pair` for those pairs of triangles of two leaves whose bounds are within reach.
     #[inline(always)]
     fn look_into<S: Simd>(&mut self, simd: S, own: &Leaf, other: usize, best: &mut Option<(f64, u32, u32)>) {
         let others = &self.to.leaves[other];
@@ -211,14 +217,14 @@ impl<F: FnMut(u32, u32, f64) -> Option<f64>> Pairs<'_, F> {
         }
     }
 
-    /// A box of the frame of `from` in that of `to`.
+    /// Converts a box from the frame of `from` to that of `to`.
     #[inline(always)]
     fn framed(&self, corners: [[f32; 3]; 2]) -> [[f32; 3]; 2] {
         corners.map(|x| self.to.frame.of(self.from.frame.back(x)))
     }
 }
 
-/// How far two intervals are apart, squared.
+/// The squared distance of two intervals; 0 where they overlap.
 #[inline(always)]
 fn apart_squared([a, b]: [f32; 2], [c, d]: [f32; 2]) -> f32 {
     let apart = larger(larger(c - b, a - d), 0.0);
@@ -228,18 +234,18 @@ fn apart_squared([a, b]: [f32; 2], [c, d]: [f32; 2]) -> f32 {
 /// A leaf of `from`, in the frame of `to`.
 struct Leaf {
     place: usize,
-    /// Which of its triangles are, by bits.
+    /// A bit for each sound triangle.
     is_sound: u32,
     triangles: Triangles,
-    /// Around each; anything around those that are not sound.
+    /// The box around each triangle; arbitrary for those that are not sound.
     boxes: Boxes,
-    /// Around all that are sound.
+    /// The box around all sound triangles.
     around: [[f32; 3]; 2],
-    /// In which direction they lie flat, and from where to where they reach along it.
+    /// The direction in which the triangles lie flat, and the interval that they cover along it.
     flat: [f32; 3],
     ends: [f32; 2],
-    /// How far rounding may bring a bound off.
+    /// How far rounding may move a bound.
     rounding: f64,
-    /// Too far off in the frame of `to` for slabs.
+    /// Whether the leaf is too far off in the frame of `to` for slabs.
     is_far: bool,
 }

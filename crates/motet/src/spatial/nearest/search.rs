@@ -1,4 +1,4 @@
-//! One search: what is known of the nearest triangle, and the way down the boxes that are near enough, the nearest first.
+//! One search: its state, and the descent through the boxes that are near enough, the nearest first.
 
 use pulp::Simd;
 
@@ -11,30 +11,32 @@ use crate::base::Point;
 use crate::geometry::triangle;
 use crate::geometry::vector::{dot, is_finite, sub};
 
-/// A tree over 2^31 triangles has eleven levels, each leaves up to seven boxes behind.
+/// The size of the stack. A tree over 2^31 triangles has eleven levels, each of which leaves up to seven
+/// boxes behind.
 pub(super) const OPEN: usize = 8 * 12;
 
-/// At most so many triangles wait for an exact look. For a point near a tube there are two or three.
+/// How many triangles may wait for an exact computation. For a point near a tube there are two or three.
 const WAITING: usize = 16;
 
-/// Rounding of exact distances, over the largest coordinates: `triangle::closest` is off by less than ten units in the last place
-/// of those. With it, what the tree leaves out cannot be what a look at every triangle finds.
+/// The rounding error of exact distances, relative to the largest coordinates: `triangle::closest` is off by
+/// less than ten units in the last place of those. It ensures that the tree leaves out nothing that a search
+/// of every triangle would find.
 pub(super) const ROUNDING_OF_EXACT: f64 = 32.0 * f64::EPSILON;
 
-/// Distances below this may have no square, and are all alike then.
+/// Distances below this may have squares that underflow, and all count as equal.
 pub(super) const UNDERFLOW: f64 = 1e-150;
 
-/// Bounds are kept below this, so that boxes without an inside, which are infinitely far off, are beyond them.
+/// Bounds are kept below this, so that empty boxes, which are infinitely far off, are beyond them.
 const MOST: f64 = 1e38;
 
-/// Points at least so far off are not where they are said to be in the frame.
+/// Points at least this far off in the frame may have been clamped.
 const FAR: f64 = 1e9;
 
-/// A part of the tree, or the place of a triangle, and a lower bound of its squared distance.
+/// A node of the tree, or the place of a triangle, with a lower bound of its squared distance.
 pub(super) struct Node(pub(super) u32, pub(super) f32);
 
 impl Node {
-    /// In the order of the bound: bits of numbers above zero rise as the numbers do.
+    /// Packs the node into an integer, ordered by the bound: bits of positive numbers rise as the numbers do.
     #[inline(always)]
     pub(super) fn packed(self) -> u64 {
         u64::from(self.1.to_bits()) << 32 | u64::from(self.0)
@@ -46,7 +48,7 @@ impl Node {
     }
 }
 
-/// What is nearest goes last; the others stay where they are, or one place on.
+/// Moves the nearest node to the end; each of the others moves by at most one place.
 #[inline(always)]
 pub(super) fn put_nearest_on_top(nodes: &mut [u64]) {
     for i in 1..nodes.len() {
@@ -55,7 +57,7 @@ pub(super) fn put_nearest_on_top(nodes: &mut [u64]) {
     }
 }
 
-/// Takes the least out of the first `n`; `None` when there are none.
+/// Removes the least of the first `n`; `None` if there are none.
 #[inline(always)]
 fn take_least(all: &mut [u64; WAITING], n: &mut usize) -> Option<Node> {
     if *n == 0 {
@@ -65,15 +67,15 @@ fn take_least(all: &mut [u64; WAITING], n: &mut usize) -> Option<Node> {
     let last = all[*n];
     let mut least = last;
     for x in &mut all[..*n] {
-        // Exchanged with the least so far.
+        // Swapped with the least so far.
         (*x, least) = ((*x).max(least), (*x).min(least));
     }
     Some(Node::of(least))
 }
 
-/// Which triangles count.
+/// Decides which triangles count.
 pub(super) trait Admit {
-    /// Whether all of them do.
+    /// Whether all triangles count.
     const ALL: bool;
 
     fn admits(&mut self, id: u32, found: &Closest) -> bool;
@@ -90,7 +92,7 @@ impl Admit for All {
     }
 }
 
-/// Those of which the function says so.
+/// Counts the triangles for which the function returns true.
 pub(super) struct Where<F>(pub(super) F);
 
 impl<F: FnMut(u32, &Closest) -> bool> Admit for Where<F> {
@@ -102,27 +104,29 @@ impl<F: FnMut(u32, &Closest) -> bool> Admit for Where<F> {
     }
 }
 
-/// The search for the triangle nearest to a point, of those equally near the one of smallest id.
+/// The search for the triangle nearest to a point; among equally near ones, for that of smallest id.
 ///
-/// Bounds of 32 bits, below and above, say which triangles may be the nearest; of these, mostly one, exact looks are taken at the
-/// end. That takes a sixth of the time of a search; with a look at each triangle that was the nearest so far there would be twice as many.
+/// Lower and upper bounds in 32 bits decide which triangles may be the nearest; exact distances are computed
+/// for these, mostly one, at the end. That takes a sixth of the time of a search. Computing one for each
+/// triangle that is the nearest so far would take twice as many.
 pub(super) struct Search<'a, S, A> {
     tree: &'a Packed,
     simd: S,
     framed: [f32; 3],
-    /// What has a lower bound above this is farther than `reach` or than another triangle, whatever rounding did.
+    /// The threshold above which a lower bound proves that something is farther than `reach` or than another
+    /// triangle, whatever rounding did.
     bound: f32,
     admit: A,
     p: Point,
     /// How far a lower bound may be above the distance, in units of the frame.
     rounding: f64,
-    /// Near enough for bounds above: not [`FAR`].
+    /// Whether the point is near enough for upper bounds: nearer than [`FAR`].
     is_near: bool,
-    /// What is farther than its root does not count.
+    /// The squared distance beyond which nothing counts.
     reach: f64,
-    /// The nearest bound above so far, squared.
+    /// The least upper bound so far, squared.
     above: f32,
-    /// A leaf that was looked into already.
+    /// A leaf that was examined already.
     seen: usize,
     waiting: [u64; WAITING],
     n_waiting: usize,
@@ -130,7 +134,8 @@ pub(super) struct Search<'a, S, A> {
 }
 
 impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
-    /// Within the square root of `reach`. `None` where there is nothing to find.
+    /// Begins a search within the square root of `reach`; `None` if there is no triangle or `p` is not
+    /// finite.
     #[inline(always)]
     pub(super) fn new(tree: &'a Packed, simd: S, p: Point, reach: f64, admit: A) -> Option<Self> {
         if tree.leaves.is_empty() || !is_finite(p) {
@@ -162,7 +167,8 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         })
     }
 
-    /// Looks into the leaf of a triangle, by its id, to begin with: the nearer it is, the more that saves.
+    /// Examines the leaf of triangle `id` first: the nearer it is, the more this saves. Ids that do not exist
+    /// are ignored.
     #[inline(always)]
     pub(super) fn begin_at(&mut self, id: u32) {
         if let Some(&place) = self.tree.id_to_place.get(id as usize) {
@@ -171,14 +177,14 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         }
     }
 
-    /// What it came to.
+    /// Computes the distances still waiting, and returns the nearest triangle.
     #[inline(always)]
     pub(super) fn finish(&mut self) -> Option<Closest> {
         self.look_at_waiting();
         self.best.filter(|best| best.distance_squared.is_finite())
     }
 
-    /// The exact distance of one triangle.
+    /// Computes the exact distance of the triangle at `place`, and keeps it if it is the nearest so far.
     #[inline(always)]
     fn look_at(&mut self, place: usize) {
         let corners = self.tree.corners(place);
@@ -214,13 +220,13 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         }
     }
 
-    /// From the root.
+    /// Searches from the root.
     #[inline(always)]
     pub(super) fn descend(&mut self) {
         self.descend_from([0; OPEN], 1);
     }
 
-    /// The same from boxes near by, where they are known to do.
+    /// Searches from the boxes nearby if they suffice, else from the root.
     #[inline(always)]
     pub(super) fn descend_nearby(&mut self, nearby: &mut Nearby) {
         let mut open = [0; OPEN];
@@ -278,7 +284,8 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
         }
     }
 
-    /// Those triangles of a leaf that may be near enough wait; where some do not count, no longer than for each other.
+    /// Queues those triangles of a leaf that may be near enough. If not all triangles count, the queue is
+    /// emptied after each leaf.
     #[inline(always)]
     fn look_into(&mut self, leaf: usize) {
         if leaf == self.seen {
@@ -307,7 +314,7 @@ impl<'a, S: Simd, A: Admit> Search<'a, S, A> {
     }
 }
 
-/// The bound for squares of this distance, which holds for rounded ones, too.
+/// The threshold for squares of bounds, for a distance; it allows for the rounding of the squares.
 #[inline(always)]
 pub(super) fn bound(distance: f64) -> f32 {
     let bound = distance * distance * (1.0 + 2.0 * ROUNDING_OF_SQUARE);

@@ -1,14 +1,16 @@
-//! Boxes that lie flat around a piece of a surface, eight at a time, and how far from a point or from each other they are at least.
+//! Boxes that lie flat around pieces of a surface, eight at a time, and lower bounds of their distances from
+//! a point or a box.
 
 use pulp::Simd;
 
 use super::eights::{Boxes, Triangles};
 use super::lanes::{Eight, Lanes, cross, dot, load, parts, splat, sub};
 
-/// Eight boxes, each turned so that it lies flat around its triangles: `low <= turn x <= high`. One without an inside holds nothing.
+/// Eight boxes, each turned to lie flat around its triangles: `low <= turn x <= high`. A box with `low` above
+/// `high` is empty.
 ///
-/// Seen askew, a flat piece of a surface fills a thick box with sides along the axes. For a point near a tube, 3 leaves are looked
-/// into; with such boxes it would be 8.
+/// A flat piece of a surface that lies askew fills a thick axis-aligned box. For a point near a tube, 3
+/// leaves are examined; with axis-aligned boxes it would be 8.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(super) struct TurnedBoxes {
@@ -19,7 +21,7 @@ pub(super) struct TurnedBoxes {
 impl TurnedBoxes {
     pub(super) const EMPTY: Self = Self { turn: [[[0.0; 8]; 3]; 3], sides: Boxes::EMPTY };
 
-    /// From `p` to each box, but for rounding: 0 within, infinite where there is no box.
+    /// Squared distances from `p` to each box, but for rounding: 0 inside, infinite for an empty box.
     #[inline(always)]
     pub(super) fn distances_squared<S: Simd>(&self, simd: S, p: [f32; 3]) -> Eight {
         let mut out = [0.0; 8];
@@ -37,9 +39,11 @@ impl TurnedBoxes {
         out
     }
 
-    /// From a box with sides along the axes to each, but for rounding: how far apart they are as seen along the axes of the turned one.
+    /// Squared lower bounds of the distances from an axis-aligned box to each box, but for rounding: how far
+    /// apart they are along the axes of the turned one.
     ///
-    /// The other directions that could part two boxes (Gottschalk, Lin and Manocha 1996, *OBBTree*) are left out.
+    /// The other directions that could separate two boxes (Gottschalk, Lin and Manocha 1996, *OBBTree*) are
+    /// left out.
     #[inline(always)]
     pub(super) fn distances_squared_to<S: Simd>(&self, simd: S, [low, high]: [[f32; 3]; 2]) -> Eight {
         let mut out = [0.0; 8];
@@ -60,13 +64,13 @@ impl TurnedBoxes {
         out
     }
 
-    /// The direction in which a box is flat, no longer than 1, and where it begins and ends along it.
+    /// The direction in which a box is flat, of length at most 1, and the ends of the box along it.
     #[inline(always)]
     pub(super) fn flat(&self, lane: usize) -> ([f32; 3], [f32; 2]) {
         (self.turn[2].map(|x| x[lane]), [self.sides.low[2][lane], self.sides.high[2][lane]])
     }
 
-    /// Makes one of the boxes that around the sound ones of eight triangles.
+    /// Makes box `lane` the one around the sound ones of eight triangles.
     #[inline(always)]
     pub(super) fn set<S: Simd>(&mut self, simd: S, lane: usize, triangles: &Triangles, is_sound: u8) {
         let turn = turn(simd, triangles, is_sound);
@@ -81,12 +85,12 @@ impl TurnedBoxes {
     }
 }
 
-/// Three directions at right angles that make no length longer: an edge of the first sound triangle as seen along the normal, what is
-/// across both, and the normal, that of all sound triangles together. With the normal of the first one the box is twice as thick, and
-/// searches take 6 % longer.
+/// Three orthogonal directions of length at most 1: an edge of the first sound triangle, projected along the
+/// normal; the direction across both; and the normal of all sound triangles together. With the normal of the
+/// first triangle alone, the box is twice as thick, and searches take 6 % longer.
 #[inline(always)]
 fn turn<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] {
-    // Smaller than 1 by more than the rounding of what follows.
+    // Below 1 by more than the rounding of what follows.
     const SHORT: f32 = 1.0 - 4e-6;
     let product = |x: [f32; 3], y: [f32; 3]| x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
     let short = |x: [f32; 3]| {
@@ -104,7 +108,7 @@ fn turn<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] 
         normal[2] * along[0] - normal[0] * along[2],
         normal[0] * along[1] - normal[1] * along[0],
     ]);
-    // Not of triangles without area, nor of NaN.
+    // False for triangles without area, and for NaN.
     let is_right = |x, y| product(x, y).abs() < 1e-6;
     let is_long = |x| product(x, x) > 0.9;
     let is_turn = is_right(along, normal) && is_right(along, across) && is_right(normal, across);
@@ -115,7 +119,7 @@ fn turn<S: Simd>(simd: S, triangles: &Triangles, is_sound: u8) -> [[f32; 3]; 3] 
     }
 }
 
-/// Twice that of all together, but for those with a corner that is NaN.
+/// Twice the area vector of all triangles together, ignoring those with a corner that is NaN.
 #[inline(always)]
 fn area_vector<S: Simd>(simd: S, triangles: &Triangles) -> [f32; 3] {
     let mut out = [0.0; 3];

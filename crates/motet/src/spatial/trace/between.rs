@@ -1,18 +1,20 @@
-//! The whole history between two meshes, from what is known to be the same.
+//! The whole history between two meshes, given which vertices and cells are the same.
 
 use super::{ChangedVertex, Labelled, LocalChange, quadratic, trace};
 use crate::base::{CellId, Error, Id, Result, Threads, VertexId};
 use crate::mesh::history::{History, Origins};
 use crate::mesh::{CellKind, Labels, Mesh};
 
-/// The history from `old` to `new`. `vertex_to_old` and `cell_to_old` have for each vertex and each cell of `new` the id it
-/// had in `old`, or [`Id::NONE`] where it is new.
+/// Builds the history from `old` to `new`. `vertex_to_old` and `cell_to_old` give, for each vertex and each
+/// cell of `new`, its id in `old`, or [`Id::NONE`] if it is new.
 ///
-/// Vertices with the same id at another place are moved; tets that have one count as changed, other cells do not. New tets and triangles are
-/// traced within the regions and patches that the meshes have in their arrays; new cells of other kinds cannot be.
+/// A vertex with an old id but at another place counts as moved. Tets with a moved vertex count as changed;
+/// other cells do not. New tets and triangles are traced within the regions and patches given by the arrays
+/// of the meshes; new cells of other kinds cannot be traced.
 ///
 /// # Errors
-/// When the lists do not fit the meshes, for a new cell of another kind, and as [`trace`] has it.
+/// When the lists do not fit the meshes, when a new cell is neither a tet nor a triangle, and when [`trace`]
+/// fails.
 pub fn between(
     old: &Mesh,
     new: &Mesh,
@@ -55,8 +57,8 @@ pub fn between(
     })
 }
 
-/// The vertices that are new or elsewhere; they get no old id in `to_old`. One that is elsewhere but in no tet stays what
-/// it was, since there is nothing to interpolate in.
+/// The vertices that are new or moved, which lose their old id in `to_old`. A moved vertex that is in no tet
+/// keeps its old id, since there is nothing to interpolate in.
 fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [VertexId]) -> Vec<ChangedVertex> {
     let mut has_tet = vec![false; new.points.len()];
     new.cells.tets().for_each(|(_, tet)| tet.iter().for_each(|v| has_tet[v.index()] = true));
@@ -73,7 +75,7 @@ fn changed_vertices(old: &Mesh, new: &Mesh, to_old: &mut [VertexId]) -> Vec<Chan
     changed
 }
 
-/// The cells of one kind where `picked` holds, with their labels.
+/// The cells of one kind for which `picked` is true, with their labels.
 fn labelled<const N: usize>(
     mesh: &Mesh,
     picked: &[bool],

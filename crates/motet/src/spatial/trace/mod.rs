@@ -1,4 +1,5 @@
-//! Where what is new in a mesh came from: found by geometry, in time with what changed.
+//! Traces where everything new in a mesh came from, by geometry, in time proportional to the size of the
+//! change.
 //!
 //! | new | comes from |
 //! |---|---|
@@ -6,9 +7,10 @@
 //! | a tet | the removed tets of its region that it overlaps, with their parts of its volume |
 //! | a triangle | the removed triangle of its patch that is nearest to its centre |
 //!
-//! The parts of volumes are those of the supermesh, the common refinement of old and new tets (Farrell and Maddison 2011,
-//! *Conservative interpolation between volume meshes by local Galerkin projection*); of it only the volumes are needed.
-//! [`between`] makes the whole history of two meshes, [`trace`] the rows of what changed alone.
+//! The common volumes are those of the supermesh, the common refinement of old and new tets (Farrell and
+//! Maddison 2011, *Conservative interpolation between volume meshes by local Galerkin projection*), of which
+//! only the volumes are needed. [`between`] builds the whole history between two meshes, [`trace`] only the
+//! rows of what changed.
 
 mod between;
 mod quadratic;
@@ -42,44 +44,48 @@ pub struct ChangedVertex {
     pub was: Option<VertexId>,
 }
 
-/// What went and what came. In any order; nothing twice.
+/// A local change of a mesh: what was removed, and what replaced it. Lists are in any order, without repeats.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LocalChange<'a> {
     /// All points of the old mesh.
     pub old_points: &'a [Point],
     /// All points of the new mesh.
     pub new_points: &'a [Point],
-    /// Tets that went, or have a vertex that was moved; ids of the old mesh. They may be inverted or flat.
+    /// Tets that were removed, or have a vertex that was moved; ids of the old mesh. They may be inverted or
+    /// flat.
     pub removed_tets: &'a [Labelled<4>],
-    /// Tets that came in their place; ids of the new mesh.
+    /// Tets that replace them; ids of the new mesh.
     pub new_tets: &'a [Labelled<4>],
-    /// Triangles that went; ids of the old mesh.
+    /// Triangles that were removed; ids of the old mesh.
     pub removed_triangles: &'a [Labelled<3>],
-    /// Triangles that came; ids of the new mesh.
+    /// Triangles that replace them; ids of the new mesh.
     pub new_triangles: &'a [Labelled<3>],
-    /// Vertices that came or were moved.
+    /// New and moved vertices.
     pub changed_vertices: &'a [ChangedVertex],
 }
 
-/// The rows of what changed, for [`Origins::new`](crate::mesh::history::Origins::new), and how volumes fit.
+/// The rows of what changed, for [`Origins::new`](crate::mesh::history::Origins::new), and how well volumes
+/// match.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traced {
     /// A row for each changed vertex.
     pub vertices: Rows<VertexId>,
     /// A row for each new tet and triangle.
     pub cells: Rows<CellId>,
-    /// Volumes, region by region; vertices outside.
+    /// Volumes before and after, by region, and how many vertices lay outside of all removed tets, and how
+    /// far.
     pub ledger: Ledger,
 }
 
-/// Finds where everything new came from. The same for any number of threads.
+/// Traces where everything new came from. The result does not depend on the number of threads.
 ///
-/// A vertex outside of all removed tets takes the values of their nearest place, a tet that overlaps none of its region those of
-/// the nearest one; the ledger has both. Volumes of inverted tets count as positive.
+/// A vertex outside of all removed tets takes the values at the nearest place in them. A tet that overlaps no
+/// removed tet of its region takes the values of the nearest one. The ledger records both. Volumes of
+/// inverted tets count as positive.
 ///
 /// # Errors
-/// When something new has nothing to come from: no tet of its region, no triangle, no tet at all was removed; and
-/// when a new vertex has coordinates that are no numbers.
+/// When something new has no source: no tet of its region, no triangle of its patch, or no tet at all was
+/// removed; and when a new vertex has coordinates that are NaN.
 ///
 /// Panics when a vertex id is beyond the points.
 pub fn trace(change: &LocalChange<'_>, threads: &Threads) -> Result<Traced> {
@@ -98,13 +104,13 @@ pub fn trace(change: &LocalChange<'_>, threads: &Threads) -> Result<Traced> {
     Ok(Traced { vertices: vertices.rows, cells, ledger })
 }
 
-/// A new cell, the old cells it comes from with their shares (of any sum), and the main one.
+/// A new cell, the old cells it comes from with their shares (whose sum is arbitrary), and the main one.
 type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
 
-/// What a thread takes in one go: a tet has some dozens of overlaps to compute.
+/// The least number of items that a thread takes at a time: a tet has some dozens of overlaps to compute.
 const CHUNK: usize = 64;
 
-/// `of` each item, in their order.
+/// Applies `of` to each item; results are in the order of the items.
 fn map<T: Sync, U: Send>(items: &[T], threads: &Threads, of: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
     use rayon::prelude::*;
     match threads.pool() {

@@ -1,15 +1,19 @@
-//! Rows for quadratic fields: a vertex in a tet takes its value from the tet's corners and what is around them.
+//! Rows for quadratic fields: a vertex in a tet takes its value from the tet's corners and from the vertices
+//! around them.
 //!
 //! With the weights `w_i` of a place `p` in a tet with corners `x_i`, values `u_i` and gradients `g_i` there,
 //!
 //! `u(p) = sum w_i (u_i + g_i . (p - x_i) / 2)`
 //!
-//! is exact for quadratic fields: the sum of `w_i u_i` is off by that of `w_i (x_i - p) . H (x_i - p) / 2`, which the other term takes away. The gradient at a
-//! corner is that of the quadratic through its value which comes nearest to the values around (least squares), as Zhang and Naga 2005, *A new finite element
-//! gradient recovery method: superconvergence property*, have it. It is linear in these values, so all of it is a row.
+//! is exact for quadratic fields: the error of the sum of `w_i u_i` is the sum of
+//! `w_i (x_i - p) . H (x_i - p) / 2`, which the other term cancels. The gradient at a corner is that of the
+//! quadratic that takes the value at the corner and fits the values around it best (least squares), as in
+//! Zhang and Naga 2005, *A new finite element gradient recovery method: superconvergence property*. It is
+//! linear in these values, so the whole formula is one row.
 //!
-//! Values around are those across no wall: neither across a triangle of the mesh nor in another region, where a field may have a kink. A vertex whose tet has
-//! only corners on walls has no such row: what holds on walls is not to depend on what is off them.
+//! Only values on the same side of all walls are used: none across a triangle of the mesh or from another
+//! region, where a field may have a kink. A vertex whose tet has all its corners on walls gets no such row:
+//! values on walls must not depend on values off them.
 
 use std::collections::BTreeMap;
 
@@ -20,16 +24,19 @@ use crate::mesh::history::{Rows, merge};
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{CellKind, Mesh};
 
-/// Negative shares of a row sum to this at most; what goes beyond is scaled down towards the row for linear fields. A row with more could make of rounding what is none.
+/// The most that the negative shares of a row may sum to. A row with more is scaled down towards the row for
+/// linear fields, since it could amplify round-off.
 const NEGATIVE: f64 = 0.5;
 
-/// A fit that leaves less than this part of one of its nine terms by itself is none.
+/// A fit is rejected if less than this fraction of one of its nine terms is independent of the terms before
+/// it.
 const INDEPENDENT: f64 = 1e-6;
 
 /// No tet.
 const NONE: u32 = u32::MAX;
 
-/// Rows for quadratic fields of those new vertices that can have one. `rows` are those for linear fields, with vertices of `old` that share a tet. The same for any number of threads.
+/// Rows for quadratic fields, for those new vertices that can have one. `rows` are the rows for linear
+/// fields, each over vertices of `old` that share a tet. The result does not depend on the number of threads.
 ///
 /// Panics when a vertex id is beyond the points.
 pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) -> Rows<VertexId> {
@@ -65,10 +72,12 @@ pub(crate) fn quadratic(old: &Mesh, rows: &Rows<VertexId>, threads: &Threads) ->
     found
 }
 
-/// By what each value around a vertex, less its own, is to be multiplied; the sum is the gradient there.
+/// The gradient at a vertex as one factor for each vertex around it: factors times differences to its own
+/// value, summed.
 type Gradient = Vec<(VertexId, Point)>;
 
-/// A row with the term of the gradients.
+/// The row for linear fields with the gradient term added, scaled down where negative shares exceed
+/// [`NEGATIVE`].
 fn widened(points: &[Point], linear: &[(VertexId, f64)], gradients: &[&Gradient]) -> Vec<(VertexId, f64)> {
     let place = [0, 1, 2].map(|k| linear.iter().map(|&(v, share)| share * points[v.index()][k]).sum::<f64>());
     let mut term: Vec<(VertexId, f64)> = Vec::new();
@@ -89,13 +98,13 @@ fn widened(points: &[Point], linear: &[(VertexId, f64)], gradients: &[&Gradient]
     if negative > NEGATIVE { with(NEGATIVE / negative) } else { row }
 }
 
-/// The tets of a mesh around some of its vertices: all that touch these or a neighbour of these.
+/// The tets of a mesh near some of its vertices: all that touch one of these vertices or a neighbour of one.
 struct Around<'a> {
     points: &'a [Point],
     tets: Vec<[VertexId; 4]>,
-    /// For each tet the one across the facet opposite to each corner; `NONE` where there is a wall.
+    /// For each tet, the tets across the facets opposite its corners; `NONE` where the facet is a wall.
     beside: Vec<[u32; 4]>,
-    /// The place of each vertex in `at`.
+    /// The place of each vertex in `at`; `NONE` for a vertex in none of the tets.
     place: Vec<u32>,
     /// The tets at each vertex.
     at: Csr<u32>,
@@ -151,7 +160,7 @@ impl<'a> Around<'a> {
         }
     }
 
-    /// A tet with all these corners, one of which is on no wall; `None` where there is none.
+    /// A tet with all these corners, at least one of which is on no wall; `None` if there is none.
     fn host(&self, corners: &[VertexId]) -> Option<u32> {
         let is_free = |v: &VertexId| {
             let is_open = |&t: &u32| {
@@ -167,7 +176,8 @@ impl<'a> Around<'a> {
         self.at(corners[0]).iter().find(holds).copied()
     }
 
-    /// The tets at some vertices that are on the same side of all walls as those to begin with, which are at these vertices, too; rising.
+    /// The tets at `vertices` that are connected to those in `start` without crossing a wall, in ascending
+    /// order; `start` are tets at these vertices, too.
     fn side(&self, vertices: &[VertexId], start: &[u32]) -> Vec<u32> {
         let mut all: Vec<u32> = vertices.iter().flat_map(|&v| self.at(v)).copied().collect();
         all.sort_unstable();
@@ -197,7 +207,8 @@ impl<'a> Around<'a> {
         vertices
     }
 
-    /// The gradient at a corner of the quadratic that fits two rings of vertices best; `None` where these do not determine it.
+    /// The gradient at a corner of the quadratic that best fits two rings of vertices; `None` where these do
+    /// not determine it.
     fn gradient(&self, corner: VertexId, side: &[u32]) -> Option<Gradient> {
         let mut ring = self.vertices(&self.side(&self.vertices(side), side));
         ring.retain(|&v| v != corner);
@@ -215,8 +226,9 @@ fn terms([x, y, z]: Point) -> [f64; N] {
     [x, y, z, x * x, y * y, z * z, x * y, y * z, z * x]
 }
 
-/// For each place, by what the value there is to be multiplied to give the gradient at the origin of the quadratic that is 0 there and fits all values best, by weights that
-/// fall with the square of the distance; `None` where places do not determine it.
+/// For each place, the factor of its value in the gradient at the origin of the quadratic that is 0 there and
+/// fits all values best. The weights of the fit fall with the square of the distance. `None` where the places
+/// do not determine it.
 fn fit(offsets: &[Point]) -> Option<Vec<Point>> {
     let squared = offsets.iter().map(|&d| dot(d, d)).sum::<f64>() / offsets.len() as f64;
     let length = squared.sqrt();
@@ -236,7 +248,7 @@ fn fit(offsets: &[Point]) -> Option<Vec<Point>> {
     Some(weighted.iter().map(of_place).collect())
 }
 
-/// The lower factor of a symmetric matrix; `None` where it is singular, or nearly so, or has what is no number.
+/// The lower Cholesky factor of a symmetric matrix; `None` if it is singular, nearly so, or contains NaN.
 fn cholesky(matrix: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     let mut factor = [[0.0; N]; N];
     for i in 0..N {
@@ -255,7 +267,7 @@ fn cholesky(matrix: &[[f64; N]; N]) -> Option<[[f64; N]; N]> {
     Some(factor)
 }
 
-/// Column `k` of the inverse of the matrix with this factor.
+/// Column `k` of the inverse of the matrix with this Cholesky factor.
 fn solve(factor: &[[f64; N]; N], k: usize) -> [f64; N] {
     let mut x = [0.0; N];
     x[k] = 1.0;
@@ -282,7 +294,7 @@ mod tests {
         1.0 + x - 2.0 * y + 3.0 * z + x * x - 0.5 * y * y + 0.25 * z * z + x * y - 2.0 * y * z + 0.3 * z * x
     }
 
-    /// For each tet of a mesh the row of a place in it.
+    /// For each tet of a mesh, the row of a place in it.
     fn one_a_tet(mesh: &Mesh) -> Rows<VertexId> {
         let mut rows = Rows::new();
         for (place, (_, tet)) in mesh.cells.tets().enumerate() {

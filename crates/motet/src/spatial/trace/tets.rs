@@ -1,4 +1,4 @@
-//! New tets: the parts of the removed tets in them.
+//! Rows of new tets: each comes from the removed tets that it overlaps, in proportion to the common volume.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::mesh::history::RegionLedger;
 use crate::spatial::BoxTree;
 use crate::spatial::boxes::around;
 
-/// A tet of which no more than this part is covered lies outside.
+/// A new tet of which no larger fraction than this is covered by removed tets counts as outside.
 const OUTSIDE: f64 = 1e-12;
 
-/// The tets that went, ready for searching.
+/// The removed tets, ready for searching.
 pub(super) struct Removed<'a> {
     pub(super) tets: &'a [Labelled<4>],
     pub(super) solids: Vec<Solid>,
@@ -28,7 +28,8 @@ impl<'a> Removed<'a> {
         Self { tets, solids, tree: BoxTree::new(&boxes) }
     }
 
-    /// The place of the removed tet nearest to `p`, of one region or of any.
+    /// The index of the removed tet nearest to `p`, in one region or in any, and the weights of its closest
+    /// point.
     pub(super) fn nearest(&self, p: Point, region: Option<i32>) -> Option<(usize, [f64; 4])> {
         let measure = |i: u32| {
             let i = i as usize;
@@ -47,7 +48,8 @@ fn solid(points: &[Point], tet: &Labelled<4>) -> Solid {
     Solid::new(tet.vertices.map(|v| points[v.index()]))
 }
 
-/// The volumes that one new tet has in common with removed ones, by their places; and the main one.
+/// One new tet: its volume, the removed tets that it overlaps (by index, with the common volumes), and the
+/// main one.
 struct Parts {
     volume: f64,
     overlaps: Vec<(usize, f64)>,

@@ -1,4 +1,4 @@
-//! New triangles: the nearest removed one of their patch.
+//! Rows of new triangles: each comes from the nearest removed triangle of its patch.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::triangle;
 use crate::spatial::NearestTriangle;
 
-/// The row of each new triangle.
+/// The row of each new triangle: the removed triangle of its patch that is nearest to its centroid.
 pub(super) fn trace(change: &LocalChange<'_>) -> Result<Vec<CellRow>> {
     let mut by_patch: BTreeMap<i32, Vec<&Labelled<3>>> = BTreeMap::new();
     for triangle in change.removed_triangles {

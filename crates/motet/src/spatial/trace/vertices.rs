@@ -1,4 +1,4 @@
-//! New and moved vertices: their weights in the removed tets that held their places.
+//! Rows of new and moved vertices: their weights in the removed tets that contained their places.
 
 use super::tets::Removed;
 use super::{ChangedVertex, LocalChange, map};
@@ -8,17 +8,18 @@ use crate::geometry::vector::{distance, norm, sub};
 use crate::mesh::history::Rows;
 use crate::spatial::boxes::around;
 
-/// What lies beyond a tet by less than this part of its box lies on it.
+/// A place outside a tet by no more than this fraction of the size of the tet's box counts as on the tet.
 const ROUND_OFF: f64 = 1e-12;
 
-/// The rows of vertices, and what lay outside.
+/// The rows of vertices, how many of them lay outside, and how far at most.
 pub(super) struct Vertices {
     pub(super) rows: Rows<VertexId>,
     pub(super) n_outside: usize,
     pub(super) farthest_outside: f64,
 }
 
-/// Where one place lies: in or near which removed tet, with which weights, and how far outside.
+/// One place: the removed tet that contains it or is nearest to it, its weights there, and how far outside it
+/// lies.
 struct Place {
     tet: usize,
     weights: [f64; 4],
@@ -62,7 +63,7 @@ fn place(removed: &Removed<'_>, p: Point, vertex: VertexId) -> Result<Place> {
     Ok(Place { tet, weights, outside })
 }
 
-/// The first removed tet that holds `p`; one that is inverted only where no other does.
+/// The first removed tet that contains `p`; an inverted one only if no other does.
 fn holder(removed: &Removed<'_>, p: Point) -> Option<usize> {
     let mut candidates = Vec::new();
     removed.tree.touching([p, p], &mut candidates);
