@@ -1,4 +1,4 @@
-//! Looking ahead: when surfaces will touch, if all vertices go on straight.
+//! Looking ahead: when surfaces will touch if all vertices continue in a straight line.
 
 use std::sync::Mutex;
 
@@ -13,38 +13,40 @@ use crate::base::{Error, Point, Result, Threads};
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::vector::{is_finite, scale, sub};
 
-/// When surfaces will touch. "Not before" is safe: nothing touches earlier, rounding included, as long as every vertex goes on
-/// straight at its velocity.
+/// When surfaces will touch. Times are safe: nothing touches earlier, rounding included, as long as every
+/// vertex continues in a straight line at its velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ahead {
-    /// The first contact of all; `None` where nothing touches before the horizon.
+    /// The first contact of all; `None` if nothing touches before the horizon.
     pub first: Option<FirstContact>,
-    /// For each vertex of each body, in the order of [`BodyGaps::vertices`](super::BodyGaps): no triangle at it touches
-    /// another surface before this; infinite where none does before the horizon.
+    /// For each vertex of each body, in the order of [`BodyGaps::vertices`](super::BodyGaps): a time before
+    /// which no triangle at it touches another surface; infinite if none does before the horizon.
     pub times: Vec<Vec<f64>>,
 }
 
 /// Where surfaces will touch first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FirstContact {
-    /// Not before this.
+    /// A time before which they do not touch.
     pub time: f64,
     /// The bodies.
     pub bodies: [u32; 2],
     /// A triangle of each.
     pub triangles: [u32; 2],
-    /// Where they will be.
+    /// Where they will touch.
     pub place: Point,
 }
 
 impl Contact {
-    /// Looks ahead as far as `horizon`, which may be infinite, with a velocity for each point. Pairs of triangles that
-    /// [`measure`](Self::measure) leaves out as neighbours are left out here as well.
+    /// Looks ahead as far as `horizon`, which may be infinite, with a velocity for each point. Pairs of
+    /// triangles that [`measure`](Self::measure) leaves out as neighbours are left out here as well.
     ///
-    /// By additive conservative advancement (Li, Kaufman and Jiang 2021, *Codimensional incremental potential contact*).
+    /// Uses additive conservative advancement (Li, Kaufman and Jiang 2021, *Codimensional incremental
+    /// potential contact*).
     ///
     /// # Errors
-    /// When there is not a velocity for each point, or one of the bodies' is not finite; when the horizon is not positive.
+    /// When there is not one velocity for each point, or that of a body's vertex is not finite; when the
+    /// horizon is not positive.
     pub fn look_ahead(&self, velocity: &[Point], horizon: f64, threads: &Threads) -> Result<Ahead> {
         self.check_velocity(velocity, horizon)?;
         let vertices = |body: &Prepared| vec![f64::INFINITY; body.vertices.len()];
@@ -78,10 +80,10 @@ impl Contact {
         Ok(ahead)
     }
 
-    /// Looks ahead to points that are reached, straight, after the time `dt`.
+    /// Looks ahead on the way to the points `next`, which are reached in straight lines after the time `dt`.
     ///
     /// # Errors
-    /// As [`look_ahead`](Self::look_ahead).
+    /// When `dt` is not positive and finite, and as [`look_ahead`](Self::look_ahead).
     pub fn look_ahead_to(&self, next: &[Point], dt: f64, threads: &Threads) -> Result<Ahead> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(Error::options(format!("a time step of {dt}")).remedy("give a positive one"));

@@ -1,4 +1,4 @@
-//! How far apart places are along the surface, so that neighbours are not taken for a gap.
+//! Distances along the surface, so that neighbours are not mistaken for a gap.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,15 +10,15 @@ use crate::geometry::vector::distance;
 #[derive(Clone, Debug)]
 pub(super) struct Along {
     neighbors: Csr<u32>,
-    /// The piece of each vertex: no way leads from one to another.
+    /// The piece of each vertex: no path leads from one piece to another.
     pieces: Vec<u32>,
 }
 
-/// Above one by more than rounding adds up to along a way.
+/// A factor above one by more than rounding adds up to along a path.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// A search goes on to this many times the length asked for: what it then knows of one vertex tells enough of those around it, and
-/// few searches are left.
+/// A search continues up to this multiple of the requested length: what it then finds out about one vertex
+/// decides enough of those around it, so that few searches are left.
 const SPARE: f64 = 1.5;
 
 impl Along {
@@ -46,11 +46,11 @@ impl Along {
         self.neighbors.list(vertex.index())
     }
 
-    /// Whether one goes from a vertex to a place in a triangle with these corners within `length`, along edges and at last within the
-    /// triangle.
+    /// Whether some path from a vertex to a place in a triangle with these corners is no longer than
+    /// `length`, along edges and finally within the triangle.
     ///
-    /// Along edges it is farther than across triangles, by up to two fifths in a regular grid; so the answer errs
-    /// towards calling a place a gap, which is the safe side.
+    /// Paths along edges are longer than paths across triangles, by up to two fifths in a regular grid; so
+    /// the answer errs towards calling a place a gap, which is the safe side.
     pub(super) fn is_within(
         &self,
         points: &[Point],
@@ -70,7 +70,7 @@ impl Along {
             return false;
         }
         let least = self.least(points, from, to, length * SPARE, ways);
-        // Nor by a length that is no number.
+        // Also false for a length that is NaN.
         let is_far = least > length;
         if !is_far {
             return true;
@@ -79,8 +79,9 @@ impl Along {
         false
     }
 
-    /// How far a place is from a vertex at least, by what is known of the vertex and those that edges join to it; 0 where that tells nothing.
-    /// A way to the place goes on to another one in the same triangle, or by a corner to one in a triangle beside it.
+    /// A lower bound of the distance from a vertex to a place, by what is known of the vertex and its
+    /// neighbours; 0 if that says nothing. A path to the place continues to another place in the same
+    /// triangle, or through a corner to one in an adjacent triangle.
     fn known(
         &self,
         points: &[Point],
@@ -103,7 +104,7 @@ impl Along {
                     shared.map(by).fold(f64::INFINITY, f64::min)
                 }
             };
-            // Of three lengths with rounding less than a part of the longest.
+            // `SLACK` covers the rounding of the three lengths, which is less than a fraction of the longest.
             most = f64::max(most, least / SLACK - step - on);
             if most > enough * SLACK {
                 break;
@@ -112,10 +113,11 @@ impl Along {
         most
     }
 
-    /// How far it is from a vertex to a place; where that is more than `length`, a bound above it.
+    /// The distance along edges from a vertex to a place; if it exceeds `length`, a lower bound that exceeds
+    /// `length`.
     ///
-    /// Shortest ways first, counted with what is left as the crow flies (Hart, Nilsson and Raphael 1968): only vertices within an ellipse are
-    /// looked at.
+    /// Shortest paths first, with the straight distance as the estimate of what is left (A*: Hart, Nilsson
+    /// and Raphael 1968): only vertices within an ellipse are examined.
     fn least(
         &self,
         points: &[Point],
@@ -132,7 +134,7 @@ impl Along {
                 return whole;
             }
             let far = ways.far[v as usize];
-            // A vertex is open once more for each shorter way that was found to it.
+            // A vertex is in the queue once more for each shorter path found to it.
             if (far + left(v)).to_bits() != bits {
                 continue;
             }
@@ -148,7 +150,7 @@ impl Along {
     }
 }
 
-/// Numbers the pieces that edges hold together.
+/// Numbers the pieces that edges connect, each by its first vertex.
 fn pieces(neighbors: &Csr<u32>) -> Vec<u32> {
     let mut pieces = vec![u32::MAX; neighbors.len()];
     let mut open = Vec::new();
@@ -170,23 +172,25 @@ fn pieces(neighbors: &Csr<u32>) -> Vec<u32> {
     pieces
 }
 
-/// A place in a triangle, and how far it is along the surface at least.
+/// A place in a triangle, and a lower bound of its distance along the surface.
 #[derive(Clone, Copy, Debug)]
 struct Far {
     to: ([VertexId; 3], Point),
     least: f64,
 }
 
-/// What one search needs, kept for the next, and what searches found. Of one surface at one time.
+/// The buffers of a search, kept for the next one, and what searches found. Valid for one surface at one
+/// time.
 #[derive(Debug, Default)]
 pub(super) struct Ways {
-    /// How far each vertex is, where `round` says that it was reached in this search.
+    /// The distance of each vertex, valid if its `round` is `now`.
     far: Vec<f64>,
     round: Vec<u32>,
     now: u32,
-    /// By the whole length, as bits: those of positive numbers are in the order of the numbers.
+    /// By the estimated whole length, as bits: those of positive numbers are in the order of the numbers.
     open: BinaryHeap<(Reverse<u64>, u32)>,
-    /// The last place that was found to be far from each vertex, by its place in `far_places`, or `u32::MAX`.
+    /// For each vertex, the index in `far_places` of the last place that was found to be far from it, or
+    /// `u32::MAX`.
     last_far: Vec<u32>,
     far_places: Vec<Far>,
 }

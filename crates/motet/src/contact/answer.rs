@@ -1,4 +1,4 @@
-//! What is known of gaps: for each vertex, and for each pair of bodies.
+//! The results: gaps at each vertex and of each pair of bodies.
 
 use serde::Serialize;
 
@@ -11,92 +11,95 @@ pub const NONE: u32 = u32::MAX;
 /// The gaps of all bodies at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gaps {
-    /// In the order of the bodies.
+    /// The gaps of each body, in the order of the bodies.
     pub bodies: Vec<BodyGaps>,
-    /// Every pair that was measured, a body with itself included where that was asked for; first bodies rise.
+    /// Every pair that was measured, a body with itself included where requested, ordered by the first body.
     pub pairs: Vec<PairGap>,
 }
 
-/// The gap at each vertex of a body. All lists have one entry a vertex.
+/// The gap at each vertex of a body. All lists have one entry per vertex.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyGaps {
-    /// The vertices, rising.
+    /// The vertices, in ascending order.
     pub vertices: Vec<VertexId>,
-    /// The distance to the nearest other surface; negative for a vertex that is where it must not be: inside a closed
-    /// body, outside a room, by its distance from the surface of that. Infinite where nothing is near enough.
+    /// The distance to the nearest other surface. For a vertex that is where it must not be, inside a closed
+    /// body or outside a room, it is minus the distance from the surface of that body. Infinite if nothing is
+    /// near enough.
     pub gap: Vec<f64>,
-    /// The unit vector along which the vertex would go to make the gap smaller; where it touches, the normal of what it
-    /// touches, turned against the free side. Zero where there is no gap.
+    /// The unit vector along which the vertex would move to reduce the gap; where it touches, the normal of
+    /// the surface that it touches, pointing away from the free side. Zero if there is no gap.
     pub normal: Vec<Point>,
-    /// The body that is nearest, or [`NONE`].
+    /// The nearest body, or [`NONE`].
     pub closest_body: Vec<u32>,
-    /// The triangle of that body, or [`NONE`].
+    /// The nearest triangle of that body, or [`NONE`].
     pub closest_triangle: Vec<u32>,
-    /// The place on it; the vertex itself where there is none.
+    /// The closest point on it; the vertex itself if there is none.
     pub closest_point: Vec<Point>,
     /// Whether a triangle at the vertex is nearer to another surface than the warning distance, or the gap is negative.
     pub warning: Vec<bool>,
 }
 
-/// Two bodies, or one with itself.
+/// The gap between two bodies, or of one with itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairGap {
-    /// Which.
+    /// The two bodies.
     pub bodies: [u32; 2],
-    /// Where they are nearest; `None` where nothing is within reach.
+    /// Where they are nearest; `None` if nothing is within reach.
     pub nearest: Option<Nearest>,
-    /// Pairs of triangles, of the first body and of the second, that meet; rising.
+    /// Pairs of triangles, one of the first body and one of the second, that meet; in ascending order.
     pub crossings: Vec<[u32; 2]>,
-    /// Vertices of the first body that are where the second does not let them be, and the other way round.
+    /// How many vertices of the first body are where the second does not allow them, and the other way
+    /// around.
     pub n_wrong: [usize; 2],
-    /// How far the deepest of these is from the surface; 0 where there is none.
+    /// The distance of the deepest of these from the surface; 0 if there are none.
     pub depth: f64,
-    /// Triangles of each that are nearer to the other than the warning distance.
+    /// How many triangles of each body are nearer to the other than the warning distance.
     pub n_warned: [usize; 2],
 }
 
-/// The nearest places of two surfaces.
+/// The nearest points of two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// How far apart: 0 where they meet.
+    /// Their distance; 0 where the surfaces meet.
     pub distance: f64,
     /// A triangle of each.
     pub triangles: [u32; 2],
     /// The vertices of both.
     pub vertices: [[VertexId; 3]; 2],
-    /// The place on each.
+    /// The point on each.
     pub points: [Point; 2],
-    /// The least part of each triangle that holds it.
+    /// The smallest feature of each triangle that contains its point.
     pub features: [Feature; 2],
-    /// The weights of the places; from it also the derivative of the distance by each of the six vertices.
+    /// The weights of the points; it also gives the derivative of the distance by each of the six vertices.
     pub closest: Closest<3, 3>,
 }
 
-/// A group of connected vertices that warn.
+/// A group of connected vertices with a warning.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Warned {
-    /// The bodies: that of the vertices, and the one the nearest of them is near to.
+    /// The body of the vertices, and the body that the nearest of them is near to.
     pub bodies: [u32; 2],
     /// How many vertices.
     pub n_vertices: usize,
-    /// The least gap of them.
+    /// The smallest gap among them.
     pub gap: f64,
-    /// The vertex that has it.
+    /// The vertex with this gap.
     pub vertex: VertexId,
-    /// Where that is.
+    /// The coordinates of that vertex.
     pub place: Point,
 }
 
 impl Gaps {
-    /// The least gap of any pair: 0 where bodies meet; infinite where nothing is within reach.
+    /// The smallest gap of any pair: 0 where bodies meet; infinite if nothing is within reach.
     pub fn least(&self) -> f64 {
         let all = self.pairs.iter().filter_map(|pair| pair.nearest);
         all.map(|nearest| nearest.distance).fold(f64::INFINITY, f64::min)
     }
 
-    /// The gap at each of `n_points` points, the least where several bodies have it; infinite where there is none.
+    /// The gap at each of `n_points` points, the smallest if several bodies share it; infinite where there is
+    /// none.
     ///
-    /// Panics when a body has a vertex beyond.
+    /// Panics when a body has a vertex beyond `n_points`.
     pub fn at_points(&self, n_points: usize) -> Vec<f64> {
         let mut all = vec![f64::INFINITY; n_points];
         for body in &self.bodies {
@@ -107,7 +110,7 @@ impl Gaps {
         all
     }
 
-    /// Whether anything warns.
+    /// Whether there is any warning.
     pub fn is_warned(&self) -> bool {
         self.bodies.iter().any(|body| body.warning.contains(&true))
     }
@@ -129,7 +132,7 @@ impl BodyGaps {
 }
 
 impl PairGap {
-    /// Whether the surfaces cross, or one is where the other does not let it be.
+    /// Whether the surfaces cross, or a vertex of one is where the other does not allow it.
     pub fn is_penetrated(&self) -> bool {
         !self.crossings.is_empty() || self.n_wrong != [0, 0]
     }

@@ -1,4 +1,4 @@
-//! A surface that may touch others: triangles, and on which side of them there is room.
+//! A surface that may touch others: its triangles, and on which side of them its gaps are.
 
 use std::ops::Deref;
 
@@ -11,23 +11,26 @@ use crate::geometry::vector::dot;
 use crate::mesh::{Mesh, Surface, cone_volume};
 use crate::spatial::NearestTriangle;
 
-/// A surface by its triangles over the points that all bodies share. Open or closed, in one piece or many.
+/// A surface, as triangles over the points that all bodies share. It may be open or closed, in one piece or
+/// many.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Body {
-    /// What reports call it.
+    /// Its name in reports.
     pub name: String,
-    /// Its triangles; a closed surface has them counter-clockwise seen from outside, or all of them clockwise.
+    /// Its triangles; those of a closed surface are all counter-clockwise seen from outside, or all
+    /// clockwise.
     pub triangles: Vec<[VertexId; 3]>,
-    /// Whether it is the wall of a room, such as a vessel, that others are within. Default: found by itself.
+    /// Whether it is the wall of a room, such as a vessel, that contains others. Detected by default.
     pub room: Room,
 }
 
 impl Body {
-    /// Surfaces of a mesh, each with the cells that its triangles are of: the patches that `patches` name, else all its surface cells as one that is called
-    /// `name`; of a mesh without surface cells its boundary. Where points of several meshes are one list, those of this one begin at `first`.
+    /// The surfaces of a mesh, each with the cells that its triangles belong to: the patches named by
+    /// `patches`; without names, all its surface cells as one body called `name`, or the boundary of a mesh
+    /// without surface cells. If points of several meshes are one list, those of this mesh begin at `first`.
     ///
     /// # Errors
-    /// When there is no such patch, no surface at all, or a point of it without a finite place.
+    /// When there is no such patch, no surface at all, or one of its points is not finite.
     pub fn of_mesh(
         mesh: &Mesh,
         name: &str,
@@ -57,45 +60,47 @@ impl Body {
     }
 }
 
-/// A body with all that does not change when points move, and its tree.
+/// A body with all that does not change when points move, and its search tree.
 ///
-/// What hangs together is told by `joined`, where vertices that [seams](fn@crate::mesh::seams) repeat are one: so answers do not depend on how a file numbers a surface. Places and
-/// answers are those of the vertices as they were given.
+/// Connectivity is that of `joined`, in which vertices repeated by [seams](fn@crate::mesh::seams) are one, so
+/// answers do not depend on how a file numbers a surface. Places and answers are those of the vertices as
+/// they were given.
 #[derive(Clone, Debug)]
 pub(super) struct Prepared {
     pub(super) name: String,
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// The triangles of the body, each vertex under the id that it shares with those at its seam.
+    /// The triangles of the body with joined ids: vertices that are one at a seam share theirs.
     pub(super) joined: Vec<[VertexId; 3]>,
     pub(super) is_closed: bool,
-    /// Its vertices, rising.
+    /// Its vertices, in ascending order.
     pub(super) vertices: Vec<VertexId>,
-    /// The joined id of each.
+    /// The joined id of each vertex.
     pub(super) ids: Vec<VertexId>,
-    /// Each joined id with the place of its vertex in the list of vertices, rising.
+    /// Each joined id with the index of its vertex in the list of vertices, in ascending order.
     by_id: Vec<(VertexId, u32)>,
-    /// The vertices of each triangle, by their places in the list of vertices.
+    /// The vertices of each triangle, as indices into the list of vertices.
     pub(super) places: Vec<[u32; 3]>,
-    /// The triangles at each of its vertices, by the place of the first with the same joined id.
+    /// The triangles at each vertex, stored for the first vertex with the same joined id.
     stars: Csr<u32>,
-    /// That place, for each vertex.
+    /// For each vertex, the index of the first one with the same joined id.
     first_places: Vec<u32>,
-    /// Whether each of its vertices is on an edge that one triangle alone uses, where [`get_ready_to_face`](Self::get_ready_to_face) was called.
+    /// Whether each vertex is on an edge that only one triangle uses; empty unless
+    /// [`get_ready_to_face`](Self::get_ready_to_face) was called.
     pub(super) is_rim: Vec<bool>,
-    /// Where the outside of a closed body is, by its triangles.
+    /// On which side of its triangles the outside of a closed body is.
     outside: Side,
-    /// Unit normals of the triangles, where that was called.
+    /// Unit normals of the triangles; empty unless that was called.
     normals: Vec<Point>,
     pub(super) tree: NearestTriangle,
 }
 
-/// A body as another one meets it.
+/// A body as seen by another one.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
     pub(super) body: &'a Prepared,
-    /// Where the other one may be: outside a closed body, inside a room; on both sides of an open one.
+    /// Where the other one may be: outside a closed body, inside a room, on both sides of an open one.
     pub(super) free: Side,
-    /// The body is the room of the other one.
+    /// Whether the body is the room of the other one.
     pub(super) is_room: bool,
 }
 
@@ -108,7 +113,7 @@ impl Deref for Seen<'_> {
 }
 
 impl Prepared {
-    /// `vertices` are those of the body, rising; `joined` has for every point the one that it is one with.
+    /// `vertices` are those of the body, in ascending order; `joined` gives the joined id of every point.
     pub(super) fn new(
         body: Body,
         vertices: Vec<VertexId>,
@@ -155,38 +160,41 @@ impl Prepared {
         body
     }
 
-    /// The body as another one meets it, or as it meets itself; `is_room`: it is the room of that.
+    /// The body as seen by another one, or by itself; `is_room` if it is the room of that one.
     pub(super) fn seen(&self, is_room: bool) -> Seen<'_> {
         let free = if is_room { self.outside.turned() } else { self.outside };
         Seen { body: self, free, is_room }
     }
 
-    /// The triangles at a vertex, by its place in the list of vertices; rising.
+    /// The triangles at a vertex, given by its index in the list of vertices; in ascending order.
     pub(super) fn star(&self, place: usize) -> &[u32] {
         self.stars.list(self.first_places[place] as usize)
     }
 
-    /// For each vertex what stands for it where only its place matters: the joined one as long as both are at one place.
+    /// For each vertex, the one to use where only its place matters: the joined one as long as both are at
+    /// one place.
     pub(super) fn asked(&self, points: &[Point]) -> Vec<VertexId> {
         let pairs = self.vertices.iter().zip(&self.ids);
         pairs.map(|(&v, &id)| if points[v.index()] == points[id.index()] { id } else { v }).collect()
     }
 
-    /// The places of the vertices with a joined id.
+    /// The indices of the vertices with a joined id.
     pub(super) fn places_of(&self, joined: VertexId) -> impl Iterator<Item = usize> + '_ {
         let from = self.by_id.partition_point(|(v, _)| *v < joined);
         self.by_id[from..].iter().take_while(move |(v, _)| *v == joined).map(|(_, k)| *k as usize)
     }
 
-    /// The joined ids of its vertices, each once, rising.
+    /// The joined ids of its vertices, each once, in ascending order.
     pub(super) fn joined_vertices(&self) -> Vec<VertexId> {
         let mut all: Vec<VertexId> = self.by_id.iter().map(|(v, _)| *v).collect();
         all.dedup();
         all
     }
 
+    /// Checks the points of the body.
+    ///
     /// # Errors
-    /// When a point of the body is not finite.
+    /// When one of them is not finite.
     pub(super) fn check(&self, points: &[Point]) -> Result<()> {
         check_finite(&format!("surface {}", self.name), self.vertices.iter().copied(), points)
     }
@@ -200,7 +208,8 @@ impl Prepared {
         }
     }
 
-    /// Works out what tells which ways lead into free space: the rim, and all normals, now and whenever points move.
+    /// Computes what decides which directions lead into free space: the rim, and all normals, now and
+    /// whenever points move.
     pub(super) fn get_ready_to_face(&mut self, points: &[Point]) {
         let firsts = |t: &[u32; 3]| t.map(|k| self.first_places[k as usize]);
         let is_rim = rim(&self.places.iter().map(firsts).collect::<Vec<_>>(), self.vertices.len());
@@ -222,7 +231,7 @@ impl Prepared {
         few.ids.iter().any(|v| many.places_of(*v).next().is_some())
     }
 
-    /// Of a closed body, by the sign of its volume; both sides of an open one.
+    /// The outside of a closed body, by the sign of its volume; both sides of an open one.
     fn outside(&self, points: &[Point]) -> Side {
         if !self.is_closed {
             return Side::Both;
@@ -232,7 +241,7 @@ impl Prepared {
         if volume >= 0.0 { Side::Outside } else { Side::Inside }
     }
 
-    /// The unit normal of a triangle; zero where it has no area.
+    /// The unit normal of a triangle; zero if it has no area.
     pub(super) fn normal(&self, points: &[Point], triangle: u32) -> Point {
         let kept = self.normals.get(triangle as usize);
         kept.copied().unwrap_or_else(|| self.unit_normal(points, triangle))
@@ -244,13 +253,13 @@ impl Prepared {
         if largest == 0.0 {
             return [0.0; 3];
         }
-        // In units of the largest: squares of areas of small triangles underflow.
+        // Relative to the largest: squares of areas of small triangles underflow.
         let area = area.map(|x| x / largest);
         area.map(|x| x / dot(area, area).sqrt())
     }
 }
 
-/// Which vertices are on an edge that one triangle alone uses.
+/// Which vertices are on an edge that only one triangle uses.
 fn rim(triangles: &[[u32; 3]], n_vertices: usize) -> Vec<bool> {
     let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[u, v]| [u.min(v), u.max(v)]);
     let mut edges: Vec<[u32; 2]> = triangles.iter().flat_map(edges).collect();

@@ -1,4 +1,4 @@
-//! Whether two places of surfaces see each other through free space.
+//! Whether two places on surfaces face each other through free space.
 
 use super::body::{Prepared, Seen};
 use super::side::Side;
@@ -6,27 +6,29 @@ use crate::base::Point;
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 
-/// The least cosine between a surface and the way to a place nearest to it: 75 degrees from its normal. Neighbours on one smooth surface lie
-/// at right angles to that.
+/// The least cosine between the normal of a surface and the direction to a place nearest to it: 75 degrees.
+/// Neighbours on one smooth surface are at right angles to the normal.
 const LEAST_COSINE: f64 = 0.25;
 
-/// The same on an edge or a vertex, where the nearest place may lie at any angle to each of the triangles around: 89 degrees.
+/// The least cosine on an edge or a vertex, where the nearest place may lie at any angle to each triangle
+/// around: 89 degrees.
 const GRAZING: f64 = 0.02;
 
-/// The least cosine with which a way leaves a surface, so that one within it does not by rounding.
+/// The least cosine with which a direction leaves a surface, so that rounding does not make one within it
+/// leave.
 const LEAVING: f64 = 1e-9;
 
-/// How far rounding may move a point off a plane, as a part of how far it is from a point in it.
+/// How far rounding may move a point off a plane, relative to its distance from a point of the plane.
 const ROUNDING: f64 = 1e-15;
 
-/// The cosine between the normals of two triangles that face away from each other as far as they may.
+/// The cosine between the normals of two triangles that face away from each other as far as allowed.
 const LEAST_TURN: f64 = 1.0 - 2.0 * LEAST_COSINE * LEAST_COSINE;
 
-/// A place of a body: a point within a triangle by the weights of its vertices.
+/// A place on a body: a point of a triangle, by the weights of its vertices.
 pub(super) type Place<'a> = (Seen<'a>, u32, [f64; 3]);
 
-/// Whether two triangles may face each other anywhere. It is a quick look that spares most neighbours the measuring: their normals
-/// are too much alike, or one lies behind the other; unless they meet.
+/// Whether two triangles may face each other anywhere. This quick test rules out most neighbours without
+/// measuring: those whose normals are too similar, or of which one lies behind the other, unless they meet.
 pub(super) fn may_face(points: &[Point], [a, b]: [Seen<'_>; 2], [i, j]: [u32; 2]) -> bool {
     let (normal_a, normal_b) = (a.normal(points, i), b.normal(points, j));
     let turn = dot(normal_a, normal_b);
@@ -55,17 +57,17 @@ fn is_behind(free: Side, normal: Point, within: Point, corners: [Point; 3]) -> b
     })
 }
 
-/// Which ways from a vertex lead into free space.
+/// Decides which directions from a vertex lead into free space.
 pub(super) struct Sight {
     free: Side,
-    /// Of the triangles around, and the direction of their sum.
+    /// The normals of the triangles around, and the direction of their sum.
     normals: Vec<Point>,
     sum: Point,
     is_rim: bool,
 }
 
 impl Sight {
-    /// Of a vertex by its place in the body's list.
+    /// For a vertex, by its index in the body's list.
     pub(super) fn new(points: &[Point], body: Seen<'_>, vertex: usize) -> Self {
         let star = body.star(vertex);
         Self {
@@ -76,8 +78,8 @@ impl Sight {
         }
     }
 
-    /// Whether the way to a place of another surface starts in free space and ends at right angles to that, more or
-    /// less. Places that touch face each other.
+    /// Whether the direction to a place on another surface starts in free space and ends at right angles to
+    /// that surface, more or less. Places that touch face each other.
     pub(super) fn sees(&self, points: &[Point], to: Place<'_>, way: Point) -> bool {
         let Some(way) = unit(way) else { return true };
         let is_off = self.normals.iter().any(|&normal| is_free(self.free, normal, way, LEAVING))
@@ -87,14 +89,15 @@ impl Sight {
     }
 }
 
-/// Whether two places that are nearest to each other do so across free space.
+/// Whether two places that are nearest to each other are so across free space.
 pub(super) fn see_each_other(points: &[Point], from: Place<'_>, to: Place<'_>, way: Point) -> bool {
     let Some(way) = unit(way) else { return true };
     faces(points, to, scale(way, -1.0)) && faces(points, from, way)
 }
 
-/// Whether the way `out` from a place to which it is nearest leads into free space: by the normal of the triangle, or on an edge or a
-/// vertex by the sum of the normals around, which an edge as sharp as a knife has too. The rim of an open surface may be left any way.
+/// Whether the direction `out`, from a place to what it is nearest to, leads into free space: by the normal
+/// of the triangle, or on an edge or a vertex by the sum of the normals around, which even an edge as sharp
+/// as a knife has. The rim of an open surface may be left in any direction.
 fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> bool {
     if is_free(body.free, body.normal(points, triangle), out, LEAST_COSINE) {
         return true;
@@ -114,7 +117,8 @@ fn faces(points: &[Point], (body, triangle, weights): Place<'_>, out: Point) -> 
         || is_free(body.free, sum_of_normals(points, &body, around), out, LEAST_COSINE)
 }
 
-/// Whether a way goes to the free side of a surface with this normal, with more than this cosine.
+/// Whether a direction leads to the free side of a surface with this normal, with a cosine above `least`, or
+/// above [`LEAST_COSINE`] if both sides are free.
 fn is_free(free: Side, normal: Point, way: Point, least: f64) -> bool {
     let cosine = dot(normal, way);
     match free {

@@ -1,4 +1,4 @@
-//! The handle: surfaces prepared once, measured at every step.
+//! The handle: surfaces prepared once, and measured at every step.
 
 use std::sync::OnceLock;
 
@@ -14,37 +14,41 @@ use crate::base::{Error, Point, Result, Sets, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh;
 
-/// Without a limit, a body is measured against itself as far as this part of the size of all.
+/// Without a limit, a body is measured against itself up to this fraction of the size of all bodies.
 const OWN_REACH: f64 = 0.1;
 
-/// With a warning distance alone, a body is measured against itself as far as this many of it.
+/// With only a warning distance, a body is measured against itself up to this multiple of it.
 const OWN_WARNINGS: f64 = 4.0;
 
-/// Surfaces that may touch. Made once, refitted as points move; each answer starts from the last one, which saves time and changes nothing.
+/// Surfaces that may touch. Built once, and refitted as points move. Each measurement starts from the last
+/// result, which saves time and does not change the answer.
 #[derive(Clone, Debug)]
 pub struct Contact {
     pub(super) points: Vec<Point>,
     pub(super) bodies: Vec<Prepared>,
-    /// What was told of rooms, for each body.
+    /// The rooms as given, for each body.
     told: Vec<Room>,
     /// Which bodies lie in which rooms.
     rooms: Vec<Within>,
-    /// Made when it is asked for first.
+    /// Built when it is first needed.
     along: OnceLock<Along>,
     options: Options,
-    /// The pairs that are measured, and whether they have vertices in common: neighbours are then to be left out.
+    /// The pairs that are measured, and whether they have vertices in common, so that neighbours must be left
+    /// out.
     pairs: Vec<([u32; 2], bool)>,
-    /// For each pair.
+    /// The guesses for each pair.
     guesses: Vec<Guesses>,
 }
 
 impl Contact {
-    /// Prepares `bodies` over `points`: all pairs of bodies will be measured, and each with itself where
-    /// [`Options::own`] says so. What hangs together, what is closed and what is a room is decided here, and stays so when points move.
+    /// Prepares `bodies` over `points`: all pairs of bodies will be measured, and each body with itself if
+    /// [`Options::own`] is set. What is connected, what is closed and what is a room is decided here, and
+    /// stays so when points move.
     ///
     /// # Errors
-    /// When there is nothing to measure, a body has no triangles, a triangle names a point beyond `points`, one of their points is
-    /// not finite, a length of the options is not positive, or a room is told to be that of a body that is not there.
+    /// When there is nothing to measure, a body has no triangles, a triangle names a point beyond `points`,
+    /// one of their points is not finite, an option is negative or NaN, or a body is given as the room of one
+    /// that does not exist.
     pub fn new(points: Vec<Point>, bodies: Vec<Body>, options: Options, threads: &Threads) -> Result<Self> {
         check(&bodies, &options)?;
         let told: Vec<Room> = bodies.iter().map(|body| body.room.clone()).collect();
@@ -72,7 +76,8 @@ impl Contact {
     /// Takes over points that moved; the triangles stay.
     ///
     /// # Errors
-    /// When there are not as many points as before, or one of the bodies' is not finite; then nothing is taken over.
+    /// When the number of points is not the same as before, or a point of a body is not finite; then nothing
+    /// is taken over.
     pub fn refit(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
         if points.len() != self.points.len() {
             return Err(Error::input(format!("{} points, expected {}", points.len(), self.points.len()))
@@ -84,7 +89,7 @@ impl Contact {
         Ok(())
     }
 
-    /// The points as they were given last.
+    /// The points as they were last given.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
@@ -104,22 +109,25 @@ impl Contact {
         &self.bodies[body as usize].triangles
     }
 
-    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other, where vertices that [seams](fn@crate::mesh::seams) repeat are one.
+    /// Whether a body is closed, so that it has an inside: every edge is used as often one way as the other,
+    /// where vertices repeated by [seams](fn@crate::mesh::seams) count as one.
     pub fn is_closed(&self, body: u32) -> bool {
         self.bodies[body as usize].is_closed
     }
 
-    /// On which side of a body its gaps are: on both where it is open, or a room within another; outside a closed one, inside a room.
+    /// On which side of a body its gaps are: outside a closed one, inside a room; on both sides of one that
+    /// is open, or a room within another.
     pub fn side(&self, body: u32) -> Side {
         self.seen_alone(body).free
     }
 
-    /// Which bodies lie in which rooms, by room, then by body: as it was told, or found by [`Contact::new`].
+    /// Which bodies lie in which rooms, by room, then by body: as given, or as found by [`Contact::new`].
     pub fn rooms(&self) -> &[Within] {
         &self.rooms
     }
 
-    /// What a body is the room of here: for a handle of the same bodies with other triangles, so that they stay rooms of the same.
+    /// What a body is the room of, for a handle of the same bodies with other triangles, so that they remain
+    /// rooms of the same.
     pub fn room(&self, body: u32) -> Room {
         match &self.told[body as usize] {
             Room::Found => Room::Of(self.rooms.iter().filter(|w| w.room == body).map(|w| w.body).collect()),
@@ -127,7 +135,7 @@ impl Contact {
         }
     }
 
-    /// Two bodies as they meet each other.
+    /// Two bodies as seen by each other.
     pub(super) fn seen(&self, [a, b]: [u32; 2]) -> [Seen<'_>; 2] {
         let is_room = |room: u32, body: u32| self.rooms.iter().any(|w| w.room == room && w.body == body);
         match a == b {
@@ -138,7 +146,7 @@ impl Contact {
         }
     }
 
-    /// A body as it meets itself.
+    /// A body as seen by itself.
     fn seen_alone(&self, body: u32) -> Seen<'_> {
         let is_room = self.told[body as usize] == Room::Yes || self.rooms.iter().any(|w| w.room == body);
         let is_within = self.rooms.iter().any(|w| w.body == body);
@@ -146,7 +154,7 @@ impl Contact {
         if is_room && is_within { Seen { free: Side::Both, ..seen } } else { seen }
     }
 
-    /// The gap at every vertex, and the nearest places of every pair.
+    /// Measures the gap at every vertex, and the nearest points of every pair.
     pub fn measure(&mut self, threads: &Threads) -> Gaps {
         let new = |body: &Prepared| BodyGaps::new(&body.vertices, &self.points);
         let mut bodies: Vec<BodyGaps> = self.bodies.iter().map(new).collect();
@@ -160,8 +168,8 @@ impl Contact {
         Gaps { bodies, pairs }
     }
 
-    /// The nearest places of every pair of bodies, and nothing else: what a solver asks for at every iteration. `None` where
-    /// nothing is within reach.
+    /// The nearest points of every pair of bodies and nothing else, as a solver needs them at every
+    /// iteration; `None` if nothing is within reach.
     pub fn nearest(&mut self, threads: &Threads) -> Vec<([u32; 2], Option<Nearest>)> {
         self.for_each_pair(|scene, guesses| (scene.ids, scene.nearest_alone(guesses, threads)))
     }
@@ -177,7 +185,7 @@ impl Contact {
         answers
     }
 
-    /// Groups of connected vertices that warn, the nearest first.
+    /// Groups of connected vertices with a warning, the nearest first.
     pub fn warned(&self, gaps: &Gaps) -> Vec<Warned> {
         let mut groups: Vec<Warned> = Vec::new();
         for (id, body) in (0..).zip(&gaps.bodies) {
@@ -213,13 +221,14 @@ impl Contact {
         groups
     }
 
-    /// The edges of all bodies: only warnings and surfaces with something in common need them.
+    /// The edges of all bodies: only warnings and surfaces with vertices in common need them.
     fn along(&self) -> &Along {
         let triangles = self.bodies.iter().flat_map(|body| &body.joined);
         self.along.get_or_init(|| Along::new(self.points.len(), triangles))
     }
 
-    /// Each pair with the ways along the surface, where it has some in common, and with what it is measured by.
+    /// Each pair, with the paths along the surface if the bodies have vertices in common, and the options
+    /// that it is measured with.
     pub(super) fn asked(&self) -> impl Iterator<Item = ([u32; 2], Option<&Along>, Options)> {
         let own = match self.options.own {
             true => Options { within: self.own_reach(), ..self.options },
@@ -243,7 +252,7 @@ impl Contact {
     }
 }
 
-/// For every point the one that it is one with: vertices that seams of a body repeat.
+/// The joined id of every point: vertices repeated by seams of a body share one.
 fn joined(points: &[Point], bodies: &[Body], threads: &Threads) -> Vec<VertexId> {
     let all = threads.each(bodies.iter().collect(), |body| mesh::seams(points, &body.triangles));
     let mut sets = Sets::new(points.len());

@@ -1,13 +1,13 @@
-//! What surfaces have to be: some triangles, over points that are there and are numbers.
+//! Checks of surfaces: there must be triangles, over points that exist and are finite.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::is_finite;
 
-/// The vertices of a surface, rising.
+/// The vertices of a surface, in ascending order.
 ///
 /// # Errors
-/// When it has no triangles, names a point that is not there, or one whose coordinates are not finite. `name` is how
-/// the message calls it.
+/// When it has no triangles, or names a point that does not exist or whose coordinates are not finite.
+/// Messages call the surface `name`.
 pub(super) fn vertices_of(
     name: &str,
     triangles: &[[VertexId; 3]],
@@ -30,8 +30,10 @@ pub(super) fn vertices_of(
     Ok(vertices)
 }
 
+/// Checks that these points are finite.
+///
 /// # Errors
-/// When one of these points has coordinates that are not finite.
+/// When one of them has coordinates that are not finite.
 pub(super) fn check_finite(
     name: &str,
     mut vertices: impl Iterator<Item = VertexId>,

@@ -1,11 +1,14 @@
-//! Which vertices lie inside a closed surface: exact, by the winding number.
+//! Which vertices lie inside a closed surface, decided exactly by the winding number.
 //!
-//! A ray along an axis goes through triangles from behind (+1) and from the front (-1); the sum is how often the surface winds round its origin,
-//! and a point is inside where that is not 0 (so also inside a surface that is turned inside out, and inside either of two that overlap). Exact signs
-//! decide each passage. The origin counts as moved by (e, e^2) across the ray, for an e smaller than any number (Edelsbrunner and
-//! Mücke 1990, *Simulation of simplicity*), so a ray through a vertex or along an edge passes each sheet of the surface once.
+//! A ray along an axis passes through triangles from behind (+1) and from the front (-1). The sum is how
+//! often the surface winds around its origin, and a point is inside if that is not 0 (so also inside a
+//! surface that is turned inside out, and inside either of two that overlap). Exact signs decide each
+//! passage. The origin counts as moved by (e, e^2) across the ray, for an e smaller than any number
+//! (Edelsbrunner and Mücke 1990, *Simulation of simplicity*), so a ray through a vertex or along an edge
+//! passes each sheet of the surface once.
 //!
-//! Not every vertex needs a ray: where a triangle does not meet the surface, all its corners are on the same side.
+//! Not every vertex needs a ray: if a triangle does not meet the surface, all its corners are on the same
+//! side.
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::segment_triangle;
@@ -15,19 +18,22 @@ use crate::mesh::open_edges;
 use crate::spatial::runs::{around, corners, in_runs};
 use crate::spatial::{Bounds, BoxTree};
 
-/// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds round each point a whole number of
-/// times. By ids: for a surface whose vertices are there more than once, [`seams`](fn@crate::mesh::seams) says which are one.
+/// Whether every edge is used as often one way as the other: such a surface has an inside, and it winds
+/// around each point a whole number of times. Vertices are compared by id; for a surface with repeated
+/// vertices, [`seams`](fn@crate::mesh::seams) finds which of them are one.
 pub fn is_closed(triangles: &[[VertexId; 3]]) -> bool {
     open_edges(triangles).is_empty()
 }
 
 /// Which of `vertices` lie inside the closed surface `b`. Vertices on it do not.
 ///
-/// `a` is the surface of these vertices, and `crossings` what [`crossings`](crate::preflight::crossings) says of `a` and `b`. Vertices that no triangle of `a` has are
-/// welcome; they get a ray each, the others one for each connected part that the crossings leave. A surface `b` that is not
-/// [closed](is_closed) has no inside: the answer is then that of the rays.
+/// `a` is the surface of these vertices, and `crossings` the result of
+/// [`crossings`](crate::preflight::crossings) for `a` and `b`. Vertices in no triangle of `a` are allowed;
+/// each of them gets a ray, the others one for each connected part that the crossings leave. A surface `b`
+/// that is not [closed](is_closed) has no inside: the answer is then that of the rays.
 ///
-/// Duplicate triangles, those without area and those that cross others count as the winding number counts them. Those with a corner that is not finite are left out.
+/// Duplicate triangles, triangles without area and triangles that cross others count as in the winding
+/// number. Triangles with a corner that is not finite are left out.
 ///
 /// Panics when a triangle or `vertices` name a point beyond `points`.
 pub fn inside(
@@ -42,7 +48,7 @@ pub fn inside(
     places.into_iter().map(|place| place == Place::Inside).collect()
 }
 
-/// Where a vertex is.
+/// Where a vertex is relative to a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Inside,
@@ -50,7 +56,7 @@ pub(super) enum Place {
     Outside,
 }
 
-/// Where each of `vertices` is to the surface `b`, as for [`inside`].
+/// Where each of `vertices` is relative to the surface `b`; arguments are those of [`inside`].
 pub(super) fn places(
     points: &[Point],
     vertices: &[VertexId],
@@ -79,7 +85,8 @@ pub(super) fn places(
     vertices.iter().map(|v| if is_on[v.index()] { Place::On } else { of_part(part[v.index()]) }).collect()
 }
 
-/// The smallest vertex of each one's part: corners of triangles that cross nothing, those on `b` apart, belong together.
+/// The smallest vertex of each vertex's part: corners of triangles that cross nothing belong together, except
+/// those on `b`.
 fn parts(n_points: usize, a: &[[VertexId; 3]], crossings: &[[u32; 2]], is_on: &[bool]) -> Vec<u32> {
     let mut is_cut = vec![false; a.len()];
     for &[i, _] in crossings {
@@ -97,14 +104,15 @@ fn parts(n_points: usize, a: &[[VertexId; 3]], crossings: &[[u32; 2]], is_on: &[
             }
         }
     }
-    // What is above has a smaller id, so it is done already.
+    // The entry above has a smaller id, so it is done already.
     for v in 0..n_points {
         above[v] = above[above[v] as usize];
     }
     above
 }
 
-/// The vertex above all of `v`'s; halves the way on going (Tarjan and van Leeuwen 1984, *Worst-case analysis of set union algorithms*).
+/// The root of `v`; halves the path on the way (Tarjan and van Leeuwen 1984, *Worst-case analysis of set
+/// union algorithms*).
 fn top(above: &mut [u32], mut v: u32) -> u32 {
     while above[v as usize] != v {
         above[v as usize] = above[above[v as usize] as usize];
@@ -113,16 +121,16 @@ fn top(above: &mut [u32], mut v: u32) -> u32 {
     v
 }
 
-/// So few rays look at every triangle: a tree takes as long to make as 22 rays without it.
+/// Up to this many rays examine every triangle: building a tree takes as long as 22 rays without it.
 const FEW: usize = 16;
 
-/// A surface that rays go through, along an axis that is called x.
+/// A surface that rays pass through, along an axis that is called x.
 struct Rays<'a> {
     points: &'a [Point],
     triangles: &'a [[VertexId; 3]],
-    /// None where few rays go.
+    /// None if there are few rays.
     tree: Option<BoxTree>,
-    /// The axis that became x.
+    /// The axis that is called x.
     axis: usize,
 }
 
@@ -136,7 +144,7 @@ impl<'a> Rays<'a> {
         rays
     }
 
-    /// The corners, turned so that rays run along x.
+    /// The corners, with axes permuted so that rays run along x.
     fn corners(&self, j: u32) -> [Point; 3] {
         corners(self.points, self.triangles[j as usize]).map(|p| turned(p, self.axis))
     }
@@ -159,7 +167,7 @@ impl<'a> Rays<'a> {
         near.extend((0..self.triangles.len() as u32).filter(|&j| may_pass(self.corners(j))));
     }
 
-    /// How often the surface winds round `q`; `None` on the surface.
+    /// How often the surface winds around `q`; `None` if `q` is on the surface.
     fn winding(&self, q: Point, near: &mut Vec<u32>) -> Option<i64> {
         if !is_finite(q) {
             return Some(0);
@@ -178,12 +186,13 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// A turn of the axes, so that handedness stays.
+/// A cyclic permutation of the axes, which keeps handedness.
 fn turned(p: Point, axis: usize) -> Point {
     [0, 1, 2].map(|k| p[(axis + k) % 3])
 }
 
-/// The axis along which a ray meets the fewest boxes: what they cover together of what the surface covers.
+/// The axis along which a ray meets the fewest boxes: the one for which their areas add up to the least part
+/// of the whole.
 fn easiest_axis(boxes: &[Bounds]) -> usize {
     let size = |[low, high]: Bounds| [0, 1, 2].map(|k| high[k] - low[k]);
     let finite = || boxes.iter().filter(|bounds| bounds[0][0].is_finite());
@@ -197,17 +206,19 @@ fn easiest_axis(boxes: &[Bounds]) -> usize {
     (0..3).min_by(|&i, &j| covered[i].total_cmp(&covered[j])).unwrap_or(0)
 }
 
-/// What the ray from `q` along x adds to the winding number at a triangle that does not hold `q`.
+/// What the ray from `q` along x adds to the winding number at a triangle that does not contain `q`.
 fn passage(q: Point, [a, b, c]: [Point; 3]) -> i64 {
     let turn = turn(a, b, q);
     if turn == 0 || turn != self::turn(b, c, q) || turn != self::turn(c, a, q) {
         return 0;
     }
-    // The normal's x has the sign of the turn: the triangle is ahead where `q` lies on the side of smaller x.
+    // The normal's x component has the sign of the turn: the triangle is ahead if `q` lies on the side of
+    // smaller x.
     if orient3d(a, b, c, q) * turn < 0 { i64::from(turn) } else { 0 }
 }
 
-/// The sign of the turn from `a` to `b` to `q`, seen along x, with `q` moved by (e, e^2). 0 only for an edge along x. Exact.
+/// The exact sign of the turn from `a` to `b` to `q`, seen along x, with `q` moved by (e, e^2). 0 only for an
+/// edge along x.
 fn turn(a: Point, b: Point, q: Point) -> i8 {
     let flat = |p: Point, x: f64| [x, p[1], p[2]];
     let sign = orient3d(flat(a, 0.0), flat(b, 0.0), flat(q, 0.0), flat(a, 1.0));

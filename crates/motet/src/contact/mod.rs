@@ -1,12 +1,14 @@
 //! Floor 7: how far apart surfaces are, where, and when they will touch.
 //!
-//! A [`Contact`] holds two or more surfaces, the *bodies*, over one list of points: a stent and the wall of a vessel, three leaflets, patches of a
-//! volume mesh, a coil against itself. It is made once; at each step of a solver [`Contact::refit`] takes the new points,
-//! [`Contact::measure`] gives the gap at every vertex and the nearest places of every pair of bodies.
+//! A [`Contact`] holds two or more surfaces, the *bodies*, over one list of points: a stent and the wall of a
+//! vessel, three leaflets, patches of a volume mesh, a coil against itself. It is built once; at each step of
+//! a solver [`Contact::refit`] takes the new points, and [`Contact::measure`] gives the gap at every vertex
+//! and the nearest points of every pair of bodies.
 //!
-//! All distances are exact up to rounding (some 1e-15 of the size), in any unit of length: the distance of a vertex is the least over *all*
-//! triangles of the other surface, that of two bodies the least over all pairs of triangles, by edges too. Trees of boxes only
-//! save looking at what is farther. Overestimating a gap is the unsafe direction, and does not happen.
+//! All distances are exact up to rounding (some 1e-15 of the size), in any unit of length: the distance of a
+//! vertex is the least over *all* triangles of the other surface, that of two bodies the least over all pairs
+//! of triangles, edges against edges included. Trees of boxes only avoid examining what is farther away.
+//! Overestimating a gap is the unsafe direction, and does not happen.
 //!
 //! ```
 //! use motet::base::{Threads, VertexId};

@@ -1,7 +1,8 @@
-//! The nearest places of two surfaces over all pairs of triangles, and the triangles that are near enough to warn.
+//! The nearest points of two surfaces over all pairs of triangles, and the triangles that are near enough for
+//! a warning.
 //!
-//! Distances of vertices from the other surface are not enough: two edges that cross at a distance come nearest between their ends.
-//! They are a good bound, though, so that few pairs of triangles are looked at.
+//! Distances of vertices from the other surface do not suffice: two edges that cross at a distance are
+//! nearest between their ends. They are a good bound, though, so that few pairs of triangles are examined.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -12,10 +13,11 @@ use crate::base::Threads;
 use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle;
 
-/// Above a bound by this part, so that the pair that the bound came from is found again.
+/// A bound is raised by this fraction, so that the pair it came from is found again.
 const SLACK: f64 = 1e-9;
 
-/// The nearest pair of triangles within the root of `start`, which may be the squared distance of a known pair.
+/// The nearest pair of triangles within the square root of `start`, which may be the squared distance of a
+/// known pair.
 pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<Nearest> {
     let is_own = std::ptr::eq(rule.a.body, rule.b.body);
     let corners = |[i, j]: [u32; 2]| (rule.a.corners(rule.points, i), rule.b.corners(rule.points, j));
@@ -25,7 +27,7 @@ pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<
             return None;
         }
         let (a, b) = corners([i, j]);
-        // A pair at the bound counts as well: of those equally near the first one is told.
+        // A pair at the bound counts as well: among equally near pairs, the first one is found.
         let found = triangle_triangle::closest_below(a, b, bound.next_up())?;
         rule.admits([i, j], &found, ways).then_some(found.distance_squared)
     };
@@ -42,7 +44,7 @@ pub(super) fn nearest(rule: &Rule<'_>, start: f64, threads: &Threads) -> Option<
     })
 }
 
-/// The squared distance of two triangles, where it counts.
+/// The squared distance of two triangles; `None` if the pair does not count.
 pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64> {
     if !rule.may_admit([i, j]) {
         return None;
@@ -51,7 +53,8 @@ pub(super) fn distance_squared(rule: &Rule<'_>, [i, j]: [u32; 2]) -> Option<f64>
     rule.admits([i, j], &found, &mut Ways::default()).then_some(found.distance_squared)
 }
 
-/// Marks the triangles of both surfaces that are nearer to the other than `warn`; those that are marked already cost no look.
+/// Marks the triangles of both surfaces that are nearer to the other than `warn`; pairs of marked triangles
+/// are not measured.
 pub(super) fn mark_nearer(rule: &Rule<'_>, warn: f64, near: [&[AtomicBool]; 2], threads: &Threads) {
     let is_own = std::ptr::eq(rule.a.body, rule.b.body);
     rule.a.tree.closest_pair(&rule.b.tree, warn * warn, threads, |ways: &mut Ways, i, j, bound| {

@@ -4,29 +4,32 @@ use serde::Serialize;
 
 use crate::base::{Error, Result};
 
-/// How contact is looked for. Lengths are in units of the points.
+/// How contact is measured. Lengths are in units of the points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Options {
-    /// Warn of gaps below this; none by default.
+    /// Warn of gaps below this; no warnings by default.
     pub warn: Option<f64>,
     /// Whether each body is measured against itself as well (a flap that folds, loops of a coil). Off by default.
     pub own: bool,
-    /// How far is looked; farther gaps are infinite. No limit by default; with [`own`](Self::own) a limit saves time, since
-    /// a surface that faces itself nowhere is searched to the end.
+    /// How far to search; larger gaps are infinite. No limit by default; with [`own`](Self::own) a limit
+    /// saves time, since a surface that nowhere faces itself is searched to the end.
     pub within: f64,
-    /// Whether a gap counts only where both surfaces face each other through free space, not through the thickness of a body.
-    /// Off by default between bodies that share no vertex; within one body, and between
-    /// bodies that do share some, always on.
+    /// Whether a gap counts only where both surfaces face each other through free space, not through the
+    /// thickness of a body. Off by default between bodies that share no vertex; always on within one body,
+    /// and between bodies that share vertices.
     pub facing: bool,
-    /// Within one body, and between bodies that share vertices: two places count as neighbours, not as a gap, where the way along the surface is
-    /// shorter than this many times the straight one. 3 by default: a fold counts once it is narrower than 37 degrees
-    /// (along the sides of a wedge of angle `a` it is `cot(a / 2)` times as far as across).
+    /// Within one body, and between bodies that share vertices: two places count as neighbours, not as a gap,
+    /// if the path along the surface is shorter than this multiple of the straight distance. 3 by default: a
+    /// fold counts once it is narrower than 37 degrees (in a wedge of angle `a`, the path along its sides is
+    /// `cot(a / 2)` times as long as that across).
     pub fold: f64,
 }
 
 impl Options {
+    /// Checks the numbers.
+    ///
     /// # Errors
-    /// Names the first number that means nothing.
+    /// Names the first number that is negative or NaN.
     pub(crate) fn check(&self) -> Result<()> {
         let lengths = [
             ("the warning distance", self.warn),

@@ -1,4 +1,5 @@
-//! One pair of bodies measured: vertices against triangles both ways, the nearest triangles, what crosses, what is inside.
+//! Measures one pair of bodies: vertices against triangles both ways, the nearest triangles, what crosses,
+//! what is inside.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -16,19 +17,19 @@ use crate::preflight::{crossings, own_crossings};
 use crate::spatial::Closest;
 use crate::spatial::runs::in_runs;
 
-/// What was nearest at the last step.
+/// What was nearest at the last step, as guesses for the next.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guesses {
-    /// The triangles: to each vertex of the first body and of the second.
+    /// The triangle nearest to each vertex of the first body, and of the second.
     of_vertices: [Vec<u32>; 2],
-    /// The pair of triangles.
+    /// The nearest pair of triangles.
     pair: Option<[u32; 2]>,
 }
 
-/// A bound by this much above a distance finds it again.
+/// A bound above a distance by this factor finds it again.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// The triangles that were found; `u32::MAX` where there is none.
+/// The ids of the triangles found; `u32::MAX` where there is none.
 fn triangles(found: &[Option<Closest>]) -> Vec<u32> {
     found.iter().map(|c| c.map_or(u32::MAX, |c| c.triangle as u32)).collect()
 }
@@ -42,12 +43,12 @@ pub(super) struct Scene<'a> {
     pub(super) options: Options,
 }
 
-/// What one body has of the other.
+/// What was measured of one body against the other.
 pub(super) struct Half {
     /// Which of the two bodies.
     own: usize,
     found: Vec<Option<Closest>>,
-    /// Whether each vertex is where the other body does not let it be.
+    /// Whether each vertex is where the other body does not allow it.
     is_wrong: Vec<bool>,
     /// Whether each triangle is nearer than the warning distance.
     is_near: Vec<bool>,
@@ -62,7 +63,7 @@ impl Scene<'_> {
         Rule::new(self.points, [self.bodies[own], self.bodies[1 - own]], self.along, &self.options)
     }
 
-    /// Measures the pair; the second side is empty for a body with itself.
+    /// Measures the pair; for a body with itself, nothing is found for the second half.
     pub(super) fn measure(&self, guesses: &mut Guesses, threads: &Threads) -> (PairGap, Vec<Half>) {
         let found = [0, 1].map(|own| match self.is_own() && own == 1 {
             true => Vec::new(),
@@ -90,8 +91,8 @@ impl Scene<'_> {
         (gap, sides)
     }
 
-    /// The nearest places and nothing else. A bound comes from the pair that was nearest last time, at first from
-    /// some vertex.
+    /// The nearest points and nothing else. The pair that was nearest last time bounds the search; the first
+    /// time, some vertex does.
     pub(super) fn nearest_alone(&self, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
         let rule = self.rule(0);
         let place = || self.points[rule.a.vertices[0].index()];
@@ -104,7 +105,7 @@ impl Scene<'_> {
         self.nearest(start, guesses, threads)
     }
 
-    /// The nearest places within the root of `start` and within reach.
+    /// The nearest points within the square root of `start` and within reach.
     fn nearest(&self, start: f64, guesses: &mut Guesses, threads: &Threads) -> Option<Nearest> {
         let rule = self.rule(0);
         let limit = self.options.within * self.options.within;
@@ -132,8 +133,9 @@ impl Scene<'_> {
         found
     }
 
-    /// The same by a rule. What was nearest at the last step, or to the vertex before, bounds the search: what is farther has not to
-    /// be held against the rule.
+    /// For each vertex, the nearest triangle of the other body that the rule admits. What was nearest at the
+    /// last step, or to the previous vertex, bounds the search: the rule need not be applied to anything
+    /// farther.
     fn admitted_of_vertices(
         &self,
         rule: &Rule<'_>,
@@ -155,7 +157,8 @@ impl Scene<'_> {
         })
     }
 
-    /// Nothing crosses where the nearest places are apart, but for triangles that share a vertex, which have no distance.
+    /// The pairs of triangles that cross. If the nearest points are apart, nothing crosses, except for
+    /// triangles that share a vertex, which are not measured.
     fn crossings(&self, nearest: Option<&Nearest>, threads: &Threads) -> Vec<[u32; 2]> {
         let [a, b] = [0, 1].map(|k| &self.bodies[k].joined);
         let is_apart = nearest.is_none_or(|nearest| nearest.distance > 0.0);
@@ -178,7 +181,8 @@ impl Scene<'_> {
         side
     }
 
-    /// A vertex within a body is as deep as its surface is near, whichever way that faces and however far it is.
+    /// Finds the depth of vertices that are where they must not be: their distance from the surface,
+    /// whichever way that faces and however far it is.
     fn look_again_where_wrong(&self, side: &mut Half) {
         let rule = self.rule(side.own);
         for (i, found) in side.found.iter_mut().enumerate() {
@@ -204,7 +208,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Marks the triangles around vertices that are near, and those that are nearest to these: most of all that are near.
+    /// Marks the triangles around vertices that are near, and the triangles nearest to these: most of all
+    /// that are near.
     fn mark_around(&self, side: &Half, warn: f64, near: [&[AtomicBool]; 2]) {
         let own = self.bodies[side.own];
         for (i, found) in side.found.iter().enumerate() {
@@ -222,7 +227,7 @@ impl Half {
         wrong.filter_map(|(found, _)| *found).map(|found| found.distance_squared.sqrt()).fold(0.0, f64::max)
     }
 
-    /// Takes the gaps over where they are less than what is known.
+    /// Takes over those gaps that are smaller than the known ones.
     pub(super) fn put(&self, scene: &Scene<'_>, gaps: &mut BodyGaps) {
         let (own, other) = (scene.bodies[self.own], scene.bodies[1 - self.own]);
         for (i, found) in self.found.iter().enumerate() {

@@ -1,7 +1,10 @@
-//! Which bodies are rooms: closed surfaces that others are meant to lie within, such as a vessel round a stent.
+//! Which bodies are rooms: closed surfaces that others are meant to lie within, such as a vessel around a
+//! stent.
 //!
-//! A closed surface has an inside, and nothing in its triangles says whether that is solid. Whoever knows says so ([`Room`]); otherwise a closed surface that encloses most of
-//! another body's area is the room of that body. Rooms are a matter of pairs: a balloon is a body in its vessel, and the room of the wire in it.
+//! A closed surface has an inside, but nothing in its triangles says whether that is solid. The caller may
+//! state it ([`Room`]); otherwise a closed surface that encloses most of another body's area is the room of
+//! that body. A room is one for certain other bodies: a balloon is a body in its vessel, and the room of the
+//! wire in it.
 
 use serde::Serialize;
 
@@ -12,20 +15,21 @@ use crate::geometry::triangle::area;
 use crate::mesh::bounds;
 use crate::preflight::crossings;
 
-/// A surface is a room of what it encloses with more than this part of its area.
+/// A surface is the room of a body if it encloses more than this fraction of the body's area.
 const MOST: f64 = 0.5;
 
-/// Whether a body is the wall of a room that others are within: the sign of its distances to these is turned.
+/// Whether a body is the wall of a room that contains others: the sign of its distances to these is reversed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Room {
-    /// Of each body of which it encloses most of the area at first, if it is closed, shares no vertex with it, and does not lie in it likewise. The default.
+    /// Of each body most of whose area it encloses at first, if it is closed, shares no vertex with that
+    /// body, and does not lie in it likewise. The default.
     #[default]
     Found,
-    /// Of none.
+    /// Of no body.
     No,
-    /// Of all others, but of rooms that enclose it.
+    /// Of all other bodies, except for rooms that enclose it.
     Yes,
-    /// Of these, by their places in the list of bodies.
+    /// Of these bodies, by their indices in the list of bodies.
     Of(Vec<u32>),
 }
 
@@ -36,12 +40,14 @@ pub struct Within {
     pub room: u32,
     /// The body that lies in it.
     pub body: u32,
-    /// The part of the body's area that was inside when this was found; `None` where it was told.
+    /// The fraction of the body's area that was inside when this was found; `None` if it was given.
     pub share: Option<f64>,
 }
 
+/// Checks which bodies are given as rooms of which.
+///
 /// # Errors
-/// When a room is that of a body that is not there, or of itself.
+/// When a body is given as the room of one that does not exist, or of itself.
 pub(super) fn check(rooms: &[Room]) -> Result<()> {
     for (own, room) in rooms.iter().enumerate() {
         let Room::Of(others) = room else { continue };
@@ -81,7 +87,8 @@ pub(super) fn within(points: &[Point], bodies: &[Prepared], told: &[Room], threa
     pairs.filter_map(within).collect()
 }
 
-/// The part of a body's area inside a closed surface; the rest is outside, and what lies on the surface does not count. Each corner stands for a third of its triangle.
+/// The fraction of a body's area inside a closed surface. The rest is outside; what lies on the surface does
+/// not count. Each corner stands for a third of its triangle.
 fn share_within(points: &[Point], body: &Prepared, room: &Prepared, threads: &Threads) -> f64 {
     if !room.is_closed || !may_enclose(points, room, body) {
         return 0.0;

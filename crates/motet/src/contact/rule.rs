@@ -10,13 +10,13 @@ use crate::geometry::triangle;
 use crate::geometry::vector::{distance, dot, sub};
 use crate::spatial;
 
-/// How two bodies are looked at. Nothing is left out between bodies that share no vertex, unless it is asked for.
+/// How two bodies are compared. Nothing is left out between bodies that share no vertex, unless requested.
 #[derive(Clone, Copy)]
 pub(super) struct Rule<'a> {
     pub(super) points: &'a [Point],
     pub(super) a: Seen<'a>,
     pub(super) b: Seen<'a>,
-    /// Ways along the surface, where the bodies have some in common.
+    /// Paths along the surface, if the bodies have vertices in common.
     along: Option<&'a Along>,
     facing: bool,
     fold: f64,
@@ -37,7 +37,7 @@ impl<'a> Rule<'a> {
         !self.facing
     }
 
-    /// Tells of triangles of the second body whether they count as near to one vertex of the first.
+    /// A function that decides whether triangles of the second body count as near to one vertex of the first.
     pub(super) fn at_vertex(
         self,
         place: usize,
@@ -63,7 +63,8 @@ impl<'a> Rule<'a> {
         }
     }
 
-    /// Whether some triangle has all these vertices: places on them are neighbours, however long the way along its edges.
+    /// Whether some triangle has all these vertices: places on them are neighbours, however long the path
+    /// along its edges.
     fn is_in_one_triangle(&self, own: &[VertexId], other: &[VertexId]) -> bool {
         let is_all_of =
             |body: &Prepared, t: u32| own.iter().chain(other).all(|v| body.joined[t as usize].contains(v));
@@ -74,7 +75,8 @@ impl<'a> Rule<'a> {
             })
     }
 
-    /// How far a vertex of the first body is from a triangle of the second, where that counts.
+    /// The distance of a vertex of the first body from a triangle of the second; `None` if that does not
+    /// count.
     pub(super) fn distance(&self, place: usize, j: u32, ways: &mut Ways) -> Option<f64> {
         let p = self.points[self.a.vertices[place].index()];
         let corners = self.b.triangles.get(j as usize)?.map(|v| self.points[v.index()]);
@@ -86,7 +88,7 @@ impl<'a> Rule<'a> {
         self.at_vertex(place, ways)(j, &found).then(|| distance_squared.sqrt())
     }
 
-    /// Whether it is farther than `length` along the surface.
+    /// Whether a place is farther than `length` along the surface.
     fn is_gap(&self, from: VertexId, to: ([VertexId; 3], Point), length: f64, ways: &mut Ways) -> bool {
         self.along.is_none_or(|along| !along.is_within(self.points, from, to, length, ways))
     }
@@ -110,7 +112,8 @@ impl<'a> Rule<'a> {
         self.is_gap(own[heaviest], (other, to), self.fold * found.distance() - first, ways)
     }
 
-    /// Whether two triangles are worth measuring: not the same, nor neighbours that share a vertex, nor turned away from each other.
+    /// Whether two triangles are worth measuring: not the same, without a common vertex, and not turned away
+    /// from each other.
     pub(super) fn may_admit(&self, [i, j]: [u32; 2]) -> bool {
         let (own, other) = (self.a.joined[i as usize], self.b.joined[j as usize]);
         let is_joined = self.along.is_some() && own.iter().any(|v| other.contains(v));

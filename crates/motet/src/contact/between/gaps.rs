@@ -1,4 +1,4 @@
-//! The measure of all tets and of all vertices, with the points where they are now.
+//! Measures all tets and all vertices, with the points where they are now.
 
 use super::super::Side;
 use super::measure::{Pair, Part, nearest};
@@ -9,7 +9,7 @@ use crate::base::{Id, Point, Threads, VertexId};
 use crate::geometry::distance::point_triangle;
 use crate::geometry::vector::{distance, sub};
 
-/// How far a vertex is from other bodies: where, and the nearest vertex there with its body.
+/// The distance of a vertex from other bodies: where it ends, and the nearest vertex there with its body.
 #[derive(Clone, Copy)]
 struct Gap {
     distance: f64,
@@ -18,11 +18,11 @@ struct Gap {
     vertex: VertexId,
 }
 
-/// What a tet says.
+/// What was measured in a tet.
 struct Measured {
     /// Where two bodies come nearest, on the sides that count.
     least: Option<Least>,
-    /// How near they come whatever the sides: no vertex is nearer to another body in this tet.
+    /// How near they come regardless of the sides: in this tet, no vertex is nearer to another body.
     bound: f64,
     /// The nearest two vertices of different bodies.
     nearest_vertices: Option<VertexPair>,
@@ -46,7 +46,7 @@ impl Between {
             if gap.distance < self.gap[v.index()] {
                 (self.gap[v.index()], self.closest[v.index()]) = (gap.distance, gap.vertex);
             }
-            // Nearer than all tets where triangles round them are asked too, or where there is no tet.
+            // Nearer than in all tets if the triangles around were measured, too, or if there is no tet.
             let turn = usize::from(body > gap.body);
             let ordered = |own, other| if turn == 0 { [own, other] } else { [other, own] };
             let bodies = [body.min(gap.body), body.max(gap.body)];
@@ -88,7 +88,7 @@ impl Between {
         Measured { least, bound, nearest_vertices }
     }
 
-    /// The gap of a vertex of a body.
+    /// The gap of a vertex of a body; `None` if no other body is near it.
     fn vertex(
         &self,
         (body, v, site): (u32, VertexId, u32),
@@ -123,14 +123,15 @@ impl Between {
             others.dedup();
             self.stars(body, site, &others, points, &mut best);
         }
-        // Vertices of one body in one place are measured once; should they part, this stays a bound.
+        // Vertices of one body at one place are measured once; if they have moved apart, this remains a
+        // bound.
         best.map(|gap| Gap {
             distance: gap.distance + distance(points[v.index()], points[first.index()]),
             ..gap
         })
     }
 
-    /// Measures a vertex against all triangles round these sites of other bodies.
+    /// Measures a vertex against all triangles around these sites of other bodies.
     fn stars(&self, body: u32, site: u32, others: &[(u32, u32)], points: &[Point], best: &mut Option<Gap>) {
         let around = |&(body, s): &(u32, u32)| self.sites.star(body, s).map(move |t| (t, body));
         let mut triangles: Vec<(usize, u32)> = others.iter().flat_map(around).collect();
@@ -157,7 +158,7 @@ impl Between {
         }
     }
 
-    /// What each body has of a tet, by body.
+    /// The part that each body has of a tet, in the order of the bodies.
     fn parts(&self, tet: [u32; 4], points: &[Point]) -> Vec<Part> {
         let mut bodies: Vec<u32> = Vec::with_capacity(4);
         for site in tet {
@@ -168,7 +169,7 @@ impl Between {
         bodies.into_iter().map(|body| Part::new(tet, body, &self.sites, points)).collect()
     }
 
-    /// Whether the way between two points is on the side that counts, at both ends.
+    /// Whether the line between two points is on the side that counts, at both ends.
     fn counts(&self, a: &Part, b: &Part, pair: &Pair, points: &[Point]) -> bool {
         let [on_a, on_b] = [a, b].map(|part| self.sides[part.body as usize]);
         if [on_a, on_b] == [Side::Both; 2] {
@@ -180,7 +181,7 @@ impl Between {
     }
 }
 
-/// Takes the new one where it is nearer; of two as near the first stays.
+/// Keeps the nearer of the two; among two equally near ones, the first.
 fn keep_nearer<T>(best: &mut Option<T>, new: Option<T>, distance: impl Fn(&T) -> f64) {
     if let Some(new) = new
         && best.as_ref().is_none_or(|best| distance(&new) < distance(best))

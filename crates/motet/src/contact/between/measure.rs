@@ -1,21 +1,21 @@
-//! How near two bodies come within one tet, by what is really there of their surfaces.
+//! How near two bodies come within one tet, by those of its features that really are on their surfaces.
 
 use super::sites::{NO_SITE, Sites};
 use crate::base::{Id, Point, VertexId};
 use crate::geometry::distance::{Closest, point_segment, point_triangle, segment_segment};
 use crate::geometry::vector::{add, dot, scale, sub};
 
-/// The vertices that one body has of a tet.
+/// The part that one body has of a tet: its vertices there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub(super) body: u32,
-    /// Of the tet; [`NO_SITE`] where this body has no vertex.
+    /// The sites of the tet; [`NO_SITE`] where this body has no vertex.
     pub(super) sites: [u32; 4],
     pub(super) vertices: [VertexId; 4],
     points: [Point; 4],
 }
 
-/// A pair of points of two parts, by weights of the four vertices.
+/// A pair of points of two parts, as weights of the four vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub(super) distance_squared: f64,
@@ -27,7 +27,7 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
 impl Part {
-    /// What `body` has of a tet.
+    /// The part that `body` has of a tet.
     pub(super) fn new(tet: [u32; 4], body: u32, sites: &Sites, points: &[Point]) -> Self {
         let vertices = tet.map(|s| sites.vertex(s, body));
         let mut own = tet;
@@ -42,7 +42,7 @@ impl Part {
         Self { body, sites: own, vertices, points: places }
     }
 
-    /// Only the vertex in this place.
+    /// The part with only the vertex at this place.
     pub(super) fn vertex(mut self, i: usize) -> Self {
         for k in (0..4).filter(|&k| k != i) {
             self.sites[k] = NO_SITE;
@@ -57,7 +57,7 @@ impl Part {
             .fold([0.0; 3], |sum, i| add(sum, scale(self.points[i], weights[i])))
     }
 
-    /// The places of which it has a vertex.
+    /// The places at which this body has a vertex.
     pub(super) fn has(&self) -> impl Iterator<Item = usize> + Clone + '_ {
         (0..4).filter(|&i| self.sites[i] != NO_SITE)
     }
@@ -66,7 +66,7 @@ impl Part {
         self.has().count() == 1
     }
 
-    /// Those of the tet's edges or facets that are its own and features of its surface.
+    /// Those of the tet's edges or facets that belong to this body and are features of its surface.
     fn real<'a, const N: usize>(
         &'a self,
         all: &'a [[usize; N]],
@@ -84,8 +84,9 @@ impl Part {
     }
 }
 
-/// The nearest pair of points of the features that two bodies have in a tet: vertices, edges and facets of the tet that are also those of
-/// their surfaces. An edge that is a chord across a dent, or a facet that is no triangle, is left out: nothing of the body is there.
+/// The nearest pair of points of the features that two bodies have in a tet: vertices, edges and facets of
+/// the tet that are also features of their surfaces. An edge that is a chord across a dent, or a facet that
+/// is no triangle, is left out: the body is not there.
 pub(super) fn nearest(a: &Part, b: &Part, sites: &Sites) -> Pair {
     let mut best = Pair { distance_squared: f64::INFINITY, on_a: [0.0; 4], on_b: [0.0; 4] };
     for i in a.has() {
@@ -98,7 +99,7 @@ pub(super) fn nearest(a: &Part, b: &Part, sites: &Sites) -> Pair {
             );
         }
     }
-    // Edges are collected, since each is asked for more than once, and there are hardly more than two.
+    // Edges are collected, since each is used more than once, and there are rarely more than two.
     let edges_a: Vec<_> = if a.is_vertex() { Vec::new() } else { a.real(&EDGES, sites).collect() };
     let mut has_facet = false;
     for facet in b.real(&FACETS, sites) {
@@ -107,7 +108,7 @@ pub(super) fn nearest(a: &Part, b: &Part, sites: &Sites) -> Pair {
             best.offer([i], facet, &point_triangle::closest(a.points[i], b.points(facet)));
         }
     }
-    // A vertex against a whole triangle is done.
+    // A vertex against a whole triangle needs nothing else.
     if a.is_vertex() && has_facet && b.has().count() == 3 {
         return best;
     }

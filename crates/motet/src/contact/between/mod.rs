@@ -1,24 +1,30 @@
-//! Gaps by the Delaunay tets that span them, as Moyle and Ventikos (2008) measure them: quick to keep, and an upper bound.
+//! Gaps measured by the Delaunay tets that span them, as in Moyle and Ventikos (2008): cheap to update, and
+//! an upper bound.
 //!
-//! The vertices of all bodies are triangulated; a tet whose vertices belong to more than one body spans a gap, and says how near
-//! these bodies come in it: by two edges (two-two) or by a facet and a vertex (three-one).
+//! The vertices of all bodies are triangulated. A tet whose vertices belong to more than one body spans a
+//! gap, and gives the distance of these bodies within it: of two edges (two-two), or of a facet and a vertex
+//! (three-one).
 //!
-//! **What is exact.** The least distance between two *vertices* of different bodies ([`Between::nearest_vertices`]): no third vertex lies in
-//! the ball whose diameter they are, since it would be nearer to the one of them that is of another body, so they are joined by an
-//! edge of every Delaunay triangulation.
+//! **What is exact.** The least distance between two *vertices* of different bodies
+//! ([`Between::nearest_vertices`]): no third vertex lies in the ball that has them as a diameter, since it
+//! would be nearer to the one of them that is of another body, so every Delaunay triangulation joins them by
+//! an edge.
 //!
-//! **What is a bound.** Everything else is the distance between points that do lie on the surfaces, hence never too small, but
-//! the nearest triangle need not be in a tet with the vertex, so it may be too large. The text of 2008 takes every edge and facet of a tet for a
-//! part of the surfaces, also chords across dents, and may thus be too small as well; here those that are not edges or
-//! triangles of the surface are left out. The exact answer takes a tree of boxes; this one gives what a tree does not: the tets of
-//! the gap, and a graph that moves along.
+//! **What is a bound.** Everything else is the distance between points that do lie on the surfaces, hence
+//! never too small. But the nearest triangle need not be in a tet with the vertex, so it may be too large.
+//! The paper of 2008 takes every edge and facet of a tet for a part of the surfaces, even chords across
+//! dents, so its distances may be too small as well; here, those that are not edges or triangles of the
+//! surface are left out. The exact answer comes from a tree of boxes; this module gives what a tree does not:
+//! the tets of the gap, and a graph that moves along.
 //!
-//! **How good the bound is**, for a stent lattice in a tube (78,000 vertices), by `examples/contact_delaunay.rs`, in which there are more pairs. Of
-//! the vertices 24 % have no gap tet, 33 % their exact distance, and of those seen the median is 0.04 % too large, one in twenty more than 16 %, the worst 134 %. Of the tenth that is nearest
-//! to the other surface all are seen, and the worst is 33 % too large; with `stars` all of these are exact. The least
-//! distance of all was off by 0 to 0.8 % over nine pairs. The paper's rule for two edges is too large in 43 % of the lattice's two-two
-//! tets, by up to 88 %. It takes 0.6 s and 0.27 s an update, on one thread of a busy machine, where the tree has the
-//! exact distances of all vertices from nothing in 0.1 s.
+//! **How good the bound is**, for a stent lattice in a tube (78,000 vertices), by
+//! `examples/contact_delaunay.rs`, which has more pairs. 24 % of the vertices have no gap tet, and 33 % their
+//! exact distance. Of those that have a gap tet, the median is 0.04 % too large, one in twenty more than 16 %,
+//! and the worst 134 %. Of the tenth that is nearest to the other surface all have one, and the worst is 33 %
+//! too large; with `stars` all of these are exact. The least distance of all was off by 0 to 0.8 % over nine
+//! pairs. The paper's rule for two edges is too large in 43 % of the lattice's two-two tets, by up to 88 %.
+//! Building takes 0.6 s and an update 0.27 s, on one thread of a busy machine, on which the tree computes the
+//! exact distances of all vertices from scratch in 0.1 s.
 
 mod gaps;
 mod measure;
@@ -32,7 +38,7 @@ use super::side::Side;
 use crate::base::{Csr, Error, Id, Point, Result, Threads, VertexId};
 use sites::{NO_SITE, Sites};
 
-/// What a tet is by the bodies that its vertices belong to.
+/// The kind of a tet, by the bodies that its vertices belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GapKind {
@@ -42,36 +48,38 @@ pub enum GapKind {
     ThreeOne,
     /// Two vertices of one body, and one each of two others.
     TwoOneOne,
-    /// Vertices of four bodies.
+    /// Vertices of four bodies, one each.
     Ones,
-    /// A vertex is in two bodies, or two bodies have a vertex in one place: their distance is 0 there.
+    /// A vertex belongs to two bodies, or two bodies have a vertex at one place: their distance is 0 there.
     Touching,
-    /// All vertices are in one plane or line, so there are triangles or segments in place of tets.
+    /// All vertices of all bodies are in one plane or on one line, so there are triangles or segments instead
+    /// of tets.
     Flat,
-    /// All vertices of one body: no gap, and never in the list.
+    /// All vertices belong to one body: no gap, and never in the list.
     Four,
 }
 
 /// A tet that spans a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GapTet {
-    /// The body with most vertices first: the edges of a two-two, or the facet and the lone vertex of a three-one; not oriented. In a
-    /// [`GapKind::Flat`] one the last is [`Id::NONE`], or the last two.
+    /// The vertices, those of the body with most of them first: the two edges of a two-two, or the facet and
+    /// the lone vertex of a three-one; not oriented. In a [`GapKind::Flat`] one the last is [`Id::NONE`], or
+    /// the last two are.
     pub vertices: [VertexId; 4],
-    /// What it is.
+    /// Its kind.
     pub kind: GapKind,
     /// The two bodies that come nearest in it, the smaller first.
     pub bodies: [u32; 2],
-    /// How near they come in it; infinite where the way from one to the other is on a side that does not count.
+    /// How near they come in it; infinite if the line from one to the other is on a side that does not count.
     pub distance: f64,
 }
 
 /// Where two bodies come nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Least {
-    /// How near.
+    /// Their distance.
     pub distance: f64,
-    /// Which, the smaller first.
+    /// The bodies, the smaller first.
     pub bodies: [u32; 2],
     /// The point on each.
     pub points: [Point; 2],
@@ -80,7 +88,7 @@ pub struct Least {
 /// Two vertices of different bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VertexPair {
-    /// How far apart.
+    /// Their distance.
     pub distance: f64,
     /// The bodies, the smaller first.
     pub bodies: [u32; 2],
@@ -88,15 +96,16 @@ pub struct VertexPair {
     pub vertices: [VertexId; 2],
 }
 
-/// What [`Between::new`] is told.
+/// Options of [`Between::new`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BetweenOptions {
-    /// On which side of each body its gaps are; bodies past the end have [`Side::Both`]. Default: none given. With a side, a pair of
-    /// points counts only if the way between them starts on that side at both ends, as told by the triangles there: so nothing
-    /// is measured through the wall of a thin body.
+    /// On which side of each body its gaps are; bodies past the end have [`Side::Both`]. Empty by default.
+    /// With a side, a pair of points counts only if the line between them starts on that side at both ends,
+    /// according to the triangles there: so nothing is measured through the wall of a thin body.
     pub sides: Vec<Side>,
-    /// Whether a vertex is also measured to all triangles round the vertices that share a tet with it: nearer to the truth, and slower; see
-    /// the table that `examples/contact_delaunay.rs` prints. Default: no, as in the text of 2008.
+    /// Whether a vertex is also measured against all triangles around the vertices that share a tet with it:
+    /// nearer to the truth, and slower; see the table that `examples/contact_delaunay.rs` prints. Off by
+    /// default, as in the paper of 2008.
     pub stars: bool,
 }
 
@@ -105,16 +114,17 @@ pub struct BetweenOptions {
 pub struct Between {
     /// The tets that span gaps.
     pub tets: Vec<GapTet>,
-    /// For each point how far it is from the features of other bodies that share a tet with it: an upper bound of its distance; infinite
-    /// where there are none, and for points that no body uses.
+    /// For each point, its distance from the features of other bodies that share a tet with it: an upper
+    /// bound of its distance to these bodies; infinite if there are none, and for points that no body uses.
     pub gap: Vec<f64>,
-    /// For each point the vertex of another body that is nearest to where its gap ends; [`Id::NONE`] where the gap is infinite.
+    /// For each point, the vertex of another body that is nearest to where its gap ends; [`Id::NONE`] if the
+    /// gap is infinite.
     pub closest: Vec<VertexId>,
-    /// Where two bodies come nearest, over all tets: an upper bound; `None` where no tet spans a gap.
+    /// Where two bodies come nearest, over all tets: an upper bound; `None` if no tet spans a gap.
     pub least: Option<Least>,
-    /// The nearest two vertices of different bodies, whatever the sides: exact after [`Between::new`].
+    /// The nearest two vertices of different bodies, regardless of the sides: exact after [`Between::new`].
     pub nearest_vertices: Option<VertexPair>,
-    /// How many tets have all vertices of one body.
+    /// How many tets have all vertices in one body.
     pub n_of_one_body: usize,
     sides: Vec<Side>,
     stars: bool,
@@ -125,12 +135,14 @@ pub struct Between {
 }
 
 impl Between {
-    /// Triangulates the vertices of all bodies and measures the tets that span gaps. Each body is triangles over the same points; bodies may
-    /// touch and share vertices, be open or closed, in one plane or a single point. One body alone has no gaps. The
-    /// result is the same for any number of threads.
+    /// Triangulates the vertices of all bodies and measures the tets that span gaps. Each body is a list of
+    /// triangles over the same points. Bodies may touch and share vertices, be open or closed, or lie in one
+    /// plane or at a single point. One body alone has no gaps. The result does not depend on the number of
+    /// threads.
     ///
     /// # Errors
-    /// When there is no body, when one is empty, when a triangle names a point that is not there, or a point is not finite.
+    /// When there is no body, when one is empty, when a triangle names a point that does not exist, or a
+    /// point is not finite.
     pub fn new(
         points: &[Point],
         bodies: &[Vec<[VertexId; 3]>],
@@ -176,12 +188,13 @@ impl Between {
         Ok(between)
     }
 
-    /// Measures the same tets with points that moved: much less work than [`Between::new`], which makes it the handle to keep over
-    /// the steps of a simulation. No tet is exchanged, so what is near must be in a tet with what it was near to before:
-    /// all distances, that of the nearest vertices too, are then upper bounds, and looser the farther things move along each other.
+    /// Measures the same tets with points that moved: much less work than [`Between::new`], so this is the
+    /// handle to keep over the steps of a simulation. The tets stay the same, so a vertex is measured only
+    /// against what it shared a tet with before: all distances, including that of the nearest vertices, are
+    /// then upper bounds, and looser the farther bodies move along each other.
     ///
     /// # Errors
-    /// When there is another number of points, or one that a body uses is not finite.
+    /// When the number of points is different, or a point that a body uses is not finite.
     pub fn update(&mut self, points: &[Point], threads: &Threads) -> Result<()> {
         if points.len() != self.gap.len() {
             let (had, has) = (self.gap.len(), points.len());

@@ -1,4 +1,4 @@
-//! On which side of a surface the way to another one starts.
+//! On which side of a surface the line to another one starts.
 
 use super::super::Side;
 use super::measure::Part;
@@ -8,12 +8,13 @@ use crate::geometry::distance::{Feature, point_segment, point_triangle};
 use crate::geometry::triangle::{area_vector, normal_where_they_meet};
 use crate::geometry::vector::{dot, norm, scale, sub};
 
-/// Whether the way `along`, from the point of a part with these weights, starts on this side of the body; one within the
-/// surface starts on both.
+/// Whether the direction `along`, from the point of a part with these weights, starts on this side of the
+/// body; one within the surface starts on both.
 ///
-/// The side is that of a point a little along the way, by the nearest point of the triangles around: by the normal
-/// of the triangle, the sum of the two normals at an edge, and the sum of the normals weighted by their angles at a vertex (Baerentzen and
-/// Aanaes 2005). The little is a quarter of the way to where these triangles end, so that nothing else can be nearest.
+/// The side is that of a point a little farther along, by the nearest point of the triangles around: by the
+/// normal of the triangle, the sum of the two normals at an edge, or the sum of the normals weighted by their
+/// angles at a vertex (Baerentzen and Aanaes 2005). The step is a quarter of the distance to where these
+/// triangles end, so that nothing else can be nearest.
 pub(super) fn starts_on(
     side: Side,
     part: &Part,
@@ -40,11 +41,11 @@ pub(super) fn starts_on(
     }
 }
 
-/// The triangles around a point of a surface, taken relative to it.
+/// The triangles around a point of a surface, relative to it.
 struct Star {
     triangles: Vec<[Point; 3]>,
     sites: Vec<[u32; 3]>,
-    /// How far the nearest edge is that the point is not on.
+    /// The distance of the nearest edge that the point is not on.
     reach: f64,
 }
 
@@ -70,7 +71,7 @@ impl Star {
         star
     }
 
-    /// How far a place is above the surface, by the direction of the normal at its nearest point; only the sign counts.
+    /// How far a place is above the surface, along the normal at its nearest point; only the sign counts.
     fn height(&self, place: Point) -> f64 {
         let nearest = self.triangles.iter().map(|t| point_triangle::closest(place, *t)).enumerate();
         let nearest = nearest.min_by(|x, y| x.1.distance_squared.total_cmp(&y.1.distance_squared));

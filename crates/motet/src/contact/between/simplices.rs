@@ -6,14 +6,15 @@ use crate::base::{Point, Result, Threads, VertexId};
 use crate::delaunay::Triangulation;
 use crate::geometry::vector::{add, scale, sub};
 
-/// Tets of places in a list of points, and places `(duplicate, kept)` where points coincide.
+/// Tets as indices into a list of points, and pairs of indices `(duplicate, kept)` of points that coincide.
 pub(super) struct Simplices {
     pub(super) tets: Vec<[u32; 4]>,
     pub(super) duplicates: Vec<(u32, u32)>,
 }
 
-/// The Delaunay tets of any finite points. Points of one plane have triangles instead, with [`NO_SITE`] in the last place, points of
-/// one line have segments with two of it, and of points in one place nothing comes but duplicates.
+/// The Delaunay tets of any finite points. Points in one plane give triangles instead, with [`NO_SITE`] in
+/// the last place; points on one line give segments, with two of it; points at one place give nothing but
+/// duplicates.
 pub(super) fn simplices(points: &[Point], threads: &Threads) -> Result<Simplices> {
     if points.iter().all(|p| *p == points[0]) {
         let duplicates = (1..points.len() as u32).map(|i| (i, 0)).collect();
@@ -21,7 +22,8 @@ pub(super) fn simplices(points: &[Point], threads: &Threads) -> Result<Simplices
     }
     match Triangulation::new(points, threads) {
         Ok(delaunay) => Ok(taken(&delaunay, points.len())),
-        // All points are finite, so what fails is that they span no volume. Should it be something else, it fails again.
+        // All points are finite, so the cause is that they span no volume. If it is something else, the
+        // second try fails, too.
         Err(_) => {
             let mut more = points.to_vec();
             more.extend(corners_around(points));
@@ -35,8 +37,8 @@ pub(super) fn simplices(points: &[Point], threads: &Threads) -> Result<Simplices
     }
 }
 
-/// Eight points round all others, so far away that none lies within a sphere whose diameter joins two of the others: the
-/// sphere is within half a diagonal of their box.
+/// Eight points around all others, so far away that none lies within a sphere whose diameter joins two of the
+/// others: that sphere is within half a diagonal of their box.
 fn corners_around(points: &[Point]) -> [Point; 8] {
     let bound = |of: fn(f64, f64) -> f64| {
         points.iter().fold(points[0], |m, p| [of(m[0], p[0]), of(m[1], p[1]), of(m[2], p[2])])
@@ -50,7 +52,7 @@ fn corners_around(points: &[Point]) -> [Point; 8] {
     })
 }
 
-/// Tets and duplicates below `n`; vertices from there on are none.
+/// Tets and duplicates below `n`; vertices from `n` on become [`NO_SITE`].
 fn taken(delaunay: &Triangulation, n: usize) -> Simplices {
     let place = |v: &VertexId| if v.index() < n { v.0 } else { NO_SITE };
     let tets = delaunay.tets().iter().map(|[a, b, c, d]| [place(a), place(b), place(c), place(d)]).collect();
@@ -58,7 +60,8 @@ fn taken(delaunay: &Triangulation, n: usize) -> Simplices {
     Simplices { tets, duplicates: own.map(|(duplicate, kept)| (duplicate.0, kept.0)).collect() }
 }
 
-/// What a tet is by the bodies its vertices belong to, and its sites in the order that [`super::GapTet`] promises.
+/// The kind of a tet, by the bodies its vertices belong to, and its sites in the order that [`super::GapTet`]
+/// promises.
 pub(super) fn classified(tet: [u32; 4], sites: &Sites) -> (GapKind, [u32; 4]) {
     let mut ordered = tet;
     if tet.iter().any(|&s| sites.owners(s).len() > 1) {
@@ -66,7 +69,7 @@ pub(super) fn classified(tet: [u32; 4], sites: &Sites) -> (GapKind, [u32; 4]) {
     }
     let body = |s: u32| sites.owners(s).first().map_or(u32::MAX, |owner| owner.0);
     let alike = |s: u32| tet.iter().filter(|&&other| body(other) == body(s)).count();
-    // The larger share first, then the smaller body; no vertex last.
+    // The larger share first, then the smaller body; missing vertices last.
     ordered.sort_by_key(|&s| (s == NO_SITE, 4 - alike(s), body(s)));
     let of = ordered.map(body);
     let real = ordered.iter().filter(|&&s| s != NO_SITE).count();

@@ -1,23 +1,25 @@
-//! The places that the vertices of all bodies take: who stands at each, and which triangles meet there.
+//! The places of the vertices of all bodies: which bodies have a vertex at each, and which triangles meet
+//! there.
 
 use super::super::input::vertices_of;
 use crate::base::{Csr, Error, Id, Point, Result, VertexId};
 
-/// As a site: none.
+/// Stands for no site.
 pub(super) const NO_SITE: u32 = u32::MAX;
 
-/// Vertices in the same place are one site, with an owner for each body that has a vertex there.
+/// Vertices at the same place are one site, with an owner for each body that has a vertex there.
 ///
-/// What a body has in common with another, be it a vertex of both or two vertices in one place, is thus a site of two owners.
+/// What two bodies have in common, be it a vertex of both or two vertices at one place, is thus a site with
+/// two owners.
 #[derive(Clone, Debug)]
 pub(super) struct Sites {
-    /// The owners of each site by body, rising, each with its first vertex there.
+    /// The owners of each site in the order of bodies, each with its first vertex there.
     pub(super) owners: Csr<(u32, VertexId)>,
     /// Every vertex that a triangle uses, with its body and site; in the order of bodies, then of ids.
     pub(super) vertices: Vec<(u32, VertexId, u32)>,
     /// The triangles of all bodies, one body after the other, as sites.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The same as vertices.
+    /// The triangles of all bodies as vertices, in the same order.
     pub(super) corners: Vec<[VertexId; 3]>,
     /// Where the triangles of each body end.
     ends: Vec<u32>,
@@ -25,7 +27,7 @@ pub(super) struct Sites {
     star: Csr<u32>,
 }
 
-/// The vertices that the bodies use, each once, rising.
+/// The vertices that the bodies use, each once, in ascending order.
 pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> Result<Vec<VertexId>> {
     if bodies.is_empty() {
         return Err(Error::input("a measure of gaps needs a body, and there is none")
@@ -39,7 +41,7 @@ pub(super) fn used_vertices(points: &[Point], bodies: &[Vec<[VertexId; 3]>]) -> 
 }
 
 impl Sites {
-    /// `duplicates` are `(duplicate, kept)` places in `used`; a site is the place of a kept one.
+    /// `duplicates` are pairs `(duplicate, kept)` of indices into `used`; a site is the index of a kept one.
     pub(super) fn new(
         n_points: usize,
         used: &[VertexId],
@@ -62,7 +64,7 @@ impl Sites {
             vertices.extend(own.into_iter().map(|v| (body, v, of_vertex[v.index()])));
             ends.push(ends.last().copied().unwrap_or(0) + triangles.len() as u32);
         }
-        // Of the vertices that a body has at one site only the first is its owner.
+        // Of the vertices that a body has at one site, only the first is its owner.
         let mut last = vec![NO_SITE; used.len()];
         let is_first = |&(body, _, site): &(u32, VertexId, u32)| {
             std::mem::replace(&mut last[site as usize], body) != body
@@ -83,18 +85,18 @@ impl Sites {
         self.ends.len()
     }
 
-    /// Who stands at a site; nobody at none.
+    /// The owners of a site; none for [`NO_SITE`].
     pub(super) fn owners(&self, site: u32) -> &[(u32, VertexId)] {
         if site == NO_SITE { &[] } else { self.owners.list(site as usize) }
     }
 
-    /// The vertex of a body at a site, [`Id::NONE`] where it has none.
+    /// The vertex of a body at a site; [`Id::NONE`] if it has none.
     pub(super) fn vertex(&self, site: u32, body: u32) -> VertexId {
         let found = self.owners(site).iter().find(|owner| owner.0 == body);
         found.map_or(VertexId::NONE, |owner| owner.1)
     }
 
-    /// The triangles of a body that hold all these sites, at least one.
+    /// The triangles of a body that contain all these sites, at least one.
     pub(super) fn star_of<'a>(&'a self, body: u32, sites: &'a [u32]) -> impl Iterator<Item = usize> + 'a {
         let lists = sites.iter().map(|&s| self.star.list(s as usize));
         let shortest = lists.min_by_key(|list| list.len()).unwrap_or(&[]);

@@ -1,8 +1,8 @@
-//! When surfaces that move will first touch: times before which they surely do not.
+//! When moving surfaces will first touch: times before which they certainly do not.
 //!
-//! Every vertex moves straight on, `x(t) = x + t v`. Pairs of triangles come from a tree of moving boxes (`tree`), and each pair is followed up
-//! to the time of its contact by conservative advancement (`pair`). Times are rounded down, so that "no
-//! contact before" holds whatever rounding did.
+//! Every vertex moves in a straight line, `x(t) = x + t v`. Pairs of triangles come from a tree of moving
+//! boxes (`tree`), and each pair is followed to its time of contact by conservative advancement (`pair`).
+//! Times are rounded down, so that "no contact before" holds despite rounding.
 
 mod pair;
 mod queue;
@@ -22,36 +22,40 @@ pub use pair::SLACK;
 /// The first contact of two surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// They do not touch before.
+    /// A time before which they do not touch.
     pub time: f64,
-    /// The triangles that come together: of the first surface and of the second. Of those that do at one time the first ones.
+    /// The triangles that touch, of the first surface and of the second; the first ones of those that touch
+    /// at the same time.
     pub triangles: [u32; 2],
     /// Where: halfway between the closest points of the two at that time.
     pub place: Point,
 }
 
-/// What a motion leads to.
+/// The result of a sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sweep {
     /// The first contact up to the horizon, if any.
     pub first: Option<Touch>,
-    /// For each triangle of the first and of the second surface a time before which it does not touch the other surface; infinite where it
-    /// does not up to the horizon.
+    /// For each triangle of the first and of the second surface, a time before which it does not touch the
+    /// other surface; infinite if it does not touch it up to the horizon.
     pub times: [Vec<f64>; 2],
 }
 
-/// When surfaces `a` and `b` touch first if every point moves with its velocity from time 0 to `horizon`, which may be infinite.
+/// Finds when surfaces `a` and `b` first touch if every point moves with its velocity from time 0 to
+/// `horizon`, which may be infinite.
 ///
-/// Times are safe: there is no contact before them. They are also near the truth: of 13,000 random pairs that touch none was said to touch
-/// 1e-4 of the time too early. Triangles that pass each other by less than 1e-14 of how far they are apart or a
-/// millionth of their own size count as touching then. Triangles that meet at the start have time 0.
+/// Times are safe: there is no contact before them. They are also close to the truth: of 13,000 random pairs
+/// that touch, none was reported 1e-4 of the time too early. Triangles that pass each other by less than
+/// 1e-14 of how far they are apart or a millionth of their own size count as touching then. Triangles that
+/// meet at the start have time 0.
 ///
-/// Two balls of 50,000 triangles each take 0.3 s for a motion up to which 600 touch, 3 s where they go through each other and nearly all do
-/// (one thread of a busy machine; the measurement is in `tests/contact_sweep.rs`).
+/// Two balls of 50,000 triangles each take 0.3 s for a motion by the end of which 600 triangles touch, and 3
+/// s if they pass through each other and nearly all do (one thread of a busy machine; the measurement is in
+/// `tests/contact_sweep.rs`).
 ///
-/// Pairs that share a vertex are always in touch and left out, as are those that `admit` does not let in and triangles with
-/// a corner or a velocity that is not finite. The result depends neither on the number of threads nor on the unit of length or time, nor
-/// on a velocity that all have in common, by more than rounding.
+/// Pairs that share a vertex are always in touch and left out, as are those that `admit` rejects, and
+/// triangles with a corner or a velocity that is not finite. The result depends neither on the number of
+/// threads nor, beyond rounding, on the unit of length or time, nor on a velocity that all have in common.
 ///
 /// Panics when a triangle names a point beyond `points` or `velocity`.
 pub fn sweep(
@@ -69,12 +73,15 @@ pub fn sweep(
     Sweep { first, times: times.map(plain) }
 }
 
-/// For each triangle of `a` a time before which it comes no nearer to surface `b` than `apart` of that triangle, if every point moves with its velocity from time 0 to
-/// `horizon`; infinite where it does not up to the horizon. Triangles that are nearer at first are to keep [`SLACK`] of that distance; so those that go away from each other are free to.
+/// For each triangle of `a`, a time before which it comes no nearer to surface `b` than its length in
+/// `apart`, if every point moves with its velocity from time 0 to `horizon`; infinite if it does not up to
+/// the horizon. Triangles that are nearer at the start must keep [`SLACK`] of their distance then; so those
+/// that move apart are free to.
 ///
-/// Times are safe and near the truth as those of [`sweep`], with the same pairs left out.
+/// Times are as safe and as close to the truth as those of [`sweep`], and the same pairs are left out.
 ///
-/// Panics when a triangle names a point beyond `points` or `velocity`, or `apart` has not one length for each triangle of `a`.
+/// Panics when a triangle names a point beyond `points` or `velocity`, or `apart` does not have one length
+/// for each triangle of `a`.
 pub fn sweep_apart(
     points: &[Point],
     velocity: &[Point],
@@ -92,7 +99,8 @@ pub fn sweep_apart(
     plain(times)
 }
 
-/// [`sweep`] for one surface with itself. `admit` is called with the smaller id first; both lists of times are the same.
+/// [`sweep`] for one surface against itself. `admit` is called with the smaller id first; both lists of times
+/// are the same.
 ///
 /// Panics when a triangle names a point beyond `points` or `velocity`.
 pub fn sweep_own(
@@ -111,7 +119,7 @@ pub fn sweep_own(
     Sweep { first, times: [times.clone(), times] }
 }
 
-/// Times that threads lower together. Those from 0 on are in the order of their bits.
+/// Times that threads lower together. Non-negative times are in the order of their bits.
 type Times = [AtomicU64];
 
 fn infinite(n: usize) -> Vec<AtomicU64> {
@@ -126,14 +134,14 @@ fn read(time: &AtomicU64) -> f64 {
     f64::from_bits(time.load(Ordering::Relaxed))
 }
 
-/// A whole sweep.
+/// The arguments and the times of a sweep.
 struct All<'a, F> {
     points: &'a [Point],
     velocity: &'a [Point],
-    /// Twice the same one for a surface with itself, and so its times.
+    /// The two surfaces, and the times of their triangles; twice the same for a surface against itself.
     surfaces: [&'a [[VertexId; 3]]; 2],
     times: [&'a Times; 2],
-    /// How far apart triangles of the first surface have to stay; empty: they may come as near as they do not touch.
+    /// How far apart triangles of the first surface have to stay; empty if they only must not touch.
     apart: &'a [f64],
     is_own: bool,
     horizon: f64,
@@ -141,7 +149,7 @@ struct All<'a, F> {
 }
 
 impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
-    /// A sweep of two surfaces that may come as near as they do not touch.
+    /// A sweep of two surfaces that only must not touch.
     fn between(
         points: &'a [Point],
         velocity: &'a [Point],
@@ -153,22 +161,23 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
         Self { points, velocity, surfaces, times, apart: &[], is_own: false, horizon, admit }
     }
 
-    /// Finds all times, and says which pair was first.
+    /// Finds all times, and returns the pair that touches first.
     ///
-    /// Each triangle of one surface looks for the first one of the other that it meets, and then the other way round: a search goes
-    /// on until its own time alone. Which times other threads have found by then changes what is looked at, and no time.
+    /// Each triangle of one surface searches for the first triangle of the other that it meets, and then the
+    /// other way around; a search only continues up to the triangle's own time. Which times other threads
+    /// have found by then changes what is examined, but no time.
     fn run(&self, threads: &Threads) -> Option<Touch> {
         let tree = self.tree(1, |_| true);
         self.search(0, &tree, threads);
         if !self.is_own {
-            // What touches nothing was held against all: the others need not look at it again.
+            // Triangles that touch nothing were compared with all others, which need not examine them again.
             let touching = self.tree(0, |i| read(&self.times[0][i]) < f64::INFINITY);
             self.search(1, &touching, threads);
         }
         self.first(&tree)
     }
 
-    /// The tree of a surface, with those triangles alone that are wanted.
+    /// The tree of a surface, with only those triangles that are wanted.
     fn tree(&self, side: usize, wanted: impl Fn(usize) -> bool) -> MovingTree {
         let all = self.surfaces[side].iter().enumerate();
         let boxes = all.map(|(i, &t)| wanted(i).then(|| self.box_of(t)).flatten());
@@ -183,7 +192,8 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
         });
     }
 
-    /// Finds the time of triangle `own` of one surface: looks at what comes first, and stops where all that is left comes later.
+    /// Finds the time of triangle `own` of one surface: examines what comes first, and stops when all that is
+    /// left comes later.
     fn follow(&self, side: usize, own: u32, other: &MovingTree, queue: &mut Queue) {
         let known = &self.times[side][own as usize];
         let apart = if side == 0 { self.apart_of(own) } else { 0.0 };
@@ -221,13 +231,13 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
         }
     }
 
-    /// The triangles of a pair in the order of the surfaces; rising, for a surface with itself.
+    /// The triangles of a pair in the order of the surfaces; in ascending order for a surface against itself.
     fn ids(&self, side: usize, own: u32, other: u32) -> [u32; 2] {
         let is_turned = if self.is_own { other < own } else { side == 1 };
         if is_turned { [other, own] } else { [own, other] }
     }
 
-    /// The first pair of the least time.
+    /// The first of the pairs with the least time.
     fn first(&self, tree: &MovingTree) -> Option<Touch> {
         let (i, time) = (0u32..).zip(self.times[0].iter().map(read)).min_by(by_time_last)?;
         if time == f64::INFINITY {
@@ -264,7 +274,7 @@ impl<'a, F: Fn(u32, u32) -> bool + Sync> All<'a, F> {
         self.apart.get(i as usize).copied().unwrap_or(0.0)
     }
 
-    /// `None` where a corner or velocity is not finite.
+    /// The moving box of a triangle; `None` if a corner or velocity is not finite.
     fn box_of(&self, t: [VertexId; 3]) -> Option<MovingBox> {
         let of = |list: &[Point]| t.map(|v| list[v.index()]);
         let (corners, velocities) = (of(self.points), of(self.velocity));

@@ -1,23 +1,23 @@
-//! What a triangle has still to look at, in the order of the times before which it need not.
+//! What a triangle has yet to examine, in the order of the times before which it need not.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// A thing that is not needed before its time.
+/// An item that is not needed before its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Item {
     /// A subtree.
     Node(u32),
-    /// A triangle whose box comes then.
+    /// A triangle whose box is touched then.
     Box(u32),
-    /// A triangle that may come then itself.
+    /// A triangle that may be touched then itself.
     Triangle(u32),
 }
 
-/// The earliest first. Kept from search to search, for its memory.
+/// The queue, the earliest item first. It is kept from search to search to reuse its memory.
 #[derive(Debug, Default)]
 pub(super) struct Queue {
-    /// By the bits of the time: those from 0 on are in the order of their bits.
+    /// Ordered by the bits of the time: non-negative times are in the order of their bits.
     open: BinaryHeap<Reverse<(u64, Item)>>,
 }
 

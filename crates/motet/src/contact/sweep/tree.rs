@@ -1,20 +1,21 @@
 //! A tree of boxes whose sides move: which of them touch a moving box, and from when on.
 //!
-//! The side of a box moves with the least or greatest velocity of what is within, so the box stays around it. Other than the box around a
-//! whole motion, it does not grow by a motion that all have in common, and time needs no end.
+//! Each side of a box moves with the least or greatest velocity of what is within, so the box stays around
+//! it. Unlike the box around a whole motion, it does not grow with a motion that all have in common, and the
+//! time may be unlimited.
 
 use super::queue::{Item, Queue};
 use crate::base::Point;
 use crate::geometry::vector::{add, scale, sub};
 use crate::spatial::{Bounds, around};
 
-/// Things in a leaf.
+/// Boxes in a leaf.
 const LEAF: usize = 2;
 
-/// Quotients of differences are right to 3 roundings; the rest is for what follows.
+/// Quotients of differences are correct to 3 roundings; the rest is a margin for what follows.
 const ROUNDING: f64 = 1e-15;
 
-/// Where a box is at time 0 and how its corners move.
+/// A box at time 0, and how its corners move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MovingBox {
     place: Bounds,
@@ -22,12 +23,12 @@ pub(super) struct MovingBox {
 }
 
 impl MovingBox {
-    /// Around points; all finite.
+    /// The box around points, with their velocities; all must be finite.
     pub(super) fn new<const N: usize>(points: [Point; N], velocities: [Point; N]) -> Self {
         Self { place: around(points), velocity: around(velocities) }
     }
 
-    /// By so much on all sides.
+    /// The box grown by a length on all sides.
     pub(super) fn widened(self, by: f64) -> Self {
         let [low, high] = self.place;
         Self { place: [low.map(|x| x - by), high.map(|x| x + by)], ..self }
@@ -43,7 +44,8 @@ impl MovingBox {
         add(middle(self.place), scale(middle(self.velocity), time))
     }
 
-    /// When the boxes touch first, from 0 to the horizon; never later than they do.
+    /// When the boxes first touch, from 0 to the horizon; never later than they really do. `None` if they do
+    /// not.
     #[inline]
     fn touches(&self, other: &Self, horizon: f64) -> Option<f64> {
         let (mut from, mut to) = (0.0, horizon);
@@ -53,7 +55,7 @@ impl MovingBox {
                 let apart = a.place[0][k] - b.place[1][k];
                 let closing = b.velocity[1][k] - a.velocity[0][k];
                 if apart > 0.0 {
-                    // Infinite or negative (which is never) where they do not come closer.
+                    // Infinite if they do not come closer.
                     let when = if closing > 0.0 { apart / closing } else { f64::INFINITY };
                     from = if when > from { when } else { from };
                 } else if closing < 0.0 {
@@ -71,23 +73,24 @@ impl MovingBox {
 #[derive(Debug, Default)]
 pub(super) struct MovingTree {
     nodes: Vec<Node>,
-    /// In the order of the leaves, with their ids.
+    /// The boxes with their ids, in the order of the leaves.
     boxes: Vec<(MovingBox, u32)>,
     horizon: f64,
 }
 
-/// A box with either two subtrees (the left one follows at once) or a run of boxes.
+/// A box with either two subtrees (the left one follows directly) or a run of boxes.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     around: MovingBox,
     /// The right subtree, or the first box.
     start: u32,
-    /// How many boxes; 0 with subtrees.
+    /// How many boxes; 0 for a node with subtrees.
     count: u32,
 }
 
 impl MovingTree {
-    /// Boxes are known by their places; `None` is left out. Neighbours are those that are near each other halfway to the horizon, at the start if it is infinite.
+    /// Builds the tree. Boxes are known by their indices; those that are `None` are left out. Boxes are
+    /// grouped by where they are halfway to the horizon, or at the start if it is infinite.
     pub(super) fn new(boxes: Vec<Option<MovingBox>>, horizon: f64) -> Self {
         let mut boxes: Vec<_> = boxes.into_iter().zip(0u32..).filter_map(|(b, id)| Some((b?, id))).collect();
         let mut tree = Self { nodes: Vec::with_capacity(boxes.len()), boxes: Vec::new(), horizon };
@@ -99,7 +102,8 @@ impl MovingTree {
         tree
     }
 
-    /// Sorted by the longest side of the box of centres, halved until few are left.
+    /// Builds a subtree: boxes are halved across the longest side of the box of their centres until few are
+    /// left.
     fn build(&mut self, boxes: &mut [(MovingBox, u32)], start: u32, time: f64) {
         let whole = boxes[1..].iter().fold(boxes[0].0, |whole, b| whole.joined(b.0));
         let place = self.nodes.len();
@@ -119,7 +123,7 @@ impl MovingTree {
         self.build(right, start + middle as u32, time);
     }
 
-    /// Makes `queue` ready for all boxes that touch `asked`.
+    /// Prepares `queue` for the boxes that touch `asked`.
     pub(super) fn begin(&self, asked: &Option<MovingBox>, queue: &mut Queue) {
         queue.clear();
         if asked.is_some() && !self.nodes.is_empty() {
@@ -127,7 +131,7 @@ impl MovingTree {
         }
     }
 
-    /// Puts in place of a node what is in it and touches `asked` before `bound`.
+    /// Replaces a node by those of its contents that touch `asked` before `bound`.
     pub(super) fn open(&self, node: u32, asked: &Option<MovingBox>, bound: f64, queue: &mut Queue) {
         let Some(asked) = asked else { return };
         let Node { start, count, .. } = self.nodes[node as usize];
@@ -144,7 +148,8 @@ impl MovingTree {
         self.boxes[run].iter().for_each(|(around, id)| put(around, Item::Box(*id)));
     }
 
-    /// Puts all boxes that touch `asked` before the horizon into `found`, in place of what it held: from when on (or sooner), and their ids.
+    /// Replaces the contents of `found` by all boxes that touch `asked` before the horizon: from when on (or
+    /// sooner), and their ids.
     pub(super) fn touching(&self, asked: &Option<MovingBox>, found: &mut Vec<(f64, u32)>) {
         found.clear();
         let Some(asked) = asked else { return };
