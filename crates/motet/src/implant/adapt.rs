@@ -1,4 +1,4 @@
-//! The host refined towards the devices: its walls, which cannot be carved, or all of it.
+//! Refines the host towards the devices: its walls, which cannot be carved, or all of it.
 
 use std::sync::Arc;
 
@@ -16,13 +16,15 @@ use crate::refine::wish::{check_expected, marked};
 use crate::refine::{Criterion, MeshRefinement, Target, wishes_of_all};
 use crate::spatial::NearestTriangle;
 
-/// Edges within this factor of the size that is asked for are short enough: the next division would halve them.
+/// Edges within this factor of the requested size are short enough: the next division would halve them.
 const WITHIN: f64 = 1.5;
 
-/// Edges of walls may be so much longer per distance from a device. A tet on an even facet is good with its apex from 0.4 of the edges on.
+/// How much longer edges of walls may be per unit of distance from a device. A tet on an even facet is good
+/// with its apex at 0.4 of the edge length or more.
 const WALL_GROWTH: f64 = 2.0;
 
-/// Divides tets of the host until their edges are as short beside the devices as `size`; `None` where there is nothing to be done.
+/// Divides tets of the host until their edges beside the devices are as short as `size`; `None` if nothing
+/// has to be divided.
 ///
 /// # Errors
 /// When the host has no tets, or would have too many.
@@ -68,7 +70,7 @@ pub(super) fn adapt(
     Ok(Some((refinement.mesh().clone(), history, adapted)))
 }
 
-/// The tets at walls whose facets there are too large for how near a device is; rising.
+/// The tets at walls whose facets there are too large for their distance from a device, in ascending order.
 fn at_walls(host: &TetMesh, nearest: &NearestTriangle, size: f64) -> Vec<TetId> {
     let mut marks = Vec::new();
     for_each_tet_facet(&host.tets, &host.triangles, |sharing| {
@@ -89,7 +91,7 @@ fn is_too_large([a, b, c]: [Point; 3], nearest: &NearestTriangle, size: f64) -> 
     let centre = centroid([a, b, c]);
     let longest = [[a, b], [b, c], [c, a]].map(|[p, q]| distance(p, q)).into_iter().fold(0.0, f64::max);
     let radius = [a, b, c].map(|p| distance(p, centre)).into_iter().fold(0.0, f64::max);
-    // Of a device so far away the facet may be as it is.
+    // If all devices are farther away than this, the facet may stay as it is.
     let enough = (longest / WITHIN - size) / WALL_GROWTH;
     enough > 0.0 && nearest.closest_within(centre, radius + enough).is_some()
 }

@@ -1,4 +1,4 @@
-//! Whose each body of new tets is.
+//! Finds the owner of each body of new tets.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -12,8 +12,10 @@ use crate::delaunay::Constrained;
 use crate::geometry::tet::{centroid, holds, volume};
 use crate::mesh::TetMesh;
 
-/// The devices that each body lies in, rising; none where nobody can tell. Faces of the room lie outside of all, but those that were found within one; whoever crosses
-/// triangles of a device goes into it, or out. Where no such face is near, all round lies outside.
+/// For each body, the devices that it lies in; none if that cannot be determined. Bodies at faces of the
+/// cavity lie outside of all devices, except at faces that were found within one; crossing triangles of a
+/// device leads into it, or out of it. If no such face can be reached, what lies around the devices is
+/// outside.
 pub(super) fn within(devices: &Devices, frame: &Frame, filled: &Constrained) -> Vec<BTreeSet<u32>> {
     let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
     let of = |t: u32| devices.of_triangle.list(t as usize).iter().copied().collect::<BTreeSet<u32>>();
@@ -25,7 +27,7 @@ pub(super) fn within(devices: &Devices, frame: &Frame, filled: &Constrained) -> 
                 beyond[front as usize].push((t, behind));
                 beyond[behind as usize].push((t, front));
             }
-            // A hollow device may be open to all round.
+            // A hollow device may be open to everything around it.
             (Some(t), Some(body), None) | (Some(t), None, Some(body))
                 if of(t).iter().all(|k| devices.insides[*k as usize] != Inside::Hollow) =>
             {
@@ -50,12 +52,12 @@ pub(super) fn within(devices: &Devices, frame: &Frame, filled: &Constrained) -> 
     within.into_iter().map(Option::unwrap_or_default).collect()
 }
 
-/// Of devices within each other the last one has the room.
+/// The owner of a body, given the devices that it lies in: of devices within each other, the last one.
 fn device_of(within: &BTreeSet<u32>) -> Option<u32> {
     within.last().copied()
 }
 
-/// Refuses devices that leave others no room.
+/// Refuses devices that leave others no space.
 pub(super) fn check_rooms(devices: &Devices, sites: &Sites, within: &[BTreeSet<u32>]) -> Result<()> {
     let name = |k: u32| &devices.names[k as usize];
     for room in within.iter().filter(|room| room.len() > 1) {
@@ -69,7 +71,7 @@ pub(super) fn check_rooms(devices: &Devices, sites: &Sites, within: &[BTreeSet<u
         }
     }
     let with_room: BTreeSet<u32> = within.iter().filter_map(device_of).collect();
-    // A hollow device that goes through the boundary is open to what lies outside.
+    // A hollow device that passes through the boundary is open to what lies outside.
     let is_open = |k: u32| devices.insides[k as usize] == Inside::Hollow && sites.is_through[k as usize];
     match (0..devices.names.len() as u32).find(|&k| !with_room.contains(&k) && !is_open(k)) {
         None => Ok(()),
@@ -81,7 +83,7 @@ pub(super) fn check_rooms(devices: &Devices, sites: &Sites, within: &[BTreeSet<u
     }
 }
 
-/// Whose each body is: a device's, or as the faces of the room say.
+/// The owner of each body: a device, or what the faces of the cavity say.
 pub(super) fn owners(
     host: &TetMesh,
     carved: &Carved,
@@ -108,7 +110,8 @@ pub(super) fn owners(
     owners.into_iter().enumerate().map(|(body, owner)| owner.unwrap_or_else(|| of_host(body))).collect()
 }
 
-/// The region of the host where a body lies that only devices bound, by its largest tet; `None` outside of what was carved.
+/// The region of the host in which a body bounded only by devices lies, by its largest tet; `None` outside of
+/// what was carved.
 fn region_at(host: &TetMesh, carved: &Carved, filled: &Constrained, body: usize) -> Option<i32> {
     let corners = |t: usize| filled.tets[t].map(|v| filled.points[v.index()]);
     let of_body = (0..filled.tets.len()).filter(|&t| filled.bodies[t] as usize == body);

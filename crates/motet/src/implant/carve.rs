@@ -1,4 +1,4 @@
-//! Which tets of the host go, and what bounds the room that they leave.
+//! Which tets of the host are removed, and what bounds the cavity that they leave.
 
 use std::collections::HashSet;
 
@@ -19,9 +19,9 @@ use crate::spatial::NearestTriangle;
 /// What becomes of a tet of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Fate {
-    /// It stays to the bit.
+    /// It stays, to the bit.
     Kept,
-    /// It stays, unless a bad tet that came needs its room.
+    /// It stays, unless a bad new tet needs its space.
     Near,
     /// It is replaced.
     Gone,
@@ -30,24 +30,25 @@ pub(super) enum Fate {
 /// A facet that new tets have to fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Face {
-    /// Turned outward, as the tet behind it sees it.
+    /// Oriented outward, as seen from the tet behind it.
     pub(super) vertices: [VertexId; 3],
-    /// The region behind it, where a tet goes.
+    /// The region behind it, where a tet is removed.
     pub(super) behind: i32,
-    /// The region in front of it; `None` where no tet goes.
+    /// The region in front of it; `None` if no tet is removed there.
     pub(super) front: Option<i32>,
 }
 
-/// The host carved.
+/// The host after carving.
 pub(super) struct Carved {
     pub(super) fates: Vec<Fate>,
-    /// Facets between tets that go and others; and those between two that go, where regions meet or a triangle lies.
+    /// Facets between tets that are removed and others; and those between two that are removed, where regions
+    /// meet or a triangle lies.
     pub(super) faces: Vec<Face>,
-    /// Whether each tet is within [`Options::reach`], so that it may go.
+    /// Whether each tet is within [`Options::reach`], so that it may be removed.
     is_in_reach: Vec<bool>,
 }
 
-/// A tet with so many neighbours that go is no more than a tooth.
+/// A tet with at least this many removed neighbours is only a tooth.
 const TOOTH: usize = 3;
 
 impl Carved {
@@ -68,7 +69,8 @@ impl Carved {
         Self { fates, faces, is_in_reach }
     }
 
-    /// Takes what stays within reach at the edges of these faces as well. Whether there was anything.
+    /// Removes what is left within reach at the edges of these faces as well. Returns whether there was
+    /// anything.
     pub(super) fn take_around(&mut self, host: &TetMesh, faces: &[[VertexId; 3]]) -> bool {
         let sides = |[a, b, c]: &[VertexId; 3]| [[*a, *b], [*b, *c], [*c, *a]].map(rising);
         let edges: HashSet<[VertexId; 2]> = faces.iter().flat_map(sides).collect();
@@ -83,17 +85,18 @@ impl Carved {
         !taken.is_empty()
     }
 
-    /// Refuses a host whose tets overlap where they were carved: no tets fit facets that cross each other, and long is looked for them in vain.
+    /// Refuses a host whose tets overlap where they were carved: no tets fit facets that cross each other,
+    /// and a long search for them would fail.
     ///
     /// # Errors
-    /// With a place where two of [`Self::faces`] cross.
+    /// Names a place where two of [`Self::faces`] cross.
     pub(super) fn check_overlaps(&self, host: &TetMesh, threads: &Threads) -> Result<()> {
         let tets = OrientedTets::of_tets(host);
         let n_inverted = (0..host.tets.len()).filter(|&t| tets.is_inverted(t, &host.points)).count();
         if n_inverted == 0 {
             return Ok(());
         }
-        // The two sides of a slit lie on each other, and do not cross.
+        // The two sides of a slit coincide, and do not cross.
         let firsts = firsts_at_place(&host.points);
         let faces: Vec<[VertexId; 3]> =
             self.faces.iter().map(|face| face.vertices.map(|v| firsts[v.index()])).collect();
@@ -114,7 +117,8 @@ impl Carved {
     }
 }
 
-/// By the distance between the devices and the tet's sphere, as a multiple of its edges.
+/// The fate of a tet by the distance between the devices and the tet's sphere, as a multiple of its mean edge
+/// length.
 fn near(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: f64) -> Fate {
     let corners = host.tets[t].map(|v| host.points[v.index()]);
     let centre = centroid(corners);
@@ -127,7 +131,8 @@ fn near(host: &TetMesh, t: usize, nearest: &NearestTriangle, carve: f64, reach: 
     }
 }
 
-/// Tets that no device is near lie on one side of all: those inside go.
+/// Removes tets inside devices. A tet that no device is near lies on one side of all of them, so one vertex
+/// decides.
 fn take_inner(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &Threads) {
     let Some([low, high]) = bounds(&devices.points) else { return };
     let is_in_box = |v: VertexId| {
@@ -151,7 +156,7 @@ fn take_inner(host: &TetMesh, devices: &Devices, fates: &mut [Fate], threads: &T
     }
 }
 
-/// Tets that stick out into the room go as well, so that it has no narrow notches.
+/// Removes tets that stick out into the cavity as well, so that it has no narrow notches.
 fn take_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
     let mut todo: Vec<usize> = (0..fates.len()).filter(|&t| fates[t] == Fate::Near).collect();
     while let Some(t) = todo.pop() {
@@ -164,8 +169,9 @@ fn take_teeth(neighbors: &[[u32; 4]], fates: &mut [Fate]) {
     }
 }
 
-/// Bad tets of the host that need not go stay as they are: what made them bad is not here, and where they hang together they reach far. (Carving those at the room as
-/// well left 428 bad ones for 17 in a public aneurysm of which 43 of 100 tets are bad.)
+/// Keeps bad tets of the host that need not be removed: what made them bad is not here, and where they are
+/// connected they reach far. (Carving those at the cavity as well left 428 bad ones instead of 17 in a public
+/// aneurysm of which 43 of 100 tets are bad.)
 fn leave_bad(host: &TetMesh, limit: f64, fates: &mut [Fate]) {
     let is_bad = |tet: &[VertexId; 4]| eas(tet.map(|v| host.points[v.index()])).abs() < limit;
     for (fate, tet) in fates.iter_mut().zip(&host.tets) {
@@ -191,7 +197,7 @@ fn faces(host: &TetMesh, fates: &[Fate]) -> Vec<Face> {
     faces
 }
 
-/// Facet `i` of a tet, whichever way that is numbered, turned outward.
+/// Facet `i` of a tet, oriented outward whichever way the tet is numbered.
 pub(super) fn outward(host: &TetMesh, t: usize, i: usize) -> [VertexId; 3] {
     let tet = host.tets[t];
     let [a, b, c] = FACETS[i].map(|k| tet[k]);

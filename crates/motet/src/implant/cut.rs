@@ -1,31 +1,34 @@
-//! Two surfaces divided where they meet, so that the line where they do is made of edges of both.
+//! Divides two surfaces where they meet, so that the line along which they meet consists of edges of both.
 //!
-//! What is nearer than a share of the extent counts as one place ([`NEAR`]): coordinates that were meant to be equal as a rule are not.
+//! Points nearer to each other than a fraction of the extent count as one ([`NEAR`]): coordinates that were
+//! meant to be equal often are not.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::distance;
 use crate::mesh::bounds;
 use crate::preflight::cut::{self, Rule};
 
-/// What is nearer than this part of the largest extent of the first surface is one place.
+/// Points nearer to each other than this fraction of the largest extent of the first surface count as one.
 const NEAR: f64 = 1e-11;
 
 /// Two surfaces over one list of points, divided.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cut {
-    /// The points as they were given, then new ones.
+    /// The given points, then new ones.
     pub(super) points: Vec<Point>,
-    /// The pieces of each surface, turned as it is, and the triangle that each is or is a part of; in the order of those.
+    /// The pieces of each surface, oriented as it is, with the triangle that each is, or is a part of; in the
+    /// order of those.
     pub(super) pieces: [Vec<([VertexId; 3], u32)>; 2],
-    /// The vertex that each given point is now.
+    /// For each given point, the vertex that it is now.
     pub(super) names: Vec<VertexId>,
 }
 
 impl Cut {
-    /// Divides `surfaces`, neither of which crosses itself. A vertex of the first that lies on one of the second becomes that, which has the smaller id.
+    /// Divides `surfaces`, neither of which crosses itself. A vertex of the first that lies on one of the
+    /// second becomes that one, which has the smaller id.
     ///
     /// # Errors
-    /// When they come so close to each other that what comes of it would cross itself.
+    /// When they come so close to each other that the result would cross itself.
     pub(super) fn new(points: &[Point], surfaces: [&[[VertexId; 3]]; 2], threads: &Threads) -> Result<Self> {
         let used: Vec<Point> = surfaces[0].as_flattened().iter().map(|v| points[v.index()]).collect();
         let near = bounds(&used).map_or(0.0, |[low, high]| distance(low, high) * NEAR);

@@ -1,4 +1,4 @@
-//! All devices as one set of triangles, and the tets that they bring.
+//! All devices as one set of triangles, and the tets that they keep.
 
 use super::options::{Device, Inside};
 use crate::base::{Csr, Error, Point, Result, Threads, VertexId, rising};
@@ -8,18 +8,19 @@ use crate::mesh::{Surface, TetMesh, TetPart, firsts_at_place};
 use crate::meshing::{compact, named};
 use crate::preflight::{Role, preflight, renamed};
 
-/// Devices over one list of points; what several of them share is there once.
+/// Devices over one list of points; what several of them share is stored once.
 pub(super) struct Devices {
     /// The points that triangles and tets use.
     pub(super) points: Vec<Point>,
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// The devices that each triangle is of, rising.
+    /// The devices that each triangle belongs to, in ascending order.
     pub(super) of_triangle: Csr<u32>,
     /// The tets that devices keep.
     pub(super) own_tets: Vec<OwnTet>,
     pub(super) insides: Vec<Inside>,
     pub(super) names: Vec<String>,
-    /// What the regions of each device are called: as the device, or of several each with its own name behind.
+    /// The names of the regions of each device: that of the device, followed by the region's own name if
+    /// there are several.
     pub(super) region_names: Vec<Vec<String>>,
 }
 
@@ -28,13 +29,16 @@ pub(super) struct Devices {
 pub(super) struct OwnTet {
     pub(super) vertices: [VertexId; 4],
     pub(super) device: u32,
-    /// Its region, by the place in [`Devices::region_names`].
+    /// Its region, as an index into the names of its device in [`Devices::region_names`].
     pub(super) region: u32,
 }
 
 impl Devices {
+    /// Joins the surfaces and tets of all devices.
+    ///
     /// # Errors
-    /// When a device has no surface, or none that encloses something without fault; when one is to keep tets and has none, or other cells as well.
+    /// When a device has no surface, or none that encloses something without fault; when one is to keep its
+    /// tets and has none, or has other cells as well.
     pub(super) fn join(devices: &[Device], threads: &Threads) -> Result<Self> {
         let (mut points, mut triangles, mut of) = (Vec::new(), Vec::new(), Vec::new());
         let (mut own_tets, mut region_names) = (Vec::new(), Vec::new());
@@ -80,7 +84,7 @@ impl Devices {
         Ok(joined)
     }
 
-    /// Puts in each triangle once, as the first device has it.
+    /// Adds each triangle once, as the first device has it.
     fn share(&mut self, triangles: &[[VertexId; 3]], of: &[u32]) {
         let mut order: Vec<usize> = (0..triangles.len()).collect();
         order.sort_by_key(|&t| (rising(triangles[t]), t));
@@ -93,7 +97,7 @@ impl Devices {
         }
     }
 
-    /// Leaves out points that nothing uses.
+    /// Removes points that nothing uses.
     fn compact(&mut self) {
         let of_tets = self.own_tets.iter().flat_map(|tet| &tet.vertices);
         let is_used = named(self.points.len(), self.triangles.as_flattened().iter().chain(of_tets));
@@ -113,20 +117,21 @@ impl Devices {
         self.triangles[triangle].map(|v| self.points[v.index()])
     }
 
-    /// The length of the edges of an even triangle as large as the middle one of all.
+    /// The edge length of an equilateral triangle whose area is the median of all triangles.
     pub(super) fn size(&self) -> f64 {
         let mut areas: Vec<f64> = (0..self.triangles.len()).map(|t| area(self.corners(t))).collect();
         let middle = areas.len() / 2;
         (areas.select_nth_unstable_by(middle, f64::total_cmp).1.max(0.0) * 4.0 / 3f64.sqrt()).sqrt()
     }
 
-    /// What each device encloses.
+    /// The volume that each device encloses.
     pub(super) fn volumes(&self, devices: &[Device]) -> Vec<f64> {
         devices.iter().map(|device| surface(device).enclosed_volume().abs()).collect()
     }
 }
 
-/// The boundary of a device that keeps its tets or has no surface cells, else its surface cells.
+/// The surface of a device: its boundary if it keeps its tets or has no surface cells, else its surface
+/// cells.
 pub(super) fn surface(device: &Device) -> Surface {
     match device.inside {
         Inside::Own => Surface::boundary_of(&device.mesh),
@@ -134,7 +139,7 @@ pub(super) fn surface(device: &Device) -> Surface {
     }
 }
 
-/// The regions of a device, rising, and what each is called in the result.
+/// The regions of a device, in ascending order, and the name of each in the result.
 fn regions(device: &Device, part: &TetMesh) -> (Vec<i32>, Vec<String>) {
     let mut ids = part.regions.clone();
     ids.sort_unstable();

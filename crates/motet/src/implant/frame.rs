@@ -1,7 +1,9 @@
-//! All that new tets have to fit: triangles of the devices and faces of the room, divided where they meet.
+//! Everything that new tets have to fit: triangles of the devices and faces of the cavity, divided where they
+//! meet.
 //!
-//! Where a device goes through a wall, what lies outside of the host is cut off, or kept. A wall within a device bounds the device's tets then, or is no more. An
-//! interface of regions within a device always goes: the device takes the room of both.
+//! Where a device passes through a wall, what lies outside of the host is cut off, or kept. A wall within a
+//! device then bounds the device's tets, or is removed. An interface of regions within a device is always
+//! removed: the device takes the space of both.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -16,22 +18,23 @@ use crate::geometry::triangle::centroid;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::mesh::{TetMesh, cone_volume};
 
-/// So many rings of triangles round where a device meets a wall may stray as well: what is narrow there is often held by its neighbours alone. (Of a stent across the
-/// neck of an aneurysm 55 bad tets were left with none, 25 with one, 12 with two.)
+/// This many rings of triangles around where a device meets a wall may stray as well: narrow triangles there
+/// are often held by their neighbours alone. (Of a stent across the neck of an aneurysm 55 bad tets were left
+/// with none, 25 with one, 12 with two.)
 const RINGS: usize = 2;
 
 /// A triangle that tets have to fit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wall {
-    /// Vertices of the result: those of the host, then of devices, then those that came.
+    /// Vertices of the result: those of the host, then those of devices, then new ones.
     pub(super) vertices: [VertexId; 3],
     /// The triangle of the devices that it is, or is a part of.
     pub(super) device: Option<u32>,
-    /// The face of the room that it is, or is a part of.
+    /// The face of the cavity that it is, or is a part of.
     pub(super) face: Option<u32>,
     /// The device in which it lies.
     pub(super) within: Option<u32>,
-    /// Whether it has to stay as it is: no corner of it is one where a device meets a wall.
+    /// Whether it has to stay as it is: it has no corner where a device meets a wall.
     pub(super) is_fixed: bool,
 }
 
@@ -40,46 +43,49 @@ pub(super) struct Wall {
 pub(super) enum Lies {
     /// Inside the host.
     Inside,
-    /// At a wall: it does not have to stay as it is.
+    /// At a wall: it need not stay as it is.
     AtWall,
     /// Outside of the host.
     Outside,
 }
 
-/// How devices lie to walls.
+/// Where devices lie relative to walls.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sites {
-    /// Of each triangle.
+    /// Where each triangle lies.
     pub(super) of_triangle: Vec<Lies>,
-    /// For each device whether it meets a wall or lies outside in part.
+    /// For each device, whether it meets a wall or lies outside in part.
     pub(super) is_through: Vec<bool>,
     /// The volume of each device within the host.
     pub(super) volumes: Vec<f64>,
 }
 
-/// Everything over one list of points.
+/// The frame: walls over one list of points.
 #[derive(Debug, Default)]
 pub(super) struct Frame {
     /// The points that walls use, and the vertex of the result that each is.
     pub(super) points: Vec<Point>,
     pub(super) to_result: Vec<VertexId>,
-    /// The walls by these points.
+    /// The walls as triangles over these points.
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) walls: Vec<Wall>,
-    /// The points that came where surfaces were divided.
+    /// The new points where surfaces were divided.
     pub(super) came: Vec<Point>,
-    /// Vertices of walls that may move or go, since they lie where a device meets a wall.
+    /// Vertices of walls that may move or be removed, since they lie where a device meets a wall.
     pub(super) loose: BTreeSet<VertexId>,
-    /// Faces that are not there any more, or not as they were.
+    /// Faces that no longer exist, or not as they were.
     pub(super) dropped: Vec<Face>,
     pub(super) sites: Sites,
-    /// What vertices of devices are called now.
+    /// The vertex of the result that each vertex of the devices is now.
     pub(super) names: Vec<VertexId>,
 }
 
 impl Frame {
+    /// Divides devices and faces where they meet, and collects the walls.
+    ///
     /// # Errors
-    /// When a device lies outside of the host or holds it, when one that keeps its tets meets a wall, and when surfaces come too close to each other.
+    /// When a device lies outside of the host or contains it, when one that keeps its tets meets a wall, and
+    /// when surfaces come too close to each other.
     pub(super) fn new(
         host: &TetMesh,
         devices: &Devices,
@@ -113,7 +119,7 @@ impl Frame {
         Ok(frame)
     }
 
-    /// Finds the vertices where devices meet walls, but those that anything holds that stays.
+    /// Finds the vertices where devices meet walls, except those that are held by anything that stays.
     fn loosen(
         &mut self,
         host: &TetMesh,
@@ -168,7 +174,7 @@ impl Frame {
         let mut sites = vec![None; devices.triangles.len()];
         for (&(vertices, t), &part) in sorted.pieces.iter().zip(&sorted.parts) {
             let twin = twins.get(&rising(vertices));
-            // On the boundary a device lies inside where it faces as the wall does.
+            // On the boundary, a device lies inside where it faces the same way as the wall.
             let is_inside = match twin {
                 Some(&(face, f)) => carved.faces[f as usize].front.is_some() || runs_alike(vertices, face),
                 None => is_in[part],
@@ -211,7 +217,7 @@ impl Frame {
         Ok(walls)
     }
 
-    /// The pieces of faces that bound something, and are no pieces of devices.
+    /// Adds the pieces of faces that bound something and are not pieces of devices.
     fn add_faces(
         &mut self,
         devices: &Devices,
@@ -246,7 +252,7 @@ impl Frame {
         self.dropped = (0..is_dropped.len()).filter(|&f| is_dropped[f]).map(|f| carved.faces[f]).collect();
     }
 
-    /// Cells of other kinds stay as they are: neither their faces nor their edges can be divided, or go.
+    /// Refuses to divide or remove faces and edges of cells of other kinds, which stay as they are.
     fn check_others(&self, host: &TetMesh, carved: &Carved, cut: &Cut, walls: &[Wall]) -> Result<()> {
         let vertices: HashSet<VertexId> = host.fixed_vertices.iter().copied().collect();
         let edges: HashSet<[VertexId; 2]> = host.fixed_edges.iter().map(|edge| rising(*edge)).collect();
@@ -286,7 +292,7 @@ impl Frame {
     }
 }
 
-/// Tets that a device keeps cannot be divided.
+/// The error for a device that keeps its tets, which cannot be divided.
 fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
     let is_met = site == Lies::AtWall;
     let why = if is_met { "a wall of the host meets them" } else { "a part of it lies outside of the host" };
@@ -295,12 +301,12 @@ fn no_own(devices: &Devices, k: u32, t: usize, site: Lies) -> Error {
         .remedy("let it be filled, or hollow: then it is cut where it meets the wall")
 }
 
-/// The volume between a triangle and one place for all, by its sign.
+/// The signed volume between a triangle and one point common to all.
 fn cone(cut: &Cut, triangle: [VertexId; 3]) -> f64 {
     cone_volume(triangle.into_iter(), &cut.points, cut.points[0])
 }
 
-/// The boundary of the host, outward.
+/// The boundary of the host, oriented outward.
 fn boundary(host: &TetMesh) -> Vec<[VertexId; 3]> {
     let mut boundary = Vec::new();
     for_each_tet_facet(&host.tets, &[], |sharing| {

@@ -1,4 +1,5 @@
-//! The room between the carved host and the devices, and that within the devices, filled with tets; and whose each of them is.
+//! Fills the space between the carved host and the devices, and that within the devices, with tets, and finds
+//! their owners.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -20,11 +21,11 @@ pub(super) enum Owner {
     Host(i32),
     /// A device, by its number.
     Device(u32),
-    /// Tets of the host that stay, or nothing.
+    /// No owner: tets of the host that stay, or nothing.
     Taken,
 }
 
-/// What a triangle that came is a part of.
+/// What a new triangle is a part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Patch {
     /// The surface of a device.
@@ -37,29 +38,29 @@ pub(super) enum Patch {
     Bare,
 }
 
-/// New tets. Vertices are those of the host, and behind them new ones.
+/// New tets. Vertices are those of the host, then new ones.
 #[derive(Debug, Default)]
 pub(super) struct Gap {
     /// The new points.
     pub(super) points: Vec<Point>,
     pub(super) tets: Vec<[VertexId; 4]>,
-    /// A region of the host, or a device, for each tet.
+    /// The owner of each tet: a region of the host, or a device.
     pub(super) owners: Vec<Owner>,
-    /// Triangles that came.
+    /// New triangles.
     pub(super) triangles: Vec<([VertexId; 3], Patch)>,
-    /// Tets that devices came with.
+    /// Tets that devices keep.
     pub(super) own_tets: Vec<OwnTet>,
-    /// Faces of the room that are not there any more, or not as they were.
+    /// Faces of the cavity that no longer exist, or not as they were.
     pub(super) dropped: Vec<Face>,
-    /// Vertices of walls that may move or go, since they lie where a device meets a wall.
+    /// Vertices of walls that may move or be removed, since they lie where a device meets a wall.
     pub(super) loose: BTreeSet<VertexId>,
-    /// How devices lie to walls.
+    /// Where devices lie relative to walls.
     pub(super) sites: Sites,
-    /// What vertices of devices are called.
+    /// The vertex that each vertex of the devices is now.
     pub(super) names: Vec<VertexId>,
 }
 
-/// What came of filling the room.
+/// The result of filling the cavity.
 pub(super) enum Filled {
     Done(Box<Gap>),
     /// These faces would have to be divided.
@@ -67,10 +68,12 @@ pub(super) enum Filled {
 }
 
 impl Gap {
-    /// Fills the room, or says which of its faces would have to be divided, though tets beside them stay.
+    /// Fills the cavity, or returns those of its faces that would have to be divided although tets beside
+    /// them stay.
     ///
     /// # Errors
-    /// When there would be too many points, or triangles come too close to each other for the digits of their coordinates; when devices lie outside.
+    /// When there would be too many points, or triangles come too close to each other for the digits of their
+    /// coordinates; when devices lie outside.
     pub(super) fn fill(
         host: &TetMesh,
         devices: &Devices,
@@ -117,7 +120,7 @@ impl Gap {
             Owner::Taken => false,
         };
         let mut to_result = frame.to_result.clone();
-        // A point on an edge may have been rounded onto its end: then it is that.
+        // A point on an edge may have been rounded onto its end: then it becomes that vertex.
         let firsts = firsts_at_place(&filled.points);
         for (v, point) in filled.points.iter().enumerate().skip(frame.points.len()) {
             if firsts[v].index() < v {
@@ -163,7 +166,7 @@ impl Gap {
     }
 }
 
-/// Whether a facet or an edge of what stays in the host would be divided.
+/// Whether a facet or an edge of what stays of the host would be divided.
 fn is_divided(frame: &Frame, filled: &Constrained, t: usize) -> bool {
     let (wall, parts) = (&frame.walls[t], filled.triangle_to_facets.list(t));
     if wall.device.is_some() || parts.len() == 1 {

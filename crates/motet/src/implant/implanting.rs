@@ -1,4 +1,4 @@
-//! All of it, step by step.
+//! The whole implantation, step by step.
 
 use std::collections::HashSet;
 use std::time::Instant;
@@ -24,29 +24,32 @@ use crate::mesh::{Mesh, TetPart};
 use crate::meshing;
 use crate::spatial::NearestTriangle;
 
-/// What came of putting devices into a host.
+/// The result of putting devices into a host.
 #[derive(Clone, Debug)]
 pub struct Implanted {
-    /// Cells of the host that stayed, in the order that they had; then triangles of the devices, then tets that came, then tets that devices brought.
+    /// The mesh: cells of the host that stayed, in the order that they had; then triangles of the devices,
+    /// then new tets, then tets that devices kept.
     pub mesh: Mesh,
-    /// Where each vertex and cell came from; carries any array of the host, of any time level. What lies in a device comes from the host's tets there.
+    /// Where each vertex and cell came from; it carries any array of the host, of any time level. What lies
+    /// in a device comes from the host's tets there.
     pub history: History,
     /// What was done, and what the mesh is worth.
     pub report: Report,
 }
 
-/// How often more of the host is carved round facets of what stays that would have to be divided.
+/// How often more of the host is carved around facets that stay but would have to be divided.
 const RETRIES: usize = 8;
 
-/// How far surfaces may stray where devices meet walls, as a part of the device's edges.
+/// How far surfaces may stray where devices meet walls, as a fraction of the device's edge length.
 const STRAY: f64 = 0.05;
 
-/// Puts devices into a mesh of tets: every triangle of theirs is a facet of the result, every tet of the host beyond [`Options::reach`] stays to the bit.
-/// Arrays are carried by `rules`.
+/// Puts devices into a mesh of tets: every triangle of the devices is a facet of the result, and every tet of
+/// the host beyond [`Options::reach`] stays, to the bit. Arrays are carried by `rules`.
 ///
 /// # Errors
-/// When the host has no tets or the devices are no closed surfaces without fault; when a device touches a wall, lies outside or holds the host; when a number means
-/// nothing, or asks for too many points.
+/// When the host has no tets, or the devices are not closed surfaces without fault; when a device that keeps
+/// its tets meets a wall, or any device lies outside of the host or contains it; when a number is out of
+/// range, or asks for too many points.
 pub fn implant(
     host: &Mesh,
     devices: &[Device],
@@ -61,7 +64,7 @@ pub fn implant(
     let mut watch = Instant::now();
     let mut lap = || std::mem::replace(&mut watch, Instant::now()).elapsed().as_secs_f64();
     let mut report = Report::default();
-    // Tells early what is no host.
+    // Reports early what is no host.
     TetPart::of(host)?;
     starts::check(host, &options.starts)?;
     let (devices, fits) = &with_surfaces(devices, options, threads)?;
@@ -109,7 +112,7 @@ pub fn implant(
     Ok(Implanted { mesh, history, report })
 }
 
-/// The devices with the surfaces that they are put in with, and how those fit where they are new.
+/// The devices with the surfaces that they are put in with, and how well new surfaces fit.
 fn with_surfaces(
     devices: &[Device],
     options: &Options,
@@ -127,7 +130,7 @@ fn with_surfaces(
     devices.iter().map(new).collect()
 }
 
-/// The host carved, as far as it has to be, and the room filled.
+/// Carves the host as far as necessary, and fills the cavity.
 fn room(
     part: &TetPart,
     devices: &Devices,
@@ -162,7 +165,7 @@ fn room(
     .remedy("carve farther (--carve) and reach farther (--reach), or refine the host there first (--adapt all, --size)"))
 }
 
-/// Puts ids of cells in place of those of tets of the zone, and parts what is left of the host from what came.
+/// Replaces ids of tets of the zone by ids of cells, and separates bad tets of the host from new ones.
 fn tell_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
     let cell = |tet: u32| zone_to_cell.get(tet as usize).map_or(tet, |cell| cell.0);
     let improved = &mut report.improved;
@@ -170,7 +173,7 @@ fn tell_cells(report: &mut Report, zone_to_cell: &[CellId], first_new: CellId) {
     improved.left.iter_mut().for_each(|left| left.tet = cell(left.tet));
     (report.host_left, improved.left) =
         std::mem::take(&mut improved.left).into_iter().partition(|left| left.tet < first_new.0);
-    // These were never a mesh that anybody saw.
+    // These tets were never part of a mesh that the user saw.
     improved.before.worst = None;
 }
 

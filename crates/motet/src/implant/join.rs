@@ -1,4 +1,4 @@
-//! The host that is left and all that came as one mesh, with its labels and arrays.
+//! Joins what is left of the host and everything new into one mesh, with its labels and arrays.
 
 use std::collections::HashSet;
 
@@ -12,17 +12,17 @@ use crate::geometry::tet::volume;
 use crate::mesh::history::{History, Rules, number_anew};
 use crate::mesh::{CellKind, Cells, Mesh, TetPart};
 
-/// The mesh, where it came from, and where its tets are.
+/// The mesh, its history, and where the tets of the zone are in it.
 pub(super) struct Joined {
     pub(super) mesh: Mesh,
     pub(super) history: History,
-    /// Which cells the zone's tets are.
+    /// The cell of each tet of the zone.
     pub(super) zone_to_cell: Vec<CellId>,
-    /// The first cell that came.
+    /// The first new cell.
     pub(super) first_new: CellId,
 }
 
-/// All that is to be joined.
+/// Everything that is to be joined.
 #[derive(Clone, Copy)]
 pub(super) struct Pieces<'a> {
     pub(super) host: &'a Mesh,
@@ -33,16 +33,19 @@ pub(super) struct Pieces<'a> {
     pub(super) draft: &'a Draft,
 }
 
-/// The cells of the result, and what each was.
+/// The cells of the result, and the old cell of each.
 pub(super) struct Laid {
     cells: Cells,
     pub(super) to_old: Vec<CellId>,
-    /// For each tet of the host the cell that it is, if it stays.
+    /// For each tet of the host, its cell if it stays.
     host_to_cell: Vec<CellId>,
-    /// Where triangles of devices begin; then come tets that came, then those that devices brought.
+    /// How many cells of the host stay. Behind them come triangles of devices, then new tets, then those that
+    /// devices kept.
     pub(super) n_stay: usize,
 }
 
+/// Joins all pieces.
+///
 /// # Errors
 /// When an array does not fit its rule.
 pub(super) fn join(pieces: &Pieces, rules: &Rules, threads: &Threads) -> Result<(Joined, Names)> {
@@ -103,18 +106,18 @@ impl Laid {
     }
 }
 
-/// Vertices of the result and of the draft.
+/// The numbering of the vertices of the result.
 pub(super) struct Numbers {
-    /// For each vertex of the result the one of the host that it is to the bit, if any.
+    /// For each vertex of the result, the one of the host that it is to the bit, if any.
     pub(super) kept: Vec<VertexId>,
-    /// The one of the draft that it is.
+    /// For each vertex of the result, the one of the draft that it is.
     pub(super) to_draft: Vec<VertexId>,
-    /// And the way back.
+    /// For each vertex of the draft, the one of the result that it is.
     to_new: Vec<VertexId>,
 }
 
 impl Numbers {
-    /// What nothing uses is left out, unless the host came with it so.
+    /// Leaves out vertices that nothing uses, unless nothing in the host used them either.
     fn new(host: &Mesh, draft: &Draft, cells: &Cells) -> Self {
         let mut is_wanted = vec![true; draft.points.len()];
         is_wanted[host.points.len()..].fill(false);
@@ -132,13 +135,13 @@ impl Numbers {
     }
 }
 
-/// Every vertex that cells name, faces of polyhedra included.
+/// Every vertex that cells use, faces of polyhedra included.
 fn used(cells: &Cells) -> impl Iterator<Item = VertexId> + '_ {
     let of_faces = cells.polyhedron_faces().iter().flat_map(|faces| faces.items());
     cells.connectivity().items().iter().chain(of_faces).copied()
 }
 
-/// The volume of all tets.
+/// The total volume of the tets.
 pub(super) fn volume_of(mesh: &Mesh) -> f64 {
     mesh.cells.tets().map(|(_, tet)| volume(tet.map(|v| mesh.points[v.index()])).abs()).sum()
 }

@@ -1,4 +1,4 @@
-//! Points for the room around devices and in them.
+//! Points for the space around devices and in them.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,8 @@ use crate::contact::inside;
 use crate::mesh::TetMesh;
 use crate::meshing::{Grading, points_between};
 
-/// Points in the room, and in devices that are filled, as the surfaces ask for them before they were divided.
+/// Points in the cavity, and in devices that are filled, at the density that the surfaces call for before
+/// they are divided.
 pub(super) fn lattice(
     host: &TetMesh,
     devices: &Devices,

@@ -2,19 +2,21 @@
 //!
 //! | step | file | how |
 //! |---|---|---|
-//! | surfaces | `resurface` | new ones for devices whose own cross themselves or are bad, where that is asked |
-//! | devices | `devices` | their surfaces joined and held against all faults; the tets that they bring |
-//! | adapt | `adapt` | walls of the host near them refined, or all of it there, by [`crate::refine`] |
-//! | carve | `carve` | tets in the devices and near them go |
-//! | place | `place` | what lies outside of the host |
-//! | divide | `frame`, `cut`, `parts` | walls and devices divided where they meet; what bounds something |
-//! | gap | `gap`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which is in which device |
-//! | zone | `zone` | what came, and a ring of the host, repaired by [`crate::remesh`]; beyond it nothing is touched |
-//! | join | `join`, `origins`, `names`, `starts` | one mesh again, arrays carried across, what came named |
-//! | certificate | `report` | conforming, volumes, triangles kept, what is left and why |
+//! | surfaces | `resurface` | new ones for devices whose own cross themselves or are bad, if requested |
+//! | devices | `devices` | their surfaces joined and checked for all faults; the tets that they keep |
+//! | adapt | `adapt` | walls of the host near them refined, or everything there, by [`crate::refine`] |
+//! | carve | `carve` | tets in the devices and near them are removed |
+//! | place | `place` | devices that lie outside of the host are refused |
+//! | divide | `frame`, `cut`, `parts` | walls and devices divided where they meet; what bounds something is kept |
+//! | gap | `gap`, `lattice`, `bodies` | every triangle of the devices and of what the carving left is a facet of new tets ([`mod@crate::delaunay::constrain`]); which of them are in which device |
+//! | zone | `zone` | new tets, and a ring of the host, repaired by [`crate::remesh`]; nothing beyond is touched |
+//! | join | `join`, `origins`, `names`, `starts` | one mesh again, arrays carried across, new cells named |
+//! | certificate | `report` | conforming, volumes, triangles kept, bad tets that are left and why |
 //!
-//! The order is that of Moyle and Ventikos 2008 (*Local remeshing for large amplitude grid deformations*; the suite around it): adapt, locate, remove, conform. What they
-//! conform by moving the carved surface is filled here, so that the triangles of a device stay as they are, and fluid and solid share their vertices.
+//! The order is that of Moyle and Ventikos 2008 (*Local remeshing for large amplitude grid deformations*; the
+//! suite around it): adapt, locate, remove, conform. Where they conform by moving the carved surface, the gap
+//! is filled here, so that the triangles of a device stay as they are, and fluid and solid share their
+//! vertices.
 
 mod adapt;
 mod bodies;

@@ -1,4 +1,4 @@
-//! What came gets its regions, patches and names.
+//! Regions, patches and names of what is new.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,20 +9,20 @@ use super::options::Inside;
 use crate::base::VertexId;
 use crate::mesh::{Field, Labels, Mesh};
 
-/// What the patch of a contact is called, behind the name of the device.
+/// What follows the name of the device in the name of its contact patch.
 const CONTACT: &str = "-contact";
 
-/// The labels of what came.
+/// The labels of what is new.
 pub(super) struct Names {
     /// The arrays that hold regions and patches.
     arrays: [String; 2],
-    /// The regions of each device; none of those that are hollow.
+    /// The regions of each device; none for hollow ones.
     pub(super) regions: Vec<Vec<i32>>,
     /// The patch of each device.
     pub(super) patches: Vec<i32>,
-    /// The patch of what each device has in common with walls, where it has something.
+    /// The patch of what each device has in common with walls, if anything.
     pub(super) contacts: Vec<Option<i32>>,
-    /// The region of tets of a host without regions.
+    /// The region of the host's tets, if the host has no regions.
     host: Option<i32>,
 }
 
@@ -65,7 +65,7 @@ impl Names {
         }
     }
 
-    /// The patch of a triangle that came; `None` where it is the one that it was a part of.
+    /// The patch of a new triangle; `None` if it keeps that of the triangle that it was a part of.
     fn patch(&self, patch: Patch) -> Option<i32> {
         match patch {
             Patch::Device(k) => Some(self.patches[k as usize]),
@@ -74,7 +74,7 @@ impl Names {
         }
     }
 
-    /// The region of a tet that came.
+    /// The region of a new tet.
     fn region(&self, owner: Owner) -> i32 {
         match owner {
             Owner::Host(region) => self.host.unwrap_or(region),
@@ -84,7 +84,7 @@ impl Names {
     }
 }
 
-/// Gives what came its regions, patches and names.
+/// Gives everything new its regions, patches and names.
 pub(super) fn label(mesh: &mut Mesh, pieces: &Pieces, laid: &Laid, names: &Names) {
     let Pieces { devices, gap, draft, .. } = *pieces;
     let [of_tets, of_triangles] = &names.arrays;

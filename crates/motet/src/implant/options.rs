@@ -11,18 +11,19 @@ use crate::remesh;
 /// A device: a closed surface, or a mesh of tets.
 #[derive(Clone, Debug)]
 pub struct Device {
-    /// Its surface cells; of a mesh with volume cells their boundary.
+    /// Its mesh: the surface cells, or the boundary of the volume cells if there are none or the tets are
+    /// kept.
     pub mesh: Mesh,
-    /// What its region and its patch are called.
+    /// The name of its region and its patch.
     pub name: String,
-    /// What becomes of the room in it.
+    /// What becomes of the space in it.
     pub inside: Inside,
 }
 
-/// What becomes of the room in a device.
+/// What becomes of the space in a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inside {
-    /// The tets that it came with, as they are.
+    /// The device's own tets, as they are.
     Own,
     /// New tets, in a region of their own.
     Filled,
@@ -30,22 +31,24 @@ pub enum Inside {
     Hollow,
 }
 
-/// What of the host is refined towards devices before it is carved.
+/// What part of the host is refined towards devices before it is carved.
 ///
-/// What is carved is filled anew, and new tets grow from the devices to the host by themselves. So as a rule there is nothing to refine but walls of the host: those
-/// stay, and tets between a device and a wall that is near, of facets far larger than the gap, would be bad.
+/// What is carved is filled anew, and the sizes of new tets grow from the devices to the host by themselves.
+/// So as a rule only walls of the host need refinement: they stay, and tets between a device and a nearby
+/// wall whose facets are far larger than the gap would be bad.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Adapt {
     /// Nothing.
     No,
-    /// Walls (boundary, interfaces, labelled facets) that are nearer to a device than half of their edges.
+    /// Walls (boundary, interfaces, labelled facets) nearer to a device than half the length of their edges.
     #[default]
     Walls,
-    /// All that is near, by [`Options::size`] and [`Options::growth`]: fields then keep their values in tets that are parts of those that they lay on.
+    /// Everything nearby, by [`Options::size`] and [`Options::growth`]: fields then keep their values, in
+    /// tets that are parts of those that they lay on.
     All,
 }
 
-/// What becomes of what lies outside of the host, where a device goes through its boundary.
+/// What becomes of the part of a device outside of the host, where it passes through the host's boundary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Outside {
     /// It is cut off; the wall bounds the device there.
@@ -56,7 +59,7 @@ pub enum Outside {
 }
 
 impl Device {
-    /// A device that keeps its tets, where it has some, and is filled where not.
+    /// A device that keeps its tets if it has any, and is filled otherwise.
     pub fn new(mesh: Mesh, name: impl Into<String>) -> Self {
         let has_tets = mesh.cells.kinds().contains(&CellKind::TETRA);
         Self { mesh, name: name.into(), inside: if has_tets { Inside::Own } else { Inside::Filled } }
@@ -69,10 +72,12 @@ pub enum Interface {
     /// Each of its triangles is a facet of the result. It has to be closed, and must not cross itself.
     #[default]
     Match,
-    /// A new surface near it: for devices that touch or cross themselves, have open ends or triangles twice, or are made of bad triangles. They are filled or hollow.
+    /// A new surface near it: for devices that touch or cross themselves, have open ends or duplicate
+    /// triangles, or consist of bad triangles. They are filled or hollow.
     Conform {
-        /// How far the new surface may be from the old one, and the old one from it; `None`: a fifth of the radius of a round wire as thick as the device.
-        /// Where that is not reached, the nearest surface found is taken (a finer one only if it is nearer by a tenth), and the report says so.
+        /// How far the new surface may be from the old one, and the old one from it; `None`: a fifth of the
+        /// radius of a round wire as thick as the device. If that is not reached, the nearest surface found
+        /// is taken (a finer one only if it is nearer by a tenth), and the report says so.
         tolerance: Option<f64>,
     },
 }
@@ -82,26 +87,29 @@ pub enum Interface {
 pub struct Options {
     /// What surfaces of devices become. Default: [`Interface::Match`].
     pub interface: Interface,
-    /// What becomes of what lies outside of the host. Default: [`Outside::Cut`].
+    /// What becomes of the parts of devices outside of the host. Default: [`Outside::Cut`].
     pub outside: Outside,
-    /// How far surfaces may stray where devices meet walls, so that no narrow triangles stay there; `None`: a twentieth of the device's edges. 0: not at all.
-    /// Default: `None`.
+    /// How far surfaces may stray where devices meet walls, so that no narrow triangles stay there; `None`: a
+    /// twentieth of the device's edge length. 0: not at all. Default: `None`.
     pub stray: Option<f64>,
-    /// How long edges are to be beside the devices where the host is refined, and those of new surfaces, in its unit; `None`: of the host as those of the devices, of new
-    /// surfaces as their tolerance asks. Default: `None`.
+    /// The edge length beside the devices where the host is refined, and that of new surfaces, in the unit of
+    /// the host; `None`: in the host that of the devices, on new surfaces what their tolerance requires.
+    /// Default: `None`.
     pub size: Option<f64>,
     /// How much sizes grow per unit of distance from the devices, above 0 and at most [`MOST_GROWTH`]. Default: 0.5.
     pub growth: f64,
-    /// What of the host is refined before it is carved. Default: [`Adapt::Walls`].
+    /// What part of the host is refined before it is carved. Default: [`Adapt::Walls`].
     pub adapt: Adapt,
-    /// Tets of the host nearer to a device than so many times the length of their edges are replaced. Default: 1.
+    /// Tets of the host nearer to a device than this multiple of their edge length are replaced. Default: 1.
     pub carve: f64,
-    /// Tets of the host farther from all devices than so many times the length of their edges stay to the bit. Default: 3.
+    /// Tets of the host farther from all devices than this multiple of their edge length stay, to the bit.
+    /// Default: 3.
     pub reach: f64,
-    /// What arrays of the host begin with in devices, by name, a number for each component; at points that no cell of the host has. Others, and where
-    /// nothing is given: what the host had there. Default: none.
+    /// Initial values of arrays of the host in devices, by name, with one number for each component; also at
+    /// points that no cell of the host has. Other arrays, and arrays where nothing is given, have what the
+    /// host had there. Default: none.
     pub starts: BTreeMap<String, Vec<f64>>,
-    /// What is repaired in the end, within [`reach`](Self::reach). Default: tets of an EAS below 0.2.
+    /// What is repaired at the end, within [`reach`](Self::reach). Default: tets of an EAS below 0.2.
     pub improve: remesh::Options,
 }
 
@@ -123,8 +131,10 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Checks the numbers.
+    ///
     /// # Errors
-    /// Names the first number that means nothing.
+    /// Names the first number that is out of range.
     pub(super) fn check(&self) -> Result<()> {
         let refused = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         if let Some(size) = self.size.filter(|size| !(*size > 0.0 && *size <= LARGEST)) {

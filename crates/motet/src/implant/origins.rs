@@ -1,4 +1,4 @@
-//! Where everything of the result came from.
+//! Traces where everything in the result came from.
 
 use std::collections::HashSet;
 
@@ -15,7 +15,8 @@ use crate::spatial::{BoxTree, around};
 /// Marks triangles that come from tets.
 const OF_TETS: i32 = i32::MIN;
 
-/// What came inherits from the host's tets where it lies, whatever their region; triangles of devices from the tets that went beside them.
+/// Traces everything new: it inherits from the host's tets where it lies (in devices, whatever their region),
+/// triangles of devices from the removed tets beside them.
 pub(super) fn history(
     pieces: &Pieces,
     laid: &Laid,
@@ -48,7 +49,8 @@ pub(super) fn history(
         let place = || centroid(vertices.map(|v| mesh.points[v.index()]));
         came.push(Labelled { cell, vertices, label: region.unwrap_or_else(|| there.region_at(place())) });
     }
-    // Triangles of devices come from the tets that went: a facet of each stands for it. Those of the host come from what they were a part of.
+    // Triangles of devices come from removed tets: a facet of each stands for it. Those of the host come from
+    // the triangles that they were a part of.
     let facet = |tet: &Labelled<4>| {
         let [a, b, c, _] = tet.vertices;
         Labelled { cell: tet.cell, vertices: [a, b, c], label: OF_TETS }
@@ -94,11 +96,11 @@ pub(super) fn history(
     })
 }
 
-/// The regions of tets that went, by place.
+/// The regions of removed tets, by place.
 struct There<'a> {
     host: &'a Mesh,
     removed: &'a [Labelled<4>],
-    /// None where there is one region alone.
+    /// `None` if there is only one region.
     tree: Option<BoxTree>,
 }
 

@@ -1,4 +1,5 @@
-//! Parts of divided surfaces that hang together without crossing the other one: each lies on one side of it as a whole.
+//! Parts of divided surfaces that are connected without crossing the other one: each lies on one side of it
+//! as a whole.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -7,23 +8,23 @@ use crate::base::{Point, Sets, Threads, VertexId, rising};
 use crate::contact::inside;
 use crate::geometry::triangle::{area, centroid};
 
-/// The pieces of the devices' triangles, or of the faces, and how they lie to the other surface.
+/// The pieces of the devices' triangles, or of the faces, and where they lie relative to the other surface.
 pub(super) struct Parts<'a> {
-    /// With the triangle that each is, or is a part of.
+    /// The pieces, with the triangle that each is, or is a part of.
     pub(super) pieces: &'a [([VertexId; 3], u32)],
-    /// Parts that hang together without crossing the other surface, by a number.
+    /// The part of each piece, by number; parts are connected without crossing the other surface.
     pub(super) parts: Vec<usize>,
-    /// A place in each part.
+    /// A point in each part.
     places: Vec<Point>,
 }
 
-/// The edges of pieces of both surfaces.
+/// The edges that pieces of both surfaces have.
 pub(super) fn edges_of_both(cut: &Cut) -> BTreeSet<[VertexId; 2]> {
     let edges = |s: usize| {
         let vertices = cut.pieces[s].iter().map(|(t, _)| *t);
         vertices.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).map(rising)
     };
-    // Of the devices, those whose ends are both of the other surface as well.
+    // Edges of the devices whose ends are both of the other surface as well.
     let of_faces: BTreeSet<VertexId> = cut.pieces[1].iter().flat_map(|(t, _)| *t).collect();
     let asked: BTreeSet<[VertexId; 2]> =
         edges(0).filter(|edge| edge.iter().all(|v| of_faces.contains(v))).collect();

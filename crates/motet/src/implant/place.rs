@@ -1,4 +1,4 @@
-//! Where devices lie in the host: what stops them from being put in.
+//! Where devices lie in the host: refuses those that cannot be put in.
 
 use super::devices::Devices;
 use crate::base::{Error, Point, Result, Threads, VertexId};
@@ -6,15 +6,16 @@ use crate::contact::inside;
 use crate::geometry::triangle::centroid;
 use crate::mesh::TetMesh;
 
-/// A place, for errors.
+/// A point as text, for errors.
 pub(super) fn told([x, y, z]: Point) -> String {
     format!("({x:.6}, {y:.6}, {z:.6})")
 }
 
-/// Refuses devices of which nothing lies inside the host, by what is found of each triangle.
+/// Refuses devices of which nothing lies inside the host; `has_inside` says for each device whether anything
+/// does.
 ///
 /// # Errors
-/// With a place where that is so.
+/// Names a place on such a device.
 pub(super) fn check_inside(
     host: &TetMesh,
     devices: &Devices,
@@ -38,10 +39,10 @@ pub(super) fn check_inside(
         .remedy("`motet info` tells where each lies; both have to be in the same unit"))
 }
 
-/// Refuses a host of which devices leave nothing.
+/// Refuses devices that leave nothing of the host.
 ///
 /// # Errors
-/// When no tet of the host stays, and none came for it.
+/// When no tet of the host stays, and no new one takes its place.
 pub(super) fn check_left(devices: &Devices, is_left: bool) -> Result<()> {
     if is_left {
         return Ok(());

@@ -7,37 +7,39 @@ use crate::mesh::check::Defect;
 use crate::meshing::Body;
 use crate::remesh::{self, Left};
 
-/// What refining the host came to.
+/// The result of refining the host.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Adapted {
-    /// How long edges were to be beside the devices.
+    /// The requested edge length beside the devices.
     pub size: f64,
     /// How often tets were divided.
     pub generations: u32,
-    /// Tets of the host as it came.
+    /// Tets of the host as given.
     pub tets_before: usize,
-    /// Tets of the host that was carved.
+    /// Tets of the host when it was carved.
     pub tets_after: usize,
 }
 
-/// How a new surface fits the one that a device came with.
+/// How well a new surface fits the original one of a device.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fit {
-    /// The largest distance of the new one from the old one; at corners, middles of edges and of triangles.
+    /// The largest distance of the new surface from the old one, at corners and at the middles of edges and
+    /// triangles.
     pub to_old: f64,
-    /// The largest distance of the old one, where it bounds the device, from the new one; at middles of edges and of triangles.
+    /// The largest distance of the old surface, where it bounds the device, from the new one, at the middles
+    /// of edges and triangles.
     pub from_old: f64,
-    /// How far they were to be apart at most.
+    /// The largest distance allowed.
     pub tolerance: f64,
 }
 
 impl Fit {
-    /// Whether both are within the tolerance.
+    /// Whether both distances are within the tolerance.
     pub fn is_reached(&self) -> bool {
         self.farthest() <= self.tolerance
     }
 
-    /// The larger of both distances.
+    /// The larger of the two distances.
     pub fn farthest(&self) -> f64 {
         self.to_old.max(self.from_old)
     }
@@ -48,25 +50,26 @@ impl Fit {
 pub struct DeviceReport {
     /// Its name.
     pub name: String,
-    /// The regions of the tets in it: one, or those that its own tets came with; none where it is hollow.
+    /// The regions of the tets in it: one, or those of the tets that it keeps; none if it is hollow.
     pub regions: Vec<i32>,
     /// The patch of its surface.
     pub patch: i32,
     /// Triangles of its surface.
     pub triangles: usize,
-    /// Of these, facets of the mesh as they came.
+    /// Triangles of its surface that are facets of the mesh as they were given.
     pub triangles_kept: usize,
-    /// Of the others, triangles where it meets a wall of the host.
+    /// Triangles of its surface that were not kept where it meets a wall of the host.
     pub triangles_at_walls: usize,
-    /// And triangles that were cut off with what lies outside.
+    /// Triangles of its surface that were cut off with what lies outside.
     pub triangles_outside: usize,
-    /// The patch of what it and walls of the host have in common, where that is an area.
+    /// The patch of what it and walls of the host have in common, if that is an area.
     pub contact_patch: Option<i32>,
-    /// How its new surface fits, where it got one. Triangles and enclosed volume are those of the new one.
+    /// How well its new surface fits, if it got one. Triangles and enclosed volume are then those of the new
+    /// one.
     pub fit: Option<Fit>,
-    /// What its surface encloses; where a part outside of the host was cut off, of that within.
+    /// The volume that its surface encloses; without the part outside of the host if that was cut off.
     pub enclosed: f64,
-    /// The volume of its regions, 0 where it is hollow.
+    /// The volume of its regions; 0 if it is hollow.
     pub volume: f64,
 }
 
@@ -77,13 +80,13 @@ pub struct Seconds {
     pub devices: f64,
     /// Refining the host.
     pub adapt: f64,
-    /// Finding what goes.
+    /// Finding the tets to remove.
     pub carve: f64,
-    /// Filling the room.
+    /// Filling the cavity.
     pub fill: f64,
     /// Repairing.
     pub improve: f64,
-    /// Joining all, and carrying arrays.
+    /// Joining everything, and carrying arrays.
     pub join: f64,
     /// Checking the mesh.
     pub check: f64,
@@ -92,15 +95,15 @@ pub struct Seconds {
 /// What was done, and what the mesh is worth.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// `None` where nothing had to be refined.
+    /// How the host was refined; `None` if that was not necessary.
     pub adapted: Option<Adapted>,
-    /// Tets of the host, refined where it was.
+    /// Tets of the host, after refinement.
     pub host_tets: usize,
-    /// Of these, tets that were carved.
+    /// Tets of the host that were carved.
     pub carved: usize,
-    /// Tets that stayed to the bit.
+    /// Tets of the host that stayed, to the bit.
     pub kept: usize,
-    /// The part of them.
+    /// [`kept`](Self::kept) as a fraction of [`host_tets`](Self::host_tets).
     pub kept_share: f64,
     /// Tets of the mesh.
     pub tets: usize,
@@ -108,15 +111,15 @@ pub struct Report {
     pub devices: Vec<DeviceReport>,
     /// The regions of the mesh.
     pub regions: Vec<Body>,
-    /// The host's volume, less what hollow devices enclose of it, and with what is kept of devices outside of it.
+    /// The host's volume, less what hollow devices enclose of it, plus what is kept of devices outside of it.
     pub volume_expected: f64,
     /// The volume of the mesh.
     pub volume: f64,
-    /// How repairing went; its tets are cells of the mesh. Bad tets that are left are those that came.
+    /// The report of the repair; its tets are cells of the mesh. Bad tets that are left are new ones.
     pub improved: remesh::Report,
-    /// Bad tets of the host near the devices that are left as they came.
+    /// Bad tets of the host near the devices that are left as they were.
     pub host_left: Vec<Left>,
-    /// What is wrong with the mesh: nothing, or this.
+    /// The defects of the mesh; empty if it is sound.
     pub defects: Vec<Defect>,
     /// Seconds by stage.
     pub seconds: Seconds,
@@ -128,12 +131,13 @@ impl Report {
         crate::mesh::check::is_conforming(&self.defects) && self.improved.after.inverted == 0
     }
 
-    /// Whether it is valid, every triangle of the devices is a facet, new surfaces are near enough, and no bad tet is left but those of the host and those that walls force.
+    /// Whether the mesh is valid, every triangle of the devices is a facet, new surfaces are near enough, and
+    /// no bad tet is left except those of the host and those that walls force.
     pub fn is_complete(&self) -> bool {
         self.not_reached().is_none()
     }
 
-    /// Why the requested result was not reached; `None` where it was.
+    /// Why the requested result was not reached; `None` if it was.
     pub fn not_reached(&self) -> Option<String> {
         let is_divided = |device: &&DeviceReport| {
             let n_at = device.triangles_at_walls + device.triangles_outside;
@@ -157,12 +161,13 @@ impl Report {
         ])
     }
 
-    /// Bad tets among those that came where no angle of a wall forces one.
+    /// How many of the bad new tets that are left are not forced by an angle of a wall.
     pub fn n_unforced(&self) -> usize {
         self.improved.left.iter().filter(|left| !left.reason.is_forced()).count()
     }
 
-    /// How far the volume of the mesh, and of each device's region, is from what it should be, as a part of it; the largest.
+    /// The largest relative deviation of the volume of the mesh, and of that of each device's regions, from
+    /// what it should be.
     pub fn volume_deviation(&self) -> f64 {
         let part = |is: f64, expected: f64| (is - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
         let of_devices = self.devices.iter().filter(|device| !device.regions.is_empty());

@@ -1,4 +1,4 @@
-//! Values that arrays begin with in devices.
+//! Initial values of arrays in devices.
 
 use std::collections::BTreeMap;
 
@@ -7,11 +7,14 @@ use super::zone::Draft;
 use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh};
 
-/// By the name of an array all components of a value.
+/// The components of a value, by the name of the array.
 pub(super) type Starts = BTreeMap<String, Vec<f64>>;
 
+/// Checks initial values against the arrays of the host.
+///
 /// # Errors
-/// When the host has no such array, or one of other components or other numbers.
+/// When the host has no such array, or one with other components or of a type that cannot hold the numbers,
+/// or when the array holds the regions.
 pub(super) fn check(host: &Mesh, starts: &Starts) -> Result<()> {
     for (name, value) in starts {
         let refused = |what: String, remedy: String| {
@@ -50,7 +53,8 @@ pub(super) fn check(host: &Mesh, starts: &Starts) -> Result<()> {
     Ok(())
 }
 
-/// Sets values in the cells of devices, and at points that no other cells have. Those cells are the last of the mesh: tets of the draft, then `n_own` that devices came with.
+/// Sets initial values in the cells of devices, and at points that no other cells have. Those cells are the
+/// last of the mesh: tets of the draft, then `n_own` tets that devices kept.
 pub(super) fn set(mesh: &mut Mesh, draft: &Draft, n_own: usize, starts: &Starts) {
     let first = mesh.cells.len() - n_own - draft.tets.len();
     let of_draft = draft.owners.iter().map(|owner| matches!(owner, Owner::Device(_)));
@@ -59,7 +63,7 @@ pub(super) fn set(mesh: &mut Mesh, draft: &Draft, n_own: usize, starts: &Starts)
     let mut is_within = vec![false; mesh.points.len()];
     for is_of_device in [true, false] {
         for (cell, kind, vertices) in mesh.cells.iter() {
-            // Triangles bound cells.
+            // Triangles only bound cells.
             if kind.dim() == Some(3) && is_device[cell.index()] == is_of_device {
                 vertices.iter().for_each(|v| is_within[v.index()] = is_of_device);
             }

@@ -1,4 +1,4 @@
-//! What came and a ring of the host around it, repaired.
+//! Repairs new tets and a ring of the host around them.
 
 use std::collections::{BTreeSet, HashSet};
 
@@ -10,28 +10,29 @@ use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::remesh::{self, Improve, Options, SurfaceRule, remesh};
 
-/// The host's tets that are no more, and what came in their place. Vertices are those of the host, and behind them new ones.
+/// The removed tets of the host, and the new ones in their place. Vertices are those of the host, then new
+/// ones.
 #[derive(Debug)]
 pub(super) struct Draft {
-    /// All points; some of them are used no more.
+    /// All points; some of them are no longer used.
     pub(super) points: Vec<Point>,
     /// Which vertices of the host were moved.
     pub(super) is_moved: Vec<bool>,
     pub(super) is_gone: Vec<bool>,
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) owners: Vec<Owner>,
-    /// Triangles that came.
+    /// New triangles.
     pub(super) triangles: Vec<([VertexId; 3], Patch)>,
-    /// For each tet of the zone that was repaired where it is now.
+    /// For each tet of the repaired zone, where it is now.
     pub(super) of_zone: Vec<Site>,
 }
 
-/// One of the tets of the result.
+/// A tet of the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Site {
-    /// One of the host.
+    /// A tet of the host.
     Host(usize),
-    /// One that came, by its place in [`Draft::tets`].
+    /// A new tet, by its index in [`Draft::tets`].
     New(usize),
 }
 
@@ -48,8 +49,8 @@ impl Draft {
         }
     }
 
-    /// Repairs bad tets among those that came and those of the host near them. Walls stay as they are, but where devices meet them: there they may
-    /// stray as far as is said.
+    /// Repairs bad tets among the new ones and among those of the host near them. Walls stay as they are,
+    /// except where devices meet them: there they may stray by up to `stray`.
     ///
     /// # Errors
     /// When the tets are no mesh.
@@ -125,7 +126,7 @@ impl Draft {
     }
 }
 
-/// Each owner once.
+/// All owners, each once.
 fn regions(owners: &[Owner], host: &TetMesh, near: &[usize]) -> Vec<Owner> {
     let mut found: Vec<Owner> = Vec::new();
     let all = owners.iter().copied().chain(near.iter().map(|&t| Owner::Host(host.regions[t])));
@@ -137,7 +138,7 @@ fn regions(owners: &[Owner], host: &TetMesh, near: &[usize]) -> Vec<Owner> {
     found
 }
 
-/// A mesh of its own, and what its vertices are.
+/// The zone as a mesh of its own, and the maps between its vertices and those of the result.
 struct Zone {
     mesh: TetMesh,
     of_result: Vec<VertexId>,
@@ -161,8 +162,9 @@ impl Zone {
         self.mesh.regions.push(region);
     }
 
-    /// Holds triangles of the host and those that came, and what other cells of the host hold. Tells what each number of a patch is, from those of the
-    /// host on, and which triangles lie elsewhere.
+    /// Adds triangles of the host and new ones, and holds what other cells of the host hold. Returns the
+    /// patch of each patch number; the numbers from there on are triangles of the host. New triangles that
+    /// lie outside of the zone are added to `elsewhere`.
     fn hold(&mut self, host: &TetMesh, gap: &Gap, elsewhere: &mut Vec<([VertexId; 3], Patch)>) -> Vec<Patch> {
         let patches: BTreeSet<Patch> = gap.triangles.iter().map(|(_, patch)| *patch).collect();
         let patches: Vec<Patch> = patches.into_iter().collect();
@@ -199,7 +201,7 @@ impl Zone {
         patches
     }
 
-    /// Fixes walls with no corner that is loose, and the other vertices of walls.
+    /// Fixes the edges of walls that have no loose corner, and the vertices of walls that are not loose.
     fn hold_walls(&mut self, loose: &BTreeSet<VertexId>) {
         let (mut edges, mut vertices) = (Vec::new(), Vec::new());
         let is_loose = |v: VertexId| loose.contains(&self.to_result[v.index()]);

@@ -8,37 +8,39 @@ use crate::meshing::EDGE_OVER_SIDE;
 
 type Cube = [i32; 3];
 
-/// More sides of cubes than this on the surface are too many: of each come about 12 triangles, and of 100,000 a few hundred MB of lattice.
+/// More sides of cubes than this on the surface are too many: each yields about 12 triangles, and 100,000 a
+/// few hundred MB of lattice.
 const MOST_SQUARES: f64 = 1e5;
 
-/// Triangles are looked at in more pieces than this only where they are needles without end.
+/// Triangles are processed in more pieces than this only if they are needles of extreme length.
 const MOST_PIECES: f64 = 2e7;
 
 /// The longest edge of a piece, in sides of cubes.
 const LONGEST: f64 = 2.0;
 
-/// What a piece goes through, and the neighbours of that, have their middles so near its plane, in sides: half a diagonal of a cube and a side.
+/// The centres of cubes that a piece passes through, and of their neighbours, are at most this far from its
+/// plane, in sides: half a diagonal of a cube and a side.
 const REACH: f64 = 1.87;
 
-/// So many cubes are kept before those that are there twice go.
+/// This many cubes are collected before duplicates are removed.
 const FIRST: usize = 1 << 20;
 
-/// Cubes of one size, in rising order.
+/// Cubes of one size, in ascending order.
 pub(super) struct Cubes {
     low: Point,
     side: f64,
     cubes: Vec<Cube>,
 }
 
-/// Vertices and tets. Edges between middles or between corners are *long*, the others short.
+/// Vertices and tets of a lattice. Edges between centres or between corners are *long*, the others short.
 pub(super) struct Lattice {
     pub(super) points: Vec<Point>,
     pub(super) tets: Vec<[VertexId; 4]>,
-    /// How many vertices are corners of cubes; behind them come middles.
+    /// How many vertices are corners of cubes; behind them come centres.
     pub(super) n_corners: usize,
 }
 
-/// The shortest edges that a lattice near the surface may have.
+/// The shortest edge that a lattice near the surface may have.
 pub(super) fn shortest_edge(surface: &Surface) -> f64 {
     let triangles = || (0..surface.triangles.len()).map(|t| surface.corners(t));
     let squares = triangles().map(area).sum::<f64>() / MOST_SQUARES;
@@ -48,18 +50,18 @@ pub(super) fn shortest_edge(surface: &Surface) -> f64 {
 }
 
 impl Cubes {
-    /// Those that triangles go through, their neighbours, and some more.
+    /// The cubes that triangles pass through, their neighbours, and some more.
     pub(super) fn near(surface: &Surface, edge: f64) -> Self {
         let side = edge / EDGE_OVER_SIDE;
         let corners: Vec<Point> =
             surface.triangles.as_flattened().iter().map(|v| surface.points[v.index()]).collect();
-        // A place that no coordinate of a surface is likely to have a whole number of sides from.
+        // An origin from which no coordinate of a surface is likely to be a whole number of sides away.
         let low = bounds(&corners).unwrap_or_default()[0].map(|x| x - 0.618_033_988_749 * side);
         let mut near = Self { low, side, cubes: Vec::new() };
         let mut full = FIRST;
         for corners in corners.as_chunks().0 {
             near.add_triangle(*corners);
-            // Neighbours have most of their cubes in common.
+            // Neighbouring triangles have most of their cubes in common.
             if near.cubes.len() > full {
                 sort_once(&mut near.cubes);
                 full = FIRST.max(2 * near.cubes.len());
@@ -69,7 +71,7 @@ impl Cubes {
         near
     }
 
-    /// Those near a triangle, which is halved until its box is hardly larger than what is near it.
+    /// Adds the cubes near a triangle, which is halved until its box is hardly larger than what is near it.
     fn add_triangle(&mut self, corners: [Point; 3]) {
         let lengths = [0, 1, 2].map(|k| distance(corners[k], corners[(k + 1) % 3]));
         let longest = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
@@ -99,7 +101,8 @@ impl Cubes {
         }
     }
 
-    /// Four tets on each side that two cubes share: between their middles and an edge of the side.
+    /// Builds the lattice, with four tets on each side that two cubes share: between their centres and an
+    /// edge of the side.
     pub(super) fn lattice(&self) -> Lattice {
         let mut corners: Vec<Cube> = Vec::with_capacity(self.cubes.len() * 8);
         for cube in &self.cubes {
@@ -124,7 +127,7 @@ impl Cubes {
                     corner(c)
                 });
                 let middles = [i, j].map(|i| VertexId::new(corners.len() + i));
-                // Seen from the first middle the ring runs clockwise, so these are positive.
+                // Seen from the first centre, the ring runs clockwise, so these are positive.
                 tets.extend((0..4).map(|k| [middles[0], ring[k], ring[(k + 1) % 4], middles[1]]));
             }
         }

@@ -1,6 +1,8 @@
-//! Narrow triangles of the new surface made wider, as far as that leaves it near the old one and free of crossings.
+//! Widens narrow triangles of the new surface, as far as that leaves it near the old one and free of
+//! crossings.
 //!
-//! Of what could be done about a triangle (one of its edges turned, its ends made one, a vertex moved among its neighbours and back onto the old surface) the best is done, as long as any helps.
+//! Of all that could be done about a triangle (flip one of its edges, collapse one, move a vertex towards the
+//! mean of its neighbours and back onto the old surface), the best change is made, as long as any helps.
 
 use super::old::Old;
 use super::sheet::{Change, Sheet, sharpest};
@@ -13,23 +15,24 @@ use crate::preflight::crossings;
 /// The cosine of the smallest angle that is left alone, 30 degrees.
 const WIDE: f64 = 0.866_025_403_784_438_6;
 
-/// How much less the largest cosine has to become, so that nothing goes on for next to nothing.
+/// How much the largest cosine has to fall, so that no work is done for negligible gains.
 const GAIN: f64 = 1e-3;
 
-/// How often all narrow triangles are gone through.
+/// How many passes are made over all narrow triangles.
 const ROUNDS: usize = 4;
 
-/// How often all is done anew where triangles cross, without the vertices there.
+/// How often everything is done anew where triangles cross, with the vertices there held.
 const RETRIES: usize = 4;
 
-/// How far on the way to the middle of its neighbours a vertex may go.
+/// How much of the way to the mean of its neighbours a vertex may move.
 const STEPS: [f64; 2] = [1.0, 0.5];
 
-/// How much of the distance that is asked changes may use.
+/// The fraction of the tolerance that changes may use.
 const SHARE: f64 = 0.8;
 
 impl Old {
-    /// The surface with wider triangles, within `tolerance` of the old one where it was.
+    /// The surface with wider triangles, within `tolerance` of the old one where it was before; `None` if
+    /// crossings remain.
     pub(super) fn evened(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> Option<Skin> {
         let mut is_held = vec![false; skin.points.len()];
         for _ in 0..RETRIES {
@@ -59,7 +62,7 @@ fn is_left(triangle: &[VertexId; 3]) -> bool {
     triangle[0] != VertexId::NONE
 }
 
-/// The triangles that are not as they were.
+/// The triangles that have changed.
 fn changed(before: &Skin, points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<usize> {
     let is_same = |t: usize| {
         triangles[t] == before.triangles[t]
@@ -71,7 +74,7 @@ fn changed(before: &Skin, points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<
 struct Evening<'a> {
     old: &'a Old,
     sheet: Sheet,
-    /// Vertices of which no triangle may change.
+    /// Vertices whose triangles must not change.
     is_held: &'a [bool],
     tolerance: f64,
 }
@@ -93,7 +96,7 @@ impl Evening<'_> {
         }
     }
 
-    /// Whether something helped.
+    /// Makes the best change that widens a triangle. Returns whether there was one.
     fn widen(&mut self, t: u32) -> bool {
         if !self.sheet.is_there(t) || sharpest(self.sheet.corners(t)) <= WIDE {
             return false;
@@ -134,7 +137,8 @@ impl Evening<'_> {
         self.old.nearest.closest_within(p, self.tolerance).map(|found| found.point)
     }
 
-    /// Whether nothing held changes, no triangle turns away, and all that comes is near the old surface: what closes a hole is not, and stays as it is.
+    /// Whether nothing held changes, no triangle turns away, and all new triangles are near the old surface.
+    /// Those that close a hole are not, and stay as they are.
     fn is_allowed(&self, change: &Change) -> bool {
         let of = |t: &u32| self.sheet.triangles[*t as usize];
         if change.gone.iter().flat_map(of).any(|v| self.is_held[v.index()])
@@ -150,7 +154,8 @@ impl Evening<'_> {
     }
 }
 
-/// Where a triangle's distance from the old surface is measured: corners, middles of edges, middle.
+/// Where a triangle's distance from the old surface is measured: at corners, middles of edges, and the
+/// centroid.
 fn places([a, b, c]: [Point; 3]) -> [Point; 7] {
     let half = |p: Point, q: Point| scale(add(p, q), 0.5);
     [a, b, c, half(a, b), half(b, c), half(c, a), centroid([a, b, c])]

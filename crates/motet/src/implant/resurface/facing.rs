@@ -1,4 +1,4 @@
-//! Which way a surface is meant to face: outward as a whole, cavities inward, neighbours alike.
+//! The orientation that a surface is meant to have: outward as a whole, cavities inward, neighbours alike.
 
 use crate::base::{Csr, Point, Result, Sets, Threads, VertexId, rising, runs_alike};
 use crate::contact::is_closed;
@@ -8,21 +8,23 @@ use crate::mesh::{Surface, cone_volume};
 use crate::preflight::{Repairs, Role, repair};
 use crate::spatial::{Bounds, WindingNumber, around};
 
-/// A vertex is inside a part from this winding number on.
+/// A vertex is inside a part above this winding number.
 const INSIDE: f64 = 0.5;
 
-/// Triangles that hang together at edges of two, and go round some room without an opening.
+/// Triangles connected by edges of two that enclose some space without an opening.
 struct Part {
     triangles: Vec<usize>,
     corners: Vec<[VertexId; 3]>,
     bounds: Bounds,
     volume: f64,
-    /// Whether it came facing inward.
+    /// Whether it faced inward as given.
     came_inward: bool,
 }
 
-/// Turns triangles to where they are meant to face. What is closed faces outward, but a cavity: what lies wholly in another part and came facing the other way than that did.
-/// Open parts face as they came, or all the other way where they go round less than nothing together; for a single one of them, such as the inner wall of a tube, nobody could tell.
+/// Turns triangles to face as they are meant to. Closed parts face outward, except for cavities: parts that
+/// lie wholly in another part and were given facing the other way. Open parts face as given, or all the other
+/// way if together they enclose a negative volume; for a single one of them, such as the inner wall of a
+/// tube, that cannot be determined.
 pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
     let came = surface.triangles.clone();
     let orient = Repairs { orient: true, ..Repairs::default() };
@@ -37,7 +39,7 @@ pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
     closed.sort_by(|p, q| q.volume.total_cmp(&p.volume));
     let mut faces_inward: Vec<bool> = Vec::new();
     for (k, part) in closed.iter().enumerate() {
-        // The smallest one that holds it.
+        // The smallest part that contains it.
         let holder = (0..k).rev().find(|&holder| holds(&closed[holder], part, &surface.points));
         let differs = |holder: usize| closed[holder].came_inward != part.came_inward;
         faces_inward.push(holder.is_some_and(|holder| faces_inward[holder] != differs(holder)));
@@ -52,7 +54,7 @@ pub(super) fn face(surface: &mut Surface, threads: &Threads) -> Result<()> {
     Ok(())
 }
 
-/// The closed parts, and all triangles that are of none.
+/// The closed parts, and the triangles of all others.
 fn parts(surface: &Surface, came: &[[VertexId; 3]]) -> (Vec<Part>, Vec<usize>) {
     let n = surface.triangles.len();
     let mut sides: Vec<([VertexId; 2], u32)> = (0..)
@@ -97,7 +99,8 @@ fn holds(holder: &Part, part: &Part, points: &[Point]) -> bool {
     part.corners.as_flattened().iter().all(|v| winding.at(points[v.index()]) > INSIDE)
 }
 
-/// What triangles go round, seen from the middle of their area: so open ones go round what they would if a cone from there closed them.
+/// The volume that triangles enclose, seen from the centroid of their area: open ones enclose what they would
+/// if a cone from there closed them.
 pub(super) fn volume(points: &[Point], triangles: &[[VertexId; 3]]) -> f64 {
     let corners = |t: &[VertexId; 3]| t.map(|v| points[v.index()]);
     let whole: f64 = triangles.iter().map(|t| area(corners(t))).sum();

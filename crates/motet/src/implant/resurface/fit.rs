@@ -8,7 +8,7 @@ use crate::geometry::vector::{add, norm, scale};
 use crate::implant::report::Fit;
 use crate::spatial::{Closest, NearestTriangle};
 
-/// How far before a triangle what it bounds is looked for, in distances that are asked.
+/// How far in front of a triangle its surroundings are probed, as a fraction of the tolerance.
 const BEFORE: f64 = 0.25;
 
 impl Old {
@@ -20,7 +20,8 @@ impl Old {
         }
     }
 
-    /// The largest distance of the new surface from the old one, at corners, middles of edges and of triangles.
+    /// The largest distance of the new surface from the old one, at corners and at the middles of edges and
+    /// triangles.
     fn off_old(&self, skin: &Skin, threads: &Threads) -> f64 {
         let at = |v: VertexId| skin.points[v.index()];
         let mut places = skin.points.clone();
@@ -30,8 +31,9 @@ impl Old {
         found.into_iter().map(far).fold(0.0, f64::max)
     }
 
-    /// The largest distance of the old surface from the new one, at middles of triangles and of their edges; where it lies in the device, such as where turns of a wire
-    /// overlap, it does not bound it, and does not count.
+    /// The largest distance of the old surface from the new one, at the middles of triangles and of their
+    /// edges. Where the old surface lies in the device, such as where turns of a wire overlap, it does not
+    /// bound it, and does not count.
     fn off_new(&self, skin: &Skin, tolerance: f64, threads: &Threads) -> f64 {
         let of_triangle = |t: usize| {
             let [a, b, c] = self.surface.corners(t);
@@ -44,7 +46,7 @@ impl Old {
         let found = tree.closest_all(&only, None, threads);
         let mut far: Vec<(f64, Point, usize)> =
             found.into_iter().zip(places).map(|(found, (p, t))| (far(found), p, t)).collect();
-        // Winding numbers are dear: from the farthest on, the first that counts is the answer.
+        // Winding numbers are expensive: beginning with the farthest, the first that counts is the answer.
         far.sort_unstable_by(|x, y| y.0.total_cmp(&x.0));
         let counts = |&&(_, p, t): &&(f64, Point, usize)| {
             let normal = area_vector(self.surface.corners(t));
@@ -60,7 +62,7 @@ fn far(found: Option<Closest>) -> f64 {
     found.map_or(f64::INFINITY, |found| found.distance_squared.sqrt())
 }
 
-/// The ends of every edge once, rising.
+/// The ends of every edge, each edge once, in ascending order.
 fn edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     let mut edges: Vec<_> =
         triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]].map(rising)).collect();

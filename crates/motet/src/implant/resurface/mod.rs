@@ -1,13 +1,14 @@
-//! A new surface for a device: closed, without crossings, of even triangles, as near to the old one as was asked.
+//! A new surface for a device: closed, without crossings, with even triangles, as near to the old one as
+//! requested.
 //!
 //! | step | file | how |
 //! |---|---|---|
-//! | faces | `facing` | parts that face inward turn outward, but cavities |
-//! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their middles and corners |
-//! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or triangles twice; of a closed one they change only across triangles |
-//! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it cuts are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
-//! | even | `even`, `sheet` | narrow triangles made wider: edges turned, ends joined, vertices moved along the old surface |
-//! | distance | `fit` | both ways; where it is too far the lattice is made finer |
+//! | faces | `facing` | parts that face inward are turned outward, except for cavities |
+//! | cubes | `cubes` | those near the surface; the tets of a body-centred lattice between their centres and corners |
+//! | inside | `old` | winding numbers, also of surfaces that cross themselves, have open ends or duplicate triangles; those of a closed one change only across triangles |
+//! | skin | `skin` | lattice vertices near the surface move onto it, the other edges that it crosses are cut: Labelle and Shewchuk 2007, *Isosurface stuffing* |
+//! | even | `even`, `sheet` | narrow triangles made wider: edges flipped or collapsed, vertices moved along the old surface |
+//! | distance | `fit` | both ways; if it is too large, the lattice is made finer |
 
 mod cubes;
 mod even;
@@ -24,21 +25,24 @@ use cubes::{Cubes, shortest_edge};
 use old::{Old, nothing};
 use skin::Skin;
 
-/// Edges of the first lattice over the radius of a round wire as thick as the device.
+/// The edge length of the first lattice, over the radius of a round wire as thick as the device.
 const EDGE_OVER_RADIUS: f64 = 0.5;
 
-/// The distance that is asked where nobody said, over that radius. Where a wire ends in a sharp edge this is what a lattice of that size leaves of it.
+/// The default tolerance, over that radius. Where a wire ends in a sharp edge, this is the error of a lattice
+/// of that size.
 const TOLERANCE_OVER_RADIUS: f64 = 0.2;
 
-/// Edges of the lattice over chords that stray from the circle of the wire by the tolerance.
+/// The edge length of the lattice over that of chords that stray from the circle of the wire by the
+/// tolerance.
 const CHORD: f64 = 0.7;
 
-/// Where the surfaces are too far apart the lattice is made finer by this, so often at most.
+/// Where the surfaces are too far apart, the lattice is made finer by this factor, in at most `TRIES` tries.
 const FINER: f64 = 0.7;
 const TRIES: usize = 5;
 
-/// A finer surface that is still too far away is taken only where its distance is below this part of the best one: it has twice the triangles. Any lattice cuts off the edge of a thin
-/// wedge, so that there the distance hardly falls.
+/// A finer surface that is still too far away is taken only if its distance is below this fraction of that of
+/// the best one, since it has twice the triangles. Any lattice cuts off the edge of a thin wedge, so there
+/// the distance hardly falls.
 const NEARER: f64 = 0.9;
 
 /// A device's new surface.
@@ -48,10 +52,11 @@ pub(super) struct Resurfaced {
     pub(super) fit: Fit,
 }
 
-/// Makes a new surface for the room that `surface` goes round.
+/// Makes a new surface for the space that `surface` encloses.
 ///
 /// # Errors
-/// When it goes round nothing, has corners that are not finite, or so fine a lattice would be needed that it has too many cubes.
+/// When it encloses nothing, has corners that are not finite, or needs so fine a lattice that it has too many
+/// cubes.
 pub(super) fn resurface(
     surface: Surface,
     name: &str,
@@ -71,7 +76,7 @@ pub(super) fn resurface(
         );
         let least = (shortest / CHORD).powi(2) / (8.0 * old.radius);
         let by_size = format!("a size of {shortest:.2e} at least");
-        // Edges longer than a share of the radius come by no tolerance.
+        // No tolerance leads to edges longer than a fraction of the radius.
         let remedy = match size.is_none() && EDGE_OVER_RADIUS * old.radius >= shortest {
             true => format!("give a tolerance of {least:.2e} at least, or {by_size}"),
             false => format!("give {by_size}"),

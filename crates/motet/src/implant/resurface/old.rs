@@ -1,4 +1,4 @@
-//! The surface that a device came with: how often it goes round places, and where it cuts edges.
+//! The original surface of a device: how often it goes around places, and where it cuts edges.
 
 use super::cubes::Lattice;
 use super::facing::{face, volume};
@@ -12,21 +12,21 @@ use crate::mesh::{Surface, firsts_at_place};
 use crate::preflight::renamed;
 use crate::spatial::{BoxTree, NearestTriangle, WindingNumber, around};
 
-/// A point is inside from this winding number on.
+/// A point is inside above this winding number.
 const INSIDE: f64 = 0.5;
 
-/// Balls count as overlapping when they do by more than this part of them, so that rounding joins none.
+/// Balls count as overlapping if they do by more than this fraction, so that rounding joins none.
 const OVERLAP: f64 = 1e-9;
 
-/// A surface, and what finds its triangles.
+/// The original surface, and what finds its triangles.
 pub(super) struct Old {
     pub(super) surface: Surface,
     pub(super) nearest: NearestTriangle,
     winding: WindingNumber,
     boxes: BoxTree,
-    /// Whether it goes round each place a whole number of times.
+    /// Whether it goes around each place a whole number of times.
     is_closed: bool,
-    /// That of a round wire with as much volume for its area.
+    /// The radius of a round wire with the same volume per area.
     pub(super) radius: f64,
 }
 
@@ -37,8 +37,10 @@ pub(super) fn nothing(name: &str) -> Error {
 }
 
 impl Old {
+    /// Orients the surface and prepares it for searching.
+    ///
     /// # Errors
-    /// When the surface goes round nothing or has corners that are not finite.
+    /// When it encloses nothing or has corners that are not finite.
     pub(super) fn new(mut surface: Surface, name: &str, threads: &Threads) -> Result<Self> {
         let off = surface.vertices().into_iter().find(|v| !in_range(surface.points[v.index()]));
         if let Some(v) = off {
@@ -64,21 +66,24 @@ impl Old {
         })
     }
 
-    /// How often the surface goes round a place.
+    /// How often the surface goes around a place.
     pub(super) fn winding(&self, p: Point) -> f64 {
         let winding = self.winding.at(p);
         if self.is_closed { winding.round() } else { winding }
     }
 
-    /// A closed surface holds what it goes round at all, whichever way.
+    /// Whether a place with this winding number is inside. A closed surface contains whatever it goes around,
+    /// in either direction.
     pub(super) fn is_inside(&self, winding: f64) -> bool {
         (if self.is_closed { winding.abs() } else { winding }) > INSIDE
     }
 
     /// The winding number at each vertex.
     ///
-    /// That of a closed surface changes only across triangles. No triangle is in the ball round a vertex that reaches to the nearest one; so where the balls of two ends of an edge
-    /// overlap, both have one number. Only one vertex of each part that hangs together so is asked: of the lattice for the public coil 1 in 20.
+    /// That of a closed surface changes only across triangles. No triangle is in the ball around a vertex
+    /// that reaches to the nearest one; so where the balls at the two ends of an edge overlap, both have the
+    /// same number. It is computed for only one vertex of each part connected in this way: for the lattice of
+    /// the public coil, 1 in 20.
     pub(super) fn windings(&self, lattice: &Lattice, threads: &Threads) -> Vec<f64> {
         let n = lattice.points.len();
         if !self.is_closed {
@@ -105,10 +110,12 @@ impl Old {
         windings
     }
 
-    /// Where on the way from a place inside to one outside the surface ends: as a part of the way, from the winding numbers of both.
+    /// Where the surface ends on the way from a place inside to one outside: as a fraction of the way, from
+    /// the winding numbers of both.
     ///
-    /// The number falls by one where the way leaves through a triangle and rises by one where it enters; what is left of the difference, near open ends, is spread evenly.
-    /// Several triangles that meet where the way goes through count more than once: it ends there all the same.
+    /// The number falls by one where the way leaves through a triangle, and rises by one where it enters; the
+    /// rest of the difference, near open ends, is spread evenly. Several triangles that meet where the way
+    /// passes through count more than once: it ends there all the same.
     pub(super) fn end(&self, way: [Point; 2], [from, to]: [f64; 2], near: &mut Vec<u32>) -> f64 {
         self.boxes.touching(around(way), near);
         let mut passed: Vec<(f64, f64)> = Vec::new();
@@ -140,7 +147,8 @@ impl Old {
     }
 }
 
-/// Where between two numbers, one of a place inside and one of a place outside, is the limit; as a part of the way.
+/// Where the limit lies between two numbers, one of a place inside and one of a place outside; as a fraction
+/// of the way.
 fn crossed(inside: f64, outside: f64) -> f64 {
     let limit = INSIDE.copysign(inside);
     ((inside - limit) / (inside - outside)).clamp(0.0, 1.0)

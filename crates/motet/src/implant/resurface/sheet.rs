@@ -1,30 +1,30 @@
-//! Triangles that can be changed: an edge turned, two vertices made one, a vertex moved.
+//! Triangles that can be changed: an edge flipped, two vertices merged, a vertex moved.
 
 use super::skin::Skin;
 use crate::base::{Id, Point, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub, unit};
 
-/// The cosine of how far two triangles may bend at an edge that is turned: 30 degrees.
+/// The cosine of the largest angle between two triangles whose edge is flipped: 30 degrees.
 const FLAT: f64 = 0.866;
 
-/// The cosine of how far a triangle may turn in a change, 25 degrees.
+/// The cosine of how far a triangle may turn in a change: 25 degrees.
 const TURN: f64 = 0.906;
 
-/// Triangles over points, and which are at each vertex.
+/// Triangles over points, and the triangles at each vertex.
 pub(super) struct Sheet {
     pub(super) points: Vec<Point>,
-    /// Those that went name no vertex.
+    /// Removed triangles name no vertex.
     pub(super) triangles: Vec<[VertexId; 3]>,
     at_vertex: Vec<Vec<u32>>,
 }
 
-/// Triangles that go, those that come into their places, and where a vertex is then.
+/// A change: triangles that are removed, those that replace them, and the new place of a vertex.
 pub(super) struct Change {
     pub(super) gone: Vec<u32>,
     pub(super) come: Vec<[VertexId; 3]>,
     pub(super) moved: Option<(VertexId, Point)>,
-    /// The unit normals that those that come have to keep, as far as [`TURN`] lets them.
+    /// The unit normals that the new triangles have to keep, as far as [`TURN`] allows.
     normals: Vec<Point>,
 }
 
@@ -45,7 +45,7 @@ impl Sheet {
         self.triangles[t as usize].map(|v| self.points[v.index()])
     }
 
-    /// The corners of those that come.
+    /// The corners of the new triangles.
     pub(super) fn corners_after<'a>(&'a self, change: &'a Change) -> impl Iterator<Item = [Point; 3]> + 'a {
         let at = |v: VertexId| match change.moved {
             Some((moved, place)) if moved == v => place,
@@ -58,7 +58,7 @@ impl Sheet {
         unit(area_vector(self.corners(t))).unwrap_or_default()
     }
 
-    /// The other ends of a vertex's edges, rising.
+    /// The other ends of a vertex's edges, in ascending order.
     fn neighbors(&self, v: VertexId) -> Vec<VertexId> {
         let of = self.at_vertex[v.index()].iter().flat_map(|&t| self.triangles[t as usize]);
         let mut neighbors: Vec<VertexId> = of.filter(|&u| u != v).collect();
@@ -67,20 +67,21 @@ impl Sheet {
         neighbors
     }
 
-    /// The triangles of an edge.
+    /// The triangles at an edge.
     fn at_edge(&self, u: VertexId, v: VertexId) -> Vec<u32> {
         let at = &self.at_vertex[u.index()];
         at.iter().copied().filter(|&t| self.triangles[t as usize].contains(&v)).collect()
     }
 
-    /// The middle of a vertex's neighbours.
+    /// The mean of a vertex's neighbours.
     pub(super) fn middle(&self, v: VertexId) -> Point {
         let neighbors = self.neighbors(v);
         let sum = neighbors.iter().fold([0.0; 3], |sum, u| add(sum, self.points[u.index()]));
         scale(sum, 1.0 / neighbors.len().max(1) as f64)
     }
 
-    /// Two triangles over the other diagonal.
+    /// Flips an edge: two triangles over the other diagonal. `None` if that edge exists already, or the two
+    /// triangles bend too far.
     pub(super) fn turned(&self, u: VertexId, v: VertexId) -> Option<Change> {
         let gone = self.at_edge(u, v);
         let &[s, t] = gone.as_slice() else { return None };
@@ -101,11 +102,12 @@ impl Sheet {
         Some(Change { gone, come: vec![[c, u, d], [d, v, c]], moved: None, normals: vec![mean; 2] })
     }
 
-    /// The end of an edge that goes becomes the one that stays, which moves.
+    /// Collapses an edge: `gone` becomes `kept`, which moves to `place`. `None` if that would fold triangles.
     pub(super) fn joined(&self, gone: VertexId, kept: VertexId, place: Point) -> Option<Change> {
         let [a, b] = [gone, kept].map(|v| self.neighbors(v));
         let common = a.iter().filter(|v| b.binary_search(v).is_ok()).count();
-        // More common neighbours than triangles between would be folded onto each other (Dey, Edelsbrunner, Guha and Nekhayev 1999).
+        // More common neighbours than triangles at the edge would be folded onto each other (Dey,
+        // Edelsbrunner, Guha and Nekhayev 1999).
         if common != 2 || self.at_edge(gone, kept).len() != 2 || a.len().min(b.len()) < 4 {
             return None;
         }
@@ -119,7 +121,7 @@ impl Sheet {
         Some(change)
     }
 
-    /// A vertex elsewhere.
+    /// Moves a vertex.
     pub(super) fn moved(&self, v: VertexId, place: Point) -> Change {
         self.over(self.at_vertex[v.index()].iter().copied(), v, place)
     }
@@ -154,7 +156,7 @@ impl Sheet {
     }
 }
 
-/// The cosine of the smallest angle of a triangle; 1 where an edge has no length.
+/// The cosine of the smallest angle of a triangle; 1 if an edge has no length.
 pub(super) fn sharpest(corners: [Point; 3]) -> f64 {
     let cosine = |k: usize| {
         let [a, b] = [1, 2].map(|i| sub(corners[(k + i) % 3], corners[k]));

@@ -7,19 +7,20 @@ use crate::geometry::tet::{EDGES, FACETS, volume};
 use crate::geometry::vector::{add, distance, scale, sub};
 use crate::spatial::runs::in_runs;
 
-/// A vertex moves onto a cut that is nearer to it than this part of the edge: of short edges, and of long ones (after Labelle and Shewchuk 2007).
+/// A vertex moves onto a cut that is nearer to it than this fraction of the edge: for short edges, and for
+/// long ones (after Labelle and Shewchuk 2007).
 const NEAR: [f64; 2] = [0.412, 0.25];
 
-/// After so many rounds in which vertices that make pinches stay, all stay.
+/// After this many rounds in which vertices that cause pinches stay, all vertices stay.
 const ROUNDS: usize = 8;
 
-/// Triangles that face outward.
+/// The new surface: triangles that face outward.
 pub(super) struct Skin {
     pub(super) points: Vec<Point>,
     pub(super) triangles: Vec<[VertexId; 3]>,
 }
 
-/// An edge that the surface cuts: its ends, rising, and where.
+/// An edge that the surface cuts: its ends, in ascending order, and where it is cut.
 #[derive(Clone, Copy)]
 struct Cut {
     ends: [VertexId; 2],
@@ -27,10 +28,12 @@ struct Cut {
 }
 
 impl Skin {
-    /// A closed 2-manifold: also where parts of the old surface touch, or come nearer than the lattice is fine.
+    /// Builds a closed 2-manifold, even where parts of the old surface touch, or come nearer than the lattice
+    /// resolves.
     ///
-    /// Without vertices that move onto cuts this is the level set of a function that is linear in each tet and 0 at no vertex, which is a manifold. Vertices on the
-    /// surface can make two sheets meet in an edge or a vertex; those that do stay where they are, and their edges are cut.
+    /// Without vertices that move onto cuts, this is the level set of a function that is linear in each tet
+    /// and 0 at no vertex, which is a manifold. Vertices on the surface can make two sheets meet in an edge
+    /// or a vertex; those that do stay where they are, and their edges are cut.
     pub(super) fn new(mut lattice: Lattice, old: &Old, threads: &Threads) -> Self {
         let windings = old.windings(&lattice, threads);
         let signs: Vec<i8> = windings.iter().map(|&w| if old.is_inside(w) { -1 } else { 1 }).collect();
@@ -53,7 +56,7 @@ impl Skin {
         }
     }
 
-    /// Corners numbered as they come.
+    /// The triangles, with their vertices numbered in the order of first use, and only those points.
     pub(super) fn compact(all: &[Point], mut triangles: Vec<[VertexId; 3]>) -> Self {
         let mut new: Vec<VertexId> = vec![Id::NONE; all.len()];
         let mut points = Vec::new();
@@ -69,7 +72,7 @@ impl Skin {
     }
 }
 
-/// All edges that the surface cuts, by their ends, rising.
+/// All edges that the surface cuts, sorted by their ends.
 fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &Threads) -> Vec<Cut> {
     let mut edges: Vec<[VertexId; 2]> = Vec::new();
     for tet in &lattice.tets {
@@ -94,13 +97,13 @@ fn cuts(lattice: &Lattice, signs: &[i8], windings: &[f64], old: &Old, threads: &
     in_runs(edges.len(), threads, |near, run| run.map(|i| cut(near, edges[i])).collect())
 }
 
-/// A cut is near an end of its edge below this part of the edge.
+/// The fraction of its edge below which a cut is near an end.
 fn near(lattice: &Lattice, ends: [VertexId; 2]) -> f64 {
     let [a, b] = ends.map(|v| v.index() >= lattice.n_corners);
     NEAR[usize::from(a == b)]
 }
 
-/// For each vertex the nearest of the cuts that are too near to it: where it moves.
+/// For each vertex, the nearest of the cuts that are too near to it: where it moves.
 fn moves(lattice: &Lattice, cuts: &[Cut]) -> Vec<Option<Point>> {
     let mut nearest: Vec<(f64, Point)> = vec![(1.0, [0.0; 3]); lattice.points.len()];
     for cut in cuts {
@@ -109,7 +112,7 @@ fn moves(lattice: &Lattice, cuts: &[Cut]) -> Vec<Option<Point>> {
         let length = distance(a, b);
         for (end, p) in cut.ends.into_iter().zip([a, b]) {
             let share = distance(p, cut.place) / length;
-            // As a part of what is too near, so that long and short edges compare.
+            // As a fraction of what is too near, so that long and short edges compare.
             let part = share / near;
             if part < nearest[end.index()].0 {
                 nearest[end.index()] = (part, cut.place);
@@ -119,7 +122,8 @@ fn moves(lattice: &Lattice, cuts: &[Cut]) -> Vec<Option<Point>> {
     nearest.into_iter().map(|(part, place)| (part < 1.0).then_some(place)).collect()
 }
 
-/// The points of the lattice, moved, and behind them the cuts that are left; and the triangles of the surface over these.
+/// The points of the lattice, moved, then the cuts that are left; and the triangles of the surface over
+/// these.
 fn cut_along(
     lattice: &mut Lattice,
     unmoved: &[Point],
@@ -143,8 +147,9 @@ fn cut_along(
     let place = |cut: &Cut| {
         let [a, b] = cut.ends.map(|v| unmoved[v.index()]);
         let share = distance(a, cut.place) / distance(a, b);
-        // Only cuts at vertices that make pinches are so near to an end: at other vertices, these move. Moved away by as much, they leave triangles as wide as
-        // elsewhere: 25 degrees where turns of a coil touch, 6 with cuts left a tenth of the edge from its end.
+        // Only cuts at vertices that cause pinches are so near to an end: other vertices have moved. Shifted
+        // away to `near`, these cuts leave triangles as wide as elsewhere: 25 degrees where turns of a coil
+        // touch, 6 with cuts left a tenth of the edge from its end.
         let near = near(lattice, cut.ends);
         if (near..=1.0 - near).contains(&share) {
             return cut.place;
@@ -155,9 +160,10 @@ fn cut_along(
     (points, triangles)
 }
 
-/// The vertices where triangles are no manifold: on edges that not just two of them use, and where they are more than one fan.
+/// The vertices where triangles are no manifold: on edges that are not used by exactly two of them, and where
+/// they form more than one fan.
 fn pinches(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
-    // A side, the triangle and its two corners there by their places among all corners.
+    // A side, and the two corners of its triangle there, as indices into all corners.
     let mut sides: Vec<([VertexId; 2], [u32; 2])> = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in (0u32..).zip(triangles) {
         for [i, j] in [[0, 1], [1, 2], [2, 0]] {
@@ -167,7 +173,7 @@ fn pinches(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
         }
     }
     sides.sort_unstable();
-    // Corners that are joined by triangles with a common edge are one fan.
+    // Corners connected by triangles with a common edge are one fan.
     let mut fans = Sets::new(3 * triangles.len());
     let mut pinches = Vec::new();
     for same in sides.chunk_by(|x, y| x.0 == y.0) {
@@ -186,14 +192,14 @@ fn pinches(triangles: &[[VertexId; 3]]) -> Vec<VertexId> {
     pinches
 }
 
-/// Cuts tets one by one. A corner of the skin is a vertex of the lattice, or a cut by its number behind those.
+/// Cuts tets one by one. A corner of the skin is a vertex of the lattice or, numbered behind those, a cut.
 struct Cutter<'a> {
     /// -1 inside, 0 on the surface, 1 outside.
     signs: &'a [i8],
     lattice: &'a Lattice,
     cuts: &'a [Cut],
     triangles: Vec<[VertexId; 3]>,
-    /// Facets of tets inside whose corners are all on the surface: there twice they are not of it.
+    /// Facets of inner tets whose corners are all on the surface; those found twice do not belong to it.
     closing: Vec<[VertexId; 3]>,
 }
 
@@ -220,7 +226,7 @@ impl Cutter<'_> {
         if inner == 0 {
             return;
         }
-        // Corners in turn round the cut, as the inner vertices see them.
+        // Corners in cyclic order around the cut, as seen from the inner vertices.
         let ring: Vec<VertexId> = match (inner, outer) {
             (2, 2) => {
                 let (i, o): (Vec<usize>, Vec<usize>) = (of(-1).collect(), of(1).collect());
@@ -241,9 +247,10 @@ impl Cutter<'_> {
         }
     }
 
-    /// Whether a ring of corners runs clockwise seen from an outer vertex. Told by the order of the tet's vertices, not by places.
+    /// Whether a ring of corners runs clockwise seen from an outer vertex. Decided by the order of the tet's
+    /// vertices, not by places.
     fn is_turned(&self, tet: [VertexId; 4], ring: &[VertexId]) -> bool {
-        // Middles of the edges stand for the cuts: where exactly these are does not matter.
+        // Middles of the edges stand for the cuts, whose exact places do not matter.
         const UNIT: [Point; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let n = self.lattice.points.len();
         let at = |v: VertexId| match v.index().checked_sub(n) {
@@ -258,7 +265,7 @@ impl Cutter<'_> {
     }
 }
 
-/// Facets that are there once.
+/// Facets that occur only once.
 fn single(facets: Vec<[VertexId; 3]>) -> impl Iterator<Item = [VertexId; 3]> {
     let mut keyed: Vec<([VertexId; 3], [VertexId; 3])> =
         facets.into_iter().map(|facet| (rising(facet), facet)).collect();
