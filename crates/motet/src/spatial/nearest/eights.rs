@@ -2,7 +2,7 @@
 //!
 //! Everything here is in 32 bits, in units in which the surface fits between -1 and 1. So an instruction
 //! processes eight numbers instead of four, and half as much memory is read. Rounding changes a distance by
-//! at most [`ROUNDING`] a unit.
+//! at most [`ROUNDING`] per unit.
 
 use pulp::Simd;
 
@@ -147,7 +147,7 @@ impl Triangles {
         [low.least(), high.most()]
     }
 
-    /// Squared lower bounds of the distances from `p` to each triangle, but for rounding (mostly equal to the
+    /// Squared lower bounds of the distances from `p` to each triangle, up to rounding (mostly equal to the
     /// distances), and a squared upper bound of the least distance, infinite if there is no triangle.
     ///
     /// Along any direction `u`, the triangle is no nearer than the nearest of its corners. So the bound holds
@@ -203,7 +203,7 @@ impl Triangles {
         (out, above.least())
     }
 
-    /// Squared lower bounds of the distances of each triangle from another one, but for rounding.
+    /// Squared lower bounds of the distances of each triangle from another one, up to rounding.
     ///
     /// Triangles are at least as far apart as their projections onto any direction. Two directions are tried:
     /// the normal of the other triangle, and the vector between the centroids. No coordinate may be above

@@ -33,7 +33,7 @@ pub struct Closest {
 /// Finds the point of a surface closest to a given point.
 ///
 /// No tolerance is used, so it works alike in metres and in millimetres: every result is, to the bit, that of
-/// a search of all triangles with [`triangle::closest`](crate::geometry::triangle::closest). Triangles
+/// an exhaustive search with [`triangle::closest`](crate::geometry::triangle::closest). Triangles
 /// without area count as segments or points; triangles with a corner that is not finite are left out. Among
 /// equally near triangles, the first one is found.
 ///

@@ -19,8 +19,8 @@ pub(super) const OPEN: usize = 8 * 12;
 const WAITING: usize = 16;
 
 /// The rounding error of exact distances, relative to the largest coordinates: `triangle::closest` is off by
-/// less than ten units in the last place of those. It ensures that the tree leaves out nothing that a search
-/// of every triangle would find.
+/// less than ten units in the last place of those. With this allowance, the tree leaves out nothing that an
+/// exhaustive search would find.
 pub(super) const ROUNDING_OF_EXACT: f64 = 32.0 * f64::EPSILON;
 
 /// Distances below this may have squares that underflow, and all count as equal.

@@ -21,7 +21,7 @@ pub(super) struct TurnedBoxes {
 impl TurnedBoxes {
     pub(super) const EMPTY: Self = Self { turn: [[[0.0; 8]; 3]; 3], sides: Boxes::EMPTY };
 
-    /// Squared distances from `p` to each box, but for rounding: 0 inside, infinite for an empty box.
+    /// Squared distances from `p` to each box, up to rounding: 0 inside, infinite for an empty box.
     #[inline(always)]
     pub(super) fn distances_squared<S: Simd>(&self, simd: S, p: [f32; 3]) -> Eight {
         let mut out = [0.0; 8];
@@ -39,7 +39,7 @@ impl TurnedBoxes {
         out
     }
 
-    /// Squared lower bounds of the distances from an axis-aligned box to each box, but for rounding: how far
+    /// Squared lower bounds of the distances from an axis-aligned box to each box, up to rounding: how far
     /// apart they are along the axes of the turned one.
     ///
     /// The other directions that could separate two boxes (Gottschalk, Lin and Manocha 1996, *OBBTree*) are
