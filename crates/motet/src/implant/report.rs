@@ -58,7 +58,7 @@ pub struct DeviceReport {
     pub triangles: usize,
     /// Triangles of its surface that are facets of the mesh as they were given.
     pub triangles_kept: usize,
-    /// Triangles of its surface that were not kept where it meets a wall of the host.
+    /// Triangles of its surface that were not kept, since it meets a wall of the host there.
     pub triangles_at_walls: usize,
     /// Triangles of its surface that were cut off with what lies outside.
     pub triangles_outside: usize,

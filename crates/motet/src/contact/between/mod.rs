@@ -19,12 +19,12 @@
 //!
 //! **How good the bound is**, for a stent lattice in a tube (78,000 vertices), by
 //! `examples/contact_delaunay.rs`, which has more pairs. 24 % of the vertices have no gap tet, and 33 % their
-//! exact distance. Of those that have a gap tet, the median is 0.04 % too large, one in twenty more than 16 %,
-//! and the worst 134 %. Of the tenth that is nearest to the other surface all have one, and the worst is 33 %
-//! too large; with `stars` all of these are exact. The least distance of all was off by 0 to 0.8 % over nine
-//! pairs. The paper's rule for two edges is too large in 43 % of the lattice's two-two tets, by up to 88 %.
-//! Building takes 0.6 s and an update 0.27 s, on one thread of a busy machine, on which the tree computes the
-//! exact distances of all vertices from scratch in 0.1 s.
+//! exact distance. Of those that have a gap tet, the median is 0.04 % too large, one in twenty more than
+//! 16 %, and the worst 134 %. Of the tenth that is nearest to the other surface all have one, and the worst
+//! is 33 % too large; with `stars` all of these are exact. The least distance of all was off by 0 to 0.8 %
+//! over nine pairs. The paper's rule for two edges is too large in 43 % of the lattice's two-two tets, by up
+//! to 88 %. Building takes 0.6 s and an update 0.27 s, on one thread of a busy machine, on which the tree
+//! computes the exact distances of all vertices from scratch in 0.1 s.
 
 mod gaps;
 mod measure;

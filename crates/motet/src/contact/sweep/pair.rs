@@ -21,9 +21,10 @@ use crate::geometry::vector::{add, dot, largest_coordinate, norm, scale, sub};
 /// positions, and a margin.
 const ROUNDING: f64 = 1e-14;
 
-/// Contact is reached when the distance is this fraction of the way travelled or of the size of the triangles,
-/// whichever is less. A contact at a hundredth of the fastest speed is then correct to a ten-thousandth, and a
-/// grazing one, where the distance falls as the square of the time left, to a thousandth.
+/// Contact is reached when the distance is this fraction of the way travelled or of the size of the
+/// triangles, whichever is less. A contact at a hundredth of the fastest speed is then correct to a
+/// ten-thousandth, and a grazing one, where the distance falls as the square of the time left, to a
+/// thousandth.
 const ENOUGH: f64 = 1e-6;
 
 /// The mean is two steps per pair. Where triangles rotate fast and close slowly, each step covers the same

@@ -106,8 +106,8 @@ impl Sheet {
     pub(super) fn joined(&self, gone: VertexId, kept: VertexId, place: Point) -> Option<Change> {
         let [a, b] = [gone, kept].map(|v| self.neighbors(v));
         let common = a.iter().filter(|v| b.binary_search(v).is_ok()).count();
-        // More common neighbours than triangles at the edge would be folded onto each other (Dey,
-        // Edelsbrunner, Guha and Nekhayev 1999).
+        // With more common neighbours than triangles at the edge, triangles would be folded onto each other
+        // (Dey, Edelsbrunner, Guha and Nekhayev 1999).
         if common != 2 || self.at_edge(gone, kept).len() != 2 || a.len().min(b.len()) < 4 {
             return None;
         }
