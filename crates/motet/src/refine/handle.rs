@@ -10,26 +10,28 @@ use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
 use crate::spatial::NearestTriangle;
 
-/// How to divide.
+/// Options of division.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// No part of a tet is below this part of the first mesh's worst EAS, and no bad part comes of a tet of the first mesh that is not bad, if there is another way. No more than 0.55 of the median
-    /// EAS is required of pieces of cuts. Default: 0.95.
+    /// No part of a tet falls below this fraction of the worst EAS of the first mesh, and no root that is not
+    /// bad gets bad parts, if there is another way. Pieces of cuts need not exceed 0.55 of the median EAS.
+    /// Default: 0.95.
     pub keep: f64,
-    /// Nor into pieces below this part of the EAS that dividing it into eight would leave. Far above 0.6 even regular tets may not be cut, and
-    /// refinement spreads far. Default: 0.55.
+    /// Tets are not cut into pieces below this fraction of the EAS that dividing them into eight would leave.
+    /// Far above 0.6 even regular tets may not be cut, and refinement spreads far. Default: 0.55.
     pub share: f64,
-    /// Along which diagonal a tet is divided. Default: the shortest.
+    /// The diagonal along which a tet is divided. Default: the shortest.
     pub rule: Rule,
 }
 
-/// Along which diagonal of the octahedron in its middle a tet is divided into eight.
+/// How to choose the diagonal of the inner octahedron along which a tet is divided into eight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rule {
-    /// The shortest one, unless its parts are too bad: then the one that leaves the best, three generations deep.
+    /// The shortest diagonal, unless its parts are too bad: then the one with the best parts over three
+    /// generations.
     #[default]
     Shortest,
-    /// By the order of vertices: never more than three shapes come of one, but worse ones (Bey 1995).
+    /// By the order of vertices: any tet gives rise to at most three shapes, but worse ones (Bey 1995).
     Bey,
 }
 
@@ -39,26 +41,26 @@ impl Default for Options {
     }
 }
 
-/// What a step came to.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
-    /// How many tets the mesh has.
+    /// Number of tets of the mesh.
     pub n_tets: usize,
-    /// How many tets were divided into eight, though nobody asked, so that all fit.
+    /// Number of tets divided into eight without being marked, so that all fit.
     pub n_promoted: usize,
-    /// How many tets were cut to fit their neighbours.
+    /// Number of tets cut to fit their neighbours.
     pub n_cut: usize,
-    /// How many marked tets were left as they are, since edges that are [fixed](TetMesh::fixed_edges) would have to be split; how many
-    /// divisions were not taken back, since a tet would be inverted.
+    /// Number of marked tets left as they are because edges that are [fixed](TetMesh::fixed_edges) would have
+    /// to be split; when coarsening, number of divisions kept because a tet would be inverted.
     pub n_held: usize,
-    /// How often all tets were looked at.
+    /// Number of sweeps over all tets.
     pub n_sweeps: usize,
 }
 
-/// A tet that is worse than was to be kept.
+/// A tet that is worse than the options allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Left {
-    /// Its place in the mesh.
+    /// The tet, as numbered in the mesh.
     pub tet: TetId,
     /// Its EAS in the reference.
     pub eas: f64,
@@ -66,7 +68,7 @@ pub struct Left {
     pub root: TetId,
 }
 
-/// A mesh with its memory: which tets it started with, and which of them and of their parts are to be divided.
+/// A mesh with its memory: the tets it started with, and which of them and of their parts are to be divided.
 ///
 /// ```
 /// use motet::base::{TetId, Threads, VertexId};
@@ -90,19 +92,16 @@ pub struct Refinement {
     pub(super) first: TetMesh,
     pub(super) forest: Forest,
     pub(super) need: Need,
-    /// Where each vertex of the forest is now, if the mesh has it.
+    /// The current position of each vertex of the forest that is in the mesh.
     pub(super) points: Vec<Point>,
     pub(super) now: Extracted,
     pub(super) summary: Summary,
-    /// Whether points are elsewhere than in the reference.
+    /// Whether points have moved away from the reference.
     pub(super) is_moved: bool,
 }
 
 impl Refinement {
     /// Starts with a mesh whose tets become roots.
-    ///
-    /// # Errors
-    /// When the mesh is not [valid](TetMesh::validate), or a tet has no volume.
     pub fn new(mesh: &TetMesh, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         check_roots(mesh, threads)?;
@@ -123,19 +122,20 @@ impl Refinement {
         Ok(refinement)
     }
 
-    /// The mesh as it is now. While nothing is divided it is the first one, but for the points, if these moved.
+    /// The current mesh. While nothing is divided it is the first mesh, except for points that have moved.
     pub fn mesh(&self) -> &TetMesh {
         &self.now.mesh
     }
 
-    /// The first mesh, its points where they are now.
+    /// The first mesh, with its points at their current positions.
     pub fn first(&self) -> TetMesh {
         let points = self.points[..self.forest.n_first_vertices].to_vec();
         TetMesh { points, ..self.first.clone() }
     }
 
-    /// Puts points of the boundary that divisions made on the true surface, if they are near it, and their edges lie on it: no tet is inverted, none made bad that
-    /// was good. New shapes are judged as if they were where they were before.
+    /// Puts boundary points made by divisions on the true surface, if they are near it and their edges lie on
+    /// it. No tet is inverted, and no good tet becomes bad. Shapes continue to be judged by the positions of
+    /// the points before.
     pub fn put_on_surface(&mut self, surface: &NearestTriangle) -> OnSurface {
         let (points, done) = put_on(&self.now, &self.forest, surface);
         self.place(&points);
@@ -147,17 +147,19 @@ impl Refinement {
         self.now.mesh.tets.len() != self.first.tets.len()
     }
 
-    /// How often each tet's place was divided into eight. Pieces of a tet that was cut count as the tet.
+    /// The generation of each tet: how many divisions into eight it lies within. Pieces of a cut tet count as
+    /// that tet.
     pub fn generations(&self) -> impl Iterator<Item = u8> + '_ {
         self.now.nodes.iter().map(|&node| self.forest.states[node as usize].generation)
     }
 
-    /// Which tet of the first mesh each tet lies in.
+    /// For each tet, the tet of the first mesh that it lies in.
     pub fn roots(&self) -> impl Iterator<Item = TetId> + '_ {
         self.now.nodes.iter().map(|&node| TetId(self.forest.root(node)))
     }
 
-    /// The tets whose shape in the reference is worse than was to be kept: no way of dividing or cutting them was found that is better.
+    /// The tets whose shape in the reference is worse than the options allow, because no better way of
+    /// dividing or cutting them was found.
     pub fn left(&self, threads: &Threads) -> Vec<Left> {
         let shape =
             threads.map(self.now.nodes.len(), |i| match self.forest.mask(self.now.nodes[i]) {
@@ -182,20 +184,20 @@ impl Refinement {
         .collect()
     }
 
-    /// What the last step came to.
+    /// The result of the last step.
     pub fn summary(&self) -> Summary {
         self.summary
     }
 
-    /// Bytes that the memory takes beside the mesh.
+    /// The size in bytes of the memory kept beside the mesh.
     pub fn memory(&self) -> usize {
         self.forest.memory() + size_of_val(&self.points[..]) + size_of_val(&self.now.nodes[..])
     }
 
-    /// Takes over points that moved. Shapes are judged as they were at first all the same.
+    /// Takes over points that moved. Shapes continue to be judged in the reference.
     ///
     /// # Errors
-    /// When there are not as many points as the mesh has.
+    /// When the number of points differs from that of the mesh.
     pub fn set_points(&mut self, points: &[Point]) -> Result<()> {
         let expected = self.now.mesh.points.len();
         if points.len() != expected {
@@ -214,11 +216,12 @@ impl Refinement {
         }
     }
 
-    /// Divides these tets into eight, once; a piece of a tet that was cut stands for the whole. Where that would split [fixed](TetMesh::fixed_edges) edges,
-    /// tets near these are left out.
+    /// Divides the marked tets into eight, once; a piece of a cut tet stands for the whole. Where that would
+    /// split [fixed](TetMesh::fixed_edges) edges, tets near these are left as they are.
     ///
     /// # Errors
-    /// When there is no such tet, one was divided twenty times over, or ids would not suffice; then nothing has changed.
+    /// When a marked tet does not exist, when one has already been divided twenty times over, or when ids
+    /// would not suffice; then nothing has changed.
     pub fn refine(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
         let is_deepest =
@@ -253,7 +256,7 @@ impl Refinement {
         }
     }
 
-    /// What is asked of a tet is asked of those it lies in.
+    /// Requests the division of the marked tets, and so of all tets they lie in.
     fn ask(&mut self, marked: &[TetId]) {
         for tet in marked {
             let mut node = self.now.nodes[tet.index()];
@@ -264,11 +267,12 @@ impl Refinement {
         }
     }
 
-    /// Takes back divisions of which all that lies within is marked, and of which no part was asked to be divided again. A tet that its
-    /// neighbours need divided stays so, and one that would be inverted where its vertices are now.
+    /// Takes back divisions all of whose tets are marked and none of whose parts was requested to be divided
+    /// again. A division stays if neighbours need it, or if the whole tet would be inverted at the current
+    /// positions of its vertices.
     ///
     /// # Errors
-    /// When there is no such tet; then nothing has changed.
+    /// When a marked tet does not exist; then nothing has changed.
     pub fn coarsen(&mut self, marked: &[TetId], threads: &Threads) -> Result<Summary> {
         self.check(marked)?;
         self.or_back(threads, |this, before| {
@@ -277,12 +281,13 @@ impl Refinement {
         })
     }
 
-    /// Asks no longer for divisions of which all that lies within is marked, unless a part was asked to be divided again.
+    /// Withdraws the requests for divisions all of whose tets are marked, unless a part was requested to be
+    /// divided again.
     fn unask_within(&mut self, marked: &[TetId], before: &[bool]) {
         let mut is_marked = vec![false; self.now.nodes.len()];
         marked.iter().for_each(|tet| is_marked[tet.index()] = true);
         let Forest { nodes, states, .. } = &mut self.forest;
-        // Of each tet of the forest, whether all that lies within is marked. Parts come behind the whole.
+        // For each tet of the forest, whether all tets within it are marked. Parts come after the whole.
         let mut is_whole = vec![true; nodes.len()];
         for (&node, is_marked) in self.now.nodes.iter().zip(is_marked) {
             is_whole[node as usize] &= is_marked;
@@ -297,7 +302,8 @@ impl Refinement {
         }
     }
 
-    /// Gives out what is asked, but for divisions whose whole would be inverted where points are now.
+    /// Builds the mesh of what is requested, restoring divisions where the whole tet would be inverted at the
+    /// current positions.
     fn keep_from_inverting(&mut self, before: &[bool], threads: &Threads) -> Result<()> {
         let inverted =
             |this: &Self, out: &Extracted| vertices_of_inverted(&this.forest, &this.first, out, threads);
@@ -341,13 +347,13 @@ impl Refinement {
         }
     }
 
-    /// Asks for what was asked for before, and for nothing else.
+    /// Restores the requests for division of an earlier state.
     fn unask(&mut self, before: &[bool]) {
         let before = before.iter().chain(std::iter::repeat(&false));
         self.forest.states.iter_mut().zip(before).for_each(|(state, &asked)| state.is_asked = asked);
     }
 
-    /// Takes a step from what was asked for before; where that fails, goes back there.
+    /// Runs a step, given the requests before it; if it fails, restores these.
     fn or_back(
         &mut self,
         threads: &Threads,
@@ -383,7 +389,7 @@ impl Refinement {
     }
 }
 
-/// Refuses tets without volume, and more tets than a forest may have.
+/// Rejects tets without volume, and more tets than a forest may have.
 pub(super) fn check_roots(mesh: &TetMesh, threads: &Threads) -> Result<()> {
     if mesh.tets.len() > MOST_NODES {
         return Err(Error::input(format!(

@@ -1,10 +1,10 @@
-//! Edges that cells of other kinds hold are not split: tets near them are left as they are, as far as that needs.
+//! Keeps refinement away from edges that cells of other kinds hold, which must not be split.
 
 use super::forest::{Extracted, Forest, NONE};
 use crate::base::{TetId, VertexId};
 use crate::mesh::TetMesh;
 
-/// The vertices of the forest at edges that are split though they are fixed.
+/// Returns the ends, as forest vertices, of fixed edges that are split nevertheless.
 pub(super) fn split_though_fixed(forest: &Forest, first: &TetMesh) -> Vec<u32> {
     let is_split = |edge: &&[VertexId; 2]| {
         forest.root_edge(edge.map(|v| v.0)).is_some_and(|edge| forest.is_split[edge as usize])
@@ -12,7 +12,7 @@ pub(super) fn split_though_fixed(forest: &Forest, first: &TetMesh) -> Vec<u32> {
     first.fixed_edges.iter().filter(is_split).flatten().map(|v| v.0).collect()
 }
 
-/// What lies near such edges: rings of tets, more each time.
+/// The neighbourhood of such edges: rings of tets, one more with every attempt.
 #[derive(Debug, Default)]
 pub(super) struct Near {
     is_near: Vec<bool>,
@@ -20,7 +20,7 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// Takes marks near these vertices of the forest out, at least one.
+    /// Removes the marks of tets near the given forest vertices; at least one mark is removed.
     pub(super) fn keep_off(
         &mut self,
         forest: &Forest,
@@ -46,7 +46,7 @@ impl Near {
         }
     }
 
-    /// Adds the tets at all that is near.
+    /// Adds the vertices of all tets that touch the neighbourhood.
     fn grow(&mut self, mesh: &TetMesh) {
         let is_near = self.is_near.clone();
         for tet in mesh.tets.iter().filter(|tet| tet.iter().any(|v| is_near[v.index()])) {

@@ -1,11 +1,13 @@
-//! Where points moved, eight good tets may make a bad one: such divisions are not taken back.
+//! Finds tets that undoing a division would invert: where points moved, eight good parts may make a bad
+//! whole.
 
 use super::forest::{Extracted, Forest};
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::mesh::TetMesh;
 
-/// The vertices of the forest at tets that face the other way than the tet of the first mesh that they lie in was given to.
+/// Returns the forest vertices, in ascending order, of all tets whose orientation differs from that of their
+/// root in the reference.
 pub(super) fn vertices_of_inverted(
     forest: &Forest,
     first: &TetMesh,

@@ -1,21 +1,23 @@
-//! Floor 6: tets divided, many generations deep, without loss of shape; and the way back.
+//! Floor 6: tets divided many generations deep without loss of shape, and coarsened again.
 //!
-//! | step | room | how |
+//! | step | folder or file | what it does |
 //! |---|---|---|
-//! | choose | `choose` | [`Criterion`]: by place, distance, size, estimate, words for arrays and regions; sizes from second derivatives; limits; what may be taken back |
-//! | divide and fit | `forest` | tets and their eight, edges, facets; cuts between divided and undivided tets; what keeps shapes |
-//! | hold | `held` | tets beside cells of other kinds, whose edges may not be split, are left as they are; line cells are divided with their edges |
-//! | take back | `inverted` | no division is taken back whose whole would be inverted, where points moved |
-//! | the true surface | `true_surface` | new points of the boundary are put on it, as far as nothing inverts |
-//! | all of it | `handle` | [`Refinement`]: a mesh that is refined and coarsened again and again |
-//! | all wishes | `reach` | generation after generation, until a mesh is as [`Wanted`] |
-//! | remember | `memory` | what has to be kept with the mesh, so that a later run goes on, and what is still true of it when others changed the mesh |
-//! | whole meshes | `whole` | cells of other kinds put back, arrays carried across, the memory as arrays |
+//! | choose | `choose` | [`Criterion`]: by place, distance, size, error estimate, array or region; sizes from second derivatives; limits; which divisions may be taken back |
+//! | divide and fit | `forest` | tets and their eight parts, edges, facets; cuts between divided and undivided tets; what preserves shape |
+//! | hold | `held` | tets whose edges must not be split, because cells of other kinds use them, are left as they are; line cells are divided with their edges |
+//! | take back | `inverted` | where points have moved, no division is taken back if the whole tet would be inverted |
+//! | true surface | `true_surface` | new boundary points are put on it, as far as no tet inverts |
+//! | handle | `handle` | [`Refinement`]: a mesh that is refined and coarsened again and again |
+//! | reach a goal | `reach` | generation after generation, until a mesh is as [`Wanted`] |
+//! | remember | `memory` | what must be kept with the mesh so that a later run can continue, and what of it still holds after others have changed the mesh |
+//! | whole meshes | `whole` | cells of other kinds put back, arrays transferred, the memory stored as arrays |
 //!
-//! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is remembered. A tet that was cut
-//! to fit its neighbours is never divided itself: asked for one of its pieces, the whole is divided into eight (Bank, Sherman and Weiser 1983,
-//! *Refinement algorithms and data structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That a piece at a border gets the
-//! long edges of the whole split before the short ones is the memory of Moyle and Ventikos 2008.
+//! The mesh is a function of the first mesh and of which tets are *asked* to be divided; nothing else is
+//! remembered. A tet that was cut to fit its neighbours is never divided piecewise: when one of its pieces is
+//! marked, the whole is divided into eight (Bank, Sherman and Weiser 1983, *Refinement algorithms and data
+//! structures for regular local mesh refinement*; Bey 1995, *Tetrahedral grid refinement*). That the long
+//! edges of the whole are split before the short ones, even for a piece at a border, is the memory of Moyle
+//! and Ventikos 2008.
 
 mod choose;
 mod forest;

@@ -1,4 +1,5 @@
-//! Generation after generation, until a mesh is as wanted: what is wished, what is divided or taken back, what came of it.
+//! Refines generation after generation until a mesh is as wanted: what is wished, what is divided or taken
+//! back, and the result.
 
 use std::fmt;
 use std::sync::Arc;
@@ -16,59 +17,62 @@ use crate::base::{Error, Result, TetId, Threads};
 use crate::mesh::history::{History, Rules};
 use crate::mesh::{Qualities, TetPart};
 
-/// How a mesh is to be.
+/// The goal of a refinement.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// What is divided: what any of them marks.
+    /// What to divide: every tet that at least one of them marks.
     pub criteria: Vec<Criterion>,
-    /// Whether divisions are taken back first where no criterion marks; one level where there is no criterion at all.
+    /// Whether divisions are first taken back where no criterion marks; by one level if there is no criterion
+    /// at all.
     pub coarsen: bool,
-    /// Divisions are taken back first where one of these holds on all eight parts and no criterion marks.
+    /// Divisions are first taken back where one of these holds on all eight parts and no criterion marks.
     pub coarsen_where: Vec<Condition>,
-    /// At most so many generations. `None`: one, for criteria that [last](Criterion::lasts) as many as it takes. Where divisions are taken back and no
-    /// criterion says how far: so many levels of them, at least one.
+    /// The largest number of generations. `None`: one, but as many as needed (at most 20) for criteria that
+    /// [last](Criterion::lasts). Where divisions are taken back and no criterion says how far, the number of
+    /// levels taken back, at least one.
     pub generations: Option<u32>,
-    /// No tet is divided beyond these.
+    /// Limits beyond which no tet is divided.
     pub limits: Limits,
-    /// The true surface: new points of the boundary are put on it.
+    /// The true surface, on which new boundary points are put.
     pub surface: Option<Arc<Target>>,
     /// Whether [`Reached::history`] is kept.
     pub keeps_history: bool,
 }
 
-/// What was reached.
+/// The result of a refinement.
 #[derive(Clone, Debug, Default)]
 pub struct Reached {
-    /// Whether all edges are as short as was wanted.
+    /// Whether all edges are as short as wanted.
     pub is_reached: bool,
-    /// What ended the division before that; `None` where it was reached.
+    /// What stopped the refinement before that; `None` if the goal was reached.
     pub stopped_by: Option<Stop>,
-    /// The mesh as it came, then after each generation.
+    /// The mesh as given, then after each generation.
     pub steps: Vec<Step>,
-    /// From the mesh that came to the one that is, where that was asked for.
+    /// The history from the given mesh to the final one, if requested.
     pub history: Option<History>,
-    /// What was put on the true surface, where there is one.
+    /// What was put on the true surface, if there is one.
     pub on_surface: Option<OnSurface>,
-    /// By how much new tets took more or less than the volume of old ones, at most in a step, as a part of what changed.
+    /// The largest deviation between the volumes of new and old tets in any step and region, relative to the
+    /// volume that changed.
     pub volume_deviation: f64,
 }
 
 impl Reached {
-    /// Why edges are longer than was requested; `None` where they are not.
+    /// Explains why edges are longer than requested; `None` if they are not.
     pub fn not_reached(&self) -> Option<String> {
         self.stopped_by.map(|stop| format!("not all edges are as short as requested: {stop}"))
     }
 }
 
-/// What ends a division before all edges are as short as was wanted.
+/// What stops a refinement before all edges are as short as wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stop {
-    /// As many generations were made as were asked for.
+    /// The requested number of generations was reached.
     Generations,
-    /// The limits allow no more: see [`Limits`].
+    /// The limits allow no more; see [`Limits`].
     Limits,
-    /// Cells of other kinds than tets, triangles and lines hold edges that would have to be split.
+    /// Cells other than tets, triangles and lines hold edges that would have to be split.
     Held,
 }
 
@@ -87,43 +91,44 @@ impl fmt::Display for Stop {
 /// The mesh after a generation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Step {
-    /// `came`, the number of the generation, or `back`.
+    /// `came` for the mesh as given, the number of the generation, or `back` where divisions were taken back.
     pub step: String,
-    /// Its tets.
+    /// Number of tets.
     pub tets: usize,
-    /// Its points.
+    /// Number of points.
     pub points: usize,
-    /// Tets that a criterion marked.
+    /// Number of tets that a criterion marked.
     pub marked: usize,
-    /// Tets divided, though no criterion marked them, so that all fit.
+    /// Number of tets divided without being marked, so that all fit.
     pub promoted: usize,
-    /// Tets cut to fit their neighbours.
+    /// Number of tets cut to fit their neighbours.
     pub cut: usize,
-    /// Tets left as they are for the sake of others.
+    /// Number of tets left as they are because of cells of other kinds, or divisions kept because a tet would
+    /// be inverted.
     pub held: usize,
     /// The worst EAS.
     pub worst_eas: f64,
-    /// The mean one.
+    /// The mean EAS.
     pub mean_eas: f64,
     /// The worst mean ratio.
     pub worst_mean_ratio: f64,
-    /// The mean one.
+    /// The mean of the mean ratios.
     pub mean_mean_ratio: f64,
-    /// How good all tets are together.
+    /// Quality statistics of all tets together.
     pub quality: Qualities,
-    /// The worst EAS over the worst of the first mesh.
+    /// The worst EAS relative to that of the first mesh.
     pub eas_of_first: f64,
-    /// The same for mean ratios.
+    /// The worst mean ratio relative to that of the first mesh.
     pub mean_ratio_of_first: f64,
-    /// What it took.
+    /// Time taken, in seconds.
     pub seconds: f64,
 }
 
-/// As often as sizes take, where nobody said.
+/// The default limit on generations for criteria of size.
 const MOST_GENERATIONS: u32 = 20;
 
 impl Wanted {
-    /// How often anything is divided at most.
+    /// The largest number of times anything is divided.
     pub fn most_generations(&self) -> u32 {
         self.generations.unwrap_or(MOST_GENERATIONS)
     }
@@ -134,11 +139,12 @@ impl Wanted {
 }
 
 impl MeshRefinement {
-    /// Takes back what is no longer wanted, then divides, generation after generation; `told` gets each step as it is done.
+    /// Takes back divisions no longer wanted, then divides, generation after generation. `told` is called
+    /// with each step once it is done.
     ///
     /// # Errors
-    /// When nothing is marked at all, a criterion names what the mesh has not, more tets are wanted than there are ids, or who watches ends it. What was done
-    /// before stays done.
+    /// When nothing is marked at all, a criterion names something the mesh does not have, more tets are
+    /// wanted than there are ids, or the watch cancels the run. Steps completed before the error remain.
     pub fn reach(
         &mut self,
         wanted: &Wanted,
@@ -168,7 +174,7 @@ struct Work<'a, T> {
 }
 
 impl<T: FnMut(&Step)> Work<'_, T> {
-    /// Takes back, then divides; what ended that before all was divided.
+    /// Takes divisions back, then divides. Returns what stopped this before all was divided.
     fn run(&mut self) -> Result<Option<Stop>> {
         let wanted = self.wanted;
         let (mut stop, mut is_held) = (Stop::Generations, false);
@@ -201,7 +207,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         Ok((!is_reached).then_some(stop))
     }
 
-    /// What is wished of each tet, and what of it the limits allow.
+    /// Returns the wishes for all tets, first as the criteria have them, then as the limits allow.
     fn wishes(&self, criteria: &[Criterion]) -> Result<[Vec<Wish>; 2]> {
         let part = self.refinement.part();
         let wished = wishes_of_all(criteria, self.refinement.mesh(), &part, self.threads)?;
@@ -212,7 +218,7 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         Ok([wished, allowed])
     }
 
-    /// How many were left as they are.
+    /// Divides the marked tets once; returns how many of them were left as they are.
     fn divide(&mut self, marks: &[TetId], generation: u32) -> Result<usize> {
         let begin = Instant::now();
         let (summary, history) = self.refinement.refine(marks, self.rules, self.threads)?;
@@ -222,7 +228,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         Ok(summary.n_held)
     }
 
-    /// The criteria of a generation: those of sizes as often as it takes, others as often as is said; `None` at the end.
+    /// Returns the criteria active in a generation: those of size as often as needed, others as often as
+    /// requested; `None` at the end.
     fn active(&self, generation: u32) -> Option<Vec<Criterion>> {
         if generation >= self.wanted.most_generations() {
             return None;
@@ -233,7 +240,8 @@ impl<T: FnMut(&Step)> Work<'_, T> {
         if active.is_empty() { None } else { Some(active) }
     }
 
-    /// Takes back, level after level, what no criterion needs; where none says how far, as many levels as generations are asked for, or one.
+    /// Takes back, level after level, divisions that no criterion needs. If no criterion says how far, takes
+    /// back as many levels as generations are requested, or one.
     fn take_back(&mut self) -> Result<()> {
         let says_how_far = !self.wanted.criteria.is_empty() || !self.wanted.coarsen_where.is_empty();
         let n_levels = if says_how_far { u32::MAX } else { self.wanted.generations.unwrap_or(1).max(1) };

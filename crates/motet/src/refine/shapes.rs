@@ -1,10 +1,10 @@
-//! How well the tets of a mesh are shaped.
+//! Shape statistics of the tets of a mesh.
 
 use crate::base::Threads;
 use crate::geometry::quality::{eas, mean_ratio};
 use crate::mesh::{Qualities, TetMesh};
 
-/// Of all tets, as if all were numbered the same way round.
+/// Shape statistics over all tets of a mesh, computed as if all tets were positively oriented.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shapes {
     /// The least EAS.
@@ -15,12 +15,12 @@ pub struct Shapes {
     pub worst_mean_ratio: f64,
     /// The mean of the mean ratios.
     pub mean_mean_ratio: f64,
-    /// How good all are together.
+    /// Quality statistics of all tets together.
     pub all: Qualities,
 }
 
 impl Shapes {
-    /// Looks at every tet. All are 0 where there is none.
+    /// Computes the statistics of all tets of a mesh. All values are 0 if there is no tet.
     pub fn of(mesh: &TetMesh, threads: &Threads) -> Self {
         let each = threads.map(mesh.tets.len(), |t| {
             let corners = mesh.tets[t].map(|v| mesh.points[v.index()]);

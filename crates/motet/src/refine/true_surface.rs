@@ -1,4 +1,4 @@
-//! New points of the boundary put on the true surface, as far as nothing inverts.
+//! Puts new boundary points on the true surface, as far as no tet inverts.
 
 use super::forest::{Extracted, Forest};
 use crate::base::{Point, VertexId};
@@ -9,27 +9,29 @@ use crate::mesh::BAD_EAS;
 use crate::mesh::tet_facets::for_each_tet_facet;
 use crate::spatial::NearestTriangle;
 
-/// A point goes no farther than this part of its edge: an arc that bulges so much is two thirds of a half circle.
+/// A point moves at most this fraction of the length of its edge: an arc with this ratio of height to chord
+/// spans about two thirds of a half circle.
 const REACH: f64 = 0.3;
-/// Its edge is one of the surface where both ends lie within this part of its length of it.
+/// An edge counts as an edge of the surface if both ends lie within this fraction of its length from the
+/// surface.
 const ENDS: f64 = 0.05;
-/// A tet may lose so much of its EAS, unless it stays good.
+/// A tet is spoilt if it becomes bad and keeps less than this fraction of its EAS.
 const LOSS: f64 = 0.5;
-/// A way is halved so often before a point stays where it is.
+/// How often a displacement is halved before the point is left where it was.
 const HALVINGS: usize = 3;
 
-/// What putting points on a surface came to.
+/// The result of putting points on a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OnSurface {
-    /// How many points were put on the surface.
+    /// Number of points put on the surface.
     pub n_moved: usize,
-    /// How many were put nearer to it only, or left, since a tet would have been spoilt.
+    /// Number of points moved only part of the way, or not at all, because a tet would have been spoilt.
     pub n_short: usize,
-    /// The longest way, in the unit of coordinates.
+    /// Length of the longest displacement, in the unit of coordinates.
     pub farthest: f64,
 }
 
-/// New places for the points of a mesh.
+/// Returns new coordinates for all points of the mesh, and a summary.
 pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> (Vec<Point>, OnSurface) {
     let mesh = &now.mesh;
     let ways = ways(now, forest, surface);
@@ -67,7 +69,8 @@ pub(super) fn put_on(now: &Extracted, forest: &Forest, surface: &NearestTriangle
     (points, done)
 }
 
-/// Of each point the way to the surface, if it is one that a division made, at an edge of the surface.
+/// For each boundary point that a division made on an edge of the surface, the vector to the surface; `None`
+/// for all other points, and for points already on it.
 fn ways(now: &Extracted, forest: &Forest, surface: &NearestTriangle) -> Vec<Option<Point>> {
     let mesh = &now.mesh;
     let mut is_boundary = vec![false; mesh.points.len()];

@@ -1,6 +1,7 @@
-//! Where a field is badly resolved, and what turns where: one number for each tet, from values at the vertices.
+//! Estimates, one number per tet, from values at the vertices: where a field is badly resolved, and where a
+//! flow rotates.
 //!
-//! A field is linear in each tet. All estimates are 0 for a field that is linear throughout.
+//! Fields are linear in each tet. All error estimates are 0 for a field that is linear throughout.
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::tet;
@@ -16,13 +17,13 @@ pub(in crate::refine) fn corners(mesh: &TetMesh, vertices: [VertexId; 4]) -> [Po
     vertices.map(|v| mesh.points[v.index()])
 }
 
-/// The gradients of the weights of the four vertices; all 0 in a tet without volume.
+/// The gradients of the barycentric coordinates of the four vertices; all 0 in a tet without volume.
 fn weight_gradients(corners: [Point; 4]) -> [Point; 4] {
     let volume_6 = tet::volume_6(corners);
     if volume_6 == 0.0 {
         return [[0.0; 3]; 4];
     }
-    // Each falls off towards the facet opposite, whose area vector points out of a positive tet.
+    // Each decreases towards the facet opposite, whose area vector points out of a positive tet.
     tet::FACETS.map(|facet| scale(area_vector(facet.map(|i| corners[i])), -2.0 / volume_6))
 }
 
@@ -36,14 +37,15 @@ pub fn gradients(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<Point
 
 fn gradient(mesh: &TetMesh, vertices: [VertexId; 4], value: impl Fn(VertexId) -> f64) -> Point {
     let weights = weight_gradients(corners(mesh, vertices));
-    // Differences, so that a constant adds nothing.
+    // Differences, so that a constant contributes exactly nothing.
     let first = value(vertices[0]);
     (1..4).fold([0.0; 3], |sum, i| add(sum, scale(weights[i], value(vertices[i]) - first)))
 }
 
-/// How much the gradient jumps across the facets of each tet: the root of `h / 24` times the integral over its inner facets of the squared
-/// jump of the derivative across (Kelly, Gago, Zienkiewicz and Babuska 1983, *A posteriori error analysis and adaptive
-/// processes in the finite element method*); `h` is the longest edge. The unit is that of the field times the root of a volume over a length.
+/// The jump estimate of each tet: the square root of `h / 24` times the integral, over its interior facets,
+/// of the squared jump of the normal derivative, where `h` is the longest edge (Kelly, Gago, Zienkiewicz and
+/// Babuska 1983, *A posteriori error analysis and adaptive processes in the finite element method*). Its unit
+/// is that of the field times the root of a volume over a length.
 ///
 /// Panics when there is not a value for each point.
 pub fn gradient_jump(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
@@ -62,8 +64,9 @@ pub fn gradient_jump(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f
     })
 }
 
-/// How far the gradient in each tet is from the one that is recovered at the vertices, the mean of those around weighted by volume: the root of the
-/// integral of the square (Zienkiewicz and Zhu 1987, *A simple error estimator and adaptive procedure for practical engineering analysis*).
+/// The recovery estimate of each tet: the L2 norm of the difference between the gradient in the tet and the
+/// gradient recovered at the vertices, a volume-weighted mean over the tets around each (Zienkiewicz and Zhu
+/// 1987, *A simple error estimator and adaptive procedure for practical engineering analysis*).
 ///
 /// Panics when there is not a value for each point.
 pub fn recovery(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
@@ -72,15 +75,16 @@ pub fn recovery(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<f64> {
     let recovered = at_vertices(mesh, &gradients, &volumes);
     threads.map(mesh.tets.len(), |t| {
         let off = mesh.tets[t].map(|v| sub(recovered[v.index()], gradients[t]));
-        // The integral of two weights is a twentieth of the volume, that of one's square a tenth.
+        // The integral of the product of two weights is a twentieth of the volume, that of the square of one
+        // a tenth.
         let whole = off.into_iter().fold([0.0; 3], add);
         let squares: f64 = off.iter().map(|d| dot(*d, *d)).sum();
         (volumes[t] / 20.0 * (squares + dot(whole, whole))).sqrt()
     })
 }
 
-/// At each vertex the mean of what is said of the tets round it, weighted; 0 where the weights are. It is exact for the gradient of a field
-/// that is quadratic, where the star of the vertex is its own mirror image.
+/// Returns at each vertex the weighted mean of the values of the tets around it; 0 where all weights are 0.
+/// It is exact for the gradient of a quadratic field where the star of the vertex is symmetric about it.
 pub(super) fn at_vertices(mesh: &TetMesh, of_tets: &[Point], weights: &[f64]) -> Vec<Point> {
     let mut sums = vec![([0.0; 3], 0.0); mesh.points.len()];
     for ((vertices, value), weight) in mesh.tets.iter().zip(of_tets).zip(weights) {
@@ -111,8 +115,9 @@ pub fn vorticity(mesh: &TetMesh, velocity: &[Point], threads: &Threads) -> Vec<P
     velocity_gradients(mesh, velocity, threads).into_iter().map(curl).collect()
 }
 
-/// Q in each tet: positive where a flow turns more than it shears (Hunt, Wray and Moin 1988, *Eddies, streams, and convergence
-/// zones in turbulent flows*): half of the square of the rate of rotation less that of the rate of strain.
+/// The Q criterion in each tet: half the squared norm of the rate of rotation less that of the rate of
+/// strain, positive where a flow rotates more than it strains (Hunt, Wray and Moin 1988, *Eddies, streams,
+/// and convergence zones in turbulent flows*).
 ///
 /// Panics when there is not a velocity for each point.
 pub fn q_criterion(mesh: &TetMesh, velocity: &[Point], threads: &Threads) -> Vec<f64> {

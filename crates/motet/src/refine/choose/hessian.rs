@@ -1,4 +1,4 @@
-//! How much a field bends at each vertex: its second derivatives, recovered from values at the vertices.
+//! The curvature of a field at each vertex: its second derivatives, recovered from values at the vertices.
 
 use super::estimate::{at_vertices, corners, gradients};
 use crate::base::{Csr, Point, TetId, Threads, VertexId};
@@ -8,26 +8,29 @@ use crate::geometry::vector::{add, scale};
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
 
-/// How often values go on from a vertex to its neighbours, from where they are good to where they are not.
+/// How many times values spread from vertices where they are reliable to neighbours where they are not.
 const ROUNDS: usize = 2;
 
-/// The second derivatives of a field at each vertex: gradients, averaged over the tets round each vertex by volume (Zienkiewicz and Zhu 1987), and the
-/// gradients of these averaged again (double recovery; Vallet, Manole, Dompierre, Dufour and Guibault 2007, *Numerical comparison of some
-/// Hessian recovery techniques*).
+/// The second derivatives of a field at each vertex, by double recovery: gradients, averaged over the tets
+/// around each vertex by volume (Zienkiewicz and Zhu 1987), and the gradients of these averaged again
+/// (Vallet, Manole, Dompierre, Dufour and Guibault 2007, *Numerical comparison of some Hessian recovery
+/// techniques*).
 ///
-/// Means at a boundary are one-sided, and wrong there by as much as the derivatives are large. So tets that have a vertex on the boundary do not
-/// count; a vertex that has no others gets the mean of its neighbours that have, two rounds long, and only where there are none the mean of all its tets.
+/// Means at a boundary are one-sided, and their error there is as large as the derivatives themselves. So
+/// tets with a vertex on the boundary do not count. A vertex that has no other tets gets the mean of those
+/// neighbours that have, in two rounds, and only where there are none the mean of all its tets.
 ///
-/// For a quadratic field they are exact where stars are their own mirror images, as in a lattice. Elsewhere some percent of the
-/// error stays however small the tets are, which sizes can live with: it goes into them by its root.
+/// For a quadratic field the result is exact where stars are symmetric about their vertex, as in a lattice.
+/// Elsewhere an error of a few percent remains however small the tets are; this is acceptable for sizes,
+/// which depend on the square root.
 ///
 /// Panics when there is not a value for each point.
 pub fn hessians(mesh: &TetMesh, values: &[f64], threads: &Threads) -> Vec<Symmetric> {
     Recovery::new(mesh, threads).hessians(values, threads)
 }
 
-/// How much fields bend at each vertex: the largest size of an eigenvalue of the second derivatives of any of them, in units of a field by those of an area. NaN where a
-/// value that it depends on is.
+/// The curvature of fields at each vertex: the largest absolute eigenvalue of the second derivatives of any
+/// of them, in the unit of the field over that of an area. NaN where a value that it depends on is NaN.
 ///
 /// Panics when there is not a value for each point in each field.
 pub fn curvatures<'a>(
@@ -44,7 +47,7 @@ pub fn curvatures<'a>(
             low.abs().max(high.abs())
         });
         for (largest, of_field) in largest.iter_mut().zip(of_field) {
-            // What is no number stays so.
+            // NaN stays NaN.
             if of_field.is_nan() || of_field > *largest {
                 *largest = of_field;
             }
@@ -53,13 +56,13 @@ pub fn curvatures<'a>(
     largest
 }
 
-/// What recovery needs to know of a mesh, whatever the field.
+/// What recovery needs of a mesh, independent of the field.
 struct Recovery<'a> {
     mesh: &'a TetMesh,
     volumes: Vec<f64>,
-    /// The volumes of tets that have no vertex on the boundary; 0 for others.
+    /// Volumes of the tets that have no vertex on the boundary; 0 for the others.
     inner: Vec<f64>,
-    /// Whether a vertex has such a tet.
+    /// For each vertex, whether it has such a tet.
     is_inner: Vec<bool>,
     vertex_to_tets: Csr<TetId>,
 }
@@ -98,7 +101,8 @@ impl<'a> Recovery<'a> {
         })
     }
 
-    /// Means at the vertices of what is said of the tets: of inner tets where there are any, and from there to the vertices round them.
+    /// Returns means at the vertices of values of the tets: over interior tets where there are any, spread
+    /// from there to the neighbouring vertices.
     fn spread(&self, of_tets: &[Point]) -> Vec<Point> {
         let mut means = at_vertices(self.mesh, of_tets, &self.inner);
         let mut is_known = self.is_inner.clone();
@@ -118,7 +122,7 @@ impl<'a> Recovery<'a> {
         means
     }
 
-    /// A neighbour counts as often as it shares a tet.
+    /// Mean over known neighbours; a neighbour counts once for each tet it shares.
     fn mean_of_neighbors(&self, v: usize, values: &[Point], is_known: &[bool]) -> Option<Point> {
         let tets = self.vertex_to_tets.list(v).iter();
         let known = tets.flat_map(|t| self.mesh.tets[t.index()]).filter(|u| is_known[u.index()]);
@@ -127,7 +131,7 @@ impl<'a> Recovery<'a> {
     }
 }
 
-/// The tets round each vertex, rising.
+/// The tets around each vertex, in ascending order.
 pub(super) fn vertex_to_tets(mesh: &TetMesh) -> Csr<TetId> {
     let ids = |t: usize, tet: &[VertexId; 4]| tet.map(|v| (v.index(), TetId::new(t)));
     Csr::from_pairs(mesh.points.len(), || mesh.tets.iter().enumerate().flat_map(|(t, tet)| ids(t, tet)))

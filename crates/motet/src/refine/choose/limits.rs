@@ -1,25 +1,28 @@
-//! How far wishes go: limits on generations, sizes and the number of tets.
+//! Limits on refinement: generations, sizes and the number of tets.
 
 use super::estimate::{corners, longest_edge};
 use super::wish::Wish;
 use crate::base::{Error, Result};
 use crate::mesh::TetMesh;
 
-/// Beyond these limits no tet is divided. Tets that must be, so that others fit, are all the same.
+/// Limits beyond which no tet is divided. Tets that must be divided so that others fit are exempt.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// A tet of this generation is not divided. Default: none.
+    /// A tet of this generation or a later one is not divided. Default: none.
     pub generation: Option<u8>,
-    /// A tet is not divided where the longest edge of its parts would be below this: half of its own. Default: none.
+    /// A tet is not divided where the longest edge of its parts, half of its own, would be shorter than this.
+    /// Default: none.
     pub smallest: Option<f64>,
-    /// No more tets are divided than brings the mesh to this number; those that the closing adds come on top. Of tets with equal
-    /// wishes the largest are taken first. Default: none.
+    /// Division stops at this number of tets; tets added by the closure come on top. Among tets with equal
+    /// wishes the largest are divided first. Default: none.
     pub n_tets: Option<usize>,
 }
 
 impl Limits {
+    /// Checks the smallest length.
+    ///
     /// # Errors
-    /// When the smallest length is negative or no number.
+    /// When it is negative or NaN.
     pub(crate) fn check(&self) -> Result<()> {
         match self.smallest.filter(|smallest| smallest.is_nan() || *smallest < 0.0) {
             None => Ok(()),
@@ -28,7 +31,8 @@ impl Limits {
         }
     }
 
-    /// Takes back wishes beyond the limits: such tets stay. `generations` has that of each tet; where it is empty all are of generation 0.
+    /// Withdraws wishes beyond the limits: such tets stay. `generations` gives the generation of each tet; if
+    /// it is empty, all are of generation 0.
     pub fn apply(&self, mesh: &TetMesh, generations: &[u8], wishes: &mut [Wish]) {
         let longest = |t: usize| longest_edge(corners(mesh, mesh.tets[t]));
         for (t, wish) in wishes.iter_mut().enumerate() {

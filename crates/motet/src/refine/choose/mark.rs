@@ -7,7 +7,7 @@ use crate::geometry::vector::distance;
 use crate::mesh::TetMesh;
 use crate::spatial::{Closest, NearestTriangle};
 
-/// The tets for which `is_marked` says so, rising.
+/// The tets for which `is_marked` returns true, in ascending order.
 fn those(
     mesh: &TetMesh,
     threads: &Threads,
@@ -17,7 +17,7 @@ fn those(
     (0..).zip(flags).filter(|(_, is_marked)| *is_marked).map(|(t, _)| TetId(t)).collect()
 }
 
-/// Tets that have a place within `radius` of `centre`.
+/// Tets that come within `radius` of `centre`.
 pub fn in_ball(mesh: &TetMesh, centre: Point, radius: f64, threads: &Threads) -> Vec<TetId> {
     let nearest = |corners| tet::at(corners, tet::closest(corners, centre));
     those(mesh, threads, |corners| distance(nearest(corners), centre) <= radius)
@@ -31,7 +31,7 @@ pub fn in_box(mesh: &TetMesh, [low, high]: [Point; 2], threads: &Threads) -> Vec
     })
 }
 
-/// Tets whose longest edge is longer than the size that is wanted at their centre.
+/// Tets whose longest edge is longer than the size requested at their centre.
 pub fn above_size(
     mesh: &TetMesh,
     size: impl Fn(Point) -> f64 + Sync + Send,
@@ -40,8 +40,9 @@ pub fn above_size(
     those(mesh, threads, |corners| longest_edge(corners) > size(tet::centroid(corners)))
 }
 
-/// Tets whose longest edge is longer than `size` and `growth` times their distance from a surface: so small edges at a device, and larger
-/// ones away from it. The distance is that of the tet from the place of the surface that is nearest to its centre.
+/// Tets whose longest edge is longer than `size` plus `growth` times their distance from a surface: small
+/// edges at a device, larger ones away from it. The distance is measured from the tet to the point of the
+/// surface nearest to its centre.
 pub fn near_surface(
     mesh: &TetMesh,
     surface: &NearestTriangle,
@@ -54,23 +55,25 @@ pub fn near_surface(
         if longest <= size {
             return false;
         }
-        // No farther than this from the centre has anything to do with the tet.
+        // Surface points farther than this from the centre cannot affect the tet.
         let reach =
             if growth > 0.0 { (longest - size) / growth + radius(corners, centre) } else { f64::INFINITY };
         surface.closest_within(centre, reach).is_some_and(|found| is_above(corners, [size, growth], &found))
     })
 }
 
-/// How far the corners are from the centre.
+/// The largest distance of a corner from the centre.
 fn radius(corners: [Point; 4], centre: Point) -> f64 {
     corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max)
 }
 
-/// The same for one tet, with what of the surface is nearest to its centre.
+/// Whether the longest edge of one tet exceeds `size` plus `growth` times its distance from a surface;
+/// `found` is the surface point nearest to its centre.
 pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], found: &Closest) -> bool {
     let longest = longest_edge(corners);
     let away = found.distance_squared.sqrt();
-    // The tet is no farther than its centre, and no nearer than its corners allow: that decides most.
+    // The distance of the tet lies between that of its centre less its radius and that of its centre: this
+    // decides most cases.
     if longest > size + growth * away {
         return true;
     }
@@ -81,7 +84,7 @@ pub(super) fn is_above(corners: [Point; 4], [size, growth]: [f64; 2], found: &Cl
     longest > size + growth * distance(nearest, found.point)
 }
 
-/// Tets with an estimate above 0, the largest first; of equal ones the first.
+/// Tets with an estimate above 0 in descending order of estimate; ties in ascending order of id.
 fn by_estimate(estimates: &[f64]) -> Vec<TetId> {
     let mut order: Vec<TetId> =
         (0..estimates.len()).filter(|&t| estimates[t] > 0.0).map(TetId::new).collect();
@@ -89,8 +92,9 @@ fn by_estimate(estimates: &[f64]) -> Vec<TetId> {
     order
 }
 
-/// The fewest tets whose squared estimates sum to at least a share of all (Dörfler 1996, *A convergent adaptive algorithm for Poisson's
-/// equation*). Of tets with equal estimates the first ones; those with an estimate of 0 or NaN never.
+/// The fewest tets whose squared estimates sum to at least the given share of the total (Dörfler 1996, *A
+/// convergent adaptive algorithm for Poisson's equation*). Among tets with equal estimates those with the
+/// lowest ids are taken; tets with an estimate of 0 or NaN never are.
 pub fn largest_share(estimates: &[f64], share: f64) -> Vec<TetId> {
     let mut order = by_estimate(estimates);
     let squared = |t: TetId| estimates[t.index()] * estimates[t.index()];
@@ -107,8 +111,8 @@ pub fn largest_share(estimates: &[f64], share: f64) -> Vec<TetId> {
     order
 }
 
-/// The tets with the largest estimates, so many that dividing them brings the mesh to about `target` tets: each adds seven, and those that are
-/// cut beside it, which are not counted, some more.
+/// The tets with the largest estimates, as many as bring the mesh to about `target` tets when divided. Each
+/// adds seven tets; those added by cutting neighbours are not counted.
 pub fn to_count(estimates: &[f64], target: usize) -> Vec<TetId> {
     let n = target.saturating_sub(estimates.len()).div_ceil(7);
     let mut order = by_estimate(estimates);

@@ -1,13 +1,13 @@
-//! What to divide, and what may be taken back.
+//! What to divide, and which divisions may be taken back.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | estimate | [`estimate`] | how badly a field is resolved in each tet; what turns where |
-//! | size | [`hessian`], [`sizes`] | how much a field bends at each vertex; how long edges are to be for that |
+//! | estimate | [`estimate`] | how badly a field is resolved in each tet; where a flow rotates |
+//! | size | [`hessian`], [`sizes`] | the curvature of a field at each vertex, and the edge lengths it calls for |
 //! | mark | [`mark`] | tets by place, size, distance to a surface, estimate |
-//! | choose | [`Criterion`] | the same for whole meshes, by words for their arrays, regions and patches |
-//! | wish | [`wish`] | of each tet, whether it is to be divided, how often, and whether it may be taken back |
-//! | limit | [`Limits`] | how far that goes: generations, sizes, the number of tets |
+//! | choose | [`Criterion`] | criteria for whole meshes, which name arrays, regions and patches |
+//! | wish | [`wish`] | whether a tet is to be divided, how often, and whether its division may be taken back |
+//! | limit | [`Limits`] | limits on generations, sizes and the number of tets |
 
 mod criterion;
 pub mod estimate;

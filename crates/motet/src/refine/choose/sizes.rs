@@ -1,6 +1,8 @@
-//! How long edges are to be, vertex by vertex: from how much a field bends, limited, graded, and scaled to a number of tets.
+//! Edge lengths required at each vertex: from the curvature of a field, limited, graded, and scaled to a
+//! number of tets.
 //!
-//! The size of an edge is the mean of those at its ends. A tet is too large where one of its edges is longer than that.
+//! The size of an edge is the mean of the sizes at its ends. A tet is too large if one of its edges is longer
+//! than its size.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -12,24 +14,27 @@ use crate::geometry::tet::EDGES;
 use crate::geometry::vector::distance;
 use crate::mesh::TetMesh;
 
-/// A field and its linear interpolant in a tet differ by no more than this times its second derivative along the edge where that is largest, times the
-/// square of its length (Frey and Alauzet 2005, *Anisotropic mesh adaptation for CFD computations*: half of the square of 3/4).
+/// Bound on the interpolation error: in a tet, a field and its linear interpolant differ by at most this
+/// constant times the largest value, over the edges, of the second derivative along the edge times the
+/// squared edge length (Frey and Alauzet 2005, *Anisotropic mesh adaptation for CFD computations*: half of
+/// the square of 3/4).
 const LARGEST_ERROR: f64 = 9.0 / 32.0;
 
-/// How often the interval of scales is halved.
+/// How often the interval of scales is bisected.
 const HALVINGS: usize = 40;
-/// How near the number of tets is to come from below, as a part.
+/// The number of tets is close enough when it is within this fraction below the target.
 const NEAR: f64 = 0.01;
 
-/// What holds for sizes, whatever they come from.
+/// Limits on sizes, whatever they are derived from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeLimits {
     /// No size is below this. Default: 0.
     pub smallest: f64,
-    /// None is above this. Default: infinite.
+    /// No size is above this. Default: infinite.
     pub largest: f64,
-    /// By how much the size may grow per unit of length along edges; infinite: as it likes. Default: 1, with which sizes double from one edge to
-    /// the next, as edges of divided tets do at their border. Less only spreads small tets.
+    /// By how much the size may grow per unit of length along edges; infinite: without limit. Default: 1,
+    /// with which sizes double from one edge to the next, as edges of divided tets do at their border.
+    /// Smaller values only spread small tets.
     pub growth: f64,
 }
 
@@ -43,7 +48,7 @@ impl SizeLimits {
     /// Brings sizes within the limits.
     pub fn apply(&self, mesh: &TetMesh, sizes: &mut [f64]) {
         for size in sizes.iter_mut() {
-            // A size that is no number asks for nothing.
+            // A NaN size requests nothing.
             *size = if size.is_nan() { self.largest } else { size.max(self.smallest).min(self.largest) };
         }
         if self.growth < f64::INFINITY {
@@ -52,27 +57,30 @@ impl SizeLimits {
     }
 }
 
-/// The sizes at which a field that bends so much is at most `error` away from its linear interpolant, in the units of the field. Infinite where it does not bend
-/// or [nothing is known](super::hessian::curvatures).
+/// Returns the sizes at which a field of the given curvature differs from its linear interpolant by at most
+/// `error`, in the units of the field. Infinite where the curvature is 0 or
+/// [unknown](super::hessian::curvatures).
 pub fn for_error(curvatures: &[f64], error: f64) -> Vec<f64> {
     let size = |bend: &f64| if *bend > 0.0 { (error / (LARGEST_ERROR * bend)).sqrt() } else { f64::INFINITY };
     curvatures.iter().map(size).collect()
 }
 
-/// The power of how much a field bends that sizes go with, where the mean square of the error is to be least for so many tets (Loseille and Alauzet 2011, *Continuous
-/// mesh framework part I*, in space, where all edges at a place are equal): the square of `bend * h^2` summed over all space, with `h^-3` tets in each part
-/// of it, is least where `h^7` goes with `bend^-2`.
+/// The exponent by which sizes depend on curvature where the mean square error is to be least for a given
+/// number of tets (Loseille and Alauzet 2011, *Continuous mesh framework part I*; here in space, with all
+/// edges at a place equal): the sum over space of the square of `bend * h^2`, with `h^-3` tets per unit of
+/// volume, is least where `h^7` is proportional to `bend^-2`.
 const MEAN_SQUARE: f64 = -2.0 / 7.0;
 
-/// The sizes, but for one scale, at which a field that bends so much is nearest to its linear interpolant in the mean square, for so many tets. Fields can be compared where
-/// `bends` are relative to their ranges. Infinite as for [`for_error`].
+/// Returns, up to a common scale, the sizes at which a field of the given curvature is closest to its linear
+/// interpolant in the mean square for a given number of tets. Fields can be compared if `bends` are relative
+/// to their ranges. Infinite where the curvature is 0 or unknown.
 pub fn for_mean_square(bends: &[f64]) -> Vec<f64> {
     let size = |bend: &f64| if *bend > 0.0 { bend.powf(MEAN_SQUARE) } else { f64::INFINITY };
     bends.iter().map(size).collect()
 }
 
-/// The sizes times one scale, within limits, such that dividing all tets that are too large brings the mesh to about `n_tets`, rather fewer. The
-/// scale is found by bisection.
+/// Returns the sizes times a common scale, within limits, chosen such that dividing all tets that are too
+/// large brings the mesh to about `n_tets`, and not beyond if possible. The scale is found by bisection.
 pub fn for_count(
     mesh: &TetMesh,
     sizes: &[f64],
@@ -93,7 +101,7 @@ pub fn for_count(
         return scaled(1.0);
     }
     let mut low = high / (8.0 * target).cbrt();
-    // There no tet is too large, but where small sizes spread.
+    // At this scale no tet is too large, except where small sizes spread.
     let mut found = scaled(high);
     for _ in 0..HALVINGS {
         if count(&found) <= target {
@@ -118,11 +126,13 @@ pub fn for_count(
     found
 }
 
-/// Lowers sizes until none grows by more than `growth` times the length along any edge: from each end of an edge of length `d` the other
-/// has at most the size there and `growth * d` (Borouchaki, Hecht and Frey 1998, *Mesh gradation control*). Smallest first, so that each is lowered once (Dijkstra 1959).
+/// Lowers sizes until none grows by more than `growth` times the length along any edge: for an edge of length
+/// `d`, the size at one end is at most that at the other plus `growth * d` (Borouchaki, Hecht and Frey 1998,
+/// *Mesh gradation control*). Processes the smallest first, so that each size is lowered once (Dijkstra
+/// 1959).
 pub fn limit_growth(mesh: &TetMesh, sizes: &mut [f64], growth: f64) {
     let tets = vertex_to_tets(mesh);
-    // Sizes are positive, so their bits have their order.
+    // Sizes are positive, so their bit patterns sort in the same order.
     let entry = |v: usize, size: f64| Reverse((size.to_bits(), VertexId::new(v)));
     let finite = (0..sizes.len()).filter(|&v| sizes[v].is_finite());
     let mut queue: BinaryHeap<_> = finite.map(|v| entry(v, sizes[v])).collect();
@@ -141,7 +151,7 @@ pub fn limit_growth(mesh: &TetMesh, sizes: &mut [f64], growth: f64) {
     }
 }
 
-/// By how much each tet is too large: the largest ratio of an edge and its size.
+/// By how much each tet is too large: the largest ratio of an edge length to the size of the edge.
 pub fn ratios(mesh: &TetMesh, sizes: &[f64], threads: &Threads) -> Vec<f64> {
     threads.map(mesh.tets.len(), |t| {
         let ratio = |[i, j]: [usize; 2]| {
@@ -153,7 +163,7 @@ pub fn ratios(mesh: &TetMesh, sizes: &[f64], threads: &Threads) -> Vec<f64> {
     })
 }
 
-/// How often each tet is to be divided, so that no edge is longer than its size.
+/// How often each tet must be divided so that no edge is longer than its size.
 pub fn wishes(mesh: &TetMesh, sizes: &[f64], threads: &Threads) -> Vec<Wish> {
     ratios(mesh, sizes, threads).into_iter().map(Wish::of_ratio).collect()
 }

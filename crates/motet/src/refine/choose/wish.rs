@@ -1,24 +1,28 @@
-//! What is wished of a tet: to be divided, and how often as far as can be told; to stay; or that its division may be taken back.
+//! What a criterion wants done with a tet: divide it, with an estimate of how often; keep it; or allow its
+//! division to be taken back.
 
 use crate::base::{Error, Result, TetId};
 
-/// How many tets a mesh may be asked to have. Ids can tell a little more apart, but a forest also keeps the tets that were divided: one for each seven that came.
+/// The largest number of tets that may be requested. There are ids for slightly more, but a forest also keeps
+/// the divided tets: one for every seven tets added.
 pub const MOST_TETS: f64 = (TetId::MAX_COUNT / 8 * 7) as f64;
 
-/// What is wished of a tet. Of two wishes the larger counts.
+/// What a criterion wants done with a tet. Of two wishes the larger counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum Wish {
-    /// Not even a tet twice as large would be divided: a division that it came from may be taken back.
+    /// Not even a tet twice as large would be divided: the division that this tet comes from may be taken
+    /// back.
     Coarser,
-    /// To stay as it is.
+    /// Keep it as it is.
     #[default]
     Kept,
-    /// To be divided, and its parts again: so often in all, at least once. An estimate, beyond the first.
+    /// Divide it, and its parts again, this many times in all, at least once. Beyond the first time this is
+    /// an estimate.
     Divided(u8),
 }
 
 impl Wish {
-    /// Of a tet that is too large by this ratio: it is halved until it is not.
+    /// The wish for a tet that is too large by this ratio: it is halved until it no longer is.
     pub fn of_ratio(ratio: f64) -> Self {
         match ratio {
             r if r > 1.0 => Self::Divided(r.log2().ceil().clamp(1.0, 255.0) as u8),
@@ -27,12 +31,12 @@ impl Wish {
         }
     }
 
-    /// Of a tet that is marked for what lies in it, or is not.
+    /// The wish for a tet that a criterion marks, or does not mark, by its place or contents.
     pub fn of_mark(is_marked: bool) -> Self {
         if is_marked { Self::Divided(1) } else { Self::Coarser }
     }
 
-    /// How often it is to be divided.
+    /// How often the tet is to be divided.
     pub fn divisions(self) -> u8 {
         match self {
             Self::Divided(n) => n,
@@ -40,18 +44,18 @@ impl Wish {
         }
     }
 
-    /// Whether it is to be divided.
+    /// Whether the tet is to be divided.
     pub fn is_divided(self) -> bool {
         self >= Self::Divided(0)
     }
 }
 
-/// The tets that are to be divided, rising.
+/// The tets to divide, in ascending order.
 pub fn marked(wishes: &[Wish]) -> Vec<TetId> {
     those(wishes, Wish::is_divided)
 }
 
-/// The tets whose division may be taken back, rising.
+/// The tets whose division may be taken back, in ascending order.
 pub fn coarser(wishes: &[Wish]) -> Vec<TetId> {
     those(wishes, |wish| wish == Wish::Coarser)
 }
@@ -60,15 +64,15 @@ fn those(wishes: &[Wish], is_one: impl Fn(Wish) -> bool) -> Vec<TetId> {
     (0..wishes.len()).filter(|&t| is_one(wishes[t])).map(TetId::new).collect()
 }
 
-/// About how many tets there are once all wishes come true: eight to the power of how often each is divided. Those that are divided or cut
-/// since their neighbours are do not count.
+/// The approximate number of tets once all wishes are fulfilled: each tet counts eight to the power of its
+/// number of divisions. Tets divided or cut only because of their neighbours are not counted.
 pub fn expected_tets(wishes: &[Wish]) -> f64 {
     let mut counts = [0usize; 1 + u8::MAX as usize];
     wishes.iter().for_each(|wish| counts[usize::from(wish.divisions())] += 1);
     (0..).zip(counts).map(|(n, count)| count as f64 * 8f64.powi(n)).sum()
 }
 
-/// Refuses wishes for more tets than there can be, before any work.
+/// Rejects wishes for more tets than there can be, before any work is done.
 ///
 /// # Errors
 /// When more than [`MOST_TETS`] are [expected](expected_tets).
@@ -111,7 +115,7 @@ mod tests {
         assert_eq!(error.kind(), crate::base::ErrorKind::Input);
         assert!(error.to_string().contains("8.6e9 tets"), "{error}");
         assert!(error.to_string().contains("sizes 1.4 times as large"), "{error}");
-        // Even where the number itself is beyond all numbers.
+        // Rejected even where the count overflows to infinity.
         assert!(check_expected(&[Wish::Divided(255), Wish::Divided(255)]).is_err());
         assert_eq!((marked(&wishes(1)), coarser(&wishes(1))), (vec![TetId(0)], vec![TetId(2)]));
     }

@@ -1,14 +1,15 @@
-//! Bey's rule: which diagonal, by the order of a tet's vertices alone.
+//! Bey's rule: the diagonal follows from the order of a tet's vertices alone.
 //!
-//! The parts inside are given orders of their own, so that however deep, no more than three shapes come of one (Bey 1995, *Tetrahedral grid refinement*). An order follows from the way down from
-//! the root, so it is worked out again where a class needs it.
+//! The inner parts are given vertex orders of their own, so that at any depth at most three shapes arise from
+//! one tet (Bey 1995, *Tetrahedral grid refinement*). The order follows from the path from the root, so it is
+//! recomputed where a class needs it.
 
 use super::Forest;
 use super::classes::inner_part;
 use super::eight::ends;
 use crate::geometry::tet::EDGES;
 
-/// The vertices of the four inside: `[i, j]` is the middle between vertices `i` and `j` of the whole.
+/// The vertices of the four inner parts: `[i, j]` is the middle between vertices `i` and `j` of the whole.
 const CHILDREN: [[[usize; 2]; 4]; 4] = [
     [[0, 1], [0, 2], [0, 3], [1, 3]],
     [[0, 1], [0, 2], [1, 2], [1, 3]],
@@ -16,20 +17,20 @@ const CHILDREN: [[[usize; 2]; 4]; 4] = [
     [[0, 2], [1, 2], [1, 3], [2, 3]],
 ];
 
-/// Which of the three ways to divide tets of a class. Parts at corners have the order of the whole; and that of an image is the one that it is an image of, from the last vertex to the
-/// first, which is all the same to the ways.
+/// Returns which of the three ways divides tets of a class. Corner parts have the order of the whole. An
+/// image has the reversed order of its original, which gives the same way.
 pub(super) fn way(forest: &Forest, class: u32) -> usize {
     let steps = forest.steps_to_class(class);
     along(steps.into_iter().fold([0, 1, 2, 3], |order, (way, inner)| below(order, inner_part(way, inner))))
 }
 
-/// The way along the diagonal between the middles of the edges 0-2 and 1-3.
+/// The way along the diagonal between the middles of edges 0-2 and 1-3.
 fn along(order: [usize; 4]) -> usize {
     let diagonal = [local(order, [0, 2]), local(order, [1, 3])];
     (0..3).find(|&way| ends(way) == diagonal || ends(way) == [diagonal[1], diagonal[0]]).unwrap_or(0)
 }
 
-/// Of the vertices of a part inside, which is Bey's first, second, third and fourth, if that is known of the whole.
+/// Returns which vertices of an inner part are Bey's first to fourth, given this order for the whole.
 fn below(order: [usize; 4], part: &[u8; 4]) -> [usize; 4] {
     let part = part.map(usize::from);
     let names = |child: &[[usize; 2]; 4]| child.map(|name| local(order, name));
@@ -37,7 +38,7 @@ fn below(order: [usize; 4], part: &[u8; 4]) -> [usize; 4] {
     child.unwrap_or(part).map(|v| part.iter().position(|other| *other == v).unwrap_or(0))
 }
 
-/// The local vertex of a name.
+/// The local vertex of a pair `[i, j]`: a middle, or a corner if `i` equals `j`.
 fn local(order: [usize; 4], [i, j]: [usize; 2]) -> usize {
     let (i, j) = (order[i], order[j]);
     match EDGES.iter().position(|&[a, b]| [a, b] == [i, j] || [a, b] == [j, i]) {

@@ -1,14 +1,16 @@
-//! Shapes that tets share. Of the eight parts of a tet four have its shape, and the others two more, each of them twice (the congruence classes of Bey 1995). So what
-//! follows from the shape alone, such as how a tet is divided best, is found once for many.
+//! Shapes that tets share. Of the eight parts of a tet four have its shape, and the others have two more,
+//! each of them twice (the congruence classes of Bey 1995). So whatever follows from the shape alone, such as
+//! the best way to divide a tet, is computed once for many tets.
 //!
-//! A class is named by the way down to the first tet of it from a root: steps to parts at corners change nothing, and are left out.
+//! A class is identified by the path from a root to its first tet; steps to corner parts change nothing and
+//! are left out.
 
 use super::eight::{INNER, eight};
 use super::{Forest, NONE, with_middles};
 use crate::base::Point;
 use crate::geometry::quality::eas;
 
-/// The class of a tet, and whether that is as in a mirror.
+/// The class of a tet, and whether the tet is a mirror image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::refine) struct Shape(u32);
 
@@ -36,22 +38,24 @@ impl Shape {
     }
 }
 
-/// Tets of one shape.
+/// A class of tets of one shape.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::refine) struct Class {
-    /// The class of those whose parts these are; [`NONE`] for that of a root, which has the root's id.
+    /// The class of the tets that these are parts of; [`NONE`] for the class of a root, which has the root's
+    /// id.
     above: u32,
-    /// As parts of which way.
+    /// The way in which these were divided.
     way: u8,
-    /// And which of [`INNER`].
+    /// Which of [`INNER`] these are.
     inner: u8,
-    /// The way that is best for these.
+    /// The best way to divide tets of this class, once known.
     pub(in crate::refine) best: Option<u8>,
-    /// The EAS in the reference, however tets are numbered.
+    /// The EAS in the reference, regardless of orientation.
     pub(in crate::refine) eas: f64,
-    /// That of the root that these are parts of.
+    /// The EAS of the root that these are parts of.
     pub(in crate::refine) root_eas: f64,
-    /// Of each way to divide, the first of the two classes inside, which follow each other, where there ever were some.
+    /// For each way to divide, the first of the two consecutive inner classes; [`NONE`] if they do not exist
+    /// yet.
     below: [u32; 3],
 }
 
@@ -61,7 +65,7 @@ impl Class {
         Self { above: NONE, way: 0, inner: 0, best: None, eas, root_eas: eas, below: [NONE; 3] }
     }
 
-    /// One of the two inner parts of this class, divided in a way; `above` is its own id.
+    /// One of the two inner parts of this class when divided in a way; `above` is this class's own id.
     fn part(&self, above: u32, [way, inner]: [u8; 2], eas: f64) -> Self {
         Self { above, way, inner, best: None, eas, root_eas: self.root_eas, below: [NONE; 3] }
     }
@@ -78,7 +82,7 @@ impl Forest {
         corners_at(&places, inner_part(usize::from(way), usize::from(inner)))
     }
 
-    /// The two classes inside, if tets of a class are divided in a way; the first is given.
+    /// Makes the two inner classes of a class divided in a way; returns the first.
     pub(in crate::refine) fn make_classes(&mut self, class: u32, way: usize) -> u32 {
         let known = self.classes[class as usize].below[way];
         if known != NONE {
@@ -88,7 +92,7 @@ impl Forest {
         self.add_classes(class, way, [0, 1].map(|k| eas(corners_at(&places, inner_part(way, k))).abs()))
     }
 
-    /// The same, where their EAS is known.
+    /// Adds the two inner classes of a class divided in a way, given their EAS; returns the first.
     pub(in crate::refine) fn add_classes(&mut self, class: u32, way: usize, eas: [f64; 2]) -> u32 {
         let known = self.classes[class as usize].below[way];
         if known != NONE {
@@ -101,14 +105,14 @@ impl Forest {
         first
     }
 
-    /// The two classes inside, if tets of a class are divided in the way that is best, where that is known.
+    /// The two inner classes of a class divided in its best way, if that is known.
     pub(in crate::refine) fn best_classes(&self, class: u32) -> Option<[&Class; 2]> {
         let Class { best, below, .. } = self.classes[class as usize];
         let first = below[usize::from(best?)] as usize;
         Some([&self.classes[first], &self.classes[first + 1]])
     }
 
-    /// Of a class, the steps down to it: ways, and which of [`INNER`].
+    /// The steps from the root down to a class: ways, and which of [`INNER`].
     pub(in crate::refine) fn steps_to_class(&self, mut class: u32) -> Vec<(usize, usize)> {
         let mut steps = Vec::new();
         while let Class { above, way, inner, .. } = self.classes[class as usize]
@@ -122,7 +126,7 @@ impl Forest {
     }
 }
 
-/// One of the two parts inside that have shapes of their own.
+/// One of the two inner parts that have shapes of their own.
 pub(in crate::refine) fn inner_part(way: usize, inner: usize) -> &'static [u8; 4] {
     &eight(way)[INNER[inner]]
 }

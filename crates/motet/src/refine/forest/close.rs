@@ -1,7 +1,9 @@
-//! Which tets are divided and which edges split beyond what was asked, so that all fit together and none is badly shaped.
+//! Decides which tets are divided and which edges split beyond what was requested, so that all fit and none
+//! is badly shaped.
 //!
-//! What holds at the end follows from what was asked alone: each sweep looks at all tets as the sweep before left them. So no order of visiting, no
-//! number of threads and no earlier division changes it, and taking back what was asked brings back the mesh that was there before.
+//! The result depends only on what was requested: each sweep examines all tets in the state left by the
+//! previous sweep. So neither the order of visiting, nor the number of threads, nor earlier divisions matter,
+//! and withdrawing a request restores the previous mesh.
 
 use super::eight::INNER;
 use super::fills::Finder;
@@ -11,23 +13,24 @@ use crate::base::{Error, Result, Threads};
 use crate::mesh::BAD_EAS;
 use crate::refine::{Options, Rule};
 
-/// No more is asked of a piece than this part of the median EAS of the roots.
+/// Pieces are never required to exceed this fraction of the median EAS of the roots.
 const OF_MEDIAN: f64 = 0.55;
 
-/// What shapes closing may leave.
+/// The shapes that closing may leave.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::refine) struct Need {
-    /// No part below this EAS: a part of the worst of the roots.
+    /// No part may be below this EAS, a fraction of the worst of the roots.
     floor: f64,
-    /// No more than this is required of a piece of a tet that is cut.
+    /// The largest EAS ever required of a piece of a cut tet.
     most_of_pieces: f64,
-    /// No piece below this part of what dividing the tet leaves.
+    /// No piece may be below this fraction of what dividing the tet leaves.
     share: f64,
     pub(in crate::refine) rule: Rule,
 }
 
 impl Need {
-    /// Of pieces no more is required than of those of the median root: in a lattice all tets are as bad as the worst, no piece is as good as the whole, and everything would be divided.
+    /// What is required of pieces is capped by the median root: in a lattice all tets are as bad as the
+    /// worst, no piece is as good as the whole, and everything would be divided.
     pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
         let mut shapes: Vec<f64> = forest.classes[..forest.n_roots].iter().map(|root| root.eas).collect();
         shapes.sort_unstable_by(f64::total_cmp);
@@ -40,13 +43,16 @@ impl Need {
         }
     }
 
-    /// The least EAS of the parts of a root of this EAS. Of one that is not bad none is to be bad: with one floor for all, a single sliver let every tet become as bad as itself. Bad roots share
-    /// a floor: where each had its own, thin tets of boundary layers could not be cut, and 255,208 tets became 859,601.
+    /// The least EAS allowed for parts of a root of the given EAS. A root that is not bad must not get bad
+    /// parts: with one floor for all, a single sliver let every tet become as bad as itself. Bad roots share
+    /// a floor: where each had its own, thin tets of boundary layers could not be cut, and 255,208 tets
+    /// became 859,601.
     pub(in crate::refine) fn floor(self, root_eas: f64) -> f64 {
         if root_eas >= BAD_EAS { self.floor.max(BAD_EAS) } else { self.floor }
     }
 
-    /// What pieces of a tet have to be that could be divided into eight of an EAS of `divided` or better. Where dividing would leave bad ones, too, it is no way out.
+    /// The EAS required of pieces of a tet whose division into eight would leave `divided` as the worst EAS.
+    /// Where dividing would leave bad parts as well, it is no alternative.
     fn of(self, root_eas: f64, divided: f64) -> f64 {
         let floor = if divided >= BAD_EAS { self.floor(root_eas) } else { self.floor };
         floor.min(self.most_of_pieces).max(self.share * divided)
@@ -63,9 +69,10 @@ pub(in crate::refine) struct Cut {
 /// What a tet with some edges split needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::refine) struct Goal {
-    /// Which edges split: the same where it fits, more where it has to grow, all where it has to be divided.
+    /// The edges to split: unchanged if the tet fits, more if it needs more splits, all if it must be
+    /// divided.
     pub(in crate::refine) mask: u8,
-    /// The cuts of its facets, and which of the ways to fill it, where it fits.
+    /// The cuts of its facets and, where it fits, the index of the pattern that fills it.
     pub(in crate::refine) cuts: u8,
     pub(in crate::refine) way: u8,
 }
@@ -74,33 +81,33 @@ impl Goal {
     const FULL: Self = Self { mask: FULL, cuts: 0, way: 0 };
 }
 
-/// What a sweep says of a tet with split edges.
+/// The verdict of a sweep on a tet with split edges.
 #[derive(Clone, Copy, Debug)]
 struct Verdict {
-    /// Which root or eight was looked at.
+    /// The root or group of eight that was examined.
     place: u32,
     node: u32,
     mask: u8,
     goal: Goal,
 }
 
-/// How many roots and eights a thread looks at in one go.
+/// How many roots and groups of eight a thread examines at a time.
 const RUN: usize = 1024;
 
-/// What closing came to.
+/// The result of closing.
 #[derive(Debug, Default)]
 pub(in crate::refine) struct Closed {
-    /// Tets that are cut, rising.
+    /// Tets that are cut, in ascending order.
     pub(in crate::refine) cuts: Vec<Cut>,
-    /// How many were divided that nobody asked for.
+    /// Number of tets divided without being requested.
     pub(in crate::refine) n_promoted: usize,
     pub(in crate::refine) n_sweeps: usize,
 }
 
-/// Divides what is asked, and what that asks for.
+/// Divides what is requested, and everything that this entails.
 ///
 /// # Errors
-/// When the forest would have more tets than it may.
+/// When the forest would have more tets than allowed.
 pub(in crate::refine) fn close(forest: &mut Forest, need: Need, threads: &Threads) -> Result<Closed> {
     forest.begin_anew();
     for node in 0..forest.nodes.len() as u32 {
@@ -140,7 +147,8 @@ pub(in crate::refine) fn close(forest: &mut Forest, need: Need, threads: &Thread
     }
 }
 
-/// Looks at all tets that are not divided: roots, and parts of those that are. `before` is what the sweep before said: it holds of tets that have the same edges split.
+/// Examines all tets that are not divided: roots, and parts of divided tets. `before` has the verdicts of the
+/// previous sweep, which still hold for tets with the same edges split.
 fn sweep(
     forest: &mut Forest,
     eights: &[u32],
@@ -198,14 +206,15 @@ fn divide(forest: &mut Forest, node: u32, need: Need) -> u32 {
     first
 }
 
-/// What a tet needs to be cut well. It follows from the reference alone. Pieces are held against what dividing would leave: were they held against the whole, a tet
-/// whose inner parts are bad could never be cut well enough, and in a mesh of such tets division would spread without end.
+/// Finds what a tet needs to be cut well, from the reference alone. Pieces are compared with what dividing
+/// would leave: compared with the whole, a tet with bad inner parts could never be cut well enough, and in a
+/// mesh of such tets division would spread without end.
 fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
     let Finder { forest, need, .. } = *finder;
     let class = forest.nodes[leaf as usize].shape.class();
     let (cuts, fill) = finder.cut(leaf, mask);
     let as_it_is = Goal { mask, cuts, way: fill.way };
-    // What is good enough beside the whole is so beside its parts.
+    // What is good enough compared with the whole is also good enough compared with its parts.
     let whole = &forest.classes[class as usize];
     if fill.worst >= need.of(whole.root_eas, whole.eas) {
         return as_it_is;
@@ -215,7 +224,7 @@ fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
     if fill.worst >= least {
         return as_it_is;
     }
-    // The fewest edges more, then the best shape.
+    // Prefer the fewest additional edges, then the best shape.
     for n in mask.count_ones() + 1..6 {
         let larger = (mask + 1..FULL).filter(|m| m & mask == mask && m.count_ones() == n);
         let worst = |m: u8| (m, finder.cut(leaf, m).1.worst);
@@ -228,7 +237,7 @@ fn goal(finder: &mut Finder, leaf: u32, mask: u8) -> Goal {
 }
 
 impl Forest {
-    /// Refuses to grow beyond all bounds.
+    /// Rejects growth beyond the limit.
     fn check_room(&self) -> Result<()> {
         if self.nodes.len() < self.most_nodes {
             return Ok(());
@@ -237,7 +246,7 @@ impl Forest {
             .remedy("mark fewer tets, or limit the generation"))
     }
 
-    /// Nothing is divided, and no edge is split but those that stay so.
+    /// Resets the state: nothing is divided, and no edge is split except the pinned ones.
     fn begin_anew(&mut self) {
         self.is_split.fill(false);
         for &edge in &self.pinned {
@@ -253,9 +262,9 @@ impl Forest {
         self.edges_of.reserve(8 * n_new);
     }
 
-    /// Of each tet that is divided the first of its eight, unless all of them are divided.
+    /// For each divided tet the first of its eight parts, unless all of these are divided.
     fn eights(&self) -> Vec<u32> {
-        // Behind the roots are eight of one parent each time.
+        // The roots are followed by groups of eight with a common parent.
         let eights = (self.n_roots as u32..self.nodes.len() as u32).step_by(8);
         let is_there = |first: &u32| {
             let parts = *first as usize..*first as usize + 8;
@@ -265,7 +274,8 @@ impl Forest {
         eights.filter(is_there).collect()
     }
 
-    /// Whether an edge of eight is split. Those at the corners have all of them but the diagonal, which is the first edge of the first inside.
+    /// Whether an edge of a group of eight is split. The corner parts have all edges but the diagonal, which
+    /// is the first edge of the first inner part.
     #[inline]
     fn is_any_split_of(&self, eight: u32) -> bool {
         let first = eight as usize;
@@ -278,8 +288,8 @@ impl Forest {
         is_any
     }
 
-    /// Whether a tet cannot but be divided: all its edges are split, or one that only appears when it is divided: half of a split edge, or one between the middles of
-    /// two edges of a facet.
+    /// Whether a tet must be divided: all its edges are split, or one is split that exists only when it is
+    /// divided, namely half of a split edge, or an edge between the middles of two edges of a facet.
     fn is_to_be_divided(&self, leaf: u32, mask: u8) -> bool {
         if mask == FULL {
             return true;
@@ -294,7 +304,8 @@ impl Forest {
                 }
             }
         }
-        // Only a tet that is divided has edges within a facet, and that splits all three around, unless these are edges of roots.
+        // Only a divided tet has edges within a facet, which requires all three edges around to be split,
+        // unless the inner edges are edges of roots.
         let least = if self.pinned.is_empty() { 3 } else { 2 };
         for &[a, b, c] in &FACET_EDGES {
             if (mask >> a & 1) + (mask >> b & 1) + (mask >> c & 1) < least {

@@ -1,7 +1,8 @@
-//! A tet divided into eight: which of its parts each of them has.
+//! Divides a tet into eight, and finds the edges of each part.
 //!
-//! The parts are numbered, so that a table says for each of the three ways which ones make which tet: the halves of edge `e` at its first and second end are `2e` and
-//! `2e + 1`; the edge within facet `f` opposite its middle `k` is `12 + 3f + k`; the diagonal is the last.
+//! The edges of the parts are numbered, and a table gives for each of the three ways which edges belong to
+//! which part: the halves of edge `e` at its first and second end are `2e` and `2e + 1`; the edge within
+//! facet `f` opposite its middle `k` is `12 + 3f + k`; the diagonal comes last.
 
 use std::sync::OnceLock;
 
@@ -12,16 +13,16 @@ use crate::geometry::tet::EDGES;
 
 const DIAGONAL: usize = 24;
 
-/// One of eight.
+/// One of the eight parts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Eighth {
     /// Local vertices: corners, then middles.
     vertices: [u8; 4],
-    /// Parts.
+    /// Numbers of the edges, as above.
     edges: [u8; 6],
 }
 
-/// The eight of each way.
+/// The eight parts of each way.
 fn eighths(way: usize) -> &'static [Eighth; 8] {
     static TABLE: OnceLock<[[Eighth; 8]; 3]> = OnceLock::new();
     &TABLE.get_or_init(|| {
@@ -37,7 +38,7 @@ fn eighths(way: usize) -> &'static [Eighth; 8] {
     })[way]
 }
 
-/// The part between two local vertices.
+/// The number of the edge between any two local vertices.
 fn parts_between() -> [[u8; 10]; 10] {
     let mut part_of = [[DIAGONAL as u8; 10]; 10];
     let mut put = |i: usize, j: usize, part: usize| {
@@ -56,7 +57,8 @@ fn parts_between() -> [[u8; 10]; 10] {
 }
 
 impl Forest {
-    /// Divides a tet into eight in one of the three ways, and gives the first; which it may have been before.
+    /// Divides a tet into eight in one of the three ways, unless it was divided before; returns the first
+    /// part.
     pub(in crate::refine) fn divide(&mut self, node: u32, way: usize) -> u32 {
         self.states[node as usize].is_divided = true;
         let Node { vertices, first_child, shape, .. } = self.nodes[node as usize];
@@ -95,7 +97,7 @@ impl Forest {
         first
     }
 
-    /// All but the diagonal.
+    /// The edges of the parts, except for the diagonal.
     fn parts(&mut self, edges: &[u32; 6], local: &[u32; 10]) -> [u32; DIAGONAL + 1] {
         let mut parts = [NONE; DIAGONAL + 1];
         for (e, [i, _]) in EDGES.into_iter().enumerate() {

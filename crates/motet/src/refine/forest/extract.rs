@@ -1,4 +1,5 @@
-//! The mesh of a closed forest: tets, triangles, lines, edges that stay, and vertices in an order that follows from what is divided alone.
+//! The mesh of a closed forest: tets, triangles, lines, fixed edges, and vertices in an order that depends
+//! only on what is divided.
 
 use super::close::Cut;
 use super::patterns::{self, patterns};
@@ -7,22 +8,22 @@ use crate::base::{Error, Point, Result, TetId, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::mesh::TetMesh;
 
-/// The mesh, and what its things are in the forest.
+/// A mesh, and the counterparts of its vertices and cells in the forest or the first mesh.
 #[derive(Clone, Debug, Default)]
 pub(in crate::refine) struct Extracted {
     pub(in crate::refine) mesh: TetMesh,
-    /// Of each vertex, the one of the forest.
+    /// For each vertex, its id in the forest.
     pub(in crate::refine) vertices: Vec<u32>,
-    /// Of each tet, the one of the forest that it is, or a piece of.
+    /// For each tet, the tet of the forest that it is, or is a piece of.
     pub(in crate::refine) nodes: Vec<u32>,
-    /// Of each triangle, the one of the first mesh that it is a part of.
+    /// For each triangle, the triangle of the first mesh that it is a part of.
     pub(in crate::refine) triangles: Vec<u32>,
-    /// Of each line, the one of the first mesh that it is a part of.
+    /// For each line, the line of the first mesh that it is a part of.
     pub(in crate::refine) lines: Vec<u32>,
 }
 
 impl Extracted {
-    /// Of each vertex of a forest of so many, its place in the mesh; [`NONE`] for those that are not in it.
+    /// For each of the `n` vertices of the forest, its number in the mesh; [`NONE`] if it is not in the mesh.
     pub(in crate::refine) fn numbers(&self, n: usize) -> Vec<u32> {
         let mut numbers = vec![NONE; n];
         self.vertices.iter().zip(0..).for_each(|(&v, number)| numbers[v as usize] = number);
@@ -30,10 +31,11 @@ impl Extracted {
     }
 }
 
-/// `points` are those of the vertices of the forest that were in the mesh before, which `before` lists.
+/// Extracts the mesh. `points` holds the positions of forest vertices that were in the mesh before; `before`
+/// lists these.
 ///
 /// # Errors
-/// When the mesh would have more tets or vertices than ids.
+/// When the mesh would have more tets or vertices than there are ids.
 pub(in crate::refine) fn extract(
     forest: &Forest,
     first: &TetMesh,
@@ -96,7 +98,7 @@ pub(in crate::refine) fn extract(
     Ok(out)
 }
 
-/// What a tet that is cut is cut into.
+/// The pieces of a cut tet.
 fn pieces(cut: &Cut) -> &'static [[u8; 4]] {
     &patterns(cut.goal.mask, cut.goal.cuts)[usize::from(cut.goal.way)]
 }
@@ -106,10 +108,11 @@ fn n_tets(forest: &Forest, cuts: &[Cut]) -> usize {
     forest.n_roots + 7 * n_divided + cuts.iter().map(|cut| pieces(cut).len() - 1).sum::<usize>()
 }
 
-/// As a number: none yet, but the mesh had the vertex before.
+/// A number that means: none yet, but the vertex was in the mesh before.
 const WAS_THERE: u32 = NONE - 1;
 
-/// The numbers of vertices: those of the first mesh as they were, then each as a tet has it first.
+/// The numbers of vertices: those of the first mesh unchanged, then the others in the order in which tets use
+/// them.
 struct Numbers<'a> {
     forest: &'a Forest,
     known: &'a [Point],
@@ -145,7 +148,7 @@ impl<'a> Numbers<'a> {
         VertexId(number)
     }
 
-    /// A tet; the first two vertices are exchanged where it is to be turned, after they were numbered.
+    /// Returns a tet; if it is turned, its first two vertices are exchanged after numbering.
     #[inline]
     fn tet(&mut self, vertices: [u32; 4], is_turned: bool) -> [VertexId; 4] {
         let mut tet = [VertexId(NONE); 4];
@@ -158,7 +161,7 @@ impl<'a> Numbers<'a> {
         tet
     }
 
-    /// Where a vertex is: a new one is in the middle of its edge as it is now.
+    /// The position of a vertex; a new one lies in the middle of its edge at current positions.
     fn place(&self, v: u32) -> Point {
         let i = v as usize;
         match self.number[i] {
@@ -172,13 +175,13 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// The parts of a triangle of the first mesh.
+    /// Adds the parts of a triangle of the first mesh.
     fn triangle(&mut self, corners: [u32; 3], out: &mut Vec<[VertexId; 3]>) {
         let edges = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| self.forest.root_edge([corners[i], corners[j]]));
         self.part(corners, edges.map(|edge| edge.unwrap_or(NONE)), out);
     }
 
-    /// Edge `k` is opposite corner `k`.
+    /// Adds the parts of a triangle; edge `k` is opposite corner `k`.
     fn part(&mut self, corners: [u32; 3], edges: [u32; 3], out: &mut Vec<[VertexId; 3]>) {
         let forest = self.forest;
         let middles = edges.map(|edge| forest.split_middle(edge));
@@ -197,7 +200,7 @@ impl<'a> Numbers<'a> {
         out.extend(parts.into_iter().map(|part| part.map(|v| self.of(v))));
     }
 
-    /// The parts of an edge of the first mesh.
+    /// Adds the parts of an edge of the first mesh.
     fn edge(&mut self, ends: [u32; 2], out: &mut Vec<[VertexId; 2]>) {
         let edge = self.forest.root_edge(ends).unwrap_or(NONE);
         self.edge_part(ends, edge, out);
@@ -225,7 +228,7 @@ impl Forest {
         local
     }
 
-    /// The vertex in the middle of an edge that is split.
+    /// The vertex in the middle of an edge, if that is split.
     fn split_middle(&self, edge: u32) -> Option<u32> {
         (edge != NONE && self.is_split[edge as usize]).then(|| self.edges[edge as usize].middle)
     }

@@ -1,14 +1,15 @@
-//! The edges within facets that were divided, by the middles of the facet's edges.
+//! The edges within divided facets, found by the middles of the facet's edges.
 //!
-//! Lists by the first of the three middles, not a hash: tets beside each other are divided one after the other, so what is looked for lies near what was looked for
-//! before, and a list takes half the memory. It has one or two entries, mostly: the facets at an edge share these between their three edges.
+//! Linked lists by the first of the three middles rather than a hash map: neighbouring tets are divided one
+//! after the other, so successive queries are close in memory, and lists take half the space. They mostly
+//! have one or two entries: the facets at an edge are distributed over their three edges.
 
 use super::NONE;
 
-/// Which facets there ever were.
+/// All facets that were ever divided.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Facets {
-    /// Of each vertex, the facet added last of which it is the first middle.
+    /// For each vertex, the facet added last whose first middle it is.
     last: Vec<u32>,
     all: Vec<Facet>,
 }
@@ -16,18 +17,18 @@ pub(super) struct Facets {
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     second: u32,
-    /// The first of three edges that follow each other: each is opposite the middle at its place.
+    /// The first of three consecutive edges, each opposite the middle of the same rank.
     edges: u32,
-    /// The one added before with the same first middle.
+    /// The facet added before with the same first middle.
     before: u32,
 }
 
-/// Three middles in rising order, the first two of which name the facet.
+/// Three middles in ascending order, the first two of which identify the facet.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Middles {
-    /// The vertices.
+    /// The vertices, in ascending order.
     pub(super) rising: [u32; 3],
-    /// The place that each had.
+    /// The original position of each.
     order: [usize; 3],
 }
 
@@ -43,7 +44,7 @@ impl Middles {
         Self { rising: [middles[order[0]], middles[order[1]], middles[order[2]]], order }
     }
 
-    /// Edges that follow each other, each in the place of the middle that it is opposite to.
+    /// Puts three consecutive edges in the order of the middles they are opposite to.
     #[inline]
     pub(super) fn named(&self, first: u32) -> [u32; 3] {
         let mut edges = [NONE; 3];
@@ -69,7 +70,7 @@ impl Facets {
         None
     }
 
-    /// Adds one that is not there.
+    /// Adds a facet that is not there yet.
     pub(super) fn add(&mut self, middles: &Middles, edges: u32) {
         let [first, second, _] = middles.rising;
         let first = first as usize;
@@ -80,7 +81,7 @@ impl Facets {
         self.last[first] = (self.all.len() - 1) as u32;
     }
 
-    /// Bytes.
+    /// The size in bytes.
     pub(super) fn memory(&self) -> usize {
         size_of_val(&self.last[..]) + size_of_val(&self.all[..])
     }

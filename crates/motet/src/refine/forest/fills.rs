@@ -1,6 +1,6 @@
-//! How tets are filled best whose edges are split, some or all of them. It follows from the reference and the rule alone, so what was found holds for good; and it
-//! follows from shape, so it is found once for a class: of the instructions for a mesh divided five times towards a point that spared a
-//! fifth.
+//! The best way to fill tets some or all of whose edges are split. It follows from the reference and the rule
+//! alone, so results stay valid; and it follows from the shape, so it is computed once per class. In a mesh
+//! divided five times towards a point that saved a fifth of the instructions.
 
 use hashbrown::HashMap;
 
@@ -18,18 +18,18 @@ use crate::refine::Rule;
 /// How tets of a class are cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Fill {
-    /// Which of the ways.
+    /// The index of the pattern.
     pub(super) way: u8,
-    /// The EAS of the worst part; minus infinity where there is no way.
+    /// The EAS of the worst piece; minus infinity if there is no way.
     pub(super) worst: f64,
 }
 
-/// What is known.
+/// What is known so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fills {
-    /// By class, edges that are split, and cuts of facets.
+    /// Cuts, keyed by class, split edges and cuts of facets.
     cuts: HashMap<u64, Fill>,
-    /// Of classes none of which was divided yet.
+    /// Ways to divide classes none of whose tets was divided yet.
     divisions: HashMap<u32, Way>,
 }
 
@@ -39,14 +39,14 @@ impl Fills {
         self.divisions.extend(found.divisions);
     }
 
-    /// Bytes: an entry and a byte beside it.
+    /// The size in bytes: an entry of a hash map takes one byte more.
     pub(super) fn memory(&self) -> usize {
         self.cuts.capacity() * (size_of::<(u64, Fill)>() + 1)
             + self.divisions.capacity() * (size_of::<(u32, Way)>() + 1)
     }
 }
 
-/// Finds what is not known yet.
+/// Computes what is not known yet.
 pub(super) struct Finder<'a> {
     pub(super) forest: &'a Forest,
     pub(super) need: Need,
@@ -58,12 +58,12 @@ impl<'a> Finder<'a> {
         Self { forest, need, found: Fills::default() }
     }
 
-    /// What was found.
+    /// Returns what was computed.
     pub(super) fn into_found(self) -> Fills {
         self.found
     }
 
-    /// How the facets of a tet are cut, and how it is filled then.
+    /// How the facets of a tet are cut, and how it is then filled.
     pub(super) fn cut(&mut self, node: u32, mask: u8) -> (u8, Fill) {
         let forest = self.forest;
         let cuts = forest.cuts(node, mask);
@@ -74,7 +74,7 @@ impl<'a> Finder<'a> {
         (cuts, known.copied().unwrap_or_else(|| *self.found.cuts.entry(key).or_insert_with(find)))
     }
 
-    /// The worst EAS that dividing tets of a class leaves.
+    /// The worst EAS after dividing tets of a class.
     pub(super) fn divided(&mut self, class: u32) -> f64 {
         let forest = self.forest;
         let whole = forest.classes[class as usize].eas;
@@ -88,7 +88,7 @@ impl<'a> Finder<'a> {
 }
 
 impl Forest {
-    /// Which way to divide tets of a class.
+    /// Decides which way tets of a class are divided.
     pub(super) fn decide(&mut self, class: u32, need: Need) -> usize {
         if let Some(way) = self.classes[class as usize].best {
             return usize::from(way);
@@ -111,7 +111,7 @@ fn best_division(forest: &Forest, class: u32, need: Need) -> Way {
     }
 }
 
-/// Of all ways to fill a tet with these edges split the one whose worst tet is best.
+/// Among all ways to fill a tet with these edges split, the one whose worst tet is best.
 fn best_cut(places: &[Point; 10], mask: u8, cuts: u8) -> Fill {
     let mut best = Fill { way: 0, worst: f64::NEG_INFINITY };
     for (tets, way) in patterns(mask, cuts).iter().zip(0..) {
@@ -129,9 +129,10 @@ fn best_cut(places: &[Point; 10], mask: u8, cuts: u8) -> Fill {
     best
 }
 
-/// Which of the three ways to divide a tet of this EAS into eight: along the shortest diagonal of the octahedron (Zhang 1995, *Successive
-/// subdivisions of tetrahedra and multigrid methods on tetrahedral meshes*), unless one of the eight, or of theirs, is then below
-/// the floor: then along the one that leaves the best.
+/// Which of the three ways to divide a tet of the given EAS into eight: along the shortest diagonal of the
+/// octahedron (Zhang 1995, *Successive subdivisions of tetrahedra and multigrid methods on tetrahedral
+/// meshes*), unless one of the eight, or of their parts, would be below the floor: then along the diagonal
+/// with the best parts.
 fn best_way(places: &[Point; 10], whole: f64, floor: f64) -> Way {
     let length = |place: usize| {
         let [p, q] = ends(place);
@@ -156,13 +157,13 @@ fn best_way(places: &[Point; 10], whole: f64, floor: f64) -> Way {
     best.1
 }
 
-/// The worst of the eight and of so many generations below, each along its best diagonal.
+/// The worst EAS of the eight parts and of this many generations below, each along its best diagonal.
 fn worst_below(places: &[Point; 10], way: &Way, whole: f64, generations: usize) -> f64 {
     let mut worst = way.worst(whole);
     if generations == 0 {
         return worst;
     }
-    // Those at the corners have the shape of the whole.
+    // Corner parts have the shape of the whole.
     for (inner, shape) in way.inner.into_iter().enumerate() {
         let places = with_middles(corners_at(places, inner_part(way.place, inner)));
         let below = |place| worst_below(&places, &Way::new(&places, place), shape, generations - 1);
@@ -175,7 +176,7 @@ fn worst_below(places: &[Point; 10], way: &Way, whole: f64, generations: usize) 
 #[derive(Clone, Copy, Debug)]
 struct Way {
     place: usize,
-    /// The EAS of the parts inside: the others have the shape of the whole.
+    /// The EAS of the inner parts; the others have the shape of the whole.
     inner: [f64; 2],
 }
 

@@ -1,18 +1,19 @@
-//! Tets, the tets they are divided into, and the edges that these share; and how all of it is brought to fit.
+//! Tets, the tets they are divided into, and the edges these share; and how all of it is made conforming.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | know | this, `facets` | parents, children, edges and facets are remembered |
-//! | divide | `divide`, `eight` | the eight, and which edges each of them has |
-//! | shapes | `classes` | few tets have shapes of their own; what follows from the shape is found once |
-//! | fit | `patterns` | what is left between divided and undivided tets is cut: all ways to do so, from a table |
-//! | choose a way | `fills` | of these the one whose worst part is best; a tet is divided along its shortest diagonal, mostly |
-//! | Bey's rule | `bey` | another diagonal, for no more than three shapes |
-//! | close | `close` | cuts that would be badly shaped get more split edges, or the tet is divided, too: sweeps until nothing changes |
-//! | give out | `extract` | the mesh, with the triangles of patches and where everything came from |
+//! | store | this, `facets` | parents, children, edges and facets |
+//! | divide | `divide`, `eight` | the eight parts, and which edges each of them has |
+//! | shapes | `classes` | few tets have shapes of their own; what follows from the shape is computed once |
+//! | fit | `patterns` | cuts of the tets between divided and undivided ones: all ways to do so, from a table |
+//! | choose a way | `fills` | the way whose worst part is best; a tet is mostly divided along its shortest diagonal |
+//! | Bey's rule | `bey` | another diagonal, for at most three shapes |
+//! | close | `close` | where cuts would be badly shaped, more edges are split or the tet is divided, too: sweeps until nothing changes |
+//! | extract | `extract` | the mesh, with the triangles of patches and the origin of everything |
 //!
-//! Shapes are those of the *reference*: the mesh as it was when its tets became roots. All that is decided about a division is decided there, so
-//! motion changes nothing of it, and the same division asked for again comes out the same.
+//! Shapes are those of the *reference*: the mesh as it was when its tets became roots. All decisions about a
+//! division are made there, so motion does not change them, and the same division requested again gives the
+//! same result.
 
 mod bey;
 mod classes;
@@ -38,22 +39,24 @@ use crate::base::Point;
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{add, dot, scale, sub};
 
-/// As an id: none.
+/// An id that means: none.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// The most divisions one in another: what a way down of 64 bits can tell, and far beyond what coordinates can.
+/// The largest depth of division: what a path of 64 bits can hold, and far beyond the resolution of
+/// coordinates.
 pub(super) const DEEPEST: u8 = 20;
 
-/// No more tets than this, so that edges, which are a fifth more, have ids, and classes with a bit to spare.
+/// The largest number of tets of a forest: edges, about a fifth more, still have ids, and ids of classes one
+/// bit to spare.
 pub(super) const MOST_NODES: usize = 2_000_000_000;
 
 /// An edge of tets of some generation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
     pub(super) ends: [u32; 2],
-    /// The vertex in its middle, where there ever was one.
+    /// The vertex in its middle, or [`NONE`] if it was never split.
     pub(super) middle: u32,
-    /// The halves, each at its end, where there are any.
+    /// The halves, one at each end, or [`NONE`].
     pub(super) halves: [u32; 2],
 }
 
@@ -62,54 +65,55 @@ pub(super) struct Edge {
 pub(super) struct Node {
     pub(super) vertices: [u32; 4],
     pub(super) parent: u32,
-    /// The first of the eight, which follow each other, where there ever were some.
+    /// The first of its eight parts, which are consecutive; [`NONE`] if it was never divided.
     pub(super) first_child: u32,
     pub(super) shape: Shape,
 }
 
-/// What changes of a tet; apart from the rest, since all of it is looked at each time.
+/// The changing state of a tet, stored separately because all of it is scanned in every sweep.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     pub(super) generation: u8,
-    /// Someone wants it divided.
+    /// Whether its division is requested.
     pub(super) is_asked: bool,
-    /// It is divided into eight now.
+    /// Whether it is currently divided into eight.
     pub(super) is_divided: bool,
-    /// It is cut to fit its neighbours now.
+    /// Whether it is currently cut to fit its neighbours.
     pub(super) is_cut: bool,
 }
 
-/// The whole of it.
+/// All tets, edges and vertices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forest {
-    /// Of each vertex, where it is in the reference.
+    /// For each vertex, its position in the reference.
     pub(super) reference: Vec<Point>,
-    /// The edge in whose middle a vertex is, for those after the first mesh's.
+    /// For each vertex that is not of the first mesh, the edge in whose middle it lies.
     pub(super) origin: Vec<u32>,
     pub(super) edges: Vec<Edge>,
-    /// Of each edge, whether it is split now; apart from the edges, since it is read most.
+    /// For each edge, whether it is currently split; stored separately because it is read most.
     pub(super) is_split: Vec<bool>,
     pub(super) nodes: Vec<Node>,
     pub(super) states: Vec<State>,
-    /// Of each tet, its edges.
+    /// For each tet, its edges.
     pub(super) edges_of: Vec<[u32; 6]>,
     pub(super) n_roots: usize,
     pub(super) n_first_vertices: usize,
-    /// No more tets may be divided once there are so many.
+    /// No tet is divided once there are this many.
     pub(super) most_nodes: usize,
-    /// Edges that stay split, since a root has a vertex in their middle.
+    /// Edges that stay split because a root has a vertex in their middle.
     pub(super) pinned: Vec<u32>,
     /// The edges of roots, by their ends.
     of_roots: HashMap<[u32; 2], u32>,
-    /// The three edges between the middles of a facet's edges, see [`Self::inner_edges`].
+    /// The three edges between the middles of a facet's edges; see [`Self::inner_edges`].
     of_facets: Facets,
-    /// What shapes there are: first those of the roots.
+    /// The classes of shapes: first those of the roots.
     pub(super) classes: Vec<Class>,
     fills: Fills,
 }
 
 impl Forest {
-    /// Every tet is a root, numbered in either way; with each comes whether the mesh has it the other way round.
+    /// Makes a root of every tet, in either orientation; the flag says whether the mesh has it in the
+    /// opposite one.
     pub(super) fn new(points: &[Point], tets: impl ExactSizeIterator<Item = ([u32; 4], bool)>) -> Self {
         let n_roots = tets.len();
         let mut forest = Self {
@@ -139,14 +143,14 @@ impl Forest {
         self.of_roots.get(&[u.min(v), u.max(v)]).copied()
     }
 
-    /// The same, a new one if there is none.
+    /// The edge between two vertices of the first mesh; a new one if there is none.
     fn make_root_edge(&mut self, [u, v]: [u32; 2]) -> u32 {
         let ends = [u.min(v), u.max(v)];
         *self.of_roots.entry(ends).or_insert_with(|| push_edge(&mut self.edges, &mut self.is_split, ends))
     }
 
-    /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by roots: edge `k` is that
-    /// opposite middle `k`, or [`NONE`].
+    /// The edges within a facet between the middles of its edges, if it was ever divided, by tets here or by
+    /// roots: edge `k` is opposite middle `k`, or [`NONE`].
     pub(super) fn inner_edges(&self, middles: [u32; 3]) -> Option<[u32; 3]> {
         let middles = Middles::new(middles);
         let first = self.of_facets.get(&middles);
@@ -156,7 +160,8 @@ impl Forest {
         Some(self.or_root_edges(&middles, first.map_or([NONE; 3], |first| middles.named(first))))
     }
 
-    /// The same, new ones if there are none.
+    /// The edges within a facet between the middles of its edges, as for [`Self::inner_edges`]; new ones if
+    /// there are none.
     #[inline]
     pub(super) fn make_inner_edges(&mut self, middles: [u32; 3]) -> [u32; 3] {
         let middles = Middles::new(middles);
@@ -171,7 +176,7 @@ impl Forest {
         self.or_root_edges(&middles, middles.named(first))
     }
 
-    /// Puts edges of roots in place of those between the same two of three middles.
+    /// Replaces edges between two of three middles by edges of roots, where there are such.
     #[inline]
     fn or_root_edges(&self, middles: &Middles, edges: [u32; 3]) -> [u32; 3] {
         let are_of_roots = (middles.rising[1] as usize) < self.n_first_vertices;
@@ -189,14 +194,15 @@ impl Forest {
         edges
     }
 
-    /// The edge of a root between two vertices; without looking where one of them is of no root, as all are that divisions made, mostly.
+    /// The edge of a root between two vertices. Returns at once if a vertex belongs to no root, the usual
+    /// case for vertices made by divisions.
     #[inline]
     fn known_edge(&self, ends: [u32; 2]) -> Option<u32> {
         let are_of_roots = ends.iter().all(|v| (*v as usize) < self.n_first_vertices);
         if are_of_roots { self.root_edge(ends) } else { None }
     }
 
-    /// That one, or a new one.
+    /// The edge of a root between two vertices, or a new edge.
     #[inline]
     pub(super) fn make_edge(&mut self, ends: [u32; 2]) -> u32 {
         match self.known_edge(ends) {
@@ -209,13 +215,13 @@ impl Forest {
     pub(super) fn pin(&mut self) {
         let is_pinned = |edge: &u32| (self.edges[*edge as usize].middle as usize) < self.n_first_vertices;
         self.pinned = (0..self.edges.len() as u32).filter(is_pinned).collect();
-        // Their halves may be edges of roots, whether a tet here was divided or not.
+        // Their halves may be edges of roots, whether or not a tet here was divided.
         for i in 0..self.pinned.len() {
             self.halves(self.pinned[i]);
         }
     }
 
-    /// The vertex in the middle of an edge.
+    /// The vertex in the middle of an edge; a new one if there is none.
     #[inline]
     pub(super) fn middle(&mut self, edge: u32) -> u32 {
         let Edge { ends: [u, v], middle, .. } = self.edges[edge as usize];
@@ -241,14 +247,14 @@ impl Forest {
         halves
     }
 
-    /// The places of a tet's corners.
+    /// The positions of a tet's corners.
     pub(super) fn corners(&self, node: u32) -> [Point; 4] {
         let [a, b, c, d] = self.nodes[node as usize].vertices;
         let place = |v: u32| self.reference[v as usize];
         [place(a), place(b), place(c), place(d)]
     }
 
-    /// Which edges of a tet are split.
+    /// Which edges of a tet are split, as bits.
     #[inline]
     pub(super) fn mask(&self, node: u32) -> u8 {
         let mut mask = 0;
@@ -258,8 +264,8 @@ impl Forest {
         mask
     }
 
-    /// Whether the facets that have two split edges are cut from the middle of the second, by bits: from that of the longer one, as both tets at a
-    /// facet see it.
+    /// Whether the facets with two split edges are cut from the middle of the second, as bits. The cut starts
+    /// from the middle of the longer edge, so both tets at a facet agree.
     pub(super) fn cuts(&self, node: u32, mask: u8) -> u8 {
         (0..4).fold(0, |cuts, facet| {
             let (split, n) = patterns::split_edges(facet, mask);
@@ -277,7 +283,8 @@ impl Forest {
         }
     }
 
-    /// Which of two edges that share a vertex is the longer one; if they are alike, the one whose other end comes later.
+    /// Which of two edges that share a vertex is longer; ties are broken by the coordinates, then the id, of
+    /// the other end.
     fn is_longer(&self, one: u32, other: u32) -> bool {
         let [[a, b], [c, d]] = [one, other].map(|edge| self.edges[edge as usize].ends);
         let place = |v: u32| self.reference[v as usize];
@@ -291,9 +298,9 @@ impl Forest {
         first > second || first == second && (place(p), p) > (place(q), q)
     }
 
-    /// Bytes.
+    /// The size in bytes.
     pub(super) fn memory(&self) -> usize {
-        // An entry and a byte beside it.
+        // An entry of a hash map takes one byte more.
         let named = self.of_roots.capacity() * (size_of::<(u64, u32)>() + 1) + self.fills.memory();
         size_of_val(&self.reference[..])
             + size_of_val(&self.origin[..])

@@ -1,9 +1,11 @@
 //! All ways to divide a tet whose edges are partly split, without a vertex inside.
 //!
-//! Local vertices 0 to 3 are the corners, and 4 + e is the middle of edge e. Which edges are split is a mask of six bits; a facet with two
-//! of them is cut into a triangle and a quadrilateral, and which way that is cut is a bit for each facet. Given both, the surface of the tet is
-//! known, and what fills it is found by trying: facet by facet, any vertex in front of it. Positive tets whose facets match in pairs but for
-//! the surface fill the tet once everywhere: the count of tets around a place does not change across a facet.
+//! Local vertices 0 to 3 are the corners, and 4 + e is the middle of edge e. Which edges are split is a mask
+//! of six bits. A facet with two split edges is cut into a triangle and a quadrilateral, and one bit per
+//! facet says along which diagonal the latter is cut. Both together determine the surface of the tet, and a
+//! search finds what fills it: facet by facet, try any vertex in front of it. Positive tets whose facets
+//! match in pairs, except on the surface, fill the tet exactly once everywhere, since the number of tets
+//! around a point does not change across a facet.
 
 use std::sync::OnceLock;
 
@@ -12,23 +14,24 @@ use crate::geometry::tet::{EDGES, FACETS};
 /// All edges split.
 pub(super) const FULL: u8 = 0b11_1111;
 
-/// The tets of one way, by their local vertices; positive where the tet is.
+/// The tets of one way, by local vertices; positive if the whole tet is.
 pub(in crate::refine) type Pattern = Vec<[u8; 4]>;
 
 /// The edges of facet `i`: its corners are `FACETS[i]`, and edge `k` is opposite corner `k` of them.
 pub(in crate::refine) const FACET_EDGES: [[usize; 3]; 4] = facet_edges();
 
-/// All ways to fill a tet with these edges split, where facet `i` is cut from the middle of the second of its two split edges if bit `i` of
-/// `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. Mostly one or two; none for 14 of them, in which the cuts go round.
-/// Where all edges are split, [`eight`](super::eight) names them in another order.
+/// All ways to fill a tet with these edges split. Facet `i` is cut from the middle of the second of its two
+/// split edges if bit `i` of `cuts` is set, else of the first, in the order of [`FACET_EDGES`]. There are
+/// mostly one or two; for 14 combinations, in which the cuts form a cycle, there are none. Where all edges
+/// are split, [`eight`](super::eight) has the same ways in another order.
 pub(in crate::refine) fn patterns(mask: u8, cuts: u8) -> &'static [Pattern] {
-    // Each is searched for when it is asked for first: all of them take as long as refining a small mesh.
+    // Each entry is computed on first use: computing all of them takes as long as refining a small mesh.
     static TABLE: [OnceLock<Vec<Pattern>>; 64 * 16] = [const { OnceLock::new() }; 64 * 16];
     let (mask, cuts) = (mask & FULL, cuts & 15);
     TABLE[usize::from(mask) * 16 + usize::from(cuts)].get_or_init(|| all_ways(mask, cuts))
 }
 
-/// The split edges of a facet, in the order of [`FACET_EDGES`], and how many they are.
+/// The split edges of a facet, in the order of [`FACET_EDGES`], and their number.
 pub(super) fn split_edges(facet: usize, mask: u8) -> ([usize; 3], usize) {
     let (mut edges, mut n) = ([0; 3], 0);
     for edge in FACET_EDGES[facet] {
@@ -62,8 +65,9 @@ const fn facet_edges() -> [[usize; 3]; 4] {
     out
 }
 
-/// Triangles that a triangle is cut into, counter-clockwise as it is. `middles[k]` is that of the edge opposite corner `k`, where it is split; with
-/// two of them the quadrilateral is cut from the middle of the second split edge where `second` says so.
+/// Cuts a triangle into triangles of the same orientation. `middles[k]` is the middle of the edge opposite
+/// corner `k`, if that is split. With two middles, the quadrilateral is cut from that of the second split
+/// edge if `second` is true.
 pub(super) fn cut<T: Copy>(corners: [T; 3], middles: [Option<T>; 3], second: bool) -> Vec<[T; 3]> {
     let turned = |k: usize| [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]];
     match middles {
@@ -81,10 +85,10 @@ pub(super) fn cut<T: Copy>(corners: [T; 3], middles: [Option<T>; 3], second: boo
             }
             let whole = middles.iter().position(Option::is_none).unwrap_or(0);
             let [apex, b, c] = turned(whole);
-            // Opposite b lies the edge from c to the apex, opposite c the one from the apex to b.
+            // Opposite b is the edge from c to the apex, opposite c the one from the apex to b.
             let (k_b, k_c) = ((whole + 1) % 3, (whole + 2) % 3);
             let (Some(on_c), Some(on_b)) = (middles[k_b], middles[k_c]) else { return vec![corners] };
-            // The second split edge is that of the larger place.
+            // The second split edge is the one with the larger index.
             let from_on_c = (k_b > k_c) == second;
             let mut out = vec![[apex, on_b, on_c]];
             out.extend(if from_on_c {
@@ -97,7 +101,7 @@ pub(super) fn cut<T: Copy>(corners: [T; 3], middles: [Option<T>; 3], second: boo
     }
 }
 
-/// The triangles of the surface, named as seen from outside.
+/// The triangles of the surface, as seen from outside.
 fn surface(mask: u8, cuts: u8) -> Vec<[u8; 3]> {
     (0..4)
         .flat_map(|facet| {
@@ -110,7 +114,7 @@ fn surface(mask: u8, cuts: u8) -> Vec<[u8; 3]> {
 }
 
 fn all_ways(mask: u8, cuts: u8) -> Vec<Pattern> {
-    // A cut that no facet needs changes nothing.
+    // A bit for a facet that is not cut changes nothing.
     if (0..4).any(|facet| cuts >> facet & 1 == 1 && split_edges(facet, mask).1 != 2) {
         return Vec::new();
     }
@@ -121,14 +125,15 @@ fn all_ways(mask: u8, cuts: u8) -> Vec<Pattern> {
 }
 
 struct Search {
-    /// Which local vertices there are.
+    /// Which local vertices exist.
     is_there: [bool; 10],
     tets: Pattern,
     found: Vec<Pattern>,
 }
 
 impl Search {
-    /// Fills what is behind the open triangles, named as seen from outside of it, with so much volume left.
+    /// Fills the space behind the open triangles, which are given as seen from outside of it; `left` is the
+    /// volume left.
     fn fill(&mut self, open: Vec<[u8; 3]>, left: i32) {
         let Some(&[a, b, c]) = open.first() else {
             if left == 0 {
@@ -137,14 +142,16 @@ impl Search {
             return;
         };
         for v in 0..10 {
-            // Seen from outside the triangle runs counter-clockwise, so a positive tet has it the other way round.
+            // Seen from outside the triangle runs counter-clockwise, so a positive tet has it in the opposite
+            // order.
             let tet = [a, c, b, v];
             let volume = volume(tet);
             if !self.is_there[usize::from(v)] || volume <= 0 || volume > left {
                 continue;
             }
             let facets = FACETS.map(|facet| named(facet.map(|i| tet[i])));
-            // What lies on the surface is a part of it, or leads nowhere: without looking at that, the search takes thirteen times as long.
+            // A facet on the surface must be a part of it. Without this check the search takes thirteen times
+            // as long.
             let fits = |seen: &[u8; 3]| {
                 open.contains(seen) || !on_surface(*seen) && !open.contains(&from_beyond(*seen))
             };
@@ -160,7 +167,7 @@ impl Search {
     }
 }
 
-/// A triangle, named from its least vertex on: so it has one name from each side.
+/// Rotates a triangle so that it begins with its least vertex: its unique name from that side.
 fn named([a, b, c]: [u8; 3]) -> [u8; 3] {
     match a.min(b).min(c) {
         least if least == a => [a, b, c],
@@ -169,14 +176,15 @@ fn named([a, b, c]: [u8; 3]) -> [u8; 3] {
     }
 }
 
-/// The name from the other side.
+/// The name of a triangle from the other side.
 fn from_beyond([a, b, c]: [u8; 3]) -> [u8; 3] {
     [a, c, b]
 }
 
 /// Whether three local vertices lie on one facet.
 fn on_surface(triangle: [u8; 3]) -> bool {
-    // The corners whose facets a vertex is off: a corner is off the facet opposite to it, a middle off those opposite to the ends of its edge.
+    // The facets that a vertex does not lie on, named by their opposite corners: a corner is off the facet
+    // opposite to it, a middle off those opposite to the ends of its edge.
     let off = |v: u8| match v {
         0..4 => 1 << v,
         _ => EDGES[usize::from(v) - 4].iter().fold(0, |off, corner| off | 1 << corner),
@@ -184,7 +192,7 @@ fn on_surface(triangle: [u8; 3]) -> bool {
     triangle.iter().fold(0, |all, v| all | off(*v)) != 15u8
 }
 
-/// Twice the corners of a tet of volume 8/6, and of its middles, which are whole numbers.
+/// Twice the coordinates of the corners of a tet of volume 8/6, and of its middles, which are integers.
 fn place(v: u8) -> [i32; 3] {
     const CORNERS: [[i32; 3]; 4] = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]];
     match v {
@@ -196,7 +204,7 @@ fn place(v: u8) -> [i32; 3] {
     }
 }
 
-/// Six times the volume: that of the whole tet is 64.
+/// Six times the volume; that of the whole tet is 64.
 pub(super) fn volume(tet: [u8; 4]) -> i32 {
     let [a, b, c, d] = tet.map(place);
     let sub = |p: [i32; 3]| [0, 1, 2].map(|k| p[k] - a[k]);
@@ -220,7 +228,8 @@ mod tests {
         println!("{} keys: none {}, one {}, two {}, three {}", needed.len(), n(0), n(1), n(2), n(3));
         assert_eq!((needed.len(), n(0)), (239, 14));
         assert_eq!(n(0) + n(1) + n(2) + n(3), 239);
-        // The three diagonals of the octahedron, each with four corners and four tets around the diagonal.
+        // The three diagonals of the octahedron, each with four corner tets and four tets around the
+        // diagonal.
         assert_eq!(patterns(FULL, 0).len(), 3);
         assert!(patterns(FULL, 0).iter().all(|pattern| pattern.len() == 8));
     }

@@ -1,4 +1,4 @@
-//! Which tets cannot come together as before, since what they fitted is no more.
+//! Finds tets that cannot be merged as before because what they fitted to has been removed.
 
 use std::collections::HashSet;
 
@@ -12,10 +12,10 @@ use crate::geometry::tet::{EDGES, FACETS};
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::{NO_TET, tet_neighbors};
 
-/// Below this part of its EAS in the reference, motion has spoilt a tet.
+/// Motion has spoilt a tet if its EAS falls below this fraction of that in the reference.
 const SPOILT: f64 = 0.9;
 
-/// Dissolves what motion has spoilt, so that as a whole it would be worse than any tet of the mesh is, or inverted.
+/// Dissolves knots spoilt by motion: as a whole they would be inverted, or worse than every tet of the mesh.
 pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point], worst: f64) {
     for knot in 0..trees.knots.len() as u32 {
         let vertices: [VertexId; 4] = std::array::from_fn(|i| trees.knots[knot as usize].vertices[i]);
@@ -28,7 +28,8 @@ pub(super) fn misshapen(trees: &mut Trees, reference: &[Point], points: &[Point]
     }
 }
 
-/// Dissolves what has an edge with a middle that a tet of others has without: beside a middle that moved out of the line there is room for that.
+/// Dissolves knots with a split edge that a tet from elsewhere has unsplit: this is possible beside a middle
+/// vertex that has moved off its edge.
 pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     let of_others = mesh.tets.iter().zip(&trees.knot_of).filter(|(_, knot)| **knot == NONE);
     let edges = of_others.flat_map(|(tet, _)| EDGES.map(|[i, j]| rising([tet[i], tet[j]])));
@@ -45,8 +46,8 @@ pub(super) fn bridged(trees: &mut Trees, mesh: &TetMesh) {
     }
 }
 
-/// Dissolves tets of several pieces that meet at a facet, cut by one or two middles, what has no such facet. Such a cut is not a step on the way to a facet divided in four, so
-/// its other side has to be able to take it back.
+/// Dissolves cut tets whose neighbour does not share a facet cut by one or two middles. Such a cut is not a
+/// step towards a facet divided in four, so the tet on the other side must be able to take it back, too.
 pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
     let pairs = meetings(trees, mesh);
     let mut open: Vec<u32> =
@@ -66,7 +67,8 @@ pub(super) fn unmatched(trees: &mut Trees, mesh: &TetMesh) {
     }
 }
 
-/// Each tet of several pieces with each that has the same facet, cut by one or two middles; [`NONE`] where the other side has not. Sorted.
+/// Pairs each cut tet with each tet that shares a facet cut by one or two middles; [`NONE`] if the other side
+/// does not have that facet. Sorted.
 fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(u32, u32)> {
     let neighbors = tet_neighbors(&mesh.tets);
     let mut pairs = Vec::new();
@@ -89,7 +91,8 @@ fn meetings(trees: &Trees, mesh: &TetMesh) -> Vec<(u32, u32)> {
     pairs
 }
 
-/// The corners of the facet of a tet of several pieces that a triangle is a part of, if that is cut by one or two middles; rising.
+/// The corners, in ascending order, of the facet of a cut tet that contains a triangle; `None` unless one or
+/// two of its edges are split.
 fn cut_facet(knot: &Knot, triangle: [VertexId; 3]) -> Option<[VertexId; 3]> {
     let facet = (0..4).find(|&facet| {
         let corners = FACETS[facet].map(|k| knot.vertices[k]);

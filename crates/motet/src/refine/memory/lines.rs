@@ -1,4 +1,4 @@
-//! Brings the lines of a mesh together again, as the edges of its tets come together.
+//! Merges the lines of a mesh again, as the edges of its tets are merged.
 
 use std::collections::BTreeMap;
 
@@ -10,28 +10,28 @@ use crate::base::{Id, Result, VertexId};
 use crate::geometry::tet::EDGES;
 use crate::mesh::TetMesh;
 
-/// Lines as they were.
+/// The lines before division.
 pub(super) struct Gathered {
     pub(super) lines: Vec<[VertexId; 2]>,
     pub(super) labels: Vec<i32>,
-    /// Of each line of the mesh, which of them it is a part of.
+    /// For each line of the mesh, which of these it is a part of.
     pub(super) part_of: Vec<u32>,
 }
 
-/// No edge is halved more often.
+/// No edge is halved more often than this.
 const MOST_HALVINGS: usize = 32;
 
-/// The lines as they were, in the order of their first parts.
+/// Returns the lines before division, in the order of their first parts.
 ///
 /// # Errors
-/// When of an edge that was divided not all parts are lines.
+/// When only some parts of a divided edge are lines.
 pub(super) fn gather(mesh: &TetMesh, trees: &Trees) -> Result<Gathered> {
     let mut gathered = Gathered { lines: Vec::new(), labels: Vec::new(), part_of: Vec::new() };
     if mesh.lines.is_empty() {
         return Ok(gathered);
     }
     let whole_of = whole_edges(trees);
-    // Lines that are there twice over stay apart: of two on one edge the second is a part of the second whole.
+    // Duplicate lines stay apart: of two on one edge, the second is a part of the second whole.
     let mut n_seen: BTreeMap<([VertexId; 2], i32), u32> = BTreeMap::new();
     let mut numbers: BTreeMap<([VertexId; 2], i32, u32), u32> = BTreeMap::new();
     let mut shares: Vec<u64> = Vec::new();
@@ -60,7 +60,7 @@ fn sorted([a, b]: [VertexId; 2]) -> [VertexId; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// For each half of an edge of a whole knot that edge; both with the lower vertex first.
+/// For each half of an edge of a whole knot, that edge; both with the lower vertex first.
 fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
     let mut whole_of = HashMap::new();
     for knot in trees.knots.iter().filter(|knot| knot.is_whole) {
@@ -74,7 +74,8 @@ fn whole_edges(trees: &Trees) -> HashMap<[VertexId; 2], [VertexId; 2]> {
     whole_of
 }
 
-/// The edge that a part lies in, running the same way, and how often it was halved to come to the part.
+/// Returns the undivided edge that a part lies in, in the direction of the part, and how often it was halved
+/// to give the part.
 fn climb(
     mut part: [VertexId; 2],
     whole_of: &HashMap<[VertexId; 2], [VertexId; 2]>,

@@ -1,15 +1,17 @@
-//! What is remembered of a refined mesh outside of this program: a few whole numbers for each tet, so that a later run goes on.
+//! What is stored with a refined mesh outside of this program, a few integers per tet, so that a later run
+//! can continue.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | tell | `tell` | of each tet where it lies in which tet of the first mesh, and which of its vertices is what there |
-//! | gather | `trees` | tets of one origin come together again, where all of them are still there |
-//! | dissolve | `dissolve` | what others have changed, and what cannot fit it any more, starts anew |
-//! | triangles, lines | `triangles`, `lines` | triangles of patches and lines come together as the tets do |
-//! | recall | `recall` | the forest, built as it was |
+//! | tell | `tell` | records for each tet its place in its tet of the first mesh, and the roles of its vertices there |
+//! | gather | `trees` | merges tets of one origin where all of them are still there |
+//! | dissolve | `dissolve` | what others have changed, and what no longer fits it, starts anew |
+//! | triangles, lines | `triangles`, `lines` | triangles of patches and lines are merged as the tets are |
+//! | recall | `recall` | rebuilds the forest |
 //!
-//! A tet that came from elsewhere, such as from remeshing, becomes a root. So do the tets beside it that were divided together with one that is gone. What
-//! these need of the others stays split: whatever is coarsened, the mesh fits.
+//! A tet from elsewhere, such as from remeshing, becomes a root. So do the tets that were divided together
+//! with a removed one. Whatever edges these need split stay split: however far the mesh is coarsened, it
+//! stays conforming.
 
 mod dissolve;
 mod lines;
@@ -22,28 +24,32 @@ use crate::base::{Error, Point, Result};
 use crate::kernel::{Extract, NEW};
 use crate::mesh::TetMesh;
 
-/// As a root: the tet is not known.
+/// A root number that means: not known.
 pub const UNKNOWN: u32 = u32::MAX;
 
-/// What has to be kept with a refined mesh, array by array.
+/// The memory of a refined mesh, array by array.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Memory {
-    /// Of each tet, a number that it shares with the tets that come from the same tet of the first mesh; [`UNKNOWN`] for one that does not come from refinement.
+    /// For each tet, a number shared by all tets of the same tet of the first mesh; [`UNKNOWN`] for a tet
+    /// that does not come from refinement.
     pub roots: Vec<u32>,
-    /// The way down from there: a one, then three bits for each generation that say which of the eight it lies in.
+    /// For each tet, the path down from its root: a one bit, then three bits per generation giving which of
+    /// the eight parts it lies in.
     pub paths: Vec<u64>,
-    /// What its four vertices are in the tet at the end of that way, four bits each, the first in the lowest: 0 to 3 a corner, 4 to 9 the middle of an edge.
+    /// For each tet, the roles of its four vertices in the tet at the end of that path, four bits each, the
+    /// first in the lowest bits: 0 to 3 for a corner, 4 to 9 for the middle of an edge.
     pub pieces: Vec<u16>,
-    /// How many of the divisions on that way, from the first, somebody asked for.
+    /// For each tet, how many of the divisions on that path, from the first on, were requested.
     pub asked: Vec<u8>,
-    /// Of each triangle, which corner its first vertex is in the tet of the first mesh that it is a facet of.
+    /// For each triangle, which corner its first vertex is in the tet of the first mesh of which it is a
+    /// facet.
     pub corners: Vec<u8>,
-    /// Of each vertex, where it was when the mesh was new: that is where shapes are judged.
+    /// For each vertex, its position when the mesh was new, where shapes are judged.
     pub reference: Vec<Point>,
 }
 
 impl Memory {
-    /// That of the mesh that changed by others' hands: tets, triangles and vertices that came are not known.
+    /// The memory after others have changed the mesh: new tets and vertices are unknown.
     #[must_use]
     pub fn after(&self, change: &Extract) -> Self {
         let of_tets = || change.tet_to_old.iter().map(|&old| (old != NEW).then_some(old as usize));
@@ -61,7 +67,7 @@ impl Memory {
         }
     }
 
-    /// Checks that there is an entry for everything.
+    /// Checks that there is an entry for each tet, triangle and point.
     fn check(&self, mesh: &TetMesh) -> Result<()> {
         let n = mesh.tets.len();
         let lengths = [self.roots.len(), self.paths.len(), self.pieces.len(), self.asked.len()];
@@ -72,23 +78,23 @@ impl Memory {
     }
 }
 
-/// The error of a memory that is of another mesh.
+/// The error for a memory that belongs to another mesh.
 fn unfit(why: &str) -> Error {
     Error::input(format!("what is remembered of its refinement does not fit the mesh: {why}"))
         .remedy("forget it: then the mesh as it is counts as the first")
 }
 
-/// Where a way down ends: how many generations.
+/// The generation at which a path ends.
 fn generation(path: u64) -> u32 {
     (63 - path.max(1).leading_zeros()) / 3
 }
 
-/// Which of the eight a way takes at a generation.
+/// Which of the eight parts a path takes at a generation.
 fn step(path: u64, generation_of_path: u32, at: u32) -> usize {
     (path >> (3 * (generation_of_path - 1 - at)) & 7) as usize
 }
 
-/// What the vertices of a tet are in the one that it is a piece of.
+/// The roles of the vertices of a tet in the tet that it is a piece of.
 fn locals(piece: u16) -> [u8; 4] {
     [0, 1, 2, 3].map(|i| (piece >> (4 * i) & 15) as u8)
 }

@@ -1,4 +1,4 @@
-//! Builds the forest again from what was remembered.
+//! Rebuilds the forest from a stored memory.
 
 use super::super::forest::{Extracted, extract};
 use super::super::forest::{Forest, NONE};
@@ -12,12 +12,13 @@ use crate::geometry::quality::eas;
 use crate::mesh::TetMesh;
 
 impl Refinement {
-    /// Goes on with a mesh that was refined before, with what was [kept](Self::memory_to_keep) with it; where it moved since, or tets and vertices were
-    /// changed by others, tets of unknown [roots](Memory::roots) being theirs. Then shapes are judged as the mesh is now, and cuts that fit tets to their neighbours may
-    /// come out another way as soon as anything is divided or taken back.
+    /// Continues with a mesh that was refined before, from the [memory](Self::memory_to_keep) kept with it.
+    /// The mesh may have moved since, and others may have changed tets and vertices; tets with unknown
+    /// [roots](Memory::roots) are theirs. In that case shapes are judged as the mesh is now, and cuts that
+    /// fit tets to their neighbours may change as soon as anything is divided or taken back.
     ///
     /// # Errors
-    /// As for [`new`](Self::new), and when the memory is that of another mesh.
+    /// As for [`new`](Self::new), and when the memory belongs to another mesh.
     pub fn recall(mesh: &TetMesh, memory: &Memory, options: Options, threads: &Threads) -> Result<Self> {
         mesh.validate()?;
         memory.check(mesh)?;
@@ -41,17 +42,17 @@ impl Refinement {
     }
 }
 
-/// What stands at the top of each tree.
+/// The tops of all trees.
 struct Roots {
-    /// As the mesh names vertices.
+    /// The first mesh, with the vertex ids of the given mesh.
     first: TetMesh,
-    /// The knot that each is, if it is not just a tet.
+    /// For each root, its knot; [`NONE`] if it is a single tet without one.
     knots: Vec<u32>,
-    /// Of each tet, its root.
+    /// For each tet, its root.
     root_of: Vec<u32>,
-    /// Of each triangle of the mesh, its first.
+    /// For each triangle of the mesh, its triangle of the first mesh.
     triangle_of: Vec<u32>,
-    /// Of each line of the mesh, its first.
+    /// For each line of the mesh, its line of the first mesh.
     line_of: Vec<u32>,
     n_dissolved: usize,
 }
@@ -88,7 +89,7 @@ impl Roots {
         Ok(Self { first, knots, root_of, triangle_of: part_of, line_of: gathered.part_of, n_dissolved })
     }
 
-    /// Which vertices of the mesh are there only because something was divided.
+    /// For each vertex of the mesh, whether it exists only because of a division.
     fn middles(&self, mesh: &TetMesh, trees: &Trees) -> Vec<bool> {
         let mut is_middle = vec![false; mesh.points.len()];
         let whole = trees.knots.iter().filter(|knot| knot.is_whole);
@@ -142,7 +143,7 @@ impl Roots {
         }
         let (triangles, lines) = (self.triangle_of, self.line_of);
         let now = Extracted { mesh: mesh.clone(), vertices: to_forest, nodes, triangles, lines };
-        // Numbers of another mesh may ask for anything.
+        // A memory of another mesh may request arbitrarily many divisions.
         let most_nodes = std::mem::replace(&mut forest.most_nodes, 100 * forest.nodes.len() + 100_000);
         let closed = close(&mut forest, need, threads).map_err(|_| unfit("what it divides has no end"))?;
         forest.most_nodes = most_nodes;
@@ -155,7 +156,7 @@ impl Roots {
         Ok(Recalled { refinement, is_as_given })
     }
 
-    /// Names the vertices as the forest does.
+    /// Renames the vertices of the first mesh to those of the forest.
     fn rename(&mut self, to_forest: &[u32]) {
         let new = |v: &mut VertexId| *v = VertexId(to_forest[v.index()]);
         self.first.tets.iter_mut().flatten().for_each(new);
@@ -168,7 +169,7 @@ impl Roots {
 
 struct Recalled {
     refinement: Refinement,
-    /// Whether the forest gives out the mesh that was given.
+    /// Whether the forest reproduces the given mesh.
     is_as_given: bool,
 }
 
@@ -177,7 +178,7 @@ fn is_same(one: &Extracted, other: &Extracted) -> bool {
         let of = |out: &Extracted, v: VertexId| out.vertices[v.index()];
         x.iter().zip(y).all(|(&x, &y)| of(one, x) == of(other, y))
     };
-    // Writers may regroup lines.
+    // Writers may reorder lines.
     let lines = |out: &Extracted| {
         let of = |v: VertexId| out.vertices[v.index()];
         let parts = out
@@ -201,7 +202,7 @@ fn is_same(one: &Extracted, other: &Extracted) -> bool {
 struct Building<'a> {
     trees: &'a Trees,
     forest: Forest,
-    /// Of each vertex of the mesh its id in the forest, once it has one.
+    /// For each vertex of the mesh, its id in the forest, once it has one.
     to_forest: Vec<u32>,
     node_of: Vec<u32>,
 }

@@ -1,4 +1,4 @@
-//! Tells what has to be remembered.
+//! Records what must be remembered of a refined mesh.
 
 use super::super::forest::Extracted;
 use super::super::forest::{Forest, NONE};
@@ -9,7 +9,7 @@ use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 
 impl Refinement {
-    /// What has to be kept with the mesh, so that [`recall`](Self::recall) can go on from there.
+    /// Returns what must be kept with the mesh so that [`recall`](Self::recall) can continue from there.
     pub fn memory_to_keep(&self, threads: &Threads) -> Memory {
         let (forest, now) = (&self.forest, &self.now);
         let of_tets = threads.map(now.nodes.len(), |t| entry(forest, now, t));
@@ -52,7 +52,8 @@ fn entry(forest: &Forest, now: &Extracted, t: usize) -> Entry {
     Entry { root: node, path: path | 1 << shift, piece, asked }
 }
 
-/// Of each triangle the corner that the first vertex of the whole is in the first of the tets that have it as a facet.
+/// For each triangle, the corner that the first vertex of the whole triangle is in the first tet that has it
+/// as a facet.
 fn corners(forest: &Forest, first: &TetMesh, triangles: &[u32]) -> Vec<u8> {
     let mut of_first = vec![0; first.triangles.len()];
     for_each_tet_facet(&first.tets, &first.triangles, |sharing| {

@@ -1,4 +1,5 @@
-//! Brings tets of one origin together again: into the tet that they are pieces of, eight of these into the one they were, and so on.
+//! Merges tets of one origin: the pieces of a cut tet into that tet, eight parts into the tet they come from,
+//! and so on.
 
 use super::super::forest::NONE;
 use super::super::forest::patterns;
@@ -7,25 +8,25 @@ use super::{Memory, UNKNOWN, generation, locals, step};
 use crate::base::{Id, VertexId};
 use crate::mesh::TetMesh;
 
-/// A tet of the mesh, of several pieces, or of eight such.
+/// A node of a tree: a tet of the mesh, several pieces of one, or eight such nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Knot {
-    /// The corners, then the middles of split edges; [`Id::NONE`] for those of others.
+    /// The corners, then the middles of split edges; [`Id::NONE`] for edges that are not split.
     pub(super) vertices: [VertexId; 10],
     pub(super) parent: u32,
-    /// Which of the eight it is.
+    /// Which of the eight parts of its parent it is.
     pub(super) place: usize,
-    /// Where it is divided: along which diagonal, and into what.
+    /// If it is divided, the index of the diagonal, and the eight parts.
     pub(super) divided: Option<(usize, [u32; 8])>,
-    /// A tet of the mesh that lies in it.
+    /// A tet of the mesh that lies in it, the first.
     pub(super) tet: u32,
     pub(super) generation: u32,
-    /// How many divisions on the way down to it and beyond were asked for.
+    /// How many divisions on the path down to it and below were requested.
     pub(super) asked: u8,
-    /// Whether all tets in it are numbered the other way round.
+    /// Whether all tets in it have the opposite orientation.
     pub(super) is_turned: bool,
     pub(super) region: i32,
-    /// Whether everything that lies in it is there.
+    /// Whether all tets that it consists of are there.
     pub(super) is_whole: bool,
 }
 
@@ -46,11 +47,11 @@ impl Default for Knot {
     }
 }
 
-/// All of them; those of one tree have their parents behind them.
+/// All knots; in each tree, parents come after their children.
 #[derive(Debug, Default)]
 pub(super) struct Trees {
     pub(super) knots: Vec<Knot>,
-    /// Of each tet the knot that it is, or is a piece of; [`NONE`] where that cannot be told.
+    /// For each tet, the knot that it is or is a piece of; [`NONE`] if unknown.
     pub(super) knot_of: Vec<u32>,
 }
 
@@ -82,7 +83,7 @@ impl Trees {
         Some(top)
     }
 
-    /// Says that a knot is not to be had as a whole, nor those that it lies in.
+    /// Marks a knot, and all knots that it lies in, as not whole.
     pub(super) fn dissolve(&mut self, mut knot: u32) {
         while knot != NONE && self.knots[knot as usize].is_whole {
             self.knots[knot as usize].is_whole = false;
@@ -98,7 +99,7 @@ struct Gathering<'a> {
 }
 
 impl Gathering<'_> {
-    /// The knot that these tets make, which all have the same way down so far.
+    /// Builds the knot that these tets form; up to `depth` they have the same path.
     fn gather(&mut self, tets: &[u32], depth: u32) -> Option<u32> {
         let depth_of = |t: u32| generation(self.memory.paths[t as usize]);
         if tets.iter().all(|&t| depth_of(t) == depth) {
@@ -146,7 +147,7 @@ impl Gathering<'_> {
         Some(id)
     }
 
-    /// The knot that was divided into these eight.
+    /// Builds the knot that was divided into these eight.
     fn whole(&mut self, children: [u32; 8], generation: u32) -> Option<u32> {
         let knots = &mut self.trees.knots;
         let of = |k: usize| &knots[children[k] as usize];
@@ -182,7 +183,7 @@ impl Gathering<'_> {
     }
 }
 
-/// Puts a vertex where there is none or the same one.
+/// Sets a vertex, unless a different one is already there.
 fn put(vertices: &mut [VertexId; 10], place: usize, v: VertexId) -> Option<()> {
     let there = vertices.get_mut(place)?;
     if *there != VertexId::NONE && *there != v {
@@ -192,7 +193,8 @@ fn put(vertices: &mut [VertexId; 10], place: usize, v: VertexId) -> Option<()> {
     Some(())
 }
 
-/// Whether the pieces, which are one of the ways to fill a tet, have their first two vertices exchanged; `None` if they are no such way.
+/// Whether the pieces, which must form one of the ways to fill a tet, have their first two vertices
+/// exchanged; `None` if they form no such way.
 fn is_turned(tets: &[u32], memory: &Memory, mask: u8) -> Option<bool> {
     let pieces: Vec<[u8; 4]> = tets.iter().map(|&t| locals(memory.pieces[t as usize])).collect();
     let turned: Vec<[u8; 4]> = pieces.iter().map(|&[a, b, c, d]| [b, a, c, d]).collect();

@@ -1,4 +1,4 @@
-//! Brings the triangles of a mesh together again, as its tets come together.
+//! Merges the triangles of a mesh again, as its tets are merged.
 
 use super::super::forest::FACET_EDGES;
 use super::super::forest::NONE;
@@ -10,15 +10,15 @@ use crate::geometry::tet::FACETS;
 use crate::mesh::TetMesh;
 use crate::mesh::tet_facets::for_each_tet_facet;
 
-/// Triangles as they were.
+/// The triangles before division.
 pub(super) struct Gathered {
     pub(super) triangles: Vec<[VertexId; 3]>,
     pub(super) patches: Vec<i32>,
-    /// Of each triangle of the mesh, which of them it is a part of.
+    /// For each triangle of the mesh, which of these it is a part of.
     pub(super) part_of: Vec<u32>,
 }
 
-/// The triangles as they were, in their order.
+/// Returns the triangles before division, in order.
 pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<Gathered> {
     let mut beside: Vec<[Option<TetId>; 2]> = vec![[None; 2]; mesh.triangles.len()];
     for_each_tet_facet(&mesh.tets, &mesh.triangles, |sharing| {
@@ -29,7 +29,8 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
     let mut keys = Vec::with_capacity(beside.len());
     for (t, tets) in beside.iter().enumerate() {
         let (mut whole, mut most) = (mesh.triangles[t], None);
-        // The first tet's corner is remembered. Where it was changed by others' hands, the other still tells what all parts are parts of.
+        // Only the corner of the first tet is recorded. If others have changed that tet, the second still
+        // tells which whole the parts belong to.
         for tet in tets.iter().flatten() {
             let (of_tet, n_divided) = whole_of(mesh.triangles[t], memory.corners[t], trees, *tet)?;
             if most.is_none_or(|most| n_divided > most) {
@@ -38,7 +39,7 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
         }
         keys.push((rising(whole), t, whole));
     }
-    // Triangles that name the same vertices twice over stay apart.
+    // Duplicate triangles, with the same vertices, stay apart.
     let mut firsts: Vec<(usize, [VertexId; 3])> = Vec::new();
     let mut part_of = vec![0; keys.len()];
     keys.sort_unstable();
@@ -63,7 +64,8 @@ pub(super) fn gather(mesh: &TetMesh, memory: &Memory, trees: &Trees) -> Result<G
     Ok(Gathered { triangles: firsts.into_iter().map(|(_, whole)| whole).collect(), patches, part_of })
 }
 
-/// The triangle that a triangle is a part of, if the tet is a part of one, and how often that was divided to come to the part.
+/// Returns the undivided triangle that a triangle is a part of, as far as the tet is part of a larger one,
+/// and how many divisions lead from it to the part.
 fn whole_of(
     triangle: [VertexId; 3],
     corner: u8,
@@ -76,7 +78,8 @@ fn whole_of(
     let inside = || unfit("a triangle lies inside of a tet that was divided");
     let places = [0, 1, 2].map(|i| place(&triangle[i]));
     let mut facet = facet_of(places).ok_or_else(inside)?;
-    // A tet that is cut to fit has only a part of the facet, one that was divided with its neighbour the whole of a smaller one.
+    // A cut tet has only a part of the facet; a tet divided together with its neighbour has a whole facet, a
+    // smaller one.
     let mut n_divided = usize::from(places.iter().any(|k| *k > 3));
     while knot.parent != NONE && !std::ptr::eq(knot, &trees.knots[top as usize]) {
         let parent = &trees.knots[knot.parent as usize];
@@ -89,10 +92,10 @@ fn whole_of(
     Ok((begin_at(facet, corner, knot, triangle), n_divided))
 }
 
-/// The vertices of a facet, from a corner on if it has that.
+/// The vertices of a facet, starting from the given corner if the facet has it.
 fn begin_at(facet: [usize; 3], corner: u8, knot: &Knot, triangle: [VertexId; 3]) -> [VertexId; 3] {
     let vertices = facet.map(|k| knot.vertices[k]);
-    // A triangle that is no part begins as it does.
+    // An undivided triangle keeps its first vertex.
     let begin = match vertices.iter().position(|v| *v == triangle[0]) {
         Some(begin) if triangle.iter().all(|v| vertices.contains(v)) => begin,
         _ => facet.iter().position(|k| *k == usize::from(corner)).unwrap_or(0),
@@ -100,7 +103,8 @@ fn begin_at(facet: [usize; 3], corner: u8, knot: &Knot, triangle: [VertexId; 3])
     [0, 1, 2].map(|i| vertices[(begin + i) % 3])
 }
 
-/// The corners of the facet that three local vertices lie on, facing as they do; `None` where there is no such facet.
+/// The corners of the facet that three local vertices lie on, oriented as these are; `None` if there is no
+/// such facet.
 fn facet_of(locals: [usize; 3]) -> Option<[usize; 3]> {
     (0..4).find_map(|facet| {
         let mut rows = [[0; 3]; 3];
@@ -115,7 +119,7 @@ fn facet_of(locals: [usize; 3]) -> Option<[usize; 3]> {
     })
 }
 
-/// Twice the weights of a local vertex on a facet.
+/// Twice the barycentric coordinates of a local vertex on a facet.
 fn place_on(facet: usize, local: usize) -> Option<[i32; 3]> {
     let mut weights = [0; 3];
     if let Some(k) = FACETS[facet].iter().position(|corner| *corner == local) {

@@ -1,4 +1,5 @@
-//! The cells of a whole mesh after a step: each root's parts in its place, cells of other kinds between them as they were.
+//! The cells of a whole mesh after a step: the parts of each root in its place, with cells of other kinds
+//! unchanged between them.
 
 use super::super::forest::Extracted;
 use super::super::forest::NONE;
@@ -7,12 +8,12 @@ use super::Slot;
 use crate::base::{CellId, Csr, Id, VertexId};
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// The cells of the new mesh, and which of the old ones each was.
+/// The cells of the new mesh, and for each the old cell it was.
 pub(super) struct Joined {
     pub(super) cells: Cells,
-    /// [`Id::NONE`] for those that came.
+    /// [`Id::NONE`] for new cells.
     pub(super) cell_to_old: Vec<CellId>,
-    /// [`NONE`] for those that came.
+    /// [`NONE`] for new vertices.
     pub(super) vertex_to_old: Vec<u32>,
     pub(super) tet_to_cell: Vec<CellId>,
     pub(super) triangle_to_cell: Vec<CellId>,
@@ -22,19 +23,20 @@ pub(super) struct Joined {
     pub(super) lines: Matched,
 }
 
-/// Which parts of a mesh are those of another.
+/// Correspondence between the tets, triangles or lines of two meshes.
 #[derive(Debug, Default)]
 pub(super) struct Matched {
-    /// [`NONE`] where there is none.
+    /// For each item of the new mesh, the same item of the old one, or [`NONE`].
     to_old: Vec<u32>,
-    /// Those of the old mesh that are no more, rising.
+    /// Items of the old mesh that were removed, in ascending order.
     pub(super) gone: Vec<u32>,
-    /// Those that came, rising.
+    /// New items, in ascending order.
     pub(super) came: Vec<u32>,
 }
 
 impl Joined {
-    /// `cells` are those that tets, triangles and lines were in the old mesh; the refinements are that before and that after.
+    /// Joins the cells. `cells` gives the cells of the tets, triangles and lines of the old mesh; the two
+    /// refinements are those before and after.
     pub(super) fn of(
         old: &Mesh,
         slots: &[Slot],
@@ -146,7 +148,7 @@ struct Vertices {
 }
 
 impl Vertices {
-    /// `n_vertices`: of the forest.
+    /// `n_vertices` is the number of vertices of the forest.
     fn of(was: &Extracted, is: &Extracted, n_vertices: usize) -> Self {
         let numbers = was.numbers(n_vertices);
         let new_to_old: Vec<u32> = is.vertices.iter().map(|&v| numbers[v as usize]).collect();
@@ -157,12 +159,12 @@ impl Vertices {
     }
 }
 
-/// Tets, triangles or lines by the ids of their vertices in the forest.
+/// Names each tet, triangle or line by the forest ids of its vertices.
 fn names<const N: usize>(out: &Extracted, of: &[[VertexId; N]]) -> Vec<[u32; N]> {
     of.iter().map(|vertices| vertices.map(|v| out.vertices[v.index()])).collect()
 }
 
-/// Which are the same, looked for in the same root.
+/// Matches items with equal names that belong to the same root.
 fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Matched {
     let [was, is] = names;
     let order = [by_root(roots[0]), by_root(roots[1])];
@@ -170,7 +172,7 @@ fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Mat
     let mut stays = vec![false; was.len()];
     let mut olds = order[0].chunk_by(|&x, &y| roots[0][x as usize] == roots[0][y as usize]);
     for news in order[1].chunk_by(|&x, &y| roots[1][x as usize] == roots[1][y as usize]) {
-        // Both have the same roots, each at least one part of each.
+        // Both meshes have the same roots, and each root has at least one part in each mesh.
         let Some(olds) = olds.next() else { break };
         let mut sorted: Vec<([u32; N], u32)> = olds.iter().map(|&t| (was[t as usize], t)).collect();
         sorted.sort_unstable();
@@ -189,7 +191,7 @@ fn matched<const N: usize>(names: [Vec<[u32; N]>; 2], roots: [&[u32]; 2]) -> Mat
     matched
 }
 
-/// All of them, by root, in their order.
+/// Returns all item numbers sorted by root; items of one root keep their order.
 fn by_root(roots: &[u32]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..roots.len() as u32).collect();
     if !roots.is_sorted() {

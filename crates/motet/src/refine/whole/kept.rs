@@ -1,4 +1,4 @@
-//! The memory of a refined mesh as arrays of its file.
+//! Stores the memory of a refined mesh as arrays of its file.
 
 use super::super::memory::{Memory, UNKNOWN};
 use crate::base::{CellId, Error, Point, Result};
@@ -11,7 +11,7 @@ const ASKED: &str = "refine_asked";
 const REFERENCE: &str = "refine_reference";
 const OF_CELLS: [&str; 4] = [REFINE_ROOT, PATH, PIECE, ASKED];
 
-/// What the arrays of a mesh remember, if it has them.
+/// Reads the memory from the arrays of a mesh; `None` if it has none of them.
 pub(super) fn memory(mesh: &Mesh, part: &TetPart) -> Result<Option<Memory>> {
     let is_there = OF_CELLS.map(|name| mesh.cell_field(name).is_some());
     let reference = mesh.point_field(REFERENCE);
@@ -43,7 +43,7 @@ fn unfit(array: &str, what: &str) -> Error {
         .remedy("take all arrays refine_* out: then the mesh as it is counts as the first")
 }
 
-/// Puts the arrays in. Cells that are neither tet nor triangle have -1.
+/// Adds the arrays of the memory. Cells that are neither tet nor triangle get -1.
 pub(super) fn put(mesh: &mut Mesh, memory: &Memory, tets: &[CellId], triangles: &[CellId]) {
     let n = mesh.cells.len();
     let mut whole = [vec![-1; n], vec![-1; n], vec![-1; n]];
@@ -65,7 +65,7 @@ pub(super) fn put(mesh: &mut Mesh, memory: &Memory, tets: &[CellId], triangles: 
     mesh.set_point_field(Field::vectors(REFERENCE, &memory.reference));
 }
 
-/// The mesh without the arrays.
+/// Returns the mesh without the arrays of the memory.
 pub(super) fn without(mesh: &Mesh) -> Mesh {
     let mut mesh = mesh.clone();
     mesh.cell_data.retain(|field| !OF_CELLS.contains(&field.name.as_str()));

@@ -1,4 +1,5 @@
-//! Refinement of everything that a file holds: cells of other kinds stay, arrays are carried, and the memory goes along as arrays.
+//! Refinement of everything a file holds: cells of other kinds stay, arrays are transferred, and the memory
+//! is stored as arrays.
 
 mod joined;
 mod kept;
@@ -13,20 +14,20 @@ use crate::spatial::NearestTriangle;
 use joined::Joined;
 use origins::origins;
 
-/// A mesh of any cells, whose tets are divided and taken back again and again. Each cell that is divided is followed in its place by its parts; points that
-/// come are behind all others.
+/// A mesh of any cells whose tets are refined and coarsened again and again. The parts of a divided cell take
+/// its place in the order of cells; new points follow all others.
 #[derive(Clone, Debug)]
 pub struct MeshRefinement {
     mesh: Mesh,
     refinement: Refinement,
-    /// The cells of the first mesh, in their order.
+    /// The cells of the first mesh, in order.
     slots: Vec<Slot>,
     tet_to_cell: Vec<CellId>,
     triangle_to_cell: Vec<CellId>,
     line_to_cell: Vec<CellId>,
 }
 
-/// What one cell of the first mesh was.
+/// The kind of a cell of the first mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Slot {
     Tet,
@@ -36,7 +37,7 @@ pub(super) enum Slot {
 }
 
 impl Slot {
-    /// What [`TetPart`] takes a cell for.
+    /// Classifies a cell as [`TetPart`] does.
     fn of(kind: CellKind, vertices: &[VertexId]) -> Self {
         match (kind, vertices) {
             (CellKind::TETRA, _) => Self::Tet,
@@ -48,10 +49,12 @@ impl Slot {
 }
 
 impl MeshRefinement {
-    /// Starts with a mesh. Where it has the arrays that [`with_memory`](Self::with_memory) adds, it goes on with what they remember.
+    /// Starts with a mesh. If it has the arrays that [`with_memory`](Self::with_memory) adds, continues from
+    /// what they record.
     ///
     /// # Errors
-    /// When there is no tet, when tets do not make a mesh (the place is the first such cell), and when the arrays are of another mesh.
+    /// When there is no tet, when the tets do not form a mesh (the error gives the first such cell), and when
+    /// the arrays belong to another mesh.
     pub fn new(mesh: &Mesh, options: Options, threads: &Threads) -> Result<Self> {
         let part = TetPart::of(mesh)?;
         let memory = kept::memory(mesh, &part)?;
@@ -66,7 +69,7 @@ impl MeshRefinement {
         Ok(Self { mesh, refinement, slots, tet_to_cell, triangle_to_cell, line_to_cell })
     }
 
-    /// The mesh without what it remembers: as it is, it counts as the first.
+    /// Returns the mesh without its memory: it then counts as the first mesh, as it is.
     pub fn forget(mesh: &Mesh) -> Mesh {
         kept::without(mesh)
     }
@@ -78,17 +81,18 @@ impl MeshRefinement {
         done
     }
 
-    /// The mesh as it is now, with the arrays carried this far, without those of the memory.
+    /// The current mesh, with the arrays transferred so far and without those of the memory.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// Its tets and triangles, in the order of [`mesh`](Self::mesh), and their memory.
+    /// The refinement of its tets, triangles and lines, in the order of [`mesh`](Self::mesh), with their
+    /// memory.
     pub fn refinement(&self) -> &Refinement {
         &self.refinement
     }
 
-    /// The tets, triangles and lines, and which cells these are.
+    /// The tets, triangles and lines, and the ids of their cells.
     pub fn part(&self) -> TetPart {
         TetPart {
             mesh: self.refinement.mesh().clone(),
@@ -98,8 +102,9 @@ impl MeshRefinement {
         }
     }
 
-    /// The mesh with its memory as arrays, unless nothing is divided: `refine_root`, `refine_path`, `refine_piece` and `refine_asked` on cells and
-    /// `refine_reference` on points (see [`Memory`](crate::refine::Memory)).
+    /// The mesh with its memory as arrays, unless nothing is divided: `refine_root`, `refine_path`,
+    /// `refine_piece` and `refine_asked` on cells and `refine_reference` on points (see
+    /// [`Memory`](crate::refine::Memory)).
     pub fn with_memory(&self, threads: &Threads) -> Mesh {
         let mut mesh = self.mesh.clone();
         if self.refinement.is_divided() {
@@ -109,10 +114,10 @@ impl MeshRefinement {
         mesh
     }
 
-    /// Divides these tets as [`Refinement::refine`] does, and carries the arrays by `rules`.
+    /// Divides the marked tets as [`Refinement::refine`] does, and transfers the arrays by `rules`.
     ///
     /// # Errors
-    /// As there, and when a rule fits no array; then nothing has changed.
+    /// As for [`Refinement::refine`], and when a rule fits no array; then nothing has changed.
     pub fn refine(
         &mut self,
         marked: &[TetId],
@@ -122,10 +127,10 @@ impl MeshRefinement {
         self.change(rules, threads, |refinement| refinement.refine(marked, threads))
     }
 
-    /// Takes divisions back as [`Refinement::coarsen`] does, and carries the arrays by `rules`.
+    /// Takes divisions back as [`Refinement::coarsen`] does, and transfers the arrays by `rules`.
     ///
     /// # Errors
-    /// As there, and when a rule fits no array; then nothing has changed.
+    /// As for [`Refinement::coarsen`], and when a rule fits no array; then nothing has changed.
     pub fn coarsen(
         &mut self,
         marked: &[TetId],
@@ -163,7 +168,7 @@ impl MeshRefinement {
     }
 }
 
-/// The cells that the parts of one root stand for come once.
+/// One slot for each cell of the first mesh: all parts of a root share the slot of its first part.
 fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
     let mut roots = refinement.roots().map(|root| root.0);
     let mut triangles = refinement.now.triangles.iter();
@@ -172,7 +177,7 @@ fn slots(mesh: &Mesh, refinement: &Refinement) -> Vec<Slot> {
     let mut slots = Vec::new();
     for (_, kind, vertices) in mesh.cells.iter() {
         let slot = Slot::of(kind, vertices);
-        // Roots, triangles and lines are numbered as the mesh has them first.
+        // Roots, triangles and lines are numbered in the order of their first appearance in the mesh.
         let is_first = match slot {
             Slot::Tet => is_next(roots.next(), &mut next_root),
             Slot::Triangle => is_next(triangles.next().copied(), &mut next_triangle),

@@ -1,7 +1,8 @@
-//! Where what came in a step came from, by the forest: a part of a tet lies in it, and a whole is made of its parts. Only where pieces that fit a tet to its neighbours give
-//! way to others has geometry to be asked, and then of few tets.
+//! The origins of everything new in a step, from the forest: a part of a tet lies in it, and a whole is made
+//! of its parts. Geometry is consulted only where pieces that fit a tet to its neighbours are replaced by
+//! other pieces, and then only for few tets.
 //!
-//! A new vertex takes the mean of the ends of its edge, whose ends may be new, too.
+//! A new vertex is the mean of the ends of its edge, which may be new themselves.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +22,15 @@ use crate::spatial::trace::{Labelled, LocalChange, trace};
 /// A new cell, the old cells it comes from with their shares, and the main one.
 type CellRow = (CellId, Vec<(CellId, f64)>, CellId);
 
-/// Rows for all that came.
+/// The origins of all new vertices and cells.
 pub(super) struct Found {
     pub(super) vertices: Rows<VertexId>,
     pub(super) cells: Rows<CellId>,
     pub(super) ledger: Ledger,
 }
 
-/// The refinements are that before and that after; `cells` are those that tets, triangles and lines were before.
+/// Finds the origins of everything new. The two refinements are those before and after; `cells` gives the old
+/// cells of the tets, triangles and lines.
 pub(super) fn origins(
     [before, after]: [&Refinement; 2],
     joined: &Joined,
@@ -59,14 +61,15 @@ pub(super) fn origins(
     Ok(Found { vertices: of_vertices, cells: of_cells, ledger })
 }
 
-/// Which tets before and after lie in which.
+/// Which tets before and after the step lie in which.
 struct Kin<'a> {
     forest: &'a Forest,
     was: &'a Extracted,
     is: &'a Extracted,
-    /// Of each tet of the forest its pieces before: the first, and behind the last.
+    /// For each tet of the forest, the range of its pieces in the mesh before: the first, and one past the
+    /// last.
     old: Vec<[u32; 2]>,
-    /// Of each tet of the forest that is coarser than it was, the tets before that lie in it.
+    /// For each tet of the forest that is coarser than before, the old tets that lie in it.
     within: BTreeMap<u32, Vec<u32>>,
 }
 
@@ -92,7 +95,8 @@ impl<'a> Kin<'a> {
         Self { forest, was, is, old, within }
     }
 
-    /// The tets before that a tet is made of, with volumes of any sum.
+    /// Returns the old tets that make up a new tet, with their volumes, which need not sum to that of the
+    /// tet.
     fn parts(&self, t: usize) -> Vec<(u32, f64)> {
         let node = self.is.nodes[t];
         let holder = above(self.forest, node).map(|node| self.old[node as usize]).find(|old| old[1] > 0);
@@ -111,7 +115,7 @@ impl<'a> Kin<'a> {
         if !overlaps.is_empty() {
             return overlaps;
         }
-        // Points that moved may leave nothing in common: then the nearest.
+        // Points that moved may leave no overlap: then take the nearest candidate.
         let centre = centroid(corners(self.is, t));
         let far = |old: &u32| distance(centroid(corners(self.was, *old as usize)), centre);
         let nearest = candidates.iter().copied().min_by(|x, y| far(x).total_cmp(&far(y)));
@@ -119,7 +123,7 @@ impl<'a> Kin<'a> {
     }
 }
 
-/// A tet of the forest and those that it lies in.
+/// Iterates over a tet of the forest and its ancestors.
 fn above(forest: &Forest, node: u32) -> impl Iterator<Item = u32> {
     let parent = |node: &u32| Some(forest.nodes[*node as usize].parent).filter(|parent| *parent != NONE);
     std::iter::successors(Some(node), parent)
@@ -199,10 +203,10 @@ fn lines(was: &Extracted, is: &Extracted, joined: &Joined, old_cells: &[CellId],
     }
 }
 
-/// Means of vertices that were there.
+/// Expresses new vertices as means of old ones.
 struct Means<'a> {
     forest: &'a Forest,
-    /// Of each vertex of the forest, which it was in the mesh before.
+    /// For each vertex of the forest, its number in the mesh before, or [`NONE`].
     numbers: Vec<u32>,
 }
 
@@ -211,7 +215,7 @@ impl<'a> Means<'a> {
         Self { forest, numbers: was.numbers(forest.reference.len()) }
     }
 
-    /// The vertices of the mesh before, rising, with their shares.
+    /// Returns the old vertices that a vertex is a mean of, in ascending order, with their shares.
     fn of(&self, vertex: u32) -> Vec<(VertexId, f64)> {
         let mut parts: BTreeMap<VertexId, f64> = BTreeMap::new();
         let mut open = vec![(vertex, 1.0)];

@@ -1,25 +1,26 @@
-//! Arrays of a mesh by the words that users have for them, and for parts of them.
+//! Resolves the expressions by which users name arrays of a mesh, and parts of them.
 //!
-//! | word | means |
+//! | expression | meaning |
 //! |---|---|
-//! | `p` | the values of `p`; of an array with several numbers in a row the root of the sum of their squares |
-//! | <code>&#124;v&#124;</code> | that root in any case: of single numbers their size |
+//! | `p` | the values of `p`; of an array with several components the root of the sum of their squares |
+//! | <code>&#124;v&#124;</code> | that root in any case: for scalars the absolute value |
 //! | `v:x` `v:y` `v:z` | one component |
 //! | `v[3]` | one component, counted from 0 |
 //!
-//! An array whose name is the word itself comes first. Where there is one on points and one on cells, the one on points is meant.
+//! An array whose name equals the whole expression takes precedence, and point arrays take precedence over
+//! cell arrays.
 
 use crate::base::{Error, Point, Result};
 use crate::mesh::{Field, Mesh};
 
-/// What the rows of an array belong to.
+/// Where the rows of an array live.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum On {
     Points,
     Cells,
 }
 
-/// What of a row is meant.
+/// Which part of a row is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Whole,
@@ -33,7 +34,7 @@ pub(super) struct Column {
     pub(super) values: Vec<f64>,
 }
 
-/// What a word means in a mesh.
+/// What an expression refers to in a mesh.
 struct Found<'a> {
     on: On,
     part: Part,
@@ -41,7 +42,7 @@ struct Found<'a> {
     values: Vec<f64>,
 }
 
-/// One number for each point or each cell.
+/// Returns one number for each point or cell.
 pub(super) fn column(mesh: &Mesh, word: &str) -> Result<Column> {
     let found = find(mesh, word)?;
     let n = found.field.components.max(1);
@@ -53,7 +54,7 @@ pub(super) fn column(mesh: &Mesh, word: &str) -> Result<Column> {
     Ok(Column { on: found.on, values: found.values.chunks_exact(n).map(row).collect() })
 }
 
-/// Numbers for each point, a list for each component that the word means.
+/// Returns for each component that the expression refers to one number per point.
 pub(super) fn point_columns(mesh: &Mesh, word: &str) -> Result<Vec<Vec<f64>>> {
     let found = find(mesh, word)?;
     check_on_points(mesh, &found, word)?;
@@ -66,7 +67,7 @@ pub(super) fn point_columns(mesh: &Mesh, word: &str) -> Result<Vec<Vec<f64>>> {
     }
 }
 
-/// A vector for each point.
+/// Returns a vector for each point.
 pub(super) fn point_vectors(mesh: &Mesh, word: &str) -> Result<Vec<Point>> {
     let found = find(mesh, word)?;
     check_on_points(mesh, &found, word)?;

@@ -1,4 +1,4 @@
-//! Criteria that ask what the arrays of a mesh say: sizes, gradients, estimates, what turns.
+//! Criteria based on the arrays of a mesh: sizes, gradients, error estimates, vortices.
 
 use super::array::{On, column, point_columns, point_vectors};
 use super::{Aim, Amount, Criterion, Estimator, HessianSizes, Size, a_part, above_0, not_below_0};
@@ -10,11 +10,13 @@ use crate::refine::hessian::curvatures;
 use crate::refine::wish::Wish;
 use crate::refine::{mark, sizes};
 
-/// The square of an estimate of a tet by that of one of its eight parts, where the field is smooth: jumps and differences of gradients go with the length, areas with its
-/// square, and so the estimates with the power 5/2.
+/// The ratio of the squared estimate of a tet to that of one of its eight parts, where the field is smooth:
+/// jumps and differences of gradients scale with the length, areas with its square, and so the estimates with
+/// the power 5/2.
 const PARENT_SQUARED: f64 = 32.0;
 
-/// A field that over the extent of the mesh bends by less than this part of its range does not bend: that is rounding.
+/// A field that bends over the extent of the mesh by less than this fraction of its range counts as linear:
+/// the rest is rounding.
 const ROUNDING: f64 = 1e-9;
 
 pub(super) fn size(size: &Size, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<Wish>> {
@@ -63,7 +65,8 @@ pub(super) fn gradient(
         squares.iter_mut().zip(gradients).for_each(|(sum, gradient)| *sum += dot(gradient, gradient));
     }
     let change = |t: usize| squares[t].sqrt() * longest(part, t);
-    // Through a tet twice as large it is twice as much. Fields may be steep all over, so it is not told how often.
+    // Across a tet twice as large the change is twice as much. Fields may be steep everywhere, so how often
+    // to divide is not estimated.
     Ok(threads.map(squares.len(), |t| match change(t) {
         change if change > above => Wish::Divided(1),
         change if 2.0 * change > above => Wish::Kept,
@@ -102,7 +105,7 @@ pub(super) fn estimate(
     Ok(wishes)
 }
 
-/// Marks tets where what an estimate says of a velocity is above a number.
+/// Marks tets where a quantity derived from a velocity is above a value.
 pub(super) fn flow(
     array: &str,
     above: f64,
@@ -141,10 +144,12 @@ impl HessianSizes {
         Ok(sizes::wishes(&part.mesh, &self.sizes(mesh, part, threads)?, threads))
     }
 
-    /// Puts the sizes into the mesh as a point array, and gives the criterion that divides until edges are so short.
+    /// Puts the sizes into the mesh as a point array, and returns the criterion that divides until edges are
+    /// no longer than that.
     ///
-    /// Arrays are linear in each tet of the mesh that they were computed on. Carried to its parts they no longer bend within, and all the more
-    /// between; so sizes are found once for each solution, and carried themselves. They are at most the extent of the mesh.
+    /// Arrays are linear in each tet of the mesh they were computed on. Transferred to its parts, they have
+    /// no curvature within these and too much between them; so sizes are computed once for each solution and
+    /// transferred themselves. They are capped at the extent of the mesh.
     ///
     /// # Errors
     /// As for [`sizes`](Self::sizes).
@@ -157,10 +162,10 @@ impl HessianSizes {
         Ok(Criterion::Size(Size::Array(name.to_owned())))
     }
 
-    /// The size at each vertex.
+    /// Returns the size at each vertex.
     ///
     /// # Errors
-    /// When the mesh has no such array on points; when a number means nothing.
+    /// When the mesh has no such point array, or when a number is invalid.
     pub fn sizes(&self, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<f64>> {
         self.check()?;
         let mut least = vec![f64::INFINITY; mesh.points.len()];
@@ -180,7 +185,7 @@ impl HessianSizes {
                     sizes::for_mean_square(&bends)
                 }
             };
-            // A constant array asks for nothing.
+            // A constant array requests nothing.
             let pairs = least.iter_mut().zip(of_array).filter(|_| range > 0.0);
             pairs.for_each(|(least, size)| *least = least.min(size));
         }
@@ -192,7 +197,7 @@ impl HessianSizes {
     }
 }
 
-/// The largest value less the smallest at vertices of tets; of several components the most.
+/// The largest value less the smallest at vertices of tets; the largest over all components.
 fn range(columns: &[Vec<f64>], part: &TetPart) -> f64 {
     let of_column = |values: &Vec<f64>| {
         let used = part.mesh.tets.as_flattened().iter().map(|v| values[v.index()]);

@@ -1,4 +1,4 @@
-//! Criteria that ask where a tet is: ball, box, surface, region, patch.
+//! Criteria based on the place of a tet: ball, box, surface, region, patch.
 
 use super::{Criterion, Target, finite};
 use crate::base::{Error, Point, Result, TetId, Threads};
@@ -8,8 +8,10 @@ use crate::refine::estimate::{corners, longest_edge};
 use crate::refine::mark;
 use crate::refine::wish::Wish;
 
+/// Checks the corners of a box.
+///
 /// # Errors
-/// When a coordinate is no finite number, or the second corner is lower than the first.
+/// When a coordinate is not finite, or the second corner is lower than the first.
 pub(super) fn check_box([low, high]: [Point; 2]) -> Result<()> {
     low.iter().chain(&high).try_for_each(|x| finite("a corner of a box", *x))?;
     match (0..3).find(|&k| low[k] > high[k]) {
@@ -24,7 +26,7 @@ pub(super) fn check_box([low, high]: [Point; 2]) -> Result<()> {
     }
 }
 
-/// The wishes of a criterion of place; of any other none.
+/// Returns the wishes of a criterion of place; for any other, every division may be taken back.
 pub(super) fn wishes(
     criterion: &Criterion,
     mesh: &Mesh,
@@ -56,11 +58,12 @@ fn near(mesh: &TetMesh, target: &Target, within: f64, threads: &Threads) -> Vec<
     threads.map(mesh.tets.len(), |t| Wish::of_mark(target.is_within(within, corners(mesh, mesh.tets[t]))))
 }
 
-/// Which tets are too large is known exactly; how often they are to be divided from the sizes at their centres, and whether a tet twice as large would be
-/// too large from its distance less its own size.
+/// Whether a tet is too large is decided exactly. How often it is to be divided is estimated from the size at
+/// its centre, and whether a tet twice as large would be too large from the distance less the extent of that
+/// tet.
 fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads: &Threads) -> Vec<Wish> {
     let longest = threads.map(mesh.tets.len(), |t| longest_edge(corners(mesh, mesh.tets[t])));
-    // Of shorter ones no distance makes anything else.
+    // Tets with shorter edges are `Coarser` at any distance.
     let asked: Vec<usize> =
         (0..longest.len()).filter(|&t| Wish::of_ratio(longest[t] / size) != Wish::Coarser).collect();
     let places: Vec<[Point; 4]> = threads.map(asked.len(), |i| corners(mesh, mesh.tets[asked[i]]));
@@ -72,7 +75,7 @@ fn near_size(mesh: &TetMesh, target: &Target, [size, growth]: [f64; 2], threads:
         if mark::is_above(places[i], [size, growth], found) {
             return Wish::of_ratio(longest / (size + growth * away)).max(Wish::Divided(1));
         }
-        // The whole that it is a part of reaches no farther.
+        // The whole that this tet is a part of reaches no farther.
         Wish::of_ratio(longest / (size + growth * (away - 2.0 * longest).max(0.0))).min(Wish::Kept)
     });
     let mut wishes = vec![Wish::Coarser; longest.len()];

@@ -34,7 +34,7 @@ const RELATIONS: [(&str, Relation); 6] = [
 ];
 
 impl Relation {
-    /// Whether a value is so. One that is no number never is.
+    /// Compares a value with another. NaN never satisfies a relation.
     pub fn holds(self, value: f64, than: f64) -> bool {
         match self {
             Self::Above => value > than,
@@ -66,16 +66,16 @@ impl fmt::Display for Relation {
 pub struct Condition {
     /// The array, or a part of it: `p`, `|v|`, `v:x`, `v[3]`. Vectors count by their length.
     pub array: String,
-    /// How its values are compared ...
+    /// How its values are compared.
     pub relation: Relation,
-    /// ... with this, in the units of the array.
+    /// The value they are compared with, in the units of the array.
     pub value: f64,
 }
 
 impl FromStr for Condition {
     type Err = Error;
 
-    /// `ARRAY>VALUE`, with any of `> >= < <= == !=`; the last of these in the text counts.
+    /// Parses `ARRAY>VALUE`, with any of `> >= < <= == !=`; the last relation in the text counts.
     fn from_str(text: &str) -> Result<Self> {
         let expected = || {
             Error::options(format!("`{text}` is no condition"))
@@ -99,7 +99,7 @@ impl fmt::Display for Condition {
 }
 
 impl Condition {
-    /// Whether the value compared with is a number.
+    /// Checks that the value compared with is finite.
     ///
     /// # Errors
     /// When it is not.
@@ -110,7 +110,8 @@ impl Condition {
         }
     }
 
-    /// For each tet of `mesh` whether the condition holds: for a cell array by its own value, for a point array at one vertex or more.
+    /// Returns for each tet of `mesh` whether the condition holds: for a cell array, for the value of the
+    /// tet; for a point array, at one or more vertices.
     ///
     /// # Errors
     /// When there is no such array, or no such component of it.

@@ -1,14 +1,16 @@
-//! Sizes that hold for more than one generation: worked out on the mesh that has the solution, and carried from there as arrays.
+//! Sizes that stay valid for more than one generation: computed on the mesh of the solution, and transferred
+//! as arrays.
 
 use super::Criterion;
 use crate::base::{Result, Threads};
 use crate::mesh::{Mesh, TetPart};
 
-/// Puts the sizes of every [`Criterion::Hessian`] into the mesh, see [`HessianSizes::put`](super::HessianSizes::put), and [`Criterion::Size`] in its place. Gives
-/// the names of the arrays, which the mesh gets on its points.
+/// Puts the sizes of every [`Criterion::Hessian`] into the mesh (see
+/// [`HessianSizes::put`](super::HessianSizes::put)) and replaces the criterion by a [`Criterion::Size`].
+/// Returns the names of the point arrays added.
 ///
 /// # Errors
-/// As there, and when there is no tet.
+/// As for [`HessianSizes::put`](super::HessianSizes::put), and when there is no tet.
 pub fn fix_sizes(criteria: &mut [Criterion], mesh: &mut Mesh, threads: &Threads) -> Result<Vec<String>> {
     let mut names = Vec::new();
     for (i, criterion) in criteria.iter_mut().enumerate() {

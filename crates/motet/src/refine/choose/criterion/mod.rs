@@ -1,7 +1,7 @@
-//! What to refine in a whole mesh: by place, by region and patch, by size, by what its arrays say.
+//! What to refine in a whole mesh: by place, region, patch, size, or values of its arrays.
 //!
-//! A criterion is looked at anew in every generation, with the arrays as they have been carried to the mesh of then: it says of each tet
-//! what it [wishes](Wish).
+//! A criterion is evaluated anew in every generation, with the arrays as transferred to the current mesh, and
+//! returns a [wish](Wish) for each tet.
 
 mod array;
 mod by_field;
@@ -26,141 +26,147 @@ pub use target::Target;
 /// What to refine. Lengths are in the units of the mesh, values in those of its arrays; an array is named as in [`Condition::array`].
 #[derive(Clone, Debug)]
 pub enum Criterion {
-    /// Everything, once more.
+    /// All tets, once more.
     All,
-    /// Tets with a place within a ball.
+    /// Tets that come within a ball.
     Ball {
-        /// Its centre.
+        /// The centre of the ball.
         centre: Point,
-        /// Its radius, 0 or more.
+        /// The radius of the ball, 0 or more.
         radius: f64,
     },
-    /// Tets whose centre lies in a box with sides along the axes, given by its lowest and highest corner.
+    /// Tets whose centre lies in an axis-aligned box, given by its lowest and highest corner.
     Box([Point; 2]),
-    /// Tets with a place near a surface.
+    /// Tets near a surface.
     Near {
         /// The surface.
         target: Arc<Target>,
-        /// How near: 0 or more.
+        /// The largest distance from the surface, 0 or more.
         within: f64,
     },
-    /// Tets with an edge longer than `size` and `growth` times the distance of the tet from a surface.
+    /// Tets with an edge longer than `size` plus `growth` times the distance of the tet from a surface.
     NearSize {
         /// The surface.
         target: Arc<Target>,
-        /// How long edges are to be at the surface: above 0.
+        /// The edge length at the surface, above 0.
         size: f64,
-        /// How much longer per unit of distance: 0 or more.
+        /// By how much the edge length grows per unit of distance, 0 or more.
         growth: f64,
     },
-    /// Tets of a region, by its name or number.
+    /// Tets of a region, given by name or number.
     Region(String),
-    /// Tets at a patch, by its name or number.
+    /// Tets at a patch, given by name or number.
     Patch {
-        /// The name or number.
+        /// The name or number of the patch.
         patch: String,
-        /// How near: tets with a place so near to it. `None`: those that have a vertex of it.
+        /// The largest distance from the patch. `None`: only tets that have a vertex on it.
         within: Option<f64>,
     },
     /// Tets with an edge that is too long.
     Size(Size),
-    /// Tets where a condition on an array holds: on cells for the tet, on points for one of its vertices or more.
+    /// Tets where a condition on an array holds: for a cell array, at the tet itself; for a point array, at
+    /// one or more of its vertices.
     Where(Condition),
-    /// Tets through which a field changes by much: its gradient times the longest edge is above a value. Of a vector all components count together, by
-    /// the root of the sum of squares.
+    /// Tets across which a field changes a lot: its gradient times the longest edge is above a value. The
+    /// components of a vector are combined by the root of the sum of squares.
     Gradient {
-        /// An array on points.
+        /// The name of a point array.
         array: String,
-        /// In units of the array.
+        /// The change above which tets are divided, in units of the array.
         above: f64,
     },
-    /// Tets with an estimate of the error that is among the largest.
+    /// Tets whose error estimate is among the largest.
     Estimate {
-        /// An array on points. Components count together, by the root of the sum of squares.
+        /// The name of a point array. Its components are combined by the root of the sum of squares.
         array: String,
         /// Which estimate.
         by: Estimator,
         /// How many tets.
         amount: Amount,
     },
-    /// Tets with edges too long for how much fields bend.
+    /// Tets with edges too long for the curvature of fields.
     Hessian(HessianSizes),
-    /// Tets in which a flow turns more than so much: by the size of the [vorticity](super::estimate::vorticity).
+    /// Tets in which the magnitude of the [vorticity](super::estimate::vorticity) is above a value.
     Vorticity {
         /// The velocity, an array of vectors on points.
         array: String,
-        /// In units of a velocity over a length.
+        /// The value above which tets are divided, in units of velocity over length.
         above: f64,
     },
-    /// Tets in which [Q](super::estimate::q_criterion) is above a value.
+    /// Tets in which the [Q criterion](super::estimate::q_criterion) is above a value.
     Q {
         /// The velocity, an array of vectors on points.
         array: String,
-        /// In units of a velocity over a length, squared.
+        /// The value above which tets are divided, in squared units of velocity over length.
         above: f64,
     },
 }
 
-/// How long edges may be.
+/// Prescribed edge lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Size {
-    /// The same everywhere: above 0.
+    /// The same length everywhere, above 0.
     Uniform(f64),
-    /// By an array. On points: of an edge the mean at its ends. On cells: of all edges of the tet. Infinite: as long as they are.
+    /// Given by an array. On points: an edge has the mean of the sizes at its ends. On cells: the size
+    /// applies to all edges of the tet. Infinite: no limit.
     Array(String),
 }
 
-/// An estimate of the error of a field in each tet.
+/// An error estimator for a field in each tet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Estimator {
-    /// By the [jumps of its gradient](super::estimate::gradient_jump).
+    /// By the [jumps of the gradient](super::estimate::gradient_jump).
     Jump,
-    /// By how far its gradient is from a [recovered one](super::estimate::recovery).
+    /// By the distance of the gradient from a [recovered one](super::estimate::recovery).
     Recovery,
 }
 
-/// How many of the tets with the largest estimates.
+/// How many of the tets with the largest estimates to divide.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// As few as make up this [share](super::mark::largest_share) of the sum of squares, in (0, 1].
+    /// The fewest that make up this [share](super::mark::largest_share) of the sum of squares, in (0, 1].
     Share(f64),
-    /// So many that dividing them brings the mesh to about this [number of tets](super::mark::to_count).
+    /// As many as bring the mesh to about this [number of tets](super::mark::to_count) when divided.
     Tets(usize),
 }
 
-/// Sizes from second derivatives: edges so long that no field differs from its linear interpolant by more than is allowed.
+/// Sizes from second derivatives: edges short enough that no field differs from its linear interpolant by
+/// more than is allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HessianSizes {
-    /// Arrays on points. Of a vector each component counts by itself; the smallest size counts.
+    /// Names of point arrays. Each component of a vector counts by itself; the smallest size wins.
     pub arrays: Vec<String>,
-    /// How small.
+    /// What the sizes aim for.
     pub aim: Aim,
-    /// What sizes must keep to.
+    /// The limits on sizes.
     pub limits: SizeLimits,
 }
 
-/// How small sizes from second derivatives are.
+/// What sizes from second derivatives aim for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Aim {
-    /// So that the error of each array is at most this, in its units.
+    /// The error of each array is at most this, in its units.
     Error(f64),
-    /// So that it is at most this part of the range of the array: of its largest value less its smallest, of vectors by the component where that is most.
+    /// The error is at most this fraction of the range of the array, its largest value less its smallest; for
+    /// vectors, of the largest range of any component.
     RangePart(f64),
-    /// So that there are about so many tets, and the mean square of the errors, as parts of the ranges, is least. Where a mesh is too coarse to see how
-    /// much a field bends, ask for a few times as many from one solution to the next.
+    /// There are about this many tets, and the mean square of the errors relative to the ranges is least.
+    /// Where a mesh is too coarse to resolve the curvature of a field, request a few times as many tets from
+    /// one solution to the next.
     Tets(usize),
 }
 
 impl Criterion {
-    /// Whether it asks for lengths, which are reached at some time; others mark the parts of what they mark.
+    /// Whether the criterion prescribes edge lengths, which are reached at some point. Other criteria mark
+    /// the parts of what they marked again.
     pub fn lasts(&self) -> bool {
         matches!(self, Self::NearSize { .. } | Self::Size(_) | Self::Hessian(_))
     }
 
-    /// Refuses numbers that mean nothing, before any mesh is looked at.
+    /// Rejects invalid numbers, before any mesh is examined.
     ///
     /// # Errors
-    /// Names the first of them.
+    /// When a number is invalid; the error names the first.
     pub fn check(&self) -> Result<()> {
         match self {
             Self::All | Self::Region(_) | Self::Size(Size::Array(_)) => Ok(()),
@@ -188,11 +194,11 @@ impl Criterion {
         }
     }
 
-    /// What is wished of each tet of `part`, the tets of `mesh`.
+    /// Returns a wish for each tet of `part`, the tets of `mesh`.
     ///
     /// # Errors
-    /// When a [number](Self::check) means nothing; when the mesh has no such array, region or patch, and what there is; when an array has not the
-    /// components that are needed, or a size that is none.
+    /// When a [number](Self::check) is invalid; when the mesh has no such array, region or patch (the error
+    /// lists those there are); when an array lacks the required components or has an invalid size.
     pub fn wishes(&self, mesh: &Mesh, part: &TetPart, threads: &Threads) -> Result<Vec<Wish>> {
         self.check()?;
         match self {
@@ -218,7 +224,7 @@ impl Criterion {
         }
     }
 
-    /// The tets to divide, rising.
+    /// The tets to divide, in ascending order.
     ///
     /// # Errors
     /// As for [`wishes`](Self::wishes).
@@ -227,10 +233,11 @@ impl Criterion {
     }
 }
 
-/// What several criteria together wish of each tet: the most that one of them does. Without criteria every division may be taken back.
+/// Combines the wishes of several criteria: each tet gets the largest. Without criteria every division may be
+/// taken back.
 ///
 /// # Errors
-/// As for [`Criterion::wishes`]; of the first criterion that has one.
+/// As for [`Criterion::wishes`], for the first criterion that fails.
 pub fn wishes_of_all(
     criteria: &[Criterion],
     mesh: &Mesh,
@@ -245,10 +252,10 @@ pub fn wishes_of_all(
     Ok(all)
 }
 
-/// The tets that one of the criteria marks, rising.
+/// The tets that at least one of the criteria marks, in ascending order.
 ///
 /// # Errors
-/// As for [`Criterion::wishes`]; of the first criterion that has one.
+/// As for [`Criterion::wishes`], for the first criterion that fails.
 pub fn marks_of_all(
     criteria: &[Criterion],
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! A surface that refinement looks at from afar: a device, a wall, a patch.
+//! A surface that refinement measures distances from: a device, a wall, a patch.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
@@ -7,7 +7,7 @@ use crate::geometry::vector::{distance, in_range};
 use crate::mesh::{Mesh, Surface};
 use crate::spatial::{Closest, NearestTriangle};
 
-/// Triangles with a tree of boxes over them.
+/// Triangles with a search tree over them.
 #[derive(Clone, Debug)]
 pub struct Target {
     points: Vec<Point>,
@@ -16,10 +16,10 @@ pub struct Target {
 }
 
 impl Target {
-    /// Of triangles over points.
+    /// Builds a target from triangles over points.
     ///
     /// # Errors
-    /// When there is no triangle, or one has a corner that does not exist or has no place.
+    /// When there is no triangle, or a corner does not exist or has an invalid coordinate.
     pub fn new(points: Vec<Point>, triangles: Vec<[VertexId; 3]>, threads: &Threads) -> Result<Self> {
         if triangles.is_empty() {
             return Err(Error::input(
@@ -37,7 +37,7 @@ impl Target {
         Ok(Self { points, triangles, tree })
     }
 
-    /// The surface cells of a mesh; where it has none, its boundary.
+    /// Builds a target from the surface cells of a mesh, or from its boundary if it has none.
     ///
     /// # Errors
     /// As for [`new`](Self::new).
@@ -46,7 +46,7 @@ impl Target {
         Self::new(surface.points, surface.triangles, threads)
     }
 
-    /// The points that triangles name.
+    /// The points that the triangles refer to.
     pub fn points(&self) -> &[Point] {
         &self.points
     }
@@ -61,12 +61,12 @@ impl Target {
         &self.tree
     }
 
-    /// Whether a tet has a place within `reach` of the surface, or the surface one in the tet.
+    /// Whether a tet comes within `reach` of the surface.
     pub fn is_within(&self, reach: f64, corners: [Point; 4]) -> bool {
         let centre = tet::centroid(corners);
-        // Nothing farther from the centre is near enough.
+        // No point of the surface farther from the centre is near enough.
         let radius = corners.into_iter().map(|corner| distance(corner, centre)).fold(0.0, f64::max);
-        // A hair more: what is decided by rounding is decided below.
+        // Slightly more, so that the checks below decide borderline cases, not rounding here.
         let far = (reach + radius) * (1.0 + 1e-12);
         let is_near = |triangle: u32, place: Point| {
             let nearest = tet::at(corners, tet::closest(corners, place));
@@ -78,7 +78,8 @@ impl Target {
     }
 }
 
-/// Whether a tet has a place so near to a triangle: one of its facets has, or it holds all of it.
+/// Whether a tet comes within `reach` of a triangle: one of its facets does, or the tet contains the
+/// triangle.
 fn is_within_triangle(reach: f64, corners: [Point; 4], triangle: [Point; 3]) -> bool {
     let bound = (reach * reach).next_up();
     let is_near = |facet: [usize; 3]| {
