@@ -1,4 +1,4 @@
-//! What the surfaces enclose: numbered from the outside in, named, left out on request.
+//! The bodies that surfaces enclose: numbered from the outside in, named, left out on request.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -14,33 +14,33 @@ use crate::geometry::vector::in_range;
 use crate::mesh::{CellKind, Mesh, bounds, unused_name};
 use crate::preflight::Role;
 
-/// A place in a body, and the name that the body is to have.
+/// A place in a body, and the name to give to the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seed {
     /// Any place in the body, not on a surface.
     pub place: Point,
-    /// The name of its region.
+    /// The name of the region.
     pub name: String,
 }
 
-/// One of the regions of a mesh that was made.
+/// A region of the resulting mesh.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Body {
-    /// Its number.
+    /// The number of the region.
     pub region: i32,
-    /// Its name, where it has one.
+    /// The name of the region, if it has one.
     pub name: Option<String>,
-    /// How many tets it has.
+    /// The number of tets.
     pub tets: usize,
-    /// How many prisms and pyramids of layers it has beside them, where these are not divided into tets.
+    /// The number of prisms and pyramids of layers, where these are not divided into tets.
     pub prisms: usize,
     /// Its volume.
     pub volume: f64,
-    /// Whether the surfaces, as they face, leave it out: closed ones turned inward enclose it.
+    /// Whether it is a void: closed surfaces turned inward enclose it.
     pub is_void: bool,
 }
 
-/// The bodies of a mesh, by their numbers.
+/// The bodies of a mesh, in the order of their region numbers.
 pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
     let Some(regions) = mesh.regions() else { return Vec::new() };
     let mut bodies: BTreeMap<i32, Body> = BTreeMap::new();
@@ -62,7 +62,7 @@ pub(crate) fn told(mesh: &Mesh) -> Vec<Body> {
     bodies.into_values().collect()
 }
 
-/// Puts the tets and prisms that a mesh of these bodies has into their counts; bodies stand in the order of their regions.
+/// Counts the tets and prisms of a mesh into its bodies, which must be in the order of their regions.
 pub(super) fn count_cells(bodies: &mut [Body], mesh: &Mesh) {
     let Some(regions) = mesh.regions() else { return };
     bodies.iter_mut().for_each(|body| (body.tets, body.prisms) = (0, 0));
@@ -77,22 +77,24 @@ pub(super) fn count_cells(bodies: &mut [Body], mesh: &Mesh) {
 /// The side of a triangle: a body, or `None` outside of all.
 type Side = Option<u32>;
 
-/// What is known of bodies, by their numbers.
+/// Names and voids of the bodies, by their numbers.
 #[derive(Debug, Default)]
 pub(super) struct Arranged {
     pub(super) names: BTreeMap<u32, String>,
-    /// The bodies that closed surfaces turned inward enclose, and that are there all the same.
+    /// Bodies that are kept although closed surfaces turned inward enclose them.
     pub(super) voids: BTreeSet<u32>,
-    /// How many of those were left out.
+    /// How many such bodies were left out.
     pub(super) n_left_out: usize,
 }
 
-/// Leaves out the bodies with holes, and on request those that are voids and not named by a seed, and numbers the others from the outside in.
+/// Removes bodies with holes and, on request, voids that no seed names; numbers the others from the outside
+/// in.
 ///
-/// Names are those of seeds; of other bodies, where there are several closed surfaces, that of the smallest that holds the body.
+/// Bodies are named by seeds. If there are several closed surfaces, other bodies get the name of the smallest
+/// one that encloses them.
 ///
 /// # Errors
-/// When a place lies in no body or on a surface, when places contradict each other, when nothing is left.
+/// When a place lies in no body or on a surface, when places contradict each other, or when nothing is left.
 pub(super) fn arrange(
     tets: &mut Constrained,
     surfaces: &Surfaces,
@@ -133,8 +135,9 @@ pub(super) fn arrange(
     })
 }
 
-/// The bodies that the closed surfaces go round as often one way as the other, by the way their triangles face. None where that
-/// depends on the way taken into a body, since triangles do not face the same side.
+/// The bodies with winding number 0 with respect to the closed surfaces, as their triangles are oriented.
+/// Empty if the winding number depends on the path taken into a body, because triangles are not consistently
+/// oriented.
 fn voids(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> BTreeSet<u32> {
     let mut faces: BTreeMap<[VertexId; 3], i32> = BTreeMap::new();
     for (t, _) in surfaces
@@ -210,7 +213,7 @@ fn hole_at(tets: &Constrained, place: Point, names: &BTreeMap<u32, String>) -> R
     }
 }
 
-/// The body that holds a place.
+/// Finds the body that contains a place.
 fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     if !in_range(place) {
         return Err(Error::options("a place needs finite numbers").at(told_place(place)));
@@ -245,14 +248,14 @@ fn body_at(tets: &Constrained, place: Point) -> Result<u32> {
     }
 }
 
-/// The triangle that a facet is a part of, if it parts bodies.
+/// The triangle that a facet is a part of, if it separates bodies.
 fn wall(tets: &Constrained, facet: [VertexId; 3]) -> Option<usize> {
     let is_part = |part: &[VertexId; 3]| rising(*part) == rising(facet);
     let mut parting = tets.triangle_to_bodies.iter().enumerate().filter(|(_, sides)| sides[0] != sides[1]);
     parting.find(|(i, _)| tets.triangle_to_facets.list(*i).iter().any(is_part)).map(|(i, _)| i)
 }
 
-/// For each side of a wall, the outside first, what lies beyond: `(triangle, side)`.
+/// For each body, and first for the outside, the adjacent sides: `(triangle, side beyond it)`.
 fn beyond(triangle_to_bodies: &[[Side; 2]]) -> BTreeMap<Side, Vec<(usize, Side)>> {
     let mut beyond: BTreeMap<Side, Vec<(usize, Side)>> = BTreeMap::new();
     for (i, &[front, behind]) in triangle_to_bodies.iter().enumerate().filter(|(_, [a, b])| a != b) {
@@ -262,7 +265,7 @@ fn beyond(triangle_to_bodies: &[[Side; 2]]) -> BTreeMap<Side, Vec<(usize, Side)>
     beyond
 }
 
-/// All bodies from the outside in, those equally far by their first triangle.
+/// All bodies from the outside in; those at equal depth in the order of their first triangle.
 fn from_outside(triangle_to_bodies: &[[Side; 2]]) -> Vec<u32> {
     let beyond = beyond(triangle_to_bodies);
     let mut depths: BTreeMap<u32, (usize, usize)> = BTreeMap::new();
@@ -281,16 +284,16 @@ fn from_outside(triangle_to_bodies: &[[Side; 2]]) -> Vec<u32> {
     order
 }
 
-/// Which closed surfaces hold each body.
+/// The closed surfaces that enclose each body.
 struct Holders {
-    /// Surfaces, rising.
+    /// For each body its surfaces, in ascending order.
     of_body: BTreeMap<u32, BTreeSet<u32>>,
-    /// The volume that each surface holds; none for those that are not closed in themselves.
+    /// The volume that each surface encloses; absent for surfaces that are not closed by themselves.
     volumes: BTreeMap<u32, f64>,
 }
 
 impl Holders {
-    /// Whoever crosses a triangle goes into its surfaces, or out of them.
+    /// Finds them by walking from the outside: crossing a triangle enters or leaves its surfaces.
     fn find(tets: &Constrained, surfaces: &Surfaces, triangles: &[[VertexId; 3]]) -> Self {
         let is_boundary = |s: &u32| surfaces.roles[*s as usize] == Role::Boundary;
         let mut of_triangle: Vec<([VertexId; 3], u32)> =
@@ -330,7 +333,8 @@ impl Holders {
         Self { of_body, volumes }
     }
 
-    /// The name of the smallest surface that holds a body, for each body in this order; nothing where there is one surface alone.
+    /// For each body, in this order, the name of the smallest surface that encloses it; empty if there is
+    /// only one surface.
     fn names(&self, surfaces: &Surfaces, order: &[u32]) -> Vec<(u32, String)> {
         if surfaces.roles.iter().filter(|role| **role == Role::Boundary).count() < 2 {
             return Vec::new();

@@ -1,7 +1,8 @@
-//! Open rims closed by caps of triangles, the same for every frame of a surface that moves.
+//! Closes open rims by caps of triangles, with the same connectivity for every frame of a moving surface.
 //!
-//! A cap is rings of vertices that shrink towards the middle of its rim, each a fixed mean of vertices of the rim: so caps follow a rim that moves or bends.
-//! A cap is as flat as its rim. Rims that were cut by hand are not flat; they can be moved onto their planes.
+//! A cap consists of rings of vertices that shrink towards the middle of its rim, each vertex a fixed mean of
+//! vertices of the rim: so caps follow a rim that moves or bends. A cap is as flat as its rim. Rims that were
+//! cut by hand are not flat; they can be moved onto their planes.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ use crate::mesh::disc::{disc_of_rings, n_rings};
 use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh, Surface, unused_name};
 use crate::preflight::open_rims;
 
-/// The caps of a surface, made from one frame of it, put on any.
+/// The caps of a surface, made from one frame and applied to any.
 #[derive(Clone, Debug)]
 pub struct Caps {
     n_points: usize,
@@ -25,33 +26,34 @@ pub struct Caps {
     rims: Vec<Rim>,
 }
 
-/// How flat a rim is, and with it its cap.
+/// How flat a rim, and therefore its cap, is.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RimPlane {
     /// The patch of the cap.
     pub patch: String,
-    /// The largest distance of a vertex of the rim from its middle, in the unit of the points.
+    /// The largest distance of a vertex of the rim from the middle of the rim, in the unit of the points.
     pub radius: f64,
-    /// The largest distance of a vertex of the rim from the rim's plane: the one through the middle, at right angles to the rim's area vector.
+    /// The largest distance of a vertex of the rim from the rim's plane: the one through the middle, normal
+    /// to the rim's area vector.
     pub deviation: f64,
 }
 
 /// One rim and its cap.
 #[derive(Clone, Debug)]
 struct Rim {
-    /// As the cap's triangles go round it.
+    /// In the direction in which the cap's triangles run around it.
     vertices: Vec<VertexId>,
-    /// How many rings are in it.
+    /// The number of rings inside it.
     n_rings: usize,
     label: i32,
 }
 
 impl Caps {
-    /// Finds the rims of a surface: chains of edges that one triangle alone uses. Caps are patches `cap_1`, `cap_2`, ..., the longest rim first; what has no patch is
-    /// `wall`.
+    /// Finds the rims of a surface: chains of edges that only one triangle uses. Caps become patches `cap_1`,
+    /// `cap_2`, ..., the longest rim first; triangles without a patch become `wall`.
     ///
     /// # Errors
-    /// When there is no rim, or open edges do not close.
+    /// When there is no rim, or open edges do not form closed chains.
     pub fn of(surface: &Mesh) -> Result<Self> {
         let Surface { triangles, patches, patch_names: mut names, .. } = Surface::of(surface);
         let points = &surface.points;
@@ -75,31 +77,32 @@ impl Caps {
         Ok(Self { n_points: surface.points.len(), triangles, patches, names, rims: made })
     }
 
-    /// How many rims were found.
+    /// The number of rims.
     pub fn len(&self) -> usize {
         self.rims.len()
     }
 
-    /// Whether there is none: never so.
+    /// Whether there are no rims; always false.
     pub fn is_empty(&self) -> bool {
         self.rims.is_empty()
     }
 
-    /// How flat the rims of a frame are, in the order of the caps.
+    /// Returns how flat the rims of a frame are, in the order of the caps.
     ///
     /// # Errors
-    /// When the frame has another number of points, or a rim encloses no area.
+    /// When the frame has a different number of points, or a rim encloses no area.
     pub fn planes(&self, frame: &Mesh) -> Result<Vec<RimPlane>> {
         self.check(frame)?;
         let plane = |rim: &Rim| Ok(self.plane_of(rim, &frame.points)?.0);
         self.rims.iter().map(plane).collect()
     }
 
-    /// A frame of the surface with the vertices of each rim moved onto the rim's plane, along its normal: what is closed then has flat caps. All else
-    /// stays to the bit. Also how far each rim was off.
+    /// Returns a frame of the surface with the vertices of each rim moved onto the rim's plane, along its
+    /// normal, so that its caps will be flat; all else stays to the bit. Also returns how far each rim was
+    /// off.
     ///
     /// # Errors
-    /// As [`Self::planes`]; when a triangle at a rim would turn over or lose its area.
+    /// As for [`Self::planes`]; also when a triangle at a rim would turn over or lose its area.
     pub fn flatten(&self, frame: &Mesh) -> Result<(Mesh, Vec<RimPlane>)> {
         self.check(frame)?;
         let mut flat = frame.clone();
@@ -137,7 +140,7 @@ impl Caps {
         }
     }
 
-    /// The plane of a rim: how flat it is, its middle, and its unit normal.
+    /// Returns the plane of a rim: how flat the rim is, its middle, and the unit normal.
     fn plane_of(&self, rim: &Rim, points: &[Point]) -> Result<(RimPlane, Point, Point)> {
         let patch = self.names.get(&rim.label).cloned().unwrap_or_default();
         let corners: Vec<Point> = rim.vertices.iter().map(|v| points[v.index()]).collect();
@@ -158,10 +161,11 @@ impl Caps {
         Ok((plane, middle, normal))
     }
 
-    /// A frame of the surface, closed. Its points come first; the same number of points and triangles for every frame.
+    /// Returns a frame of the surface, closed. Its own points come first; the numbers of points and triangles
+    /// are the same for every frame.
     ///
     /// # Errors
-    /// When the frame has another number of points.
+    /// When the frame has a different number of points.
     pub fn close(&self, frame: &Mesh) -> Result<Mesh> {
         self.check(frame)?;
         let (mut points, mut triangles, mut patches) =
@@ -179,7 +183,7 @@ impl Caps {
     }
 }
 
-/// Closed chains of open edges, each as a cap goes round it.
+/// Finds closed chains of open edges, each in the direction in which a cap runs around it.
 fn rims(points: &[Point], triangles: &[[VertexId; 3]]) -> Result<Vec<Vec<VertexId>>> {
     let [closed, torn] = open_rims(points, triangles);
     if let Some(v) = torn.first().and_then(|rim| rim.first()) {
@@ -263,7 +267,8 @@ mod tests {
         let before = open.clone();
         let flat_rims: Vec<RimPlane> = caps.planes(&open).unwrap();
         assert!(flat_rims.iter().all(|rim| rim.deviation < 1e-12 * rim.radius));
-        // Every other vertex of a rim is off by 0.02 of the radius along the normal of its plane, turn about.
+        // Every other vertex of a rim is off by 0.02 of the radius along the normal of its plane, the others
+        // by -0.02.
         for (rim, plane) in caps.rims.iter().zip(&flat_rims) {
             let (_, _, normal) = caps.plane_of(rim, &before.points).unwrap();
             for (i, v) in rim.vertices.iter().enumerate() {

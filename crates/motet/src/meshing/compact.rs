@@ -1,15 +1,15 @@
-//! Points that nothing uses left out.
+//! Removes unused points.
 
 use crate::base::{Point, VertexId};
 
-/// Which of `n` vertices are named.
+/// For each of `n` vertices, whether it occurs in `vertices`.
 pub(crate) fn named<'a>(n: usize, vertices: impl Iterator<Item = &'a VertexId>) -> Vec<bool> {
     let mut is_named = vec![false; n];
     vertices.for_each(|v| is_named[v.index()] = true);
     is_named
 }
 
-/// The points that are used, and the new number of each; anything for the others.
+/// Returns the used points and the new number of each point; the number is meaningless for unused ones.
 pub(crate) fn compact(points: &[Point], is_used: &[bool]) -> (Vec<Point>, Vec<VertexId>) {
     let mut old_to_new = vec![VertexId(0); points.len()];
     let mut kept = Vec::new();

@@ -1,4 +1,4 @@
-//! Tets within surfaces, with regions and patches.
+//! Fills surfaces with tets, with regions and patches.
 
 use std::collections::BTreeMap;
 
@@ -23,27 +23,28 @@ use crate::mesh::{CellKind, Cells, Field, LabelNames, Mesh};
 use crate::preflight::Preflight;
 use crate::remesh::{self, Improve, SurfaceRule, remesh_labelled};
 
-/// Vertices of a flat facet are off a plane through three of them by up to so many times what rounding has moved each coordinate.
+/// Vertices of a flat facet may lie off a plane through three of them by up to this many times the rounding
+/// error of a coordinate.
 const OFF_PLANE: f64 = 4.0;
 
-/// Whether the triangles of surfaces are divided, each place of the surfaces kept to rounding: flat parts get new triangles in their own planes, creases and borders of patches are
-/// divided into parts of about the size.
+/// Which surfaces have their triangles divided. The shape is kept to rounding: flat parts get new triangles
+/// in their own planes, creases and borders of patches are divided into parts of about the size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dividing {
-    /// Those of surfaces that are far coarser than the size; see [`Sizes::coarse`].
+    /// Only surfaces that are far coarser than the size; see [`Sizes::coarse`].
     #[default]
     Coarse,
-    /// All.
+    /// All surfaces.
     Always,
-    /// None: every triangle is a facet of tets.
+    /// No surface: every triangle is a facet of tets.
     Never,
 }
 
 impl Dividing {
-    /// The rule of a name: `auto`, `divide` or `keep`, as the command line has them.
+    /// Parses a name, `auto`, `divide` or `keep`, as on the command line.
     ///
     /// # Errors
-    /// When none is called that.
+    /// When the name is unknown.
     pub fn of_name(name: &str) -> Result<Self> {
         match name {
             "auto" => Ok(Self::Coarse),
@@ -55,29 +56,31 @@ impl Dividing {
     }
 }
 
-/// How surfaces are filled.
+/// Options for filling surfaces.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// What becomes of points that have to be put on edges of the surface. Default: they move inside.
+    /// What happens to points that must be put on edges of the surface. Default: they move inside.
     pub edge_points: EdgePoints,
-    /// How long edges inside are to be; `None`: no points inside. Default: `None`.
+    /// The edge lengths inside; `None`: no points inside. Default: `None`.
     pub sizes: Option<Sizes>,
-    /// Whether the triangles of the surfaces are divided to a size that is the same everywhere. Default: [`Dividing::Coarse`].
+    /// Whether the triangles of the surfaces are divided to a uniform size. Default: [`Dividing::Coarse`].
     pub dividing: Dividing,
-    /// Names of regions. Default: none.
+    /// Places in bodies, with names for their regions. Default: none.
     pub seeds: Vec<Seed>,
     /// Places in bodies that are left out. Default: none.
     pub holes: Vec<Point>,
-    /// Whether bodies that closed surfaces turned inward enclose are left out, such as the cavity of a hollow body; those that a seed names stay. Default: false.
+    /// Whether bodies enclosed by closed surfaces turned inward are left out, such as the cavity of a hollow
+    /// body; those named by a seed stay. Default: false.
     pub voids: bool,
-    /// How the tets are repaired and improved once they are there; `None`: not at all. Default: `None`.
+    /// How the tets are repaired and improved afterwards; `None`: not at all. Default: `None`.
     pub improve: Option<remesh::Options>,
-    /// Layers of thin cells on walls. Default: `None`.
+    /// Layers of thin prisms on walls. Default: `None`.
     pub layers: Option<Layers>,
 }
 
 impl Options {
-    /// Points inside by `sizes`, if any; tets below `min_eas` repaired, below the usual bound where there are sizes and it is not told. Where there are sizes, tets are improved on the whole, too.
+    /// Options with points inside by `sizes`, if given. Tets with an EAS below `min_eas` are repaired; if
+    /// only sizes are given, the default bound applies. With sizes, tets are also improved as a whole.
     pub fn with_sizes(sizes: Option<Sizes>, min_eas: Option<f64>) -> Self {
         let min_eas = min_eas.or(sizes.as_ref().map(|_| remesh::Options::default().min_eas));
         let on_the_whole = sizes.as_ref().map(|_| Improve::filled());
@@ -89,7 +92,7 @@ impl Options {
         Self { sizes, improve, ..Self::default() }
     }
 
-    /// The size to which surfaces are divided, of which `coarse` tells whether they are far coarser.
+    /// The size to which surfaces are divided, if any; `coarse` is given if they are far coarser.
     fn divided_to(&self, coarse: Option<Coarse>) -> Result<Option<f64>> {
         match (self.dividing, &self.sizes) {
             (Dividing::Never, _) => Ok(None),
@@ -103,30 +106,31 @@ impl Options {
     }
 }
 
-/// What came of filling surfaces.
+/// The result of filling surfaces.
 #[derive(Clone, Debug)]
 pub struct Filled {
-    /// The tets, by their regions 1, 2, ..., and behind them the triangles of the surfaces, by their patches.
+    /// The tets, with regions 1, 2, ..., followed by the triangles of the surfaces, with their patches.
     pub mesh: Mesh,
-    /// How it went.
+    /// Statistics.
     pub report: Report,
-    /// How improving went, where it was asked for.
+    /// The report of improving the tets, if requested.
     pub improved: Option<remesh::Report>,
-    /// How layers came out, where they were asked for.
+    /// The report on layers, if requested.
     pub layers: Option<layers::Report>,
 }
 
 impl Filled {
-    /// Whether all that `options` ask for is reached: triangles are whole, tets have a volume and none is left bad, layers found room.
+    /// Whether everything requested by `options` was reached: triangles are whole, tets have positive volume
+    /// and none is left bad, and layers found space.
     pub fn is_complete(&self, options: &Options) -> bool {
         self.not_reached(options).is_none()
     }
 
-    /// Why not all that `options` ask for was reached; `None` where it was.
+    /// Explains what requested by `options` was not reached; `None` if everything was.
     pub fn not_reached(&self, options: &Options) -> Option<String> {
         let Report { points_on_edges, not_positive, triangles, triangles_kept, triangles_outside, .. } =
             self.report;
-        // A surface that was divided has no triangles to keep.
+        // A divided surface has no triangles to keep.
         let is_kept = options.edge_points != EdgePoints::Stay && self.report.divided.is_none();
         let in_pieces = (is_kept && points_on_edges > 0).then(|| {
             format!(
@@ -147,41 +151,43 @@ impl Filled {
     }
 }
 
-/// How filling went.
+/// Statistics on filling.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Triangles that the surfaces came with, those that two surfaces share counted once.
+    /// Triangles of the given surfaces, those shared by two surfaces counted once.
     pub triangles: usize,
-    /// Tets made, before they were improved.
+    /// Tets before improvement.
     pub tets: usize,
-    /// Points that stayed on edges of the surface, or in its triangles, where there was no room inside: the triangles there are in pieces.
+    /// Points left on edges or triangles of the surface because there was no space inside: the triangles
+    /// there are in pieces.
     pub points_on_edges: usize,
     /// Points inside.
     pub points_inside: usize,
-    /// Triangles that are facets as they came.
+    /// Triangles that are facets of tets unchanged.
     pub triangles_kept: usize,
-    /// Triangles with nothing enclosed on either side, which are left out.
+    /// Triangles that enclose nothing on either side, which are left out.
     pub triangles_outside: usize,
-    /// The lengths of edges of a surface that is far coarser than the size of edges inside.
+    /// The edge lengths of the surface, if it is far coarser than the size of edges inside.
     pub coarse: Option<Coarse>,
     /// How many triangles such a surface was divided into.
     pub divided: Option<Divided>,
-    /// Bodies that were left out, since closed surfaces turned inward enclose them.
+    /// Bodies left out because closed surfaces turned inward enclose them.
     pub voids: usize,
-    /// The worst EAS, before tets were improved.
+    /// The worst EAS before improvement.
     pub worst_eas: f64,
-    /// Tets of no positive volume in the mesh that came of it.
+    /// Tets of the final mesh without positive volume.
     pub not_positive: usize,
-    /// The regions of the mesh that came of it, from region 1 on.
+    /// The regions of the final mesh, from region 1 on.
     pub bodies: Vec<Body>,
 }
 
-/// Fills surfaces, of which `preflight` tells whether they are fit, with tets.
+/// Fills surfaces with tets. `preflight` must be the result of checking these surfaces.
 ///
 /// # Errors
-/// When the surfaces are not fit: the first fault, and how many there are. When they enclose nothing. When an edge comes so close to
-/// others that its coordinates have no digits left to divide it. When a size is no length, or asks for too many points. When a seed or a hole lies in
-/// no body or on a surface, or contradicts another.
+/// When `preflight` found faults: the error gives the first, and their number. When the surfaces enclose
+/// nothing. When an edge comes so close to others that floating-point coordinates cannot divide it further.
+/// When a size is not a valid length, or requires too many points. When a seed or a hole lies in no body or
+/// on a surface, or contradicts another.
 pub fn fill(
     surfaces: &Surfaces,
     preflight: &Preflight,
@@ -209,7 +215,8 @@ pub fn fill(
             return Err(Error::options("layers, and points that stay on edges of the surface")
                 .remedy("layers stand on whole triangles: let points move inside"));
         }
-        // This tells which body lies on which side, and where places are.
+        // This finds out which bodies lie on the two sides of each triangle, and which bodies seeds and holes
+        // lie in.
         let mut whole = filled(&joined, Vec::new(), options, threads)?;
         let arranged = bodies::arrange(&mut whole, surfaces, &triangles, options)?;
         let grown = Grown::new(&joined, layers, whole.triangle_to_bodies, threads)?;
@@ -233,7 +240,8 @@ pub fn fill(
     Ok(Filled { report, mesh, improved, layers: None })
 }
 
-/// The room that layers leave filled, and joined with them; `at_corners` are sizes at the triangles of the surfaces.
+/// Fills the core that layers leave, and joins it with them. `at_corners` are sizes at the corners of the
+/// surfaces' triangles.
 fn fill_with_layers(
     mut grown: Grown,
     at_corners: &[[f64; 3]],
@@ -266,7 +274,7 @@ fn fill_with_layers(
     Ok(Filled { mesh, report, improved, layers: Some(grown.report()) })
 }
 
-/// Tets within surfaces and with `points` inside.
+/// Returns tets within surfaces, with the given points inside.
 fn filled(
     surfaces: &Surfaces,
     inside: Vec<Point>,
@@ -283,8 +291,9 @@ fn filled(
     Ok(tets)
 }
 
-/// Repairs bad tets. A surface that was divided, and whose vertices are `off_plane` by so much, may be divided in another way, each place of it where it is; where one that is far coarser than the sizes
-/// is kept, one round is made, since most tets on it stay bad however long they are tried.
+/// Repairs bad tets. A divided surface, whose vertices lie off their planes by up to `off_plane`, may be
+/// divided in another way, its shape kept. On an undivided surface far coarser than the sizes only one round
+/// is made, since most tets there stay bad however often they are tried.
 fn improve(
     mesh: Mesh,
     options: &Options,
@@ -302,12 +311,12 @@ fn improve(
     Ok((mesh, Some(report)))
 }
 
-/// Names of bodies as those of regions, which are numbered from 1.
+/// The names of bodies as names of regions, which are numbered from 1.
 fn region_names(arranged: &Arranged) -> BTreeMap<i32, String> {
     arranged.names.iter().map(|(&body, name)| (body as i32 + 1, name.clone())).collect()
 }
 
-/// The bodies of a mesh that was made, and which of them are voids.
+/// The bodies of the finished mesh, with the voids among them marked.
 fn bodies_of(mesh: &Mesh, arranged: &Arranged) -> Vec<Body> {
     let mut bodies = bodies::told(mesh);
     for body in &mut bodies {
@@ -316,7 +325,7 @@ fn bodies_of(mesh: &Mesh, arranged: &Arranged) -> Vec<Body> {
     bodies
 }
 
-/// Points inside, of the sizes that are asked for.
+/// Chooses points inside by the requested sizes.
 fn inside(
     surfaces: &Surfaces,
     sizes: Option<&Sizes>,
@@ -344,7 +353,7 @@ fn not_positive(mesh: &Mesh) -> usize {
     tets.filter(|&[a, b, c, d]| orient3d(a, b, c, d) <= 0 || volume([a, b, c, d]) <= 0.0).count()
 }
 
-/// `n_points` were given; behind them are those on edges.
+/// Collects statistics. The first `n_points` points were given; points on edges follow.
 fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report {
     let corners = |t: &[VertexId; 4]| t.map(|v| filled.points[v.index()]);
     let is_named = named(filled.points.len(), filled.tets.as_flattened().iter());
@@ -367,7 +376,8 @@ fn report(surfaces: &Surfaces, filled: &Constrained, n_points: usize) -> Report 
     }
 }
 
-/// Tets and triangles as cells, and the new number of each point; points that no cell uses are left out.
+/// Returns tets and triangles as cells, and the new number of each point; points that no cell uses are left
+/// out.
 fn mesh(surfaces: &Surfaces, filled: &Constrained) -> (Mesh, Vec<VertexId>) {
     let mut triangles = Vec::new();
     for (i, list) in filled.triangle_to_facets.iter().enumerate() {

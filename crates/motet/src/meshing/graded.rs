@@ -1,9 +1,10 @@
-//! Points inside, of sizes that grow from the surface: a lattice of cubes within cubes.
+//! Points inside, for sizes that grow from the surface: a lattice of nested cubes.
 //!
-//! Cubes are divided until they fit their sizes, neighbours at most once more than each other; corners and middles of those that are
-//! not divided are the points. Where neighbours are alike that is a body-centred cubic lattice, as for sizes that are the same everywhere; where
-//! they are not, the tets between are halves and quarters of those of the lattice (Labelle and Shewchuk 2007, *Isosurface stuffing*),
-//! and points of different levels are no nearer to each other than half a side of the smaller cube.
+//! Cubes are divided until they fit their sizes, and so that neighbours differ by one level at most; the
+//! points are the corners and middles of undivided cubes. Where neighbours are alike this is a body-centred
+//! cubic lattice, as for uniform sizes; where they are not, the tets between are halves and quarters of those
+//! of the lattice (Labelle and Shewchuk 2007, *Isosurface stuffing*), and points of different levels are no
+//! closer to each other than half a side of the smaller cube.
 
 use super::interior::{AWAY, EDGE_OVER_SIDE};
 use super::octree::{Grid, Octree};
@@ -14,14 +15,17 @@ use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::triangle::{self, area};
 use crate::mesh::{bounds, largest_extent, mean_edge_lengths};
 
-/// Edges of cubes that are not divided are within this factor of their sizes.
+/// Edges of undivided cubes are within this factor of their sizes.
 const WITHIN: f64 = std::f64::consts::SQRT_2;
 
-/// More points than this near the surface are refused at once; what comes inside shows when it is made.
+/// The largest expected number of points near the surface, checked at once; the number inside is checked on
+/// the way.
 const MOST: f64 = 5e7;
 
+/// Checks that sizes do not require too many points at the surface.
+///
 /// # Errors
-/// When the sizes ask for too many points.
+/// When they do.
 pub(super) fn check(
     points: &[Point],
     triangles: &[[VertexId; 3]],
@@ -45,7 +49,7 @@ pub(super) fn check(
     Err(Error::input(what).at(at).remedy("give larger sizes"))
 }
 
-/// Points of a lattice with edges as long as the sizes between the surfaces.
+/// Returns lattice points between the surfaces, with edges as long as the sizes.
 ///
 /// # Errors
 /// When there would be too many.
@@ -72,7 +76,8 @@ pub(super) fn lattice(
     Ok(found.into_iter().zip(is_away).filter(|(_, away)| *away).map(|(p, _)| p).collect())
 }
 
-/// The side of the largest cubes: such that cubes of some level fit the largest size, or where there is none that of most triangles.
+/// The side of the largest cubes, chosen so that the cubes of some level fit the largest size, or if there is
+/// none, the median size of the triangles.
 fn first_side(ends: [Point; 2], field: &SizeField<'_>) -> f64 {
     let longest = largest_extent(ends);
     if let Some(largest) = field.largest() {
@@ -82,7 +87,8 @@ fn first_side(ends: [Point; 2], field: &SizeField<'_>) -> f64 {
     side * (longest / side).log2().ceil().max(0.0).exp2()
 }
 
-/// Points of a lattice in the room between triangles, which need not be closed: edges are as long as those of the triangles, and grow away from them.
+/// Returns lattice points in the space between triangles, which need not be closed: edges are as long as
+/// those of the triangles, and grow with distance from them.
 ///
 /// # Errors
 /// When there would be too many.

@@ -1,26 +1,29 @@
-//! Points inside: a body-centred cubic lattice, a little away from the surface.
+//! Points inside, for a uniform size: a body-centred cubic lattice, slightly away from the surface.
 //!
-//! Its Delaunay tets are all alike and good (dihedral angles of 60 and 90 degrees), and no five of its points lie on one empty sphere. What is
-//! outside costs time, but does no harm: it is left out with the tets there. So whether a point is inside is not asked; only
-//! that the surface is met on both sides of it, along the shortest side of the box.
+//! Its Delaunay tets are all congruent and good (dihedral angles of 60 and 90 degrees), and no five of its
+//! points lie on one empty sphere. Points outside cost time but do no harm: they are removed with the tets
+//! there. So points are not tested for being inside; the surface only has to lie on both sides of them along
+//! the shortest side of the box.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::mesh::bounds;
 use crate::spatial::NearestTriangle;
 
-/// Mean length of an edge of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle of a cube.
+/// The mean edge length of the lattice over the side of its cube: of 14 edges at a point 8 lead to the middle
+/// of a cube.
 pub(crate) const EDGE_OVER_SIDE: f64 = (8.0 * 0.866_025_403_784_438_6 + 6.0) / 14.0;
 
-/// How near to the surface points may be, over the length of edges. An even tet on a facet has its apex at 0.82.
+/// The smallest distance of points from the surface, relative to the edge length. A regular tet on a facet
+/// has its apex at 0.82.
 pub(super) const AWAY: f64 = 0.6;
 
-/// More points than this are refused.
+/// The largest expected number of points.
 const MOST: f64 = 2e8;
 
-/// Refuses sizes that ask for too many points.
+/// Rejects sizes that require too many points.
 ///
 /// # Errors
-/// Tells how many.
+/// When they do; the error gives the number.
 pub(super) fn check(points: &[Point], size: f64) -> Result<()> {
     let [low, high] = bounds(points).unwrap_or_default();
     let expected = (0..3).map(|i| (high[i] - low[i]) / (size / EDGE_OVER_SIDE) + 1.0).product::<f64>() * 2.0;
@@ -33,7 +36,7 @@ pub(super) fn check(points: &[Point], size: f64) -> Result<()> {
     Ok(())
 }
 
-/// Lattice points with edges of about `size` between the surfaces, in the order of the lattice.
+/// Returns lattice points between the surfaces, with edges of about `size`, in lattice order.
 ///
 /// # Errors
 /// When there would be too many.
@@ -50,7 +53,7 @@ pub(super) fn lattice(
     let along = (0..3).min_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
     let tree = NearestTriangle::new(points, triangles, threads);
     let mut found = Vec::new();
-    // Both cubic lattices that make up a body-centred one.
+    // The two cubic lattices that make up a body-centred one.
     for shift in [0.0, 0.5] {
         let columns = Columns { low, side, shift, across: [(along + 1) % 3, (along + 2) % 3], along };
         found.extend(columns.points(sides, &columns.spans(points, triangles, sides)));

@@ -1,18 +1,18 @@
 //! Floor 7: closed surfaces in, volume mesh out.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | surfaces | `surfaces` | joined: equal points are one, triangles that surfaces share are one, meshes that end at a common edge are one surface |
+//! | surfaces | `surfaces` | joined: equal points become one, triangles shared by surfaces become one, meshes that end at a common edge become one surface |
 //! | caps | `caps` | open rims closed, frame by frame of a wall that moves |
-//! | check | [`crate::preflight`] | what would stop it, all of it, with ids and places |
-//! | divide | `divide` | a surface that is far coarser than the size inside is divided in its own planes |
-//! | layers | [`layers`] | thin prisms on walls, where they are asked for; what follows fills the room that they leave |
+//! | check | [`crate::preflight`] | everything that would prevent meshing, with ids and places |
+//! | divide | `divide` | a surface far coarser than the size inside is divided within its own planes |
+//! | layers | [`layers`] | thin prisms on walls, if requested; the following steps fill the core that they leave |
 //! | sizes | `sizes`, `size_field` | the same everywhere, or growing from the surface |
-//! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, a little away from the surface; one of cubes within cubes |
+//! | points | `interior`; `graded`, `octree`, `shadow` | a lattice inside, slightly away from the surface; or one of nested cubes |
 //! | tets | [`mod@crate::delaunay::constrain`] | every triangle is a facet of tets |
 //! | quality | [`crate::remesh`] | bad tets repaired, the surface kept |
 //! | bodies | `bodies` | numbered from the outside in, named, left out on request |
-//! | labels | `fill` | what surfaces enclose is a region, triangles keep their patches |
+//! | labels | `fill` | each enclosed body is a region, triangles keep their patches |
 
 mod bodies;
 mod caps;

@@ -1,33 +1,33 @@
-//! Cubes divided into eight where they are too large, neighbours by no more than once more than each other.
+//! An octree of cubes divided where they are too large, with neighbours differing by one level at most.
 
 use crate::base::{Error, Point, Result, Threads};
 
-/// Bits of a coordinate in a key: of cubes all but the first of them, so that the far corners of cubes have keys as well.
+/// Bits per coordinate of a key. Cubes use all but the highest, so that their far corners have keys as well.
 const BITS: u32 = 21;
 const MASK: u64 = (1 << BITS) - 1;
 
-/// More cubes than this are refused: a cube that is not divided makes about two points.
+/// The largest number of cubes: an undivided cube gives about two points.
 const MOST: f64 = 2.5e7;
 
-/// A cube of the tree, by its level and its place among the cubes of that level.
+/// A cube of the tree, by its level and its position among the cubes of that level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Cube {
     level: u32,
     key: u64,
 }
 
-/// Where the cubes are: those of level 0 stand side by side, each level halves them.
+/// The layout of the cubes: those of level 0 stand side by side, each level halves them.
 #[derive(Clone, Debug)]
 pub(super) struct Grid {
-    /// The lowest corner, in sides of level 0, whole numbers.
+    /// The lowest corner in units of the side of level 0; these are integers.
     first: Point,
     side: f64,
     counts: [u64; 3],
-    /// Levels with keys.
+    /// The deepest level for which keys suffice.
     depth: u32,
 }
 
-/// Which cubes of each level are divided, rising.
+/// The divided cubes of each level, in ascending order.
 #[derive(Clone, Debug)]
 pub(super) struct Octree {
     pub(super) grid: Grid,
@@ -51,12 +51,13 @@ fn too_many(side: f64) -> Error {
 }
 
 impl Grid {
-    /// Cubes of about this side over a box.
+    /// Lays out cubes of about the given side over a box.
     ///
     /// # Errors
     /// When there would be too many.
     pub(super) fn new([low, high]: [Point; 2], side: f64) -> Result<Self> {
-        // With few digits, so that all places are exact: places in one plane are then in one plane to the bit.
+        // Rounded to single precision, so that all positions are exact: points in one plane are then exactly
+        // coplanar.
         let side = f64::from(side as f32);
         let first = low.map(|x| (x / side).floor());
         let counts = [0, 1, 2].map(|i| (high[i] / side).floor() - first[i] + 1.0);
@@ -74,7 +75,7 @@ impl Grid {
         self.side / (1u64 << level) as f64
     }
 
-    /// The place so many sides of a level from the lowest corner.
+    /// The point that lies `sides` sides of a level from the lowest corner.
     fn at(&self, level: u32, sides: [f64; 3]) -> Point {
         let side = self.side(level);
         let scale = (1u64 << level) as f64;
@@ -92,10 +93,10 @@ impl Grid {
 }
 
 impl Octree {
-    /// Divides cubes as long as they are to be, then those that are too large for their neighbours.
+    /// Divides cubes as long as `is_to_be_divided` holds, then those that are too large for their neighbours.
     ///
     /// # Errors
-    /// When there would be too many, or cubes would be too small for numbers.
+    /// When there would be too many cubes, or they would be too small for keys.
     pub(super) fn new(
         grid: Grid,
         is_to_be_divided: impl Fn(&Grid, Cube) -> bool + Sync + Send,
@@ -130,7 +131,7 @@ impl Octree {
         Ok(tree)
     }
 
-    /// Divides what neighbours of the parts of divided cubes are part of.
+    /// Divides cubes so that neighbours differ by one level at most.
     fn balance(&mut self) {
         for level in (1..self.divided.len()).rev() {
             let counts = self.grid.counts.map(|n| n << level);
@@ -143,7 +144,7 @@ impl Octree {
         }
     }
 
-    /// The cubes that are not divided, level by level.
+    /// The undivided cubes, level by level.
     pub(super) fn leaves(&self) -> Vec<Cube> {
         let [nx, ny, nz] = self.grid.counts;
         let first = (0..nx).flat_map(|x| (0..ny).flat_map(move |y| (0..nz).map(move |z| key([x, y, z]))));
@@ -175,7 +176,7 @@ impl Octree {
     }
 }
 
-/// The eight parts of each cube, rising.
+/// The eight parts of each cube, in ascending order.
 fn children(parents: &[u64]) -> Vec<u64> {
     let of = |&parent: &u64| {
         let low = place(parent).map(|x| 2 * x);
@@ -186,7 +187,7 @@ fn children(parents: &[u64]) -> Vec<u64> {
     all
 }
 
-/// The cubes of a level round one, itself included.
+/// The cubes of a level around a given one, itself included.
 fn neighbours(key_of: u64, counts: [u64; 3]) -> impl Iterator<Item = u64> {
     let at = place(key_of);
     let step = |x: u64, d: u64, n: u64| (x + d).checked_sub(1).filter(|x| *x < n);
@@ -203,7 +204,8 @@ fn neighbours(key_of: u64, counts: [u64; 3]) -> impl Iterator<Item = u64> {
 mod tests {
     use super::*;
 
-    /// Cubes of a box divided until they are no larger than a quarter of the distance of their middle from a place, and a little.
+    /// Cubes of a box divided until their side is at most 0.02 plus a quarter of the distance of their middle
+    /// from a place.
     fn round_a_place() -> Octree {
         let grid = Grid::new([[-0.3, 0.1, 0.2], [2.0, 1.4, 1.1]], 0.7).unwrap();
         let is_large = |grid: &Grid, cube| {
@@ -262,7 +264,7 @@ mod tests {
         assert!(Grid::new([[0.0; 3]; 2], 0.0).is_err() && Grid::new([[0.0; 3]; 2], f64::NAN).is_err());
         let grid = || Grid::new([[0.0; 3], [1.0; 3]], 1.0).unwrap();
         assert!(Octree::new(grid(), |_, _| true, &Threads::single()).is_err());
-        // Towards one place alone there are never many.
+        // Towards a single place there are never many cubes.
         let holds = |grid: &Grid, cube| {
             let [low, high] = grid.bounds(cube);
             low[0] <= 0.3 && 0.3 < high[0] && low[1] <= 0.3 && 0.3 < high[1] && low[2] <= 0.3 && 0.3 < high[2]

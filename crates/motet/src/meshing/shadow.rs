@@ -1,4 +1,4 @@
-//! What lies between triangles, seen along each axis: anything else is outside of them all.
+//! Decides what lies between triangles along each axis; everything else is outside of them all.
 
 use crate::base::{Point, VertexId};
 use crate::mesh::bounds;
@@ -6,7 +6,7 @@ use crate::mesh::bounds;
 /// Pixels along the longest side of the box.
 const PIXELS: f64 = 512.0;
 
-/// Three pictures of a surface, one along each axis: how low and how high triangles are at each pixel.
+/// Three images of a surface, one along each axis: the lowest and highest extent of triangles at each pixel.
 pub(super) struct Shadow {
     low: Point,
     pixel: f64,
@@ -39,7 +39,7 @@ impl Shadow {
         Self { low, pixel, pictures }
     }
 
-    /// Whether some place of a box may lie between triangles along all three axes.
+    /// Whether some point of a box may lie between triangles along all three axes.
     pub(super) fn may_hold(&self, bounds: [Point; 2]) -> bool {
         let bounds = bounds.map(|p| [0, 1, 2].map(|i| (p[i] - self.low[i]) / self.pixel));
         self.pictures.iter().all(|picture| picture.may_hold(bounds))
@@ -47,12 +47,12 @@ impl Shadow {
 }
 
 impl Picture {
-    /// The pixels from one place to another along an axis of the picture.
+    /// The pixels between two positions along an axis of the image.
     fn pixels(&self, i: usize, from: f64, to: f64) -> std::ops::Range<usize> {
         from.floor().max(0.0) as usize..self.counts[i].min((to.floor() + 1.0).max(0.0) as usize)
     }
 
-    /// A triangle in pixels, row by row: a needle across the picture would else fill all of it.
+    /// Rasterises a triangle row by row: otherwise a needle across the image would fill all of it.
     fn add(&mut self, corners: [Point; 3]) {
         let [u, v] = self.across;
         let [low, high] = bounds(&corners).unwrap_or_default();
@@ -75,7 +75,7 @@ impl Picture {
     }
 }
 
-/// How far a triangle reaches along `v` where `u` is between `row` and `row + 1`.
+/// The extent of a triangle along `v` where `u` is between `row` and `row + 1`.
 fn within_row(corners: [Point; 3], [u, v]: [usize; 2], row: f64) -> [f64; 2] {
     let mut span = [f64::INFINITY, f64::NEG_INFINITY];
     for (a, b) in [(0, 1), (1, 2), (2, 0)] {

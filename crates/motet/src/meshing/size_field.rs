@@ -1,4 +1,4 @@
-//! The size of edges at any place: the least that a triangle of the surface allows there.
+//! The edge length at any place: the smallest that any triangle of the surface allows there.
 
 use super::sizes::Grading;
 use crate::base::{Point, Threads, VertexId};
@@ -6,10 +6,10 @@ use crate::geometry::triangle;
 use crate::geometry::vector::{add, cross, distance, dot, scale, sub};
 use crate::spatial::{BoxTree, NearestTriangle, around};
 
-/// Triangles of a class have least sizes within a factor of 2 to the power of the inverse of this.
+/// The smallest sizes of triangles of a class agree within a factor of 2 to the power of the inverse of this.
 const CLASSES_PER_OCTAVE: f64 = 4.0;
 
-/// Sizes that grow from a surface; `growth` times the distance of two places is the most that they differ by there.
+/// Sizes that grow from a surface; at two places they differ by at most `growth` times the distance.
 pub(super) struct SizeField<'a> {
     growth: f64,
     largest: f64,
@@ -20,7 +20,7 @@ pub(super) struct SizeField<'a> {
     classes: Vec<Class>,
 }
 
-/// Triangles of about the same size: of these those near a place are of interest, and no others.
+/// Triangles of similar size, of which only those near a place need to be examined.
 struct Class {
     least: f64,
     triangles: Vec<u32>,
@@ -28,7 +28,7 @@ struct Class {
 }
 
 impl<'a> SizeField<'a> {
-    /// From sizes at the corners of triangles.
+    /// Builds the field from sizes at the corners of triangles.
     pub(super) fn new(
         points: &'a [Point],
         triangles: &'a [[VertexId; 3]],
@@ -63,7 +63,7 @@ impl<'a> SizeField<'a> {
             self.nearest.closest(p).map_or(f64::INFINITY, |found| self.of_triangle(found.triangle, p));
         let mut size = nearest.min(self.largest);
         for class in &self.classes {
-            // How far away a triangle may be for its size to be the least.
+            // The largest distance at which a triangle of this class can lower the size.
             let reach = (size - class.least) / self.growth;
             if reach <= 0.0 {
                 continue;
@@ -79,17 +79,17 @@ impl<'a> SizeField<'a> {
         size
     }
 
-    /// Whether the surface is nearer to a place than this.
+    /// Whether the surface is closer to a place than `distance`.
     pub(super) fn is_near(&self, p: Point, distance: f64) -> bool {
         self.nearest.closest_within(p, distance).is_some()
     }
 
-    /// What no size is above, if anything.
+    /// The largest size anywhere, if limited.
     pub(super) fn largest(&self) -> Option<f64> {
         self.largest.is_finite().then_some(self.largest)
     }
 
-    /// The middle one of the sizes of all triangles.
+    /// The median of the sizes of all triangles.
     pub(super) fn median(&self) -> f64 {
         let mut sizes: Vec<f64> = self.at_corners.iter().map(|at| at.iter().sum::<f64>() / 3.0).collect();
         let middle = sizes.len() / 2;
@@ -111,10 +111,11 @@ fn class(sizes: &[f64; 3]) -> i32 {
     (least(sizes).log2() * CLASSES_PER_OCTAVE).floor() as i32
 }
 
-/// The least of `size + growth * distance` from `p` over a triangle whose sizes are linear.
+/// The minimum of `size + growth * distance` from `p` over a triangle whose sizes are linear.
 ///
-/// Where sizes change along the triangle, it is not at the point nearest to `p`: with a gradient `m` along the triangle it is
-/// `height * m / sqrt(growth^2 - m^2)` from there towards smaller sizes. Outside of the triangle it lies on an edge, where the same holds.
+/// Where sizes vary along the triangle, the minimum is not at the point nearest to `p`: if the size has
+/// gradient `m` along the triangle, it lies `height * m / sqrt(growth^2 - m^2)` from there towards smaller
+/// sizes. If that is outside the triangle, the minimum lies on an edge, where the same holds.
 fn least_from(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
     let at = |weights: [f64; 3]| {
         let size = (0..3).map(|i| weights[i] * sizes[i]).sum::<f64>();
@@ -136,7 +137,7 @@ fn least_from(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f6
     edge(0).min(edge(1)).min(edge(2))
 }
 
-/// The weights of the place in the plane where it is least, if that lies in the triangle.
+/// The weights of the minimum in the plane of the triangle, if it lies in the triangle.
 fn within([a, b, c]: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> Option<[f64; 3]> {
     let (u, v, w) = (sub(b, a), sub(c, a), sub(p, a));
     let normal = cross(u, v);
@@ -151,11 +152,11 @@ fn within([a, b, c]: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> Opti
     let to_b = dot(cross(place, v), normal) / square;
     let to_c = dot(cross(u, place), normal) / square;
     let weights = [1.0 - to_b - to_c, to_b, to_c];
-    // Numbers that are none are not inside.
+    // NaN weights do not count as inside.
     (rest > 0.0 && weights.iter().all(|x| *x >= 0.0)).then_some(weights)
 }
 
-/// How far along an edge it is least, in [0, 1].
+/// The position of the minimum along an edge, in [0, 1].
 fn along([a, b]: [Point; 2], sizes: [f64; 2], growth: f64, p: Point) -> f64 {
     let (edge, to) = (sub(b, a), sub(p, a));
     let length = dot(edge, edge).sqrt();
@@ -178,7 +179,7 @@ mod tests {
         prop::array::uniform3(-1.0..1.0f64)
     }
 
-    /// The least over a fine grid of points of the triangle.
+    /// The minimum over a fine grid of points of the triangle.
     fn by_looking(corners: [Point; 3], sizes: [f64; 3], growth: f64, p: Point) -> f64 {
         const N: usize = 60;
         let all =

@@ -1,4 +1,4 @@
-//! How long edges inside are to be: what a caller can ask for, held against what can be done.
+//! Requested edge lengths inside, checked against what is possible.
 
 use std::fmt;
 
@@ -10,21 +10,23 @@ use crate::geometry::triangle::area;
 use crate::geometry::vector::{LARGEST, distance};
 use crate::mesh::{Field, Mesh, Surface, edge_lengths, firsts_at_place, mean_edge_lengths};
 
-/// Sizes that grow faster than this part of the distance mean nothing: neighbours in the lattice differ by a factor of 2 at most. Below it a cube of
-/// the lattice is never so large that what is small within it goes unseen from its middle.
+/// The largest growth of sizes per unit of distance: in the lattice, neighbours differ by a factor of 2 at
+/// most, so more would have no effect. Below it no cube of the lattice is so large that small sizes within it
+/// go unnoticed at its middle.
 pub const MOST_GROWTH: f64 = 0.7;
 
-/// Edges of the surface that are so many times as long as edges inside are to be leave bad tets.
+/// A surface triangle with an edge this many times as long as the size inside gives bad tets.
 const COARSE: f64 = 3.0;
-/// So do triangles with edges longer than the size whose longest edge is so many times as long as the height over it: they have an angle below 10 degrees.
+/// So does a triangle with an edge longer than the size whose longest edge is this many times its height: a
+/// needle then has an angle below 10 degrees.
 const NARROW: f64 = 6.0;
 
-/// A surface of which most is far coarser than the size of edges inside, or narrow triangles.
+/// A surface most of which is far coarser than the size inside, or consists of narrow triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Coarse {
     /// The size of edges inside.
     pub size: f64,
-    /// The least, the median and the largest length of the edges of the surface.
+    /// The shortest, the median and the longest edge of the surface.
     pub edges: [f64; 3],
 }
 
@@ -38,25 +40,25 @@ impl fmt::Display for Coarse {
     }
 }
 
-/// How long edges inside are to be, in units of the surface.
+/// Edge lengths inside, in units of the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sizes {
     /// The same everywhere.
     Uniform(f64),
-    /// What they are at the surface, growing from there.
+    /// Given at the surface, growing from there.
     Graded(Grading),
 }
 
-/// Sizes that grow from the surface: at a place the least of `size there + growth * distance` over all places of the surface, so
-/// two places never differ by more than `growth` times their distance.
+/// Sizes that grow from the surface: at each place the minimum of `size there + growth * distance` over the
+/// whole surface, so sizes at two places never differ by more than `growth` times their distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grading {
     /// The size at each of [`Surfaces::points`], linear on triangles; `None`: the mean length of the edges of the surface there.
     /// Default: `None`.
     pub at_points: Option<Vec<f64>>,
-    /// How much sizes grow per unit of distance, above 0 and at most [`MOST_GROWTH`]. Default: 0.3.
+    /// By how much sizes grow per unit of distance, above 0 and at most [`MOST_GROWTH`]. Default: 0.3.
     pub growth: f64,
-    /// No size is above this. Default: `None`.
+    /// The largest size anywhere. Default: `None`.
     pub largest: Option<f64>,
 }
 
@@ -67,8 +69,9 @@ impl Default for Grading {
 }
 
 impl Sizes {
-    /// As far as they are told: with `growth`, sizes at points, or where it `is_graded` they grow from the surface, up to `largest`; else they are `largest`
-    /// everywhere. `None` where nothing is told.
+    /// Chooses between uniform and graded sizes. If `growth` or sizes at points are given, or if `is_graded`,
+    /// sizes grow from the surface, up to `largest`; otherwise they are `largest` everywhere. `None` if
+    /// nothing is given.
     pub fn of(
         largest: Option<f64>,
         is_graded: bool,
@@ -82,8 +85,10 @@ impl Sizes {
         Some(Self::Graded(Grading { at_points, growth, largest }))
     }
 
+    /// Checks the sizes.
+    ///
     /// # Errors
-    /// When a size is no length, or sizes grow in a way that means nothing.
+    /// When a size is not a valid length, or the growth is out of range.
     pub(super) fn check(&self, surfaces: &Surfaces) -> Result<()> {
         match self {
             Self::Uniform(size) => check_length(*size),
@@ -91,7 +96,8 @@ impl Sizes {
         }
     }
 
-    /// Whether most of the surface has edges far longer than the size that is the same everywhere, or is narrow triangles: no good tets stand on these. `None` where it has not.
+    /// Whether most of the surface, by area, has edges far longer than a uniform size, or is made of narrow
+    /// triangles, on which no good tets can stand. `None` if not, or if sizes are graded.
     pub fn coarse(&self, surfaces: &Surfaces) -> Option<Coarse> {
         let Self::Uniform(size) = *self else { return None };
         let (mut all, mut coarse) = (0.0, 0.0);
@@ -106,7 +112,7 @@ impl Sizes {
         (2.0 * coarse > all).then_some(Coarse { size, edges })
     }
 
-    /// The sizes at the corners of each triangle, where they are not the same everywhere.
+    /// The sizes at the corners of each triangle; empty for a uniform size.
     pub(super) fn at_corners(&self, surfaces: &Surfaces) -> Vec<[f64; 3]> {
         let Self::Graded(grading) = self else { return Vec::new() };
         let of_edges = || mean_edge_lengths(&surfaces.points, surfaces.triangles.iter().copied());
@@ -152,11 +158,13 @@ fn no_length(size: f64) -> Error {
         .remedy("give every point of the surface a number above 0")
 }
 
-/// The sizes at the points of a mesh by an array of its points or its surface cells (of a mesh without any, its volume cells); of cells that
-/// share a point the least counts. Points that no cell uses have a size of infinity.
+/// Returns the sizes at the points of a mesh, from an array on its points or its surface cells (volume cells
+/// if it has no surface cells). Among cells that share a point the smallest size counts. Points that no cell
+/// uses get infinity.
 ///
 /// # Errors
-/// When there is no such array, when it has more than a number a row, or when a number is no length: the place is the point or cell.
+/// When there is no such array, when it has more than one component, or when a value is not a valid length;
+/// the error gives the point or cell.
 pub fn sizes_by(mesh: &Mesh, array: &str) -> Result<Vec<f64>> {
     let surface = Surface::own_or_boundary_of(mesh);
     let mut sizes = vec![f64::INFINITY; mesh.points.len()];
@@ -204,7 +212,8 @@ fn unknown(mesh: &Mesh, array: &str) -> Error {
 }
 
 impl Surfaces {
-    /// Sizes at all points, from those of the points of each mesh: of points at one place the least.
+    /// Returns sizes at all points, given those at the points of each mesh; among coincident points the
+    /// smallest counts.
     pub fn sizes(&self, of_meshes: &[Vec<f64>]) -> Vec<f64> {
         let mut sizes = of_meshes.concat();
         if sizes.len() == self.points.len() {

@@ -1,4 +1,4 @@
-//! Surfaces of several meshes as one set of points and triangles.
+//! Joins the surfaces of several meshes into one set of points and triangles.
 
 use std::collections::BTreeMap;
 
@@ -7,33 +7,34 @@ use crate::base::{Error, Point, Result, Threads, VertexId, rising};
 use crate::mesh::{Mesh, Surface, firsts_at_place};
 use crate::preflight::{self, Preflight, Repaired, Repairs, Role, renamed};
 
-/// Surfaces to be filled, joined: points at one place are one vertex, and meshes that end at a common edge are one surface.
+/// Joined surfaces to be filled: coincident points are one vertex, and meshes that end at a common edge are
+/// one surface.
 #[derive(Clone, Debug)]
 pub struct Surfaces {
-    /// The points of all meshes, one mesh after the other, also those that no triangle uses.
+    /// The points of all meshes, one mesh after the other, including unused ones.
     pub points: Vec<Point>,
     /// The triangles of all meshes.
     pub triangles: Vec<[VertexId; 3]>,
-    /// Which surface each triangle is of.
+    /// The surface that each triangle belongs to.
     pub surface_of: Vec<u32>,
-    /// What each surface is.
+    /// The role of each surface.
     pub roles: Vec<Role>,
-    /// The name that each surface's first mesh came with.
+    /// The name of the first mesh of each surface.
     pub names: Vec<String>,
-    /// The meshes that each surface is made of, rising.
+    /// The meshes that each surface is made of, in ascending order.
     pub meshes: Vec<Vec<u32>>,
-    /// The patch of each triangle. Where no mesh but one has labels of its own, those; otherwise new ones.
+    /// The patch of each triangle. The first mesh keeps its labels; later meshes get new ones.
     pub patches: Vec<i32>,
     /// Names of patches, where there are any.
     pub patch_names: BTreeMap<i32, String>,
 }
 
 impl Surfaces {
-    /// Joins the surface cells of meshes; of a mesh without any, the boundary of its volume cells. Each comes with a name for its triangles,
-    /// which they take where they have no patches.
+    /// Joins the surface cells of meshes, or the boundary of the volume cells for a mesh without any. Each
+    /// mesh comes with a role and a name; the name is given to triangles without a patch.
     ///
     /// # Errors
-    /// When there is no mesh, or more points than can be counted.
+    /// When there are more points than ids.
     pub fn new(meshes: &[(&Mesh, Role, &str)]) -> Result<Self> {
         let mut all = Self {
             points: Vec::new(),
@@ -54,7 +55,7 @@ impl Surfaces {
         Ok(all)
     }
 
-    /// Makes one of surfaces that end at a common edge; a triangle that several of them have stays in the first.
+    /// Merges surfaces that end at a common edge; a triangle that several of them contain stays in the first.
     fn join(&mut self) {
         let part_of = preflight::joint(&self.points, &self.triangles, &self.surface_of, &self.roles);
         if (0..).eq(part_of.iter().copied()) {
@@ -75,7 +76,8 @@ impl Surfaces {
         self.meshes = meshes;
     }
 
-    /// Of triangles with the same vertices within a group those of the group's first member stay; `of` tells group and member of a triangle.
+    /// Among triangles with the same vertices within a group, keeps those of the group's first member; `of`
+    /// returns group and member of a triangle.
     fn keep_firsts(&mut self, of: impl Fn(&Self, usize) -> (u32, u32)) {
         let key = |t: usize| {
             let (group, member) = of(self, t);
@@ -112,7 +114,8 @@ impl Surfaces {
         Ok(())
     }
 
-    /// Gives the triangles of a surface their patches: as they are where no other surface has them, else the next numbers that are free.
+    /// Gives the triangles of a surface their patches: unchanged if no other surface has labels yet, else the
+    /// next free numbers.
     fn label(&mut self, surface: &Surface, name: &str) {
         let mut old_to_new = BTreeMap::new();
         let mut next = self.patches.iter().copied().max().unwrap_or(0).max(0) + 1;
@@ -132,7 +135,7 @@ impl Surfaces {
         self.patches.extend(surface.patches.iter().map(|old| old_to_new[old]));
     }
 
-    /// The patch that a word means: its name, or its number.
+    /// Finds a patch by its name or number.
     ///
     /// # Errors
     /// When there is no such patch.
@@ -150,15 +153,15 @@ impl Surfaces {
         })
     }
 
-    /// What would stop these surfaces from being filled.
+    /// Checks for everything that would stop these surfaces from being filled.
     pub fn preflight(&self, threads: &Threads) -> Preflight {
         preflight::preflight(&self.points, &self.triangles, &self.surface_of, &self.roles, threads)
     }
 
-    /// Mends what is asked for, and tells what was done.
+    /// Makes the requested repairs, and reports what was done.
     ///
     /// # Errors
-    /// When the repairs mean nothing, such as a distance below 0.
+    /// When the options are invalid, such as a negative distance.
     pub fn repair(&mut self, repairs: &Repairs, threads: &Threads) -> Result<Repaired> {
         let done = preflight::repair(
             &self.points,
@@ -176,7 +179,7 @@ impl Surfaces {
         Ok(done)
     }
 
-    /// Without points that no triangle uses: they need not even be apart from the triangles.
+    /// Removes points that no triangle uses: these may even lie on triangles.
     pub(super) fn compact(mut self) -> Self {
         let is_used = named(self.points.len(), self.triangles.as_flattened().iter());
         let (points, old_to_new) = compact(&self.points, &is_used);
@@ -185,7 +188,7 @@ impl Surfaces {
         self
     }
 
-    /// Without triangles that an earlier one is as well.
+    /// Removes triangles that have the same vertices as an earlier one.
     pub(super) fn without_shared(&self) -> Self {
         let mut kept = self.clone();
         kept.keep_firsts(|_, t| (0, t as u32));

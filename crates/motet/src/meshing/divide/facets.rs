@@ -1,4 +1,5 @@
-//! Flat facets of surfaces: triangles in one plane, exactly or but for rounding, that are the same patches of the same surfaces.
+//! Flat facets of surfaces: triangles in one plane, exactly or up to rounding, that belong to the same
+//! patches of the same surfaces.
 
 use super::net::Plane;
 use crate::base::{Point, Sets, VertexId, rising, runs_alike};
@@ -7,13 +8,14 @@ use crate::geometry::rounding;
 use crate::geometry::triangle::area;
 use crate::meshing::surfaces::Surfaces;
 
-/// What a triangle is for a surface that has it: the surface, its patch, and whether it faces as the first of those at its place.
+/// How a surface uses a triangle: the surface, its patch, and whether the triangle has the orientation of the
+/// first one with these vertices.
 pub(super) type Label = (u32, i32, bool);
 
-/// The triangles of surfaces, each place once.
+/// The triangles of surfaces, coincident ones merged.
 pub(super) struct Sheet {
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// What each is for the surfaces that have it.
+    /// For each triangle, how the surfaces that contain it use it.
     labels: Vec<Vec<Label>>,
 }
 
@@ -39,14 +41,14 @@ impl Sheet {
 pub(super) struct Facets {
     /// The facet of each triangle.
     pub(super) facet_of: Vec<u32>,
-    /// The plane of each facet, as which its triangles turn.
+    /// The plane of each facet, with the orientation of its triangles.
     pub(super) planes: Vec<Plane>,
-    /// What the triangles of each facet are for the surfaces that have them.
+    /// For each facet, how the surfaces that contain its triangles use them.
     pub(super) labels: Vec<Vec<Label>>,
 }
 
 impl Facets {
-    /// The facets of a sheet; `None` where a triangle has no plane in the digits of its coordinates.
+    /// Finds the facets of a sheet; `None` if a triangle has no plane in floating-point arithmetic.
     pub(super) fn find(points: &[Point], sheet: &Sheet) -> Option<Self> {
         let corners = |i: usize| sheet.triangles[i].map(|v| points[v.index()]);
         let roots = roots(points, sheet);
@@ -78,7 +80,7 @@ impl Facets {
     }
 }
 
-/// A triangle that stands for the facet of each triangle.
+/// For each triangle, a triangle that represents its facet.
 fn roots(points: &[Point], sheet: &Sheet) -> Vec<usize> {
     let Sheet { triangles, labels } = sheet;
     let flat = flat_facets(points, triangles, rounding::of(points));
@@ -91,7 +93,7 @@ fn roots(points: &[Point], sheet: &Sheet) -> Vec<usize> {
     for run in edges.chunk_by(|x, y| x.0 == y.0) {
         let &[(_, one, i), (_, other, j)] = run else { continue };
         let [s, t] = [i, j].map(|t| t as usize);
-        // Triangles of a facet face the same side.
+        // Triangles of a facet have the same orientation.
         if one != other && flat[s] == flat[t] && labels[s] == labels[t] {
             sets.join(i, j);
         }

@@ -1,10 +1,11 @@
-//! Surfaces that are coarser than the sizes inside, divided: their flat facets keep their planes, their creases are edges, and triangles become as even as both allow.
+//! Divides surfaces coarser than the size inside: flat facets keep their planes, creases stay edges, and
+//! triangles become as regular as both allow.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | facets | `facets` | triangles of one patch in one plane, exactly or but for rounding |
+//! | facets | `facets` | triangles of one patch in one plane, exactly or up to rounding |
 //! | creases | `refine` | divided into parts of about the size |
-//! | facets | `refine`, `net` | Delaunay refinement in the plane |
+//! | triangles | `refine`, `net` | Delaunay refinement in the plane |
 
 mod facets;
 mod net;
@@ -20,13 +21,14 @@ use crate::base::{Error, Result, Threads, VertexId};
 use crate::geometry::triangle::area;
 use crate::geometry::vector::distance;
 
-/// More triangles than this are refused.
+/// The largest expected number of triangles.
 const MOST: f64 = 2e7;
 
-/// So many times as many points as triangles are expected are inserted at most: where facets are far narrower than the size, more than are expected.
+/// The largest number of points inserted, as a multiple of the expected number of triangles: where facets are
+/// far narrower than the size, more points than expected are needed.
 const MOST_POINTS: usize = 16;
 
-/// Surfaces divided, and how many triangles there were.
+/// The numbers of triangles before and after a surface was divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Divided {
     /// Triangles of the surfaces before, those that two surfaces share counted once.
@@ -35,7 +37,8 @@ pub struct Divided {
     pub after: usize,
 }
 
-/// Divides the triangles of surfaces so that edges are about as long as `size`. Each place of the surfaces stays where it is to rounding.
+/// Divides the triangles of surfaces so that edges are about as long as `size`. The shape of the surfaces is
+/// kept to rounding.
 ///
 /// # Errors
 /// When there would be far too many triangles.
@@ -62,7 +65,7 @@ pub(super) fn divide(surfaces: &Surfaces, size: f64, threads: &Threads) -> Resul
     Ok((joined(surfaces, net, &labels), Divided { before, after }))
 }
 
-/// The surfaces with the triangles of `net`, each with the labels of its facet.
+/// Returns the surfaces with the triangles of `net`, each with the labels of its facet.
 fn joined(surfaces: &Surfaces, net: Net, labels: &[Vec<facets::Label>]) -> Surfaces {
     let mut divided = Surfaces {
         points: net.points,
@@ -81,7 +84,7 @@ fn joined(surfaces: &Surfaces, net: Net, labels: &[Vec<facets::Label>]) -> Surfa
     divided
 }
 
-/// About how many triangles there will be: even ones on the area, and those at divided creases.
+/// Estimates the number of triangles: regular ones over the area, and those at divided creases.
 fn expected(surfaces: &Surfaces, size: f64) -> f64 {
     let even = 0.25 * 3f64.sqrt() * size * size;
     let of = |t: &[VertexId; 3]| {

@@ -1,7 +1,9 @@
-//! Triangles of flat facets, and what inserts points between them: constrained Delaunay triangulations that share their creases.
+//! Triangles of flat facets and the insertion of points: constrained Delaunay triangulations that share their
+//! creases.
 //!
-//! A point takes the place of all triangles that hold it in their circles and that can be reached without crossing a crease (Bowyer 1981, Watson 1981; with creases Lee
-//! and Lin 1986). Circles in a plane are spheres through a point beside it, so signs are exact.
+//! A point replaces all triangles whose circumcircles contain it and that can be reached without crossing a
+//! crease (Bowyer 1981, Watson 1981; with creases Lee and Lin 1986). A circle in a plane is the section of a
+//! sphere through a point beside it, so signs are exact.
 
 use hashbrown::HashMap;
 
@@ -29,7 +31,7 @@ impl Plane {
         Some(Self { beside, at: (a, normal) })
     }
 
-    /// 1 where three points turn as the triangles of the facet do.
+    /// The orientation of three points: 1 if they turn as the triangles of the facet do.
     pub(super) fn turn(&self, [a, b, c]: [Point; 3]) -> i8 {
         orient3d(a, b, c, self.beside)
     }
@@ -39,19 +41,19 @@ impl Plane {
     }
 }
 
-/// A triangle, by its place in the list.
+/// A triangle, by its index.
 pub(super) type TriangleId = u32;
 
 /// Why a point cannot be inserted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Blocked {
-    /// A crease hides it, or is seen from it at more than a right angle.
+    /// A crease hides it, or is seen from it at an obtuse angle.
     By([VertexId; 2]),
-    /// Triangles there have no room for it.
+    /// The triangles there have no space for it.
     NoRoom,
 }
 
-/// Triangles to go, and the directed edges round them.
+/// Triangles to be replaced, and the directed edges around them.
 struct Cavity {
     triangles: Vec<TriangleId>,
     rim: Vec<[VertexId; 2]>,
@@ -65,12 +67,13 @@ pub(super) struct Net {
     pub(super) planes: Vec<Plane>,
     /// The triangle to the left of a directed edge in a facet.
     left: HashMap<(u32, VertexId, VertexId), TriangleId>,
-    /// Edges that stay edges, and the facets at each.
+    /// Constrained edges, and the facets at each.
     creases: HashMap<[VertexId; 2], Vec<u32>>,
 }
 
 impl Net {
-    /// Triangles with the facet of each, which all turn as the plane of their facet does. An edge is a crease unless the triangles at it are two, of one facet.
+    /// Builds a net of triangles, given the facet of each; all must be oriented as their facet. An edge is a
+    /// crease unless exactly two triangles meet there, both of one facet.
     pub(super) fn new(
         points: Vec<Point>,
         triangles: Vec<[VertexId; 3]>,
@@ -114,7 +117,7 @@ impl Net {
         self.creases.contains_key(&rising(edge))
     }
 
-    /// All creases, in rising order.
+    /// All creases, in ascending order.
     pub(super) fn creases(&self) -> Vec<[VertexId; 2]> {
         let mut creases: Vec<[VertexId; 2]> = self.creases.keys().copied().collect();
         creases.sort_unstable();
@@ -137,7 +140,7 @@ impl Net {
         }
     }
 
-    /// Flips edges within facets until no vertex lies in the circle of a neighbour (Lawson 1977).
+    /// Flips edges within facets until no vertex lies in the circumcircle of a neighbour (Lawson 1977).
     pub(super) fn make_delaunay(&mut self) {
         let mut todo: Vec<(u32, [VertexId; 2])> = Vec::new();
         for (&facet, &[a, b, c]) in self.facet_of.iter().zip(&self.triangles) {
@@ -170,7 +173,7 @@ impl Net {
         }
     }
 
-    /// Puts a point between the triangles of a facet, near one of them; the new triangles.
+    /// Inserts a point into a facet, near one of its triangles; returns the new triangles.
     pub(super) fn insert(&mut self, near: TriangleId, point: Point) -> Result<Vec<TriangleId>, Blocked> {
         let cavity = self.cavity(near, None, point)?;
         for &[a, b] in cavity.rim.iter().filter(|edge| self.is_crease(**edge)) {
@@ -184,7 +187,8 @@ impl Net {
         Ok(self.fill(facet, &cavity, new))
     }
 
-    /// Divides a crease at a point, in all facets that meet there; the new vertex and the new triangles.
+    /// Divides a crease at a point, in all facets that meet there; returns the new vertex and the new
+    /// triangles. `None` if that is not possible.
     pub(super) fn divide(
         &mut self,
         edge: [VertexId; 2],
@@ -217,7 +221,8 @@ impl Net {
         VertexId::new(self.points.len() - 1)
     }
 
-    /// The triangles that a point takes the place of: those that have it in their circles, as far as it sees all edges round them. A point on an edge does not see that edge.
+    /// Finds the triangles that a point replaces: those whose circumcircles contain it, as far as all edges
+    /// around them are visible from it. The edge `on` that the point lies on is exempt.
     fn cavity(&self, first: TriangleId, on: Option<[VertexId; 2]>, point: Point) -> Result<Cavity, Blocked> {
         let facet = self.facet_of[first as usize];
         let plane = self.planes[facet as usize];
@@ -245,7 +250,8 @@ impl Net {
                     }
                 }
             }
-            // Of a pair of triangles the second may have been taken in after the first had met their edge.
+            // The second of two neighbouring triangles may have been added after the first one's edge was
+            // examined.
             rim.retain(|(edge, _)| {
                 let behind = self.left.get(&(facet, edge[1], edge[0])).filter(|_| !self.is_crease(*edge));
                 behind.is_none_or(|behind| !triangles.contains(behind))

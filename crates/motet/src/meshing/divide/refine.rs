@@ -1,6 +1,8 @@
-//! Triangles of flat facets made small and even: Delaunay refinement (Ruppert 1995, *A Delaunay refinement algorithm for quality 2-dimensional mesh generation*).
+//! Makes the triangles of flat facets small and regular by Delaunay refinement (Ruppert 1995, *A Delaunay
+//! refinement algorithm for quality 2-dimensional mesh generation*).
 //!
-//! The circumcentre of a triangle that is too large or too narrow is inserted; where a crease is in the way, the crease is divided instead.
+//! The circumcentre of a triangle that is too large or too narrow is inserted; if a crease is in the way, the
+//! crease is divided instead.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -10,14 +12,17 @@ use crate::base::{Point, Result, VertexId, Watch};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 
-/// A triangle is too large if its circumradius is longer than this part of the size. Edges are then about as long as the size on average.
+/// A triangle is too large if its circumradius exceeds this fraction of the size. Edges are then about as
+/// long as the size on average.
 const LARGE: f64 = 0.75;
-/// A triangle is too narrow if its circumradius is so many times as long as its shortest edge: an angle of less than 25 degrees.
+/// A triangle is too narrow if its circumradius exceeds this multiple of its shortest edge: it has an angle
+/// below 25 degrees.
 const NARROW: f64 = 1.183;
-/// No edge is divided, and no triangle counts as narrow, below this part of the size: creases that are nearer to each other leave narrow triangles.
+/// Edges shorter than this fraction of the size are not made, and do not make a triangle count as narrow:
+/// creases closer together leave narrow triangles.
 const LEAST: f64 = 0.062_5;
 
-/// A triangle to be divided, worst first.
+/// A triangle to be divided; those with the largest circumradius come first.
 #[derive(PartialEq)]
 struct Wanted {
     radius: f64,
@@ -46,7 +51,7 @@ pub(super) fn divide_creases(net: &mut Net, size: f64, watch: &Watch) -> Result<
         watch.go_on("dividing the surface", i, creases.len())?;
         let [p, q] = [net.point(a), net.point(b)];
         let n = (distance(p, q) / size).round() as usize;
-        // By halves, so that few triangles see each point.
+        // By bisection, so that few triangles see each point.
         let mut todo = vec![([a, b], [0, n.max(1)])];
         while let Some(([from, to], [low, high])) = todo.pop() {
             let middle = (low + high) / 2;
@@ -64,7 +69,8 @@ pub(super) fn divide_creases(net: &mut Net, size: f64, watch: &Watch) -> Result<
     Ok(())
 }
 
-/// Divides triangles until none is too large, or too narrow but for the angle between two creases; no more than `most` points are inserted.
+/// Divides triangles until none is too large, or too narrow unless its small angle lies between two creases.
+/// At most `most` points are inserted.
 pub(super) fn refine(net: &mut Net, size: f64, most: usize, watch: &Watch) -> Result<()> {
     let mut heap: BinaryHeap<Wanted> =
         (0..net.triangles.len() as TriangleId).filter_map(|t| wanted(net, t, size)).collect();
@@ -90,7 +96,7 @@ pub(super) fn refine(net: &mut Net, size: f64, most: usize, watch: &Watch) -> Re
                     continue;
                 }
                 let Some((_, inserted)) = net.divide([a, b], scale(add(p, q), 0.5)) else { continue };
-                // What was hidden may be seen now.
+                // What the crease hid may be visible now.
                 heap.extend(wanted(net, triangle, size).filter(|w| w.vertices == vertices));
                 inserted
             }
@@ -101,7 +107,7 @@ pub(super) fn refine(net: &mut Net, size: f64, most: usize, watch: &Watch) -> Re
     Ok(())
 }
 
-/// Whether a triangle is to be divided.
+/// Returns a triangle if it must be divided.
 fn wanted(net: &Net, triangle: TriangleId, size: f64) -> Option<Wanted> {
     let vertices = net.triangles[triangle as usize];
     let corners = net.corners(triangle);
@@ -110,7 +116,7 @@ fn wanted(net: &Net, triangle: TriangleId, size: f64) -> Option<Wanted> {
     let area = norm(area_vector(corners));
     let radius = lengths[0] * lengths[1] * lengths[2] / (4.0 * area);
     let is_crease = |i: usize| net.is_crease([vertices[i], vertices[(i + 1) % 3]]);
-    // The angle between two creases stays what it is.
+    // An angle between two creases cannot be changed.
     let is_given = || (0..3).filter(|&i| i != shortest).all(is_crease);
     let is_narrow = || radius > NARROW * lengths[shortest] && lengths[shortest] > LEAST * size && !is_given();
     (radius > LARGE * size || is_narrow()).then_some(Wanted { radius, triangle, vertices })

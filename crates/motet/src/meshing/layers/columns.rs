@@ -20,11 +20,11 @@ use crate::mesh::CellKind;
 /// A place in a column: the vertex of the skin at its foot, and the level.
 pub(super) type Site = (VertexId, u32);
 
-/// Columns of some heights.
+/// Columns of given heights.
 pub(super) struct Columns<'a> {
     skin: &'a Skin,
     heights: &'a Heights,
-    /// How high the levels of each stack lie.
+    /// The heights of the levels of each stack.
     levels: Vec<Vec<f64>>,
 }
 
@@ -33,12 +33,12 @@ impl<'a> Columns<'a> {
         Self { skin, heights, levels: skin.stacks.iter().map(super::Stack::levels).collect() }
     }
 
-    /// How many levels a column has above its foot.
+    /// The number of levels of a column above its foot.
     pub(super) fn count(&self, vertex: VertexId) -> u32 {
         self.heights.count(self.skin, vertex) as u32
     }
 
-    /// Where a site is.
+    /// The position of a site.
     pub(super) fn at(&self, (vertex, level): Site) -> Point {
         let (foot, w) = (self.skin.points[vertex.index()], vertex.index());
         let stack = self.heights.stack_of[w];
@@ -49,7 +49,7 @@ impl<'a> Columns<'a> {
         add(foot, scale(self.heights.lifts[w], self.levels[stack as usize][level as usize] * share))
     }
 
-    /// The uppermost site of a column.
+    /// The topmost site of a column.
     pub(super) fn top(&self, vertex: VertexId) -> Site {
         (vertex, self.count(vertex))
     }
@@ -63,7 +63,8 @@ impl<'a> Columns<'a> {
         (0..most).map(move |level| Prism { bottom: at_level(level), top: at_level(level + 1) })
     }
 
-    /// The sides of the prisms at edge `k` of a triangle of the skin, turned as what lies beyond the edge: out of the body.
+    /// The sides of the prisms at edge `k` of a triangle of the skin, oriented as the surface beyond the
+    /// edge: out of the body.
     pub(super) fn sides(&self, triangle: u32, k: usize) -> impl Iterator<Item = [Site; 4]> + '_ {
         let prisms = self.prisms(triangle);
         let next = (k + 1) % 3;
@@ -71,7 +72,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// What lies between two levels of three columns. Corners run counter-clockwise seen from outside the body.
+/// The cell between two levels of three columns. Corners run counter-clockwise seen from outside the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Prism {
     pub(super) bottom: [Site; 3],
@@ -79,7 +80,8 @@ pub(super) struct Prism {
 }
 
 impl Prism {
-    /// All tets of four of its corners that can be a part of it, however its sides are divided, as they are when positive.
+    /// All tets on four of its corners that can be part of it, however its sides are divided, in positive
+    /// orientation.
     pub(super) fn tets(&self) -> impl Iterator<Item = [Site; 4]> {
         let ([a, b, c], [d, e, f]) = (self.bottom, self.top);
         let round = [([a, b, c], [d, e, f]), ([b, c, a], [e, f, d]), ([c, a, b], [f, d, e])];
@@ -89,7 +91,7 @@ impl Prism {
         all.into_iter().flatten().filter(|tet| (1..4).all(|i| !tet[..i].contains(&tet[i])))
     }
 
-    /// The cell that it is, with its vertices in VTK's order.
+    /// The mesh cell that it is, with its vertices in VTK's order; `None` if top and bottom coincide.
     pub(super) fn cell(&self) -> Option<(CellKind, Vec<Site>)> {
         let ([a, b, c], [d, e, f]) = (self.bottom, self.top);
         Some(match [a == d, b == e, c == f] {
@@ -105,7 +107,7 @@ impl Prism {
     }
 }
 
-/// A ring of sites without those that are there twice: four, three or fewer.
+/// A ring of sites without duplicates: four, three or fewer.
 pub(super) fn distinct(ring: [Site; 4]) -> Vec<Site> {
     let mut found: Vec<Site> = Vec::with_capacity(4);
     ring.into_iter().for_each(|site| {

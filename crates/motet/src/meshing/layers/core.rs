@@ -1,4 +1,5 @@
-//! The room that the layers leave, as surfaces to be filled: walls by the tops of their layers, caps with their rims moved inward.
+//! The core that the layers leave, as surfaces to be filled: walls replaced by the tops of their layers, caps
+//! with their rims moved inward.
 
 use super::columns::Columns;
 use super::skin::{Sides, Skin};
@@ -6,27 +7,27 @@ use crate::base::{Id, Point, VertexId};
 use crate::geometry::vector::add;
 use crate::meshing::surfaces::Surfaces;
 
-/// Surfaces around what the layers leave of each body.
+/// Surfaces around the core of each body.
 #[derive(Debug)]
 pub(super) struct Core {
     pub(super) surfaces: Surfaces,
-    /// The triangle of the surfaces that each triangle was.
+    /// For each triangle, the original triangle of the surfaces.
     pub(super) to_triangle: Vec<u32>,
-    /// The bodies in front of each triangle and behind it, by their numbers without layers.
+    /// The bodies in front of each triangle and behind it, with their numbers without layers.
     pub(super) sides: Vec<Sides>,
-    /// Whether layers stand below the triangle.
+    /// For each triangle, whether layers stand below it.
     pub(super) is_raised: Vec<bool>,
-    /// Whether all its corners are where they were.
+    /// For each triangle, whether all its corners are unmoved.
     pub(super) is_unmoved: Vec<bool>,
     is_two_sided: Vec<bool>,
-    /// The vertex of the core that each vertex of the surfaces is, where it is one.
+    /// For each vertex of the surfaces, its vertex in the core, or [`Id::NONE`].
     pub(super) of_vertex: Vec<VertexId>,
-    /// The vertex of the core in which the column of each vertex of the skin ends, where that is not its foot.
+    /// For each vertex of the skin, the vertex of the core at the top of its column, if that is not its foot.
     pub(super) of_skin: Vec<VertexId>,
 }
 
 impl Core {
-    /// `motions` are those of the vertices without columns.
+    /// Builds the core; `motions` are the displacements of vertices without columns.
     pub(super) fn new(
         surfaces: &Surfaces,
         sides: &[Sides],
@@ -61,7 +62,7 @@ impl Core {
             let [front, behind] = sides[t];
             let of = |body: Option<u32>| body.map(|body| corners.map(|v| seen(skin, &places, v, body)));
             let (in_front, from_behind) = (of(front), of(behind));
-            // Skins share no vertex: both sides see one triangle only where it did not move.
+            // Skins share no vertex, so both sides see the same triangle only where it did not move.
             if in_front.is_some() && in_front == from_behind {
                 core.add(surfaces, skin, &places, t, [front, behind], corners.map(|v| (v, None)));
                 continue;
@@ -76,7 +77,8 @@ impl Core {
         core
     }
 
-    /// Adds a triangle: each corner by the vertex of the surfaces that it was, and that of the skin where it moved.
+    /// Adds a triangle; each corner is given by its vertex of the surfaces and, where it moved, that of the
+    /// skin.
     fn add(
         &mut self,
         surfaces: &Surfaces,
@@ -109,12 +111,12 @@ impl Core {
         self.is_raised.push(!is_unmoved && on_skin.any(|s| skin.has_stack(s)));
     }
 
-    /// Whether a triangle of the surfaces with layers on it has a body on its other side as well.
+    /// Whether a triangle of the surfaces has bodies on both sides.
     pub(super) fn is_two_sided(&self, triangle: u32) -> bool {
         self.is_two_sided[triangle as usize]
     }
 
-    /// The triangles of the skin that a triangle was.
+    /// The triangles of the skin that a triangle of the core comes from.
     pub(super) fn skin_triangles<'a>(&self, skin: &'a Skin, triangle: u32) -> impl Iterator<Item = u32> + 'a {
         let i = triangle as usize;
         skin_triangles(skin, self.to_triangle[i], self.sides[i])
@@ -126,7 +128,7 @@ fn skin_triangles(skin: &Skin, t: u32, sides: Sides) -> impl Iterator<Item = u32
     skin.of_triangle.list(t as usize).iter().copied().filter(is_seen)
 }
 
-/// The vertex of a body's skin that a vertex is, where it moved.
+/// The vertex of a body's skin for a vertex of the surfaces, if it moved.
 fn seen(skin: &Skin, places: &[Point], vertex: VertexId, body: u32) -> Option<VertexId> {
     skin.vertex(vertex, body).filter(|w| places[w.index()] != skin.points[w.index()])
 }

@@ -1,9 +1,10 @@
-//! Which way the layers rise at each vertex of a wall.
+//! The direction in which the layers rise at each vertex of a wall.
 //!
-//! The direction is the one that sees all triangles around best: of all, its least cosine with one of their normals is the largest (Aubry and
-//! Löhner 2008, *On the 'most normal' normal*). It is the axis of the smallest cone around the normals, and found as the smallest sphere
-//! around points is (Welzl 1991). Where a wall ends at something flat on which nothing grows, a cap, the direction lies in that plane;
-//! where it ends at two, on their line.
+//! It is the direction that sees all surrounding triangles best: among all directions, its smallest cosine
+//! with any of their normals is the largest (Aubry and Löhner 2008, *On the 'most normal' normal*). It is the
+//! axis of the smallest cone around the normals, found in the same way as the smallest sphere around points
+//! (Welzl 1991). Where a wall ends at a flat part on which nothing grows, such as a cap, the direction lies
+//! in that plane; where it ends at two, on their line of intersection.
 
 use super::flats::unit;
 use super::neighbors::NONE;
@@ -11,25 +12,25 @@ use super::skin::Skin;
 use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{across, add, cross, dot, norm, scale, sub};
 
-/// The least cosine with which a wall may be seen: 78 degrees from its normal. Below, nothing grows.
+/// The smallest cosine with which a wall may be seen, 78 degrees from its normal; below that, nothing grows.
 const LEAST_COSINE: f64 = 0.2;
 
-/// Sine of the least angle at which two planes have a line that is worth sliding on.
+/// The sine of the smallest angle at which two planes have a usable line of intersection.
 const APART: f64 = 0.05;
 
-/// How far off a line's direction a further plane may be.
+/// The largest deviation of a further plane from the direction of such a line.
 const ALONG: f64 = 1e-3;
 
-/// How often directions are blended with those around.
+/// How often directions are averaged with those of neighbours.
 const SWEEPS: usize = 6;
 
-/// What is left at least, when directions are blended, of the cosine that the best direction has.
+/// The smallest fraction of the best direction's cosine that averaging may leave.
 const KEPT: f64 = 0.9;
 
-/// Rounding of cosines.
+/// The rounding error of cosines.
 const ROUNDING: f64 = 1e-14;
 
-/// How a vertex may move.
+/// The directions in which a vertex may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Freedom {
     Anywhere,
@@ -41,7 +42,7 @@ pub(super) enum Freedom {
 }
 
 impl Freedom {
-    /// How the flat parts around a vertex let it move.
+    /// The freedom that the flat parts around a vertex leave it.
     pub(super) fn of(skin: &Skin, vertex: VertexId) -> Self {
         let mut parts = Vec::new();
         for &t in skin.stars.list(vertex.index()).iter().filter(|&&t| !skin.has_stack(t)) {
@@ -70,7 +71,7 @@ impl Freedom {
         }
     }
 
-    /// The part of a vector that is free.
+    /// The component of a vector in the free directions.
     pub(super) fn project(self, v: Point) -> Point {
         match self {
             Self::Anywhere => v,
@@ -81,14 +82,14 @@ impl Freedom {
     }
 }
 
-/// Directions of length 1, and the least cosine of each with a normal into the body; zero where nothing can grow.
+/// Unit directions, and the smallest cosine of each with an inward normal; zero where nothing can grow.
 pub(super) struct Directions {
     pub(super) ways: Vec<Point>,
     pub(super) cosines: Vec<f64>,
 }
 
 impl Directions {
-    /// `around` has the neighbors of each vertex along walls.
+    /// Finds the directions; `around` lists the neighbours of each vertex along walls.
     pub(super) fn find(skin: &Skin, around: &Csr<VertexId>, threads: &Threads) -> Self {
         let found: Vec<(Point, f64, Freedom)> = threads.map(skin.points.len(), |w| {
             let vertex = VertexId::new(w);
@@ -119,7 +120,7 @@ impl Directions {
     }
 }
 
-/// The normals of the walls around a vertex, into the body.
+/// The inward normals of the walls around a vertex.
 fn inward(skin: &Skin, vertex: VertexId) -> Vec<Point> {
     skin.walls(vertex).map(|t| scale(skin.normals[t as usize], -1.0)).collect()
 }
@@ -128,7 +129,7 @@ fn least(normals: &[Point], way: Point) -> f64 {
     normals.iter().map(|&n| dot(n, way)).fold(f64::INFINITY, f64::min)
 }
 
-/// The direction that sees the normals best, of those that are free; zero where none is.
+/// The free direction that sees the normals best; zero if there is none.
 fn best(normals: &[Point], freedom: Freedom) -> Point {
     match freedom {
         Freedom::Anywhere => most_normal(normals),
@@ -141,7 +142,7 @@ fn best(normals: &[Point], freedom: Freedom) -> Point {
     }
 }
 
-/// The axis of the smallest cone around some normals: one of them, between two, or amid three.
+/// The axis of the smallest cone around some normals: one of them, or determined by two or three.
 fn most_normal(normals: &[Point]) -> Point {
     let is_in = |(way, cosine): (Point, f64), n: Point| dot(way, n) >= cosine - ROUNDING;
     let cone = |way: Point, n: Point| (way, dot(way, n));
@@ -166,13 +167,14 @@ fn most_normal(normals: &[Point]) -> Point {
     found.0
 }
 
-/// The direction with one cosine to three normals.
+/// The direction with equal cosines to three normals.
 fn axis(a: Point, b: Point, c: Point) -> Point {
     let way = unit(cross(sub(b, a), sub(c, a)));
     if dot(way, a) < 0.0 { scale(way, -1.0) } else { way }
 }
 
-/// The same among the directions in a plane: it is that of a normal, seen in the plane, or halfway between two.
+/// The direction in a plane that sees the normals best: along one normal projected onto the plane, or halfway
+/// between two.
 fn most_normal_in(normals: &[Point], plane: Point) -> Point {
     let seen: Vec<Point> = normals.iter().map(|&n| across(n, plane)).collect();
     let mut found = (f64::NEG_INFINITY, [0.0; 3]);

@@ -1,28 +1,29 @@
-//! Flat parts of a surface, and those of them that are caps.
+//! Flat parts of a surface, and which of them are caps.
 
 use super::neighbors::{NONE, neighbors};
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::{area_vector, centroid};
 use crate::geometry::vector::{self, add, dot, norm, sub};
 
-/// How far from the plane of a part's largest triangle a corner may lie, over its distance from the middle of that: what rounding to single
-/// precision leaves of a plane is ten times flatter, and walls are curved far more.
+/// The largest distance of a corner from the plane of a part's largest triangle, relative to its distance
+/// from the middle of that triangle. A plane rounded to single precision is ten times flatter, and walls are
+/// curved far more.
 const FLAT: f64 = 1e-3;
 
-/// The cosine of the least angle of a sharp crease: 45 degrees.
+/// The cosine of the smallest angle of a sharp crease: 45 degrees.
 const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// Triangles that hang together by edges in one plane.
+/// Sets of triangles in one plane, connected by edges.
 #[derive(Debug, Default)]
 pub(super) struct Flats {
-    /// The part of each triangle; [`NONE`] for those that were not asked about.
+    /// The part of each triangle; [`NONE`] for those that were not considered.
     pub(super) of: Vec<u32>,
-    /// The normal of each part, of length 1.
+    /// The unit normal of each part.
     pub(super) normals: Vec<Point>,
 }
 
 impl Flats {
-    /// The flat parts of those triangles that are `wanted`.
+    /// Finds the flat parts among the triangles for which `wanted` holds.
     pub(super) fn find(
         points: &[Point],
         triangles: &[[VertexId; 3]],
@@ -62,10 +63,11 @@ impl Flats {
     }
 }
 
-/// Fewer triangles than this are no cap: a rough wall has some that stand out alone.
+/// The fewest triangles of a cap: on a rough wall single triangles may stand out.
 const LEAST: usize = 3;
 
-/// Which triangles are of caps: flat parts with a sharp crease all round. Where all are, none is.
+/// For each triangle, whether it is on a cap: a flat part with a sharp crease all around. If all would be,
+/// none is.
 pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
     let behind = neighbors(triangles);
     let flats = Flats::find(points, triangles, &behind, |_| true);
@@ -82,7 +84,7 @@ pub(super) fn caps(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
     if of_caps.iter().all(|cap| *cap) { vec![false; triangles.len()] } else { of_caps }
 }
 
-/// The direction of a vector; zero where it has none.
+/// The unit vector in a direction; zero if there is none.
 pub(super) fn unit(v: Point) -> Point {
     vector::unit(v).unwrap_or_default()
 }

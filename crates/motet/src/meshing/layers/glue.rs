@@ -1,4 +1,4 @@
-//! Tets of the core and prisms of the layers as one mesh.
+//! Joins tets of the core and prisms of the layers into one mesh.
 
 use super::columns::{Columns, Site, distinct};
 use super::core::Core;
@@ -8,19 +8,19 @@ use crate::base::{Id, Point, VertexId};
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 use crate::meshing::surfaces::Surfaces;
 
-/// Vertices of the mesh for the places in columns.
+/// Maps sites in columns to vertices of the mesh.
 struct Numbers<'a> {
     columns: &'a Columns<'a>,
-    /// The vertex of the mesh that each foot is.
+    /// The vertex of the mesh at each foot.
     feet: Vec<VertexId>,
-    /// The vertex that each top is, where it is not the foot.
+    /// The vertex of the mesh at each top that is not the foot.
     tops: Vec<VertexId>,
-    /// The vertex of the first level between, for each column.
+    /// For each column, the vertex at the first level in between.
     between: Vec<u32>,
 }
 
 impl<'a> Numbers<'a> {
-    /// Numbers what the core does not have, and adds its points.
+    /// Numbers the sites that are not in the core, and adds their points.
     fn new(
         skin: &Skin,
         columns: &'a Columns,
@@ -36,7 +36,7 @@ impl<'a> Numbers<'a> {
             let vertex = VertexId::new(w);
             let n = columns.count(vertex);
             let foot = &mut of_vertex[skin.to_vertex[w].index()];
-            // What slid away is needed no more, unless another body has it.
+            // A foot that slid away is no longer needed, unless another body uses it.
             if *foot == VertexId::NONE && n > 0 {
                 *foot = VertexId::new(points.len());
                 points.push(skin.points[w]);
@@ -79,8 +79,9 @@ impl Labelled {
     }
 }
 
-/// The mesh of the core and the layers: tets and prisms by their regions, then triangles and quads by their patches. `mesh` is that of the core, without
-/// the tops of layers; `to_mesh` tells which vertex of it each one of the core is.
+/// Returns the mesh of core and layers: tets and prisms with their regions, then triangles and quads with
+/// their patches. `mesh` is that of the core, without the tops of layers; `to_mesh` maps vertices of the core
+/// to those of `mesh`.
 pub(super) fn glued(
     mesh: &Mesh,
     to_mesh: &[VertexId],
@@ -117,7 +118,7 @@ pub(super) fn glued(
     }
 }
 
-/// The wall below the prisms on a triangle of the skin, and their sides on caps, as surface cells.
+/// Adds the wall below the prisms on a triangle of the skin, and their sides on caps, as surface cells.
 fn add_surface(
     surface: &mut Labelled,
     surfaces: &Surfaces,
@@ -132,7 +133,7 @@ fn add_surface(
     }
     let patch = |t: u32| surfaces.patches[skin.to_triangle[t as usize] as usize];
     let wall = surfaces.triangles[skin.to_triangle[t as usize] as usize];
-    // With a body on the other side the wall is there already: it bounds that one's core.
+    // With a body on the other side the wall is already there: it bounds the core of that body.
     if !core.is_two_sided(skin.to_triangle[t as usize]) {
         let feet = wall.map(|v| {
             let w = skin.vertex(v, skin.bodies[t as usize]);

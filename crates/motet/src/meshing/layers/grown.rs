@@ -1,4 +1,4 @@
-//! Layers on surfaces: as thick as they can be, the core between them filled, all joined.
+//! Layers on surfaces: as thick as possible, the core between them filled, and all joined.
 
 use super::columns::{Columns, Prism, Site};
 use super::core::Core;
@@ -17,22 +17,22 @@ use crate::geometry::tet::volume;
 use crate::mesh::Mesh;
 use crate::meshing::surfaces::Surfaces;
 
-/// What is left of the thickness of columns that are to blame.
+/// The factor by which columns at fault are made thinner.
 const THINNER: f64 = 0.7;
 
-/// How often a column may be to blame before it goes: a twentieth is left then.
+/// How often a column may be at fault before it is removed; a twentieth of its thickness is left by then.
 const PATIENCE: u8 = 8;
 
-/// Rounds after which all columns that are to blame go at once, with those around them.
+/// The number of rounds after which all columns at fault are removed at once, with their neighbours.
 const PATIENT_ROUNDS: usize = 40;
 
-/// Rounds after which all columns go.
+/// The number of rounds after which all columns are removed.
 const ROUNDS: usize = 80;
 
-/// More prisms than this are refused.
+/// The largest number of prisms.
 const MOST_PRISMS: usize = 200_000_000;
 
-/// Layers that fit on surfaces.
+/// Layers fitted to surfaces.
 pub(crate) struct Grown<'a> {
     surfaces: &'a Surfaces,
     sides: Vec<Sides>,
@@ -48,10 +48,10 @@ pub(crate) struct Grown<'a> {
 }
 
 impl<'a> Grown<'a> {
-    /// The layers that there is room for; `sides` are the bodies on the two sides of each triangle.
+    /// Grows layers as far as there is space; `sides` are the bodies on the two sides of each triangle.
     ///
     /// # Errors
-    /// When a stack means nothing, when layers are asked for on a membrane or on no wall.
+    /// When a stack is invalid, or when layers are requested on a membrane or on no wall.
     pub(crate) fn new(
         surfaces: &'a Surfaces,
         layers: &Layers,
@@ -75,7 +75,7 @@ impl<'a> Grown<'a> {
         Columns::new(&self.skin, &self.heights)
     }
 
-    /// Makes layers thinner until nothing is off.
+    /// Makes layers thinner until there are no tangles.
     fn settle(&mut self, threads: &Threads) -> Result<()> {
         loop {
             threads.watch().go_on("finding room for layers", self.rounds, 0)?;
@@ -87,7 +87,7 @@ impl<'a> Grown<'a> {
         }
     }
 
-    /// Makes columns thinner, and with them those around.
+    /// Makes columns thinner, and neighbouring ones as far as the slope requires.
     fn give_way(&mut self, blamed: &[VertexId]) {
         self.rounds += 1;
         for v in blamed {
@@ -107,8 +107,9 @@ impl<'a> Grown<'a> {
         self.core = build(self.surfaces, &self.sides, &self.skin, &self.heights, &self.slide);
     }
 
-    /// Fills the core, of which the other argument of `fill` tells the triangle that each of its own comes from. Where one of the layers'
-    /// tops comes out in pieces, they give way, and it is filled again. What `fill` tells beside tets comes back as it is.
+    /// Fills the core. `fill` gets its surfaces, and for each of their triangles the original triangle; what
+    /// it returns beside the tets is passed on. If the top of a layer comes out in pieces, the columns below
+    /// it give way and the core is filled again.
     ///
     /// # Errors
     /// When the core cannot be filled.
@@ -142,10 +143,10 @@ impl<'a> Grown<'a> {
         blamed
     }
 
-    /// Gives the bodies the numbers that they have without layers, and leaves out what lies between walls and tops.
+    /// Gives the bodies the numbers they have without layers, and removes what lies between walls and tops.
     ///
     /// # Errors
-    /// When a side of the core has no body behind it, or those of two.
+    /// When a side of the core has no body behind it, or one that also lies behind a side of another body.
     fn rename(&self, filled: &mut Constrained) -> Result<()> {
         let n_bodies = filled.bodies.iter().max().map_or(0, |&b| b as usize + 1);
         let mut body_to_old = vec![None; n_bodies];
@@ -165,27 +166,28 @@ impl<'a> Grown<'a> {
         filled.bodies = kept.into_iter().flatten().collect();
         filled.triangle_to_bodies.clone_from(&self.core.sides);
         let raised = filled.triangle_to_bodies.iter_mut().zip(&self.core.is_raised);
-        // Tops are no part of the surface.
+        // Tops are not part of the surface.
         raised.filter(|(_, is_raised)| **is_raised).for_each(|(sides, _)| *sides = [None; 2]);
         Ok(())
     }
 
-    /// The surfaces that were filled.
+    /// The surfaces of the core.
     pub(crate) fn core(&self) -> &Surfaces {
         &self.core.surfaces
     }
 
-    /// The core's mesh with the layers on it, as prisms; `to_mesh` tells which vertex of it each one of the core is.
+    /// Joins the mesh of the core and the layers, as prisms; `to_mesh` maps vertices of the core to those of
+    /// its mesh.
     pub(crate) fn glue(&self, mesh: &Mesh, to_mesh: &[VertexId]) -> Mesh {
         glued(mesh, to_mesh, self.surfaces, &self.skin, &self.columns(), &self.core)
     }
 
-    /// How many triangles the surfaces have.
+    /// The number of triangles of the surfaces.
     pub(crate) fn n_triangles(&self) -> usize {
         self.surfaces.triangles.len()
     }
 
-    /// What the layers came to.
+    /// Statistics on the layers.
     pub(crate) fn report(&self) -> Report {
         let columns = self.columns();
         let mut report = Report::new(&self.skin, &columns, &self.heights, self.rounds);
@@ -200,8 +202,8 @@ impl<'a> Grown<'a> {
         report
     }
 
-    /// How many triangles of the surfaces are facets as they came, where `is_whole` tells which of the core's are in one piece; and how many have
-    /// nothing inside.
+    /// Counts the triangles of the surfaces that are facets unchanged, where `is_whole` tells which triangles
+    /// of the core are in one piece, and those that enclose nothing.
     pub(crate) fn count(&self, is_whole: impl Fn(usize) -> bool) -> [usize; 2] {
         let mut is_kept = vec![false; self.surfaces.triangles.len()];
         for (i, &t) in self.core.to_triangle.iter().enumerate() {
@@ -237,7 +239,8 @@ fn check_count(skin: &Skin) -> Result<()> {
     }
 }
 
-/// The volume of a prism, the mean of what it has with either diagonal in its sides: so neighbors agree about the side between them.
+/// The volume of a prism: the mean over both choices of diagonals in its sides, so that neighbours agree
+/// about the side between them.
 fn prism_volume(columns: &Columns, prism: &Prism) -> f64 {
     let ([a, b, c], [d, e, f]) = (prism.bottom, prism.top);
     let of = |tet: [Site; 4]| volume(tet.map(|site| columns.at(site)));

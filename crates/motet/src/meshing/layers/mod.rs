@@ -1,17 +1,17 @@
-//! Boundary layers: thin prisms on walls, and less of them where there is no room.
+//! Boundary layers: thin prisms on walls, fewer or thinner where there is no space.
 //!
-//! | step | file | how |
+//! | step | file | what it does |
 //! |---|---|---|
-//! | what is asked | `options` | stacks of layers, by patch or everywhere but on caps |
+//! | options | `options` | stacks of layers, by patch or everywhere except on caps |
 //! | sides | `skin` | the surface of each body as seen from inside |
 //! | caps | `flats` | flat parts, in which edges of layers slide |
 //! | directions | `directions` | the most normal normal |
-//! | thickness | `thickness` | the gap across, the edges of the wall, a slope along it |
-//! | caps follow | `slide` | harmonic in their planes |
-//! | prisms | `columns` | levels, and what is left where columns have fewer |
-//! | core | `core` | the surfaces that the layers leave, to be filled |
-//! | check | `tangles` | exact: what is off is made thinner, and all looked at again |
-//! | one mesh | `glue`, `split` | prisms on the tets of the core, divided by the smallest number |
+//! | thickness | `thickness` | limited by the gap across, the edges of the wall, and a slope along it |
+//! | caps follow | `slide` | harmonic motion within their planes |
+//! | prisms | `columns` | levels, and cells where columns have fewer of them |
+//! | core | `core` | the surfaces around the core, to be filled |
+//! | check | `tangles` | exact: columns at fault are made thinner, and everything is checked again |
+//! | one mesh | `glue`, `split` | prisms joined to the tets of the core, and divided by the smallest vertex number |
 
 mod columns;
 mod core;

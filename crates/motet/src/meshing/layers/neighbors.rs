@@ -1,11 +1,12 @@
-//! Which triangle lies behind each edge of each triangle.
+//! Finds the triangle beyond each edge of each triangle.
 
 use crate::base::{VertexId, rising};
 
-/// Says that no triangle lies behind an edge, or more than one.
+/// No triangle lies beyond an edge, or more than one.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Behind edge `k` of each triangle, from its corner `k` to the next: the other triangle there; [`NONE`] where there is not exactly one.
+/// For edge `k` of each triangle, from its corner `k` to the next, the other triangle there; [`NONE`] if
+/// there is not exactly one.
 pub(super) fn neighbors(triangles: &[[VertexId; 3]]) -> Vec<[u32; 3]> {
     let mut sides: Vec<([VertexId; 2], u32, usize)> = (0..)
         .zip(triangles)

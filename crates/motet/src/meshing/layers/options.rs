@@ -1,26 +1,28 @@
-//! What layers are asked for, and where.
+//! Options for layers: which, and on which walls.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Error, Result};
 use crate::geometry::vector::LARGEST;
 
-/// More layers than this on one wall are refused: no flow needs them, and a slip of the pen should not fill the memory.
+/// The largest number of layers on one wall: no flow needs more, and a typing error should not fill the
+/// memory.
 pub const MOST_LAYERS: u32 = 200;
 
-/// Layers on a wall, one on the other: how many, and how thick. Lengths are at right angles to the wall, in units of the surface.
+/// Layers on a wall, one on top of the other. Lengths are measured normal to the wall, in units of the
+/// surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stack {
-    /// How many layers; at least 1.
+    /// The number of layers, at least 1.
     pub count: u32,
     /// Thickness of the layer at the wall.
     pub first: f64,
-    /// How many times as thick as the one before each layer is.
+    /// The ratio of the thickness of each layer to that of the one before.
     pub growth: f64,
 }
 
 impl Stack {
-    /// How high each level lies above the wall, from 0 up to the top of the last layer.
+    /// The height of each level above the wall, from 0 up to the top of the last layer.
     pub fn levels(&self) -> Vec<f64> {
         let (mut levels, mut thickness) = (vec![0.0], self.first);
         for k in 0..self.count as usize {
@@ -30,13 +32,15 @@ impl Stack {
         levels
     }
 
-    /// The thickness of all layers together.
+    /// The total thickness of all layers.
     pub fn thickness(&self) -> f64 {
         self.levels().last().copied().unwrap_or(0.0)
     }
 
+    /// Checks the stack.
+    ///
     /// # Errors
-    /// When there is no layer, or too many, or one without thickness.
+    /// When the number of layers is out of range, or a layer has no thickness.
     pub fn check(&self) -> Result<()> {
         let refuse = |what: String, remedy: &str| Err(Error::options(what).remedy(remedy));
         let Self { count, first, growth } = *self;
@@ -66,19 +70,23 @@ impl Stack {
 /// Which walls get layers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layers {
-    /// On every triangle that is no cap and whose patch has no stack of its own. A cap is a flat part of the surface, three triangles or more,
-    /// with a crease of 45 degrees or more all round; where the whole surface is made of such parts, none is a cap. A
-    /// triangle of a wall that lies in the plane of a cap beside it is a part of the cap. Default: `None`.
+    /// The stack for every triangle that is not on a cap and whose patch has no stack of its own. A cap is a
+    /// flat part of the surface with at least three triangles and a crease of 45 degrees or more all around;
+    /// if the whole surface consists of such parts, none is a cap. A triangle of a wall in the plane of an
+    /// adjacent cap belongs to the cap. Default: `None`.
     pub everywhere: Option<Stack>,
-    /// By patch. Default: none.
+    /// Stacks by patch. Default: none.
     pub by_patch: BTreeMap<i32, Stack>,
-    /// Whether prisms stay as they are: wedges and pyramids, quads on caps. Otherwise they are divided into tets. Default: false.
+    /// Whether prisms stay wedges and pyramids, with quads on caps, instead of being divided into tets.
+    /// Default: false.
     pub keep_prisms: bool,
 }
 
 impl Layers {
+    /// Checks all stacks.
+    ///
     /// # Errors
-    /// When a stack means nothing, or there is none.
+    /// When a stack is invalid, or there is none.
     pub fn check(&self) -> Result<()> {
         if self.everywhere.is_none() && self.by_patch.is_empty() {
             return Err(Error::options("layers on no wall").remedy("name a patch, or give layers for all"));

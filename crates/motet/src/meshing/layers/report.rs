@@ -1,4 +1,4 @@
-//! What came of the layers.
+//! Statistics on layers.
 
 use serde::Serialize;
 
@@ -7,39 +7,40 @@ use super::skin::Skin;
 use super::thickness::Heights;
 use crate::base::{Point, VertexId};
 
-/// A thickness counts as what was asked from this part of it on: the rest is rounding.
+/// A thickness counts as full from this fraction of the requested one: the rest is rounding.
 const ALL: f64 = 1.0 - 1e-9;
 
-/// How layers went. Vertices are those of walls with layers, once for each body; thickness is that of all layers together, at right angles to
-/// the wall.
+/// Statistics on layers. Vertices are those of walls with layers, counted once per body; thickness is that of
+/// all layers together, normal to the wall.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Report {
-    /// Cells of the layers before they are divided: prisms, where columns end pyramids and tets.
+    /// Cells of the layers before division: prisms, and pyramids and tets where columns end.
     pub prisms: usize,
     /// The tets that they are divided into.
     pub tets: usize,
-    /// Their volume.
+    /// The volume of the layers.
     pub volume: f64,
-    /// Vertices of walls on which layers were asked for.
+    /// Vertices of walls on which layers were requested.
     pub vertices: usize,
-    /// Those whose layers are as thick as asked.
+    /// Vertices whose layers are as thick as requested.
     pub full: usize,
-    /// Those whose layers gave way: thinner, or none.
+    /// Vertices whose layers gave way: thinner, or none.
     pub reduced: usize,
-    /// Those without any.
+    /// Vertices without layers.
     pub without: usize,
-    /// The least, the median and the largest thickness, those without left out; `null` where no layer stands.
+    /// The least, the median and the largest thickness over vertices that have layers; `null` if there are
+    /// none.
     pub thickness: Option<[f64; 3]>,
-    /// The least part of the thickness asked that a vertex has; 0 where one has none.
+    /// The smallest ratio of actual to requested thickness at any vertex; 0 if one has no layers.
     pub least_share: f64,
-    /// Where that is.
+    /// The position of that vertex.
     pub least_at: Option<Point>,
-    /// How often layers had to be made thinner, once all were as thick as there is room.
+    /// The number of rounds in which layers had to be made thinner than the first estimate allowed.
     pub rounds: usize,
 }
 
 impl Report {
-    /// All but cells and volumes.
+    /// Computes everything except cells and volumes.
     pub(super) fn new(skin: &Skin, columns: &Columns, heights: &Heights, rounds: usize) -> Self {
         let mut report = Self { rounds, least_share: 1.0, ..Self::default() };
         let mut found = Vec::new();

@@ -1,7 +1,7 @@
-//! The surface of every body that gets layers, as it is seen from inside: each body has vertices of its own.
+//! The surface of every body that gets layers, as seen from inside: each body has vertices of its own.
 //!
-//! Where a surface parts two bodies, the layers of one do not move the other. So the skin of a body shares no vertex with that of
-//! another, and what grows on it needs to know of one side only.
+//! Where a surface separates two bodies, the layers of one do not move the other. So the skin of a body
+//! shares no vertex with that of another, and what grows on it depends on one side only.
 
 use std::collections::BTreeMap;
 
@@ -16,40 +16,43 @@ use crate::preflight::Role;
 /// The bodies in front of a triangle and behind it.
 pub(super) type Sides = [Option<u32>; 2];
 
-/// Triangles around bodies that get layers.
+/// The triangles around bodies that get layers.
 #[derive(Debug, Default)]
 pub(super) struct Skin {
     pub(super) points: Vec<Point>,
-    /// The vertex of the surfaces that each vertex is.
+    /// For each vertex, the vertex of the surfaces.
     pub(super) to_vertex: Vec<VertexId>,
-    /// Turned so that they face out of their body.
+    /// Oriented out of their body.
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// The triangle of the surfaces that each is.
+    /// For each triangle, the triangle of the surfaces.
     pub(super) to_triangle: Vec<u32>,
-    /// Whether the triangle of the surfaces is turned the other way round.
+    /// For each triangle, whether the triangle of the surfaces has the opposite orientation.
     pub(super) is_turned: Vec<bool>,
-    /// The body behind each.
+    /// The body behind each triangle.
     pub(super) bodies: Vec<u32>,
-    /// What grows on each: its place in `stacks`; [`NONE`] where nothing does.
+    /// For each triangle, the index in `stacks` of what grows on it; [`NONE`] where nothing does.
     pub(super) stack_of: Vec<u32>,
     pub(super) stacks: Vec<Stack>,
-    /// The normal of each triangle, out of the body, of length 1.
+    /// The unit normal of each triangle, out of the body.
     pub(super) normals: Vec<Point>,
     /// The triangles around each vertex.
     pub(super) stars: Csr<u32>,
-    /// Behind each edge of each triangle the other triangle.
+    /// For each edge of each triangle, the triangle beyond it.
     pub(super) behind: Vec<[u32; 3]>,
-    /// Flat parts of the triangles on which nothing grows, and beyond which there is nothing: there, edges of layers may slide.
+    /// Flat parts among the triangles on which nothing grows and which have no body on the other side: edges
+    /// of layers may slide there.
     pub(super) flats: Flats,
-    /// For each vertex of the surfaces the vertices of the skin that it is, with their bodies.
+    /// For each vertex of the surfaces, its vertices in the skin, with their bodies.
     of_vertex: Csr<(u32, VertexId)>,
-    /// For each triangle of the surfaces the triangles of the skin that it is.
+    /// For each triangle of the surfaces, its triangles in the skin.
     pub(super) of_triangle: Csr<u32>,
 }
 
 impl Skin {
+    /// Builds the skin.
+    ///
     /// # Errors
-    /// When layers are asked for on a membrane, or on no triangle.
+    /// When layers are requested on a membrane, or on a patch without triangles.
     pub(super) fn new(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Self> {
         let stacks: Vec<Stack> = layers.everywhere.iter().chain(layers.by_patch.values()).copied().collect();
         let chosen = choose(surfaces, layers, sides)?;
@@ -78,7 +81,7 @@ impl Skin {
         Ok(skin)
     }
 
-    /// Gives the corners of each body numbers of their own.
+    /// Numbers the corners separately for each body.
     fn number(&mut self, surfaces: &Surfaces, corners: &[[VertexId; 3]]) {
         let with_body = |(corners, &body): (&[VertexId; 3], &u32)| corners.map(|v| (v, body));
         let mut all: Vec<(VertexId, u32)> = corners.iter().zip(&self.bodies).flat_map(with_body).collect();
@@ -97,7 +100,7 @@ impl Skin {
         });
     }
 
-    /// The vertex of a body's skin that a vertex of the surfaces is.
+    /// The vertex of a body's skin for a vertex of the surfaces.
     pub(super) fn vertex(&self, vertex: VertexId, body: u32) -> Option<VertexId> {
         self.of_vertex.list(vertex.index()).iter().find(|(of, _)| *of == body).map(|&(_, w)| w)
     }
@@ -124,7 +127,7 @@ impl Skin {
         self.stars.list(vertex.index()).iter().copied().filter(|&t| self.has_stack(t))
     }
 
-    /// Whether the triangles around a vertex are one fan, so that there is but one way inside.
+    /// Whether the triangles around a vertex form a single fan, so that there is only one inward side.
     pub(super) fn is_one_fan(&self, vertex: VertexId) -> bool {
         let star = self.stars.list(vertex.index());
         let Some(&first) = star.first() else { return false };
@@ -141,7 +144,7 @@ impl Skin {
     }
 }
 
-/// For each triangle of the surfaces the stack on it, and the side on which that grows.
+/// For each triangle of the surfaces, the stack on it and the side on which it grows.
 fn choose(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Vec<Option<(u32, usize)>>> {
     let places: BTreeMap<i32, u32> =
         layers.by_patch.keys().copied().zip(u32::from(layers.everywhere.is_some())..).collect();
@@ -164,7 +167,7 @@ fn choose(surfaces: &Surfaces, layers: &Layers, sides: &[Sides]) -> Result<Vec<O
             None if layers.everywhere.is_none() || is_membrane || is_cap[t] => continue,
             None => 0,
         };
-        // Between two bodies layers grow where the triangle faces away from.
+        // Between two bodies, layers grow on the side that the triangle faces away from.
         chosen[t] = match sides[t] {
             [None, None] => None,
             [Some(_), None] => Some((stack, 0)),

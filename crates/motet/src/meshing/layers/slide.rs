@@ -1,7 +1,8 @@
-//! How the vertices of caps follow, when the rims of caps move with the layers.
+//! How the vertices of caps follow when the rims of caps move with the layers.
 //!
-//! Every vertex goes where those around it go in the mean, near ones counting more: the harmonic way between what moves and what stays, found by
-//! going round (Gauss and Seidel). Vertices within a cap stay in its plane, those on an edge between two flat parts on that.
+//! The motion is harmonic between what moves and what stays: every vertex moves by the mean of its
+//! neighbours' motions, weighted by inverse distance, found by Gauss-Seidel iteration. Vertices within a cap
+//! stay in its plane, those on an edge between two flat parts on that line.
 
 use super::directions::Freedom;
 use super::neighbors::NONE;
@@ -10,20 +11,20 @@ use super::thickness::Heights;
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, distance, norm, scale, sub};
 
-/// Rounds end when nothing moves by more than this part of the largest motion.
+/// Iteration ends when nothing changes by more than this fraction of the largest motion.
 const ENOUGH: f64 = 1e-7;
 
-/// Or after so many.
+/// The largest number of iterations.
 const ROUNDS: usize = 2000;
 
-/// A vertex without layers that may slide, and those around it with their weights, which sum to 1.
+/// A vertex without layers that may slide, and its neighbours with their weights, which sum to 1.
 struct Slider {
     vertex: VertexId,
     freedom: Freedom,
     around: Vec<(VertexId, f64)>,
 }
 
-/// What slides.
+/// All sliding vertices.
 pub(super) struct Slide(Vec<Slider>);
 
 impl Slide {
@@ -41,7 +42,8 @@ impl Slide {
         Self(all.filter(|slider| slider.freedom != Freedom::Nowhere).collect())
     }
 
-    /// How far each vertex moves: those with layers by these, those that slide in between, others not at all.
+    /// The motion of each vertex: given by the layers, interpolated for sliding vertices, zero for all
+    /// others.
     pub(super) fn motions(&self, skin: &Skin, heights: &Heights) -> Vec<Point> {
         let top = |w: usize| scale(heights.lifts[w], heights.heights[w]);
         let mut motions: Vec<Point> = (0..skin.points.len()).map(top).collect();

@@ -1,11 +1,12 @@
-//! Wedges, pyramids and quads divided, each facet from its vertex of smallest number, so that both cells at a quad agree on its diagonal
-//! (Dompierre, Labbé, Vallet and Camarero 1999).
+//! Divides wedges, pyramids and quads, each facet from its vertex of smallest number, so that both cells at a
+//! quad agree on its diagonal (Dompierre, Labbé, Vallet and Camarero 1999).
 
 use crate::base::VertexId;
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// The mesh with nothing but tets and triangles; rows of cell arrays go to all parts.
+/// Returns the mesh with wedges, pyramids and quads divided into tets and triangles; the parts of a cell
+/// inherit its rows of cell arrays.
 pub(crate) fn split(mesh: Mesh) -> Mesh {
     let (mut cells, mut from) = (Cells::new(), Vec::new());
     for (cell, kind, vertices) in mesh.cells.iter() {
@@ -22,7 +23,7 @@ pub(crate) fn split(mesh: Mesh) -> Mesh {
     Mesh { cells, cell_data, ..mesh }
 }
 
-/// How many tets a cell is divided into.
+/// The number of tets that a cell is divided into.
 pub(super) fn n_tets(kind: CellKind) -> usize {
     match kind {
         CellKind::WEDGE => 3,
@@ -31,7 +32,7 @@ pub(super) fn n_tets(kind: CellKind) -> usize {
     }
 }
 
-/// The cone over the facets of a cell from its vertex of smallest number.
+/// Divides a cell into tets between its vertex of smallest number and the facets opposite.
 fn tets(kind: CellKind, vertices: &[VertexId], each: &mut impl FnMut([VertexId; 4])) {
     let Some(&apex) = vertices.iter().min() else { return };
     for shape in facet_shapes(kind).unwrap_or_default() {

@@ -1,7 +1,8 @@
-//! What stops layers of some heights: found exactly, and blamed on columns.
+//! Finds exactly what prevents layers of given heights, and the columns at fault.
 //!
-//! Where every tet that a prism can be divided into is positive, the parts of every flat part still face one way, and the surfaces of the core do
-//! not cross, all that is made fills the bodies once: nothing more has to be looked at.
+//! If every tet that a prism can be divided into is positive, the parts of every flat part still face the
+//! same way, and the surfaces of the core do not cross, then all cells together fill the bodies exactly once:
+//! nothing else need be checked.
 
 use super::columns::{Columns, Site, distinct};
 use super::core::Core;
@@ -12,9 +13,9 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, norm, scale, sub};
 use crate::preflight::own_crossings;
 
-/// Who is to blame for what happens on a flat part.
+/// Which columns are at fault for problems on a flat part.
 pub(super) struct Rims {
-    /// The vertices with layers at each flat part.
+    /// For each flat part, its vertices with layers.
     of_flat: Csr<VertexId>,
 }
 
@@ -30,7 +31,8 @@ impl Rims {
         Self { of_flat: Csr::from_pairs(skin.flats.normals.len(), || all.iter().copied()) }
     }
 
-    /// The columns that a triangle of the skin rests on; where it has none, those at the rim of its flat part.
+    /// The columns at the corners of a triangle of the skin; if it has none, those at the rim of its flat
+    /// part.
     fn blame(&self, skin: &Skin, columns: &Columns, triangle: u32) -> Vec<VertexId> {
         let stands = |v: &VertexId| columns.count(*v) > 0;
         let own: Vec<_> = skin.triangles[triangle as usize].into_iter().filter(stands).collect();
@@ -43,7 +45,7 @@ impl Rims {
     }
 }
 
-/// The columns to blame for something that is off; rising, none where nothing is.
+/// Returns the columns at fault for any problem, in ascending order; empty if there is none.
 pub(super) fn tangles(
     skin: &Skin,
     columns: &Columns,
@@ -73,7 +75,7 @@ fn prisms_are_positive(columns: &Columns, triangle: u32) -> bool {
     columns.prisms(triangle).all(|prism| prism.tets().all(is_positive))
 }
 
-/// Whether the sides of prisms that lie in flat parts face as those do, however they are divided.
+/// Whether the sides of prisms that lie in flat parts face the same way as these, however they are divided.
 fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
     let is_rim = |k: &usize| {
         let beyond = skin.behind[triangle as usize][*k];
@@ -89,7 +91,7 @@ fn sides_lie_flat(skin: &Skin, columns: &Columns, triangle: u32) -> bool {
     })
 }
 
-/// The triangles of the skin in flat parts that moved, and face the other way now.
+/// Moved triangles of the skin in flat parts that have turned over.
 fn turned_over<'a>(skin: &'a Skin, core: &'a Core) -> impl Iterator<Item = u32> + 'a {
     let triangles = (0u32..).zip(&core.surfaces.triangles);
     let moved = triangles.filter(|(i, _)| !core.is_unmoved[*i as usize] && !core.is_raised[*i as usize]);
@@ -103,7 +105,7 @@ fn turned_over<'a>(skin: &'a Skin, core: &'a Core) -> impl Iterator<Item = u32> 
     })
 }
 
-/// Whether a triangle faces as a normal does.
+/// Whether a triangle faces in the direction of a normal.
 fn faces([a, b, c]: [Point; 3], normal: Point) -> bool {
     let above = add(a, scale(normal, norm(sub(b, a)) + norm(sub(c, a))));
     orient3d(a, b, c, above) > 0

@@ -1,13 +1,13 @@
-//! How thick layers may be at each vertex: what is asked, less where there is no room.
+//! The thickness of layers at each vertex: as requested, or less where there is no space.
 //!
-//! | limit | why |
+//! | limit | reason |
 //! |---|---|
-//! | gap | the largest ball that touches the wall at the vertex and no wall that faces it: layers take a part of it, so that the core keeps the rest |
-//! | edges | where the wall is hollow, columns side by side come together |
-//! | slope | what one vertex cannot have its neighbors have little more of |
+//! | gap | the largest ball that touches the wall at the vertex and contains no wall facing it: layers take a fraction of it, so that the core keeps the rest |
+//! | edges | where the wall is concave, neighbouring columns converge |
+//! | slope | if one vertex has thin layers, its neighbours cannot have much thicker ones |
 //!
-//! The ball is found by shrinking it to the nearest point again and again (Ma, Bae and Choi 2012, *3D medial axis point approximation using
-//! nearest neighbors and the normal field*).
+//! The ball is found by repeatedly shrinking it to the nearest point (Ma, Bae and Choi 2012, *3D medial axis
+//! point approximation using nearest neighbors and the normal field*).
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -19,37 +19,38 @@ use crate::base::{Csr, Point, Threads, VertexId};
 use crate::geometry::vector::{add, distance, dot, scale, sub};
 use crate::spatial::NearestTriangle;
 
-/// The most of a ball's radius that a column may take: three tenths of the way across a vessel.
+/// The largest fraction of a ball's radius that a column may take: three tenths of the way across a vessel.
 const OF_BALL: f64 = 0.6;
 
-/// The most of a wall's edge by which columns at its ends may come together.
+/// The largest fraction of an edge of the wall by which the columns at its ends may converge.
 const OF_EDGE: f64 = 0.6;
 
-/// How much thicker layers may get, over the way along the wall.
+/// By how much the thickness may grow per unit of distance along the wall.
 const SLOPE: f64 = 0.3;
 
-/// How many times as long as the asked thickness a column may be, where it leans.
+/// The largest ratio of the length of a leaning column to the requested thickness.
 const STRETCH: f64 = 2.0;
 
-/// A wall faces a column when the cosine of its normal with it is less: 60 degrees and more apart.
+/// A wall faces a column if the cosine between its normal and the column is below this: at least 60 degrees
+/// apart.
 const FACING_WALL: f64 = 0.5;
 
-/// The same for what carries no layers: columns beside it rise along it.
+/// The limit of that cosine for triangles without layers, along which adjacent columns rise.
 const FACING_BARE: f64 = -0.3;
 
-/// A ball is shrunk at most so often: hardly any takes ten.
+/// The largest number of times a ball is shrunk: hardly any takes ten.
 const SHRINKS: usize = 30;
 
-/// What columns rise by, and how high.
+/// Direction and height of the columns.
 #[derive(Clone, Debug)]
 pub(super) struct Heights {
-    /// The stack of each vertex: its place in the skin's; [`NONE`] where nothing can grow.
+    /// For each vertex, the index of its stack in the skin; [`NONE`] where nothing can grow.
     pub(super) stack_of: Vec<u32>,
-    /// The thickness that is asked.
+    /// The requested thickness.
     pub(super) asked: Vec<f64>,
-    /// The thickness that there is, at right angles to the wall.
+    /// The actual thickness, normal to the wall.
     pub(super) heights: Vec<f64>,
-    /// How a vertex moves for each unit of thickness.
+    /// The displacement of a vertex per unit of thickness.
     pub(super) lifts: Vec<Point>,
 }
 
@@ -86,7 +87,7 @@ impl Heights {
         all
     }
 
-    /// How many layers stand on a vertex.
+    /// The number of layers at a vertex.
     pub(super) fn count(&self, skin: &Skin, vertex: VertexId) -> usize {
         match self.stack_of[vertex.index()] {
             stack if self.heights[vertex.index()] > 0.0 => skin.stacks[stack as usize].count as usize,
@@ -94,9 +95,9 @@ impl Heights {
         }
     }
 
-    /// Makes what is too thick beside thinner layers thinner, the thinnest first.
+    /// Reduces heights that exceed the slope limit relative to their neighbours, smallest heights first.
     pub(super) fn limit_slope(&mut self, skin: &Skin, around: &Csr<VertexId>) {
-        // Heights are not negative, so their bits rise as they do.
+        // Heights are not negative, so their bit patterns sort in the same order.
         let key = |height: f64, w: usize| Reverse((height.to_bits(), w));
         let mut next: BinaryHeap<_> = self
             .heights
@@ -121,7 +122,8 @@ impl Heights {
     }
 }
 
-/// The radius of the largest ball that touches the skin at a vertex from inside and holds no wall that faces it; `radius` at most.
+/// The radius of the largest ball that touches the skin at a vertex from inside and contains no wall facing
+/// it; at most `radius`.
 fn room(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut radius: f64) -> f64 {
     let (from, star) = (skin.points[vertex.index()], skin.stars.list(vertex.index()));
     let body = star.first().map(|&t| skin.bodies[t as usize]);
@@ -143,7 +145,7 @@ fn room(skin: &Skin, tree: &NearestTriangle, vertex: VertexId, way: Point, mut r
     radius
 }
 
-/// How thick layers may be for the columns at both ends of an edge not to come together.
+/// The largest thickness for which the columns at both ends of an edge do not meet.
 fn at_edge(skin: &Skin, lifts: &[Point], [w, v]: [VertexId; 2]) -> f64 {
     let edge = sub(skin.points[v.index()], skin.points[w.index()]);
     let closing = dot(sub(lifts[w.index()], lifts[v.index()]), edge);
