@@ -34,7 +34,7 @@ pub struct Body {
     pub tets: usize,
     /// The number of prisms and pyramids of layers, where these are not divided into tets.
     pub prisms: usize,
-    /// Its volume.
+    /// The volume of the body.
     pub volume: f64,
     /// Whether it is a void: closed surfaces turned inward enclose it.
     pub is_void: bool,

@@ -161,7 +161,7 @@ pub struct Report {
     /// Points left on edges or triangles of the surface because there was no space inside: the triangles
     /// there are in pieces.
     pub points_on_edges: usize,
-    /// Points inside.
+    /// Points inside the surfaces.
     pub points_inside: usize,
     /// Triangles that are facets of tets unchanged.
     pub triangles_kept: usize,

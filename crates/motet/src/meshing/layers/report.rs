@@ -16,7 +16,7 @@ const ALL: f64 = 1.0 - 1e-9;
 pub struct Report {
     /// Cells of the layers before division: prisms, and pyramids and tets where columns end.
     pub prisms: usize,
-    /// The tets that they are divided into.
+    /// Tets that these cells are divided into.
     pub tets: usize,
     /// The volume of the layers.
     pub volume: f64,
