@@ -14,8 +14,8 @@ use crate::spatial::NearestTriangle;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// No part of a tet falls below this fraction of the worst EAS of the first mesh, and no root that is not
-    /// bad gets bad parts, if there is another way. Pieces of cuts need not exceed 0.55 of the median EAS.
-    /// Default: 0.95.
+    /// bad gets bad parts, if there is another way. For pieces of cuts this bound is capped at 0.55 of the
+    /// median EAS. Default: 0.95.
     pub keep: f64,
     /// Tets are not cut into pieces below this fraction of the EAS that dividing them into eight would leave.
     /// Far above 0.6 even regular tets may not be cut, and refinement spreads far. Default: 0.55.

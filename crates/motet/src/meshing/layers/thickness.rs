@@ -31,8 +31,8 @@ const SLOPE: f64 = 0.3;
 /// The largest ratio of the length of a leaning column to the requested thickness.
 const STRETCH: f64 = 2.0;
 
-/// A wall faces a column if the cosine between its normal and the column is below this: at least 60 degrees
-/// apart.
+/// A wall faces a column if the cosine between its inward normal and the column is below this: at least 60
+/// degrees apart.
 const FACING_WALL: f64 = 0.5;
 
 /// The limit of that cosine for triangles without layers, along which adjacent columns rise.

@@ -13,7 +13,7 @@ use crate::base::{Error, Result, Threads};
 use crate::mesh::BAD_EAS;
 use crate::refine::{Options, Rule};
 
-/// Pieces are never required to exceed this fraction of the median EAS of the roots.
+/// For pieces of cut tets the floor is capped at this fraction of the median EAS of the roots.
 const OF_MEDIAN: f64 = 0.55;
 
 /// The shapes that closing may leave.
@@ -21,7 +21,7 @@ const OF_MEDIAN: f64 = 0.55;
 pub(in crate::refine) struct Need {
     /// No part may be below this EAS, a fraction of the worst of the roots.
     floor: f64,
-    /// The largest EAS ever required of a piece of a cut tet.
+    /// The cap on the floor where it applies to pieces of a cut tet.
     most_of_pieces: f64,
     /// No piece may be below this fraction of what dividing the tet leaves.
     share: f64,
@@ -29,8 +29,8 @@ pub(in crate::refine) struct Need {
 }
 
 impl Need {
-    /// What is required of pieces is capped by the median root: in a lattice all tets are as bad as the
-    /// worst, no piece is as good as the whole, and everything would be divided.
+    /// The floor for pieces is capped by the median root: in a lattice all tets are as bad as the worst, no
+    /// piece is as good as the whole, and everything would be divided.
     pub(in crate::refine) fn new(options: Options, forest: &Forest) -> Self {
         let mut shapes: Vec<f64> = forest.classes[..forest.n_roots].iter().map(|root| root.eas).collect();
         shapes.sort_unstable_by(f64::total_cmp);
