@@ -33,7 +33,7 @@ pub(crate) struct Plan<'a> {
     pub(crate) moving: Vec<VertexId>,
     /// The time of each frame.
     pub(crate) times: Vec<f64>,
-    /// The first frame to be computed: for a single output mesh, the last one only.
+    /// The first frame to be computed: a single output mesh does not need the initial one.
     pub(crate) first: usize,
     /// Whether the times are physical, so that there are velocities.
     pub(crate) timed: bool,

@@ -23,7 +23,7 @@ use crate::words;
 /// of files in single precision.
 const FLAT: f64 = 1e-6;
 
-/// Vertices nearer to their facets than this part of the mesh's size leave it closed.
+/// Openings up to this part of the mesh's size are rounding: the mesh counts as closed there.
 const ROUNDING: f64 = 1e-9;
 
 /// All results of `motet move`.
