@@ -9,7 +9,6 @@
 //! the others in degrees; the worst EAS, and its 5 % quantile; seconds. "In steps": a tenth of a radius, five
 //! degrees or a frame at a time, the method set up anew on the mesh of the step before. "In legs": likewise,
 //! but by a radius, 45 degrees or four frames.
-//! method set up anew on the mesh of the step before. "In legs": so, but by a radius, 45 degrees or four frames.
 
 use std::error::Error;
 use std::time::Instant;
