@@ -1,5 +1,5 @@
 //! Line cells in remeshing: they are divided and merged with their edges, and never lost; cells of other
-//! kinds hold their own vertices, without affecting nearby repair.
+//! kinds hold their edges, without affecting nearby repair.
 
 use std::collections::{BTreeMap, BTreeSet};
 
