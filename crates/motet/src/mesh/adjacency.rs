@@ -1,8 +1,7 @@
-//! Which cells meet at which facet, vertex by vertex: derived, never stored in files.
+//! Which cells share which facet, by their vertices: derived, never stored in files.
 //!
-//! Facets are sorted into buckets by their smallest vertex, and each bucket by
-//! the rest: flat arrays and two passes, no hash map. One million tets (four
-//! million facets) take about 64 MB while it runs.
+//! Facets are put into buckets by their smallest vertex, and each bucket is sorted by the rest: flat arrays
+//! and two passes, no hash map. One million tets (four million facets) take about 64 MB of temporary memory.
 
 use crate::base::{CellId, Csr, VertexId};
 use crate::mesh::facets::{FacetShape, facet_shapes};
@@ -13,8 +12,8 @@ use crate::mesh::{CellKind, Cells};
 pub struct FacetUse {
     /// The cell.
     pub cell: CellId,
-    /// The place among the facets of the cell: VTK's order for the kinds that
-    /// VTK numbers, the order in the file for polyhedra.
+    /// Index of the facet in the cell: in VTK's order for the kinds that VTK numbers, in the order of the
+    /// file for polyhedra.
     pub local: u32,
 }
 
@@ -28,11 +27,11 @@ impl FacetUse {
     }
 }
 
-/// The facets of all volume cells of a mesh, by cell and place.
+/// The facets of all volume cells of a mesh, by cell and local index.
 #[derive(Debug)]
 pub struct Facets<'a> {
     cells: &'a Cells,
-    /// Which cell each polyhedron is, in rising order.
+    /// The cell of each polyhedron, in rising order.
     polyhedra: Vec<CellId>,
 }
 
@@ -48,13 +47,12 @@ impl<'a> Facets<'a> {
         Self { cells, polyhedra }
     }
 
-    /// The cells that these are the facets of.
+    /// The cells whose facets these are.
     pub fn cells(&self) -> &'a Cells {
         self.cells
     }
 
-    /// How many facets a cell has: 0 when it is no volume cell, or of a kind
-    /// whose facets are not known.
+    /// Number of facets of a cell; 0 if it is not a volume cell, or of a kind whose facets are not known.
     pub fn count(&self, cell: CellId) -> usize {
         match self.faces_of_polyhedron(cell) {
             Some(faces) => faces.len(),
@@ -81,8 +79,8 @@ impl<'a> Facets<'a> {
         (kind, self.nodes(facet, |shape| shape.nodes))
     }
 
-    /// Vertices of a facet: those places of its shape that `pick` picks, or
-    /// the whole face of a polyhedron.
+    /// The vertices of a facet: those at the local indices that `pick` takes from its shape, or the whole
+    /// face of a polyhedron.
     fn nodes(
         &self,
         facet: FacetUse,
@@ -105,8 +103,8 @@ impl<'a> Facets<'a> {
         self.cells.polyhedron_faces().get(place)
     }
 
-    /// The different corners of a facet in rising order; fewer than three mean
-    /// that the cell is collapsed there and has no facet at all.
+    /// The distinct corners of a facet in rising order. Fewer than three mean that the cell is collapsed
+    /// there and has no such facet.
     fn sorted_corners(&self, facet: FacetUse) -> Vec<VertexId> {
         let mut corners: Vec<_> = self.corners(facet).collect();
         corners.sort_unstable();
@@ -114,9 +112,9 @@ impl<'a> Facets<'a> {
         corners
     }
 
-    /// Calls `see` once for every facet of the mesh, with all its uses, sorted:
-    /// one use on the boundary, two inside, more where the mesh is not a manifold.
-    /// Facets come in the order of their smallest vertex.
+    /// Calls `see` once for every facet of the mesh, with all its uses, sorted: one use on the boundary, two
+    /// inside, more where the mesh is not a manifold. Facets are visited in the order of their smallest
+    /// vertex.
     pub fn for_each_shared(&self, mut see: impl FnMut(&[FacetUse])) {
         let mut uses = Vec::new();
         let all_triangles = self.cells.counts().iter().all(|(kind, _)| {
@@ -139,8 +137,8 @@ impl<'a> Facets<'a> {
         });
     }
 
-    /// Facets with the same smallest, second and largest corner are the same
-    /// facet only if they agree in the corners between, too.
+    /// Splits uses whose facets have the same smallest, second and largest corner: they are the same facet
+    /// only if they agree in the other corners, too.
     fn split_run(&self, uses: &[FacetUse], see: &mut impl FnMut(&[FacetUse])) {
         let mut keyed: Vec<_> = uses.iter().map(|&u| (self.sorted_corners(u), u)).collect();
         keyed.sort_unstable();
@@ -151,8 +149,8 @@ impl<'a> Facets<'a> {
 }
 
 impl Facets<'_> {
-    /// Yields the key of every facet: its smallest corner, the second and the
-    /// largest packed together, and its use.
+    /// Calls `put` with every facet: its smallest corner, its second and largest corners packed together, and
+    /// its packed use.
     fn put_all(&self, put: &mut impl FnMut(u32, u64, u64)) {
         for (cell, kind, vertices) in self.cells.iter() {
             if kind == CellKind::TETRA {
@@ -171,7 +169,7 @@ impl Facets<'_> {
     }
 }
 
-/// VTK's facets of a tet by the vertex that each leaves out: 2, 0, 1, 3.
+/// VTK's facets of a tet, which leave out vertices 2, 0, 1 and 3 in turn.
 pub(super) const VTK_TET_FACETS: [[usize; 3]; 4] = [[0, 1, 3], [1, 2, 3], [0, 2, 3], [0, 1, 2]];
 
 pub(super) fn pack(second: u32, last: u32) -> u64 {
@@ -191,7 +189,7 @@ fn put_tet(cell: u32, tet: [u32; 4], facets: [[usize; 3]; 4], put: &mut impl FnM
     }
 }
 
-/// Facets by their smallest vertex: `(second and last corner, use)`.
+/// Facets grouped by their smallest vertex: `(second and last corner, use)`, both packed.
 struct Buckets {
     offsets: Vec<u32>,
     entries: Vec<(u64, u64)>,
@@ -217,7 +215,7 @@ impl Buckets {
         Self { offsets, entries }
     }
 
-    /// Calls `see` with every longest run of entries of one key.
+    /// Calls `see` with every maximal run of entries with the same key.
     fn for_each_run(&self, mut see: impl FnMut(&[(u64, u64)])) {
         for list in self.offsets.windows(2) {
             let bucket = &self.entries[list[0] as usize..list[1] as usize];
@@ -226,10 +224,11 @@ impl Buckets {
     }
 }
 
-/// The cells around each of `n_points` vertices, in rising order. A cell that
-/// names a vertex twice stands in its list twice.
+/// The cells around each of `n_points` vertices, in rising order. A cell that names a vertex twice is listed
+/// there twice.
 ///
-/// Panics when a cell names a vertex beyond: [`Mesh::validate`](crate::mesh::Mesh::validate) comes first.
+/// Panics if a cell names a vertex beyond `n_points`: call [`Mesh::validate`](crate::mesh::Mesh::validate)
+/// first.
 pub fn vertex_to_cells(cells: &Cells, n_points: usize) -> Csr<CellId> {
     Csr::from_pairs(n_points, || {
         cells.iter().flat_map(|(cell, _, vertices)| vertices.iter().map(move |v| (v.index(), cell)))

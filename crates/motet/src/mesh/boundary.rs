@@ -9,23 +9,22 @@ use crate::mesh::{CellKind, Cells, cell_volume};
 /// The facets that exactly one volume cell uses, whatever its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Boundary {
-    /// The vertices of each facet: corners first, as a ring that runs
-    /// counter-clockwise seen from outside when its cell has positive volume
-    /// (else see [`Self::turn_outward`]), then middle nodes in VTK's order.
+    /// The vertices of each facet: corners first, as a ring that runs counter-clockwise seen from outside if
+    /// its cell has positive volume (otherwise see [`Self::turn_outward`]), then middle nodes in VTK's order.
     pub facets: Csr<VertexId>,
-    /// What kind of surface cell each facet is.
+    /// The kind of surface cell that each facet is.
     pub kinds: Vec<CellKind>,
     /// The volume cell of each facet, in rising order.
     pub cells: Vec<CellId>,
     /// Every vertex of the facets once, in rising order.
     pub vertices: Vec<VertexId>,
-    /// How many volume cells are of a kind whose facets are not known (Lagrange
-    /// cells); their boundary is missing here.
+    /// Number of volume cells of a kind whose facets are not known (Lagrange cells); their boundary is
+    /// missing here.
     pub n_unknown: usize,
 }
 
 impl Boundary {
-    /// The boundary of the volume cells among `cells`; others are passed over.
+    /// The boundary of the volume cells among `cells`; other cells are ignored.
     pub fn of(cells: &Cells) -> Self {
         let facets = Facets::of(cells);
         let alone =
@@ -44,7 +43,7 @@ impl Boundary {
         boundary
     }
 
-    /// How many facets there are.
+    /// Number of facets.
     pub fn len(&self) -> usize {
         self.kinds.len()
     }
@@ -54,8 +53,8 @@ impl Boundary {
         self.kinds.is_empty()
     }
 
-    /// Turns the facets of cells with negative volume around, so that all face
-    /// outward: files do not always number their cells the way VTK does.
+    /// Reverses the facets of cells with negative volume, so that all facets face outward: files do not
+    /// always number their cells the way VTK does.
     pub fn turn_outward(&mut self, cells: &Cells, points: &[Point]) {
         let facets = Facets::of(cells);
         for i in 0..self.len() {
@@ -67,7 +66,7 @@ impl Boundary {
     }
 }
 
-/// The facets of one use, in the order of the cells.
+/// The facets with a single use, in the order of the cells.
 fn used_once(facets: &Facets) -> Vec<FacetUse> {
     let mut alone: Vec<FacetUse> = Vec::new();
     facets.for_each_shared(|uses| {
@@ -79,7 +78,7 @@ fn used_once(facets: &Facets) -> Vec<FacetUse> {
     alone
 }
 
-/// Those vertices of a surface cell or facet that are corners. A Lagrange cell may have fewer than it needs.
+/// The corners among the vertices of a surface cell or facet. A malformed Lagrange cell may have too few.
 pub(crate) fn corners(kind: CellKind, vertices: &[VertexId]) -> &[VertexId] {
     let n = match kind {
         CellKind::QUADRATIC_TRIANGLE | CellKind::BIQUADRATIC_TRIANGLE | CellKind::LAGRANGE_TRIANGLE => 3,
@@ -93,12 +92,13 @@ pub(crate) fn corners(kind: CellKind, vertices: &[VertexId]) -> &[VertexId] {
     &vertices[..n.min(vertices.len())]
 }
 
-/// Reverses a ring of corners, its first corner staying; middles follow their edges.
+/// Reverses a facet: the ring of its corners, and its middle nodes along with their edges. The first corner
+/// stays in place, except in quads with two middle nodes.
 fn turn(facet: &mut [VertexId], n_corners: usize) {
     let (corners, middles) = facet.split_at_mut(n_corners);
     corners[1..].reverse();
     match middles.len() {
-        // Edge i runs from corner i to i + 1: the whole list turns.
+        // Edge i runs from corner i to corner i + 1, so the whole list is reversed.
         n if n >= n_corners => middles[..n_corners].reverse(),
         // Quads with middles on edges 0 and 2 only: their edges become 3 and 1,
         // so the ring starts one corner later.

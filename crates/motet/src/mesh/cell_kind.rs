@@ -1,7 +1,7 @@
-//! Kinds of cells, by the numbers that VTK gives them.
+//! Kinds of cells, identified by VTK's numbers.
 
-/// A kind of cell. Any number that VTK knows passes through, also one that
-/// motet itself can do nothing with.
+/// A kind of cell. Any of VTK's numbers is accepted, including those of kinds that motet itself does not
+/// support.
 ///
 /// Vertices of a cell are in VTK's order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, bytemuck::Pod, bytemuck::Zeroable)]
@@ -17,7 +17,7 @@ macro_rules! kinds {
             /// All kinds that have a name, by their numbers.
             pub const NAMED: &[Self] = &[$(Self($number),)*];
 
-            /// The name, as meshio has it; `None` for a number that has no row here.
+            /// The name used by meshio; `None` for a number that is not listed here.
             pub fn name(self) -> Option<&'static str> {
                 match self.0 {
                     $($number => Some($name),)*
@@ -25,7 +25,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// The kind with this name.
+            /// The kind with this name, if there is one.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name {
                     $($name => Some(Self($number)),)*
@@ -33,7 +33,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// 0 for points, 1 curves, 2 surfaces, 3 volumes; `None` where unknown.
+            /// The dimension: 0 for points, 1 for curves, 2 for surfaces, 3 for volumes; `None` if unknown.
             pub fn dim(self) -> Option<usize> {
                 match self.0 {
                     $($number => $dim,)*
@@ -41,8 +41,8 @@ macro_rules! kinds {
                 }
             }
 
-            /// How many vertices every cell of this kind has; `None` where that
-            /// differs from cell to cell, or is unknown.
+            /// Number of vertices of every cell of this kind; `None` if it varies from cell to cell, or is
+            /// unknown.
             pub fn n_vertices(self) -> Option<usize> {
                 match self.0 {
                     $($number => $n,)*
@@ -98,7 +98,7 @@ kinds! {
 }
 
 impl CellKind {
-    /// A name for people: the known one, or VTK's number.
+    /// A readable name: meshio's if there is one, otherwise VTK's number.
     pub fn label(self) -> String {
         self.name().map_or_else(|| format!("vtk_{}", self.0), str::to_owned)
     }

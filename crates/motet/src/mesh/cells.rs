@@ -3,19 +3,18 @@
 use crate::base::{CellId, Csr, Error, Result, VertexId};
 use crate::mesh::CellKind;
 
-/// Cells of any kinds, mixed as the file had them: a kind each, and the vertices
-/// of each, end to end.
+/// Cells of any kind, mixed as in the file: the kind of each cell, and the vertices of all cells, end to end.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cells {
     kinds: Vec<CellKind>,
     vertices: Csr<VertexId>,
-    /// For a polyhedron its faces, each a list of vertices; keyed by its place
-    /// among the polyhedra. Empty in meshes without polyhedra.
+    /// The faces of each polyhedron, each a list of vertices, in the order of the polyhedra among the cells.
+    /// Empty in meshes without polyhedra.
     polyhedron_faces: Vec<Csr<VertexId>>,
 }
 
 impl Cells {
-    /// No cells yet.
+    /// An empty list of cells.
     pub fn new() -> Self {
         Self::default()
     }
@@ -23,7 +22,8 @@ impl Cells {
     /// `n` cells of one kind, from their vertices end to end.
     ///
     /// # Errors
-    /// When the kind has no fixed number of vertices, or `vertices` is no multiple of it.
+    /// If the kind has no fixed number of vertices, `vertices` is not a multiple of it, or there are too many
+    /// ids.
     pub fn uniform(kind: CellKind, vertices: Vec<VertexId>) -> Result<Self> {
         let n = kind.n_vertices().filter(|&n| n > 0);
         let Some(n) = n.filter(|n| vertices.len().is_multiple_of(*n)) else {
@@ -41,11 +41,11 @@ impl Cells {
         Self::from_parts(vec![kind; n_cells], offsets, vertices)
     }
 
-    /// Cells from a kind each, where each starts (and the last one ends), and
-    /// all their vertices. Polyhedra cannot come this way: see [`Self::push_polyhedron`].
+    /// Cells from the kind of each, the offset at which each starts (and the last one ends), and the vertices
+    /// of all. Polyhedra are refused: see [`Self::push_polyhedron`].
     ///
     /// # Errors
-    /// When the arrays do not fit together; the place is the first bad cell.
+    /// If the arrays do not match; the place of the error is the first bad cell.
     pub fn from_parts(kinds: Vec<CellKind>, offsets: Vec<u32>, vertices: Vec<VertexId>) -> Result<Self> {
         if offsets.len() != kinds.len() + 1 {
             return Err(Error::input(format!(
@@ -78,7 +78,8 @@ impl Cells {
 
     /// Adds a cell.
     ///
-    /// Panics when the number of vertices is not that of the kind: readers check it first.
+    /// Panics for a polyhedron, and in debug builds if the number of vertices is not that of the kind:
+    /// readers check it first.
     pub fn push(&mut self, kind: CellKind, vertices: impl IntoIterator<Item = VertexId>) {
         assert!(kind != CellKind::POLYHEDRON, "polyhedra come with their faces");
         self.kinds.push(kind);
@@ -93,7 +94,7 @@ impl Cells {
         self.polyhedron_faces.push(faces);
     }
 
-    /// How many cells there are.
+    /// Number of cells.
     pub fn len(&self) -> usize {
         self.kinds.len()
     }
@@ -124,7 +125,7 @@ impl Cells {
         &self.vertices
     }
 
-    /// Faces of the polyhedra, in the order in which polyhedra stand among the cells.
+    /// The faces of the polyhedra, in the order of the polyhedra among the cells.
     pub fn polyhedron_faces(&self) -> &[Csr<VertexId>] {
         &self.polyhedron_faces
     }
@@ -138,21 +139,21 @@ impl Cells {
             .map(|(i, (&kind, v))| (CellId::new(i), kind, v))
     }
 
-    /// The linear tetrahedra: where each stands among the cells, and its vertices.
+    /// The linear tetrahedra: the cell and the vertices of each.
     pub fn tets(&self) -> impl Iterator<Item = (CellId, [VertexId; 4])> + Clone + '_ {
         self.iter()
             .filter(|(_, kind, _)| *kind == CellKind::TETRA)
             .map(|(id, _, v)| (id, [v[0], v[1], v[2], v[3]]))
     }
 
-    /// Every kind that occurs, with its count, by VTK's number.
+    /// Every kind that occurs, with its count, in the order of VTK's numbers.
     pub fn counts(&self) -> Vec<(CellKind, usize)> {
         let mut counts = [0usize; 256];
         self.kinds.iter().for_each(|k| counts[k.0 as usize] += 1);
         (0u8..=255).filter(|&k| counts[k as usize] > 0).map(|k| (CellKind(k), counts[k as usize])).collect()
     }
 
-    /// The highest dimension of any cell.
+    /// The highest dimension of any cell; `None` if no cell has a known one.
     pub fn dim(&self) -> Option<usize> {
         self.counts().iter().filter_map(|(kind, _)| kind.dim()).max()
     }
@@ -170,10 +171,11 @@ impl Cells {
     /// Checks that every vertex id is below `n_points`.
     ///
     /// # Errors
-    /// Names the first cell that goes beyond.
+    /// If an id is too large; the error names the first such cell.
     pub fn check_ids(&self, n_points: usize) -> Result<()> {
         let beyond = |v: &[VertexId]| v.iter().map(|v| v.index()).find(|&v| v >= n_points);
-        // The largest id, since a search for the first that is too large is several times slower.
+        // The largest id is found first, since a search for the first that is too large is several times
+        // slower.
         if self.vertices.items().iter().max().is_none_or(|v| v.index() < n_points)
             && self.polyhedron_faces.iter().all(|f| beyond(f.items()).is_none())
         {

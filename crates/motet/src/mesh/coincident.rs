@@ -2,11 +2,12 @@
 
 use crate::base::{Point, VertexId};
 
-/// For each point the first one at exactly the same place. A point with a coordinate that is no number is alone. `n log n`.
+/// For each point, the point of smallest id with exactly the same coordinates: itself if there is no other. A
+/// point with a NaN coordinate matches no other. Takes `n log n` time.
 pub fn firsts_at_place(points: &[Point]) -> Vec<VertexId> {
     let mut firsts: Vec<VertexId> = (0..points.len()).map(VertexId::new).collect();
     let mut order = firsts.clone();
-    // Zero has two signs and one place.
+    // Adding 0 turns -0 into +0, so that both sort alike.
     let key = |v: &VertexId| points[v.index()].map(|x| total_order(x + 0.0));
     order.sort_unstable_by_key(|v| (key(v), *v));
     for same in order.chunk_by(|a, b| points[a.index()] == points[b.index()]) {
@@ -15,7 +16,7 @@ pub fn firsts_at_place(points: &[Point]) -> Vec<VertexId> {
     firsts
 }
 
-/// A number that sorts as `x` does.
+/// An integer that sorts in the same order as `x`.
 fn total_order(x: f64) -> i64 {
     let bits = x.to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64

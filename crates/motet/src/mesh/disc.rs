@@ -1,23 +1,25 @@
-//! Triangles that close a rim: rings that shrink towards its middle, each with fewer vertices than the one around it.
+//! Fills a closed rim with triangles, in rings that shrink towards its middle, each with fewer vertices than
+//! the one around it.
 
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, distance, scale};
 
-/// Triangles between a rim and its middle, counter-clockwise as the rim is; their inner vertices are added to `points`. The rim must be
-/// seen whole from its middle. Triangles have about the size of its edges.
+/// Fills a rim with triangles of about the size of its edges, oriented like the rim. The new inner vertices
+/// are added to `points`. The whole rim must be visible from its middle, the mean of its vertices.
 pub(crate) fn disc(points: &mut Vec<Point>, rim: &[VertexId]) -> Vec<[VertexId; 3]> {
     let n_rings = n_rings(points, rim);
     disc_of_rings(points, rim, n_rings)
 }
 
-/// How many rings make triangles of about the size of the rim's edges: each has the height of a triangle of equal edges.
+/// The number of rings for triangles of about the size of the rim's edges: each ring has the height of an
+/// equilateral triangle.
 pub(crate) fn n_rings(points: &[Point], rim: &[VertexId]) -> usize {
     let at = |i: usize| points[rim[i % rim.len()].index()];
     let (n, middle) = (rim.len() as f64, middle(points, rim));
     let radius = (0..rim.len()).map(|i| distance(at(i), middle)).sum::<f64>() / n;
     let edge = (0..rim.len()).map(|i| distance(at(i), at(i + 1))).sum::<f64>() / n;
     let rings = (radius / (edge * 0.75f64.sqrt())).round() as usize;
-    // Of a rim without a length there is no number; and none needs more rings than it has vertices.
+    // The ratio means nothing for a rim of zero length; and no rim needs more rings than it has vertices.
     rings.clamp(1, rim.len().max(1))
 }
 
@@ -25,7 +27,8 @@ fn middle(points: &[Point], rim: &[VertexId]) -> Point {
     scale(rim.iter().fold([0.0; 3], |sum, v| add(sum, points[v.index()])), 1.0 / rim.len() as f64)
 }
 
-/// As [`disc()`], with so many rings: the same triangles wherever the rim has gone.
+/// Fills a rim as [`disc()`] does, with the given number of rings: the triangles stay the same wherever the
+/// rim moves.
 pub(crate) fn disc_of_rings(points: &mut Vec<Point>, rim: &[VertexId], n_rings: usize) -> Vec<[VertexId; 3]> {
     let corners: Vec<Point> = rim.iter().map(|v| points[v.index()]).collect();
     let middle = middle(points, rim);
@@ -42,7 +45,8 @@ pub(crate) fn disc_of_rings(points: &mut Vec<Point>, rim: &[VertexId], n_rings: 
     triangles
 }
 
-/// A smaller copy of a rim, with vertices as far apart as those of the rim.
+/// Adds a copy of a rim, scaled towards its middle by `share`, with vertices about as far apart as those of
+/// the rim; returns their ids.
 fn shrunk(points: &mut Vec<Point>, rim: &[Point], middle: Point, share: f64) -> Vec<VertexId> {
     let n = ((rim.len() as f64 * share).round() as usize).max(3);
     (0..n)
@@ -56,7 +60,7 @@ fn shrunk(points: &mut Vec<Point>, rim: &[Point], middle: Point, share: f64) -> 
         .collect()
 }
 
-/// Triangles between two rings that both start at one angle: whichever is behind goes on.
+/// Adds the triangles between two rings that start at the same angle, advancing on whichever ring is behind.
 fn zip(outer: &[VertexId], inner: &[VertexId], triangles: &mut Vec<[VertexId; 3]>) {
     let at = |ring: &[VertexId], i: usize| ring[i % ring.len()];
     let (mut i, mut j) = (0, 0);

@@ -1,9 +1,10 @@
-//! How long edges are, at each vertex and all together.
+//! Edge lengths: the mean at each vertex, and statistics over all edges.
 
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::vector::distance;
 
-/// The mean length of the edges of triangles, or of tets, at each point; 0 where there is none. An edge counts as often as it is one of theirs.
+/// For each point, the mean length of the edges of triangles or tets that end there; 0 if there are none. An
+/// edge counts once for each simplex that has it.
 pub fn mean_edge_lengths<const N: usize>(
     points: &[Point],
     simplices: impl IntoIterator<Item = [VertexId; N]>,
@@ -23,8 +24,8 @@ pub fn mean_edge_lengths<const N: usize>(
     sums.into_iter().map(|(sum, n)| sum / f64::max(n, 1.0)).collect()
 }
 
-/// The least, the median and the largest length of the edges of triangles, or of tets, each edge once; `None` where there is none. Edges with an end that is not finite
-/// do not count.
+/// The shortest, the median and the longest edge length of triangles or tets, each edge counted once; `None`
+/// if there are no edges. Edges with an end that is not finite do not count.
 pub fn edge_lengths<const N: usize>(
     points: &[Point],
     simplices: impl IntoIterator<Item = [VertexId; N], IntoIter: Clone>,
@@ -39,7 +40,8 @@ pub fn edge_lengths<const N: usize>(
     Some([least, *lengths.select_nth_unstable_by(middle, f64::total_cmp).1, largest])
 }
 
-/// Each edge once. Edges are gathered at their lower end, where each list is short: many times faster than sorting all of them.
+/// Calls `found` with each edge once. Edges are gathered at their lower end, where each list is short: many
+/// times faster than sorting all of them.
 fn for_each_edge<const N: usize>(
     n_points: usize,
     simplices: impl Iterator<Item = [VertexId; N]> + Clone,

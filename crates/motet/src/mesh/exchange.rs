@@ -4,8 +4,8 @@ use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::in_range;
 use crate::mesh::{Cells, Field, LabelNames};
 
-/// Points, cells of any kinds, and the arrays on them: what a file holds, and
-/// what goes from one capability to the next.
+/// Points, cells of any kind, and the arrays on them: what a file holds, and what the parts of the library
+/// exchange.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Coordinates of each vertex.
@@ -28,11 +28,11 @@ impl Mesh {
         Self { points, cells, ..Self::default() }
     }
 
-    /// Checks that every array fits and every vertex id exists. Every reader
-    /// ends with it, so that nothing behind it needs to ask again.
+    /// Checks that every array has the right length and every vertex id exists. Every reader calls it last,
+    /// so later code need not check again.
     ///
     /// # Errors
-    /// Names the array or the cell that does not fit.
+    /// If a check fails; the error names the array or the cell at fault.
     pub fn validate(&self) -> Result<()> {
         if self.points.len() > VertexId::MAX_COUNT {
             return Err(Error::input(format!("{} points are more than a mesh can hold", self.points.len())));
@@ -42,35 +42,35 @@ impl Mesh {
         check_rows(&self.cell_data, self.cells.len(), "cell")
     }
 
-    /// The point array of this name.
+    /// The point array named `name`, if there is one.
     pub fn point_field(&self, name: &str) -> Option<&Field> {
         self.point_data.iter().find(|f| f.name == name)
     }
 
-    /// The cell array of this name.
+    /// The cell array named `name`, if there is one.
     pub fn cell_field(&self, name: &str) -> Option<&Field> {
         self.cell_data.iter().find(|f| f.name == name)
     }
 
-    /// Puts a point array in, in place of one of the same name.
+    /// Adds a point array, replacing any of the same name.
     pub fn set_point_field(&mut self, field: Field) {
         set(&mut self.point_data, field);
     }
 
-    /// Puts a cell array in, in place of one of the same name.
+    /// Adds a cell array, replacing any of the same name.
     pub fn set_cell_field(&mut self, field: Field) {
         set(&mut self.cell_data, field);
     }
 
-    /// The corners of the smallest box, sides along the axes, that holds all
-    /// points with finite coordinates; `None` when there is no such point.
+    /// The lowest and the highest corner of the axis-aligned bounding box of all points with finite
+    /// coordinates; `None` if there are no such points.
     pub fn bounds(&self) -> Option<[Point; 2]> {
         bounds(&self.points)
     }
 }
 
-/// The corners of the smallest box, sides along the axes, around the finite
-/// ones of `points`; `None` when there is none.
+/// The lowest and the highest corner of the axis-aligned bounding box of the finite ones of `points`; `None`
+/// if there are none.
 pub fn bounds(points: &[Point]) -> Option<[Point; 2]> {
     points.iter().filter(|p| in_range(**p)).fold(None, |bounds, p| {
         let [low, high] = bounds.unwrap_or([*p, *p]);
@@ -78,7 +78,7 @@ pub fn bounds(points: &[Point]) -> Option<[Point; 2]> {
     })
 }
 
-/// The longest side of a box.
+/// The length of the longest side of a box.
 pub fn largest_extent([low, high]: [Point; 2]) -> f64 {
     (0..3).map(|i| high[i] - low[i]).fold(0.0, f64::max)
 }

@@ -15,16 +15,16 @@ use crate::mesh::CellKind;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacetShape {
-    /// What kind of surface cell the facet is.
+    /// The kind of surface cell that the facet is.
     pub kind: CellKind,
-    /// How many of its vertices are corners; they come first, as a ring.
+    /// Number of its corners; they come first among its vertices, as a ring.
     pub n_corners: usize,
-    /// Places of its vertices within the cell: the corners, then the middles.
+    /// Local indices of its vertices in the cell: the corners, then the middle nodes.
     pub nodes: &'static [u8],
 }
 
 impl FacetShape {
-    /// Places of the corners within the cell, as a ring.
+    /// Local indices of its corners in the cell, as a ring.
     pub fn corners(&self) -> &'static [u8] {
         &self.nodes[..self.n_corners]
     }
@@ -154,9 +154,8 @@ const BIQUADRATIC_QUADRATIC_HEXAHEDRON: &[FacetShape] = &[
     quad8(&[4, 5, 6, 7, 12, 13, 14, 15]),
 ];
 
-/// The facets of a kind of volume cell, in VTK's order; `None` for kinds of
-/// other dimensions, for polyhedra (which bring their own) and for kinds whose
-/// facets are not known here (Lagrange cells of any order).
+/// The facets of a kind of volume cell, in VTK's order; `None` for kinds of other dimensions, for polyhedra
+/// (which store their own faces) and for kinds whose facets are not known here (Lagrange cells of any order).
 pub fn facet_shapes(kind: CellKind) -> Option<&'static [FacetShape]> {
     Some(match kind {
         CellKind::TETRA => TETRA,

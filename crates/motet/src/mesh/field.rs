@@ -4,19 +4,19 @@ use crate::base::{Error, Result};
 
 macro_rules! values {
     ($($variant:ident($t:ty) $doc:literal;)*) => {
-        /// Numbers in the type that the file had them in, or texts.
+        /// Numbers in the type that the file stores them in, or texts.
         #[derive(Clone, Debug, PartialEq)]
         pub enum Values {
             $(#[doc = $doc] $variant(Vec<$t>),)*
         }
 
         impl Values {
-            /// How many values there are, components counted one by one.
+            /// Number of values, counting each component.
             pub fn len(&self) -> usize {
                 match self { $(Self::$variant(v) => v.len(),)* }
             }
 
-            /// Adds values behind these. False, and nothing is done, where they are of another type.
+            /// Appends the values of `more`. Returns `false` and changes nothing if they are of another type.
             pub fn append(&mut self, more: &Self) -> bool {
                 match (self, more) {
                     $((Self::$variant(v), Self::$variant(more)) => v.extend_from_slice(more),)*
@@ -25,7 +25,7 @@ macro_rules! values {
                 true
             }
 
-            /// Rows of `components` values each, picked in this order.
+            /// The given rows of `components` values each, in the given order.
             fn pick(&self, components: usize, rows: impl Iterator<Item = usize>) -> Self {
                 match self { $(Self::$variant(v) => Self::$variant(pick(v, components, rows)),)* }
             }
@@ -66,7 +66,7 @@ impl Values {
         !matches!(self, Self::F32(_) | Self::F64(_) | Self::Text(_))
     }
 
-    /// Value `i` as a number; `None` for a text.
+    /// Value `i` as a double-precision number; `None` for a text.
     pub fn get_f64(&self, i: usize) -> Option<f64> {
         Some(match self {
             Self::I8(v) => v[i].into(),
@@ -83,13 +83,15 @@ impl Values {
         })
     }
 
-    /// Puts a number in place of value `i`. False, and nothing is done, for texts and where the type cannot hold it.
+    /// Sets value `i` to `x`. Returns `false` and changes nothing for texts, and if an integer type cannot
+    /// represent `x`.
     ///
-    /// Panics when there is no such value.
+    /// Panics if there is no such value.
     pub fn set_f64(&mut self, i: usize, x: f64) -> bool {
         macro_rules! whole {
             ($v:expr, $t:ty) => {{
-                // What saturates comes back as another number, and one past the last is no whole number of the type.
+                // A saturated value does not convert back to `x`, except at 2^63 and 2^64, to which the
+                // maxima round; hence the second test.
                 let fits = (x as $t) as f64 == x && x < <$t>::MAX as f64 + 1.0;
                 if fits {
                     $v[i] = x as $t;
@@ -123,8 +125,7 @@ impl Values {
         (0..self.len()).map(|i| self.get_f64(i)).collect()
     }
 
-    /// All values as whole numbers; `None` for texts, and where one is not
-    /// whole or does not fit.
+    /// All values as whole numbers; `None` for texts, and if any value is not whole or does not fit.
     pub fn to_i64(&self) -> Option<Vec<i64>> {
         match self {
             Self::I64(v) => Some(v.clone()),
@@ -137,9 +138,9 @@ impl Values {
 /// A named array of `n` rows of `components` values each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    /// Its name, as users know it.
+    /// Its name, as shown to users.
     pub name: String,
-    /// Values in a row: 1 for a scalar, 3 for a vector, 9 for a tensor.
+    /// Number of values in a row: 1 for a scalar, 3 for a vector, 9 for a tensor.
     pub components: usize,
     /// All rows, end to end.
     pub values: Values,
@@ -156,14 +157,14 @@ impl Field {
         Self { name: name.into(), components: 3, values: Values::F64(values.as_flattened().to_vec()) }
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn n_rows(&self) -> usize {
         self.values.len() / self.components.max(1)
     }
 
-    /// The rows with these numbers, in that order, bit for bit.
+    /// A field of the given rows, in the given order, copied bit for bit.
     ///
-    /// Panics when there is no such row.
+    /// Panics if there is no such row.
     pub fn pick(&self, rows: impl IntoIterator<Item = usize>) -> Self {
         let values = self.values.pick(self.components, rows.into_iter());
         Self { name: self.name.clone(), components: self.components, values }
@@ -172,7 +173,7 @@ impl Field {
     /// The rows as vectors in space.
     ///
     /// # Errors
-    /// When the field has not three components, or holds texts.
+    /// If the field does not have three components, or holds texts.
     pub fn to_vectors(&self) -> Result<Vec<[f64; 3]>> {
         let flat = self.values.to_f64().filter(|_| self.components == 3);
         let flat = flat.ok_or_else(|| {

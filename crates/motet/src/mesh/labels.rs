@@ -14,11 +14,12 @@ pub struct LabelNames {
     pub patches: BTreeMap<i32, String>,
 }
 
-/// What field data are called that hold the name of a region, and of a patch: these words, a colon and the name.
+/// Prefixes of field data that hold the name of a region, and of a patch; a colon and the name follow.
 const NAME_FIELDS: [&str; 2] = ["region", "patch"];
 
 impl LabelNames {
-    /// The names as field data, for whatever has arrays but no names of labels: `region:NAME` and `patch:NAME`, and the label that is the one value of each.
+    /// The names as field data, for formats that have arrays but no label names: `region:NAME` and
+    /// `patch:NAME`, each with the label as its one value.
     pub fn to_entries(&self) -> impl Iterator<Item = (String, i32)> {
         let [region, patch] = NAME_FIELDS;
         let all = [(region, &self.regions), (patch, &self.patches)];
@@ -26,7 +27,8 @@ impl LabelNames {
             .flat_map(|(kind, names)| names.iter().map(move |(&id, name)| (format!("{kind}:{name}"), id)))
     }
 
-    /// Takes a name over from field data as [`Self::to_entries`] makes them; `false` where it is none.
+    /// Takes a name from field data as written by [`Self::to_entries`]; returns `false` if it is not such a
+    /// name.
     pub fn take_entry(&mut self, field: &str, label: i64) -> bool {
         let [region, patch] = NAME_FIELDS;
         let Some((kind, name)) = field.split_once(':') else { return false };
@@ -41,26 +43,25 @@ impl LabelNames {
     }
 }
 
-/// A label for each cell of a mesh; 0 for cells of other dimensions and for
-/// cells without one.
+/// A label for each cell of a mesh; 0 for cells of other dimensions and for cells without a label.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Labels {
     /// The label of each cell, in the order of the cells.
     pub ids: Vec<i32>,
-    /// Names, where there are any.
+    /// The names of labels, where there are any.
     pub names: BTreeMap<i32, String>,
-    /// The cell array that they come from.
+    /// The name of the cell array that the labels come from.
     pub array: String,
 }
 
 impl Labels {
-    /// The label that `text` means: a name, or a number written out.
+    /// The label denoted by `text`, a name or a number; `None` if there is no such label.
     pub fn find(&self, text: &str) -> Option<i32> {
         let named = self.names.iter().find(|(_, name)| *name == text).map(|(&id, _)| id);
         named.or_else(|| text.parse().ok().filter(|id| self.ids.contains(id)))
     }
 
-    /// Every label that occurs, 0 left out, in rising order.
+    /// Every label in use except 0, in rising order.
     pub fn used(&self) -> Vec<i32> {
         let mut used: Vec<i32> = self.ids.iter().copied().filter(|&id| id != 0).collect();
         used.sort_unstable();
@@ -74,13 +75,13 @@ impl Labels {
     }
 }
 
-/// A name that nothing has yet: `name`, or with a number from 2 on behind it.
+/// A name that is not taken yet: `name`, or `name` with a number from 2 on appended.
 pub fn unused_name(name: &str, is_taken: impl Fn(&str) -> bool) -> String {
     let numbered = (2u32..).map(|k| format!("{name}_{k}"));
     std::iter::once(name.to_owned()).chain(numbered).find(|name| !is_taken(name)).unwrap_or_default()
 }
 
-/// Arrays in which the ecosystem keeps labels of volume cells, first choice first.
+/// Arrays in which other tools store labels of volume cells, in order of preference.
 const REGION_ARRAYS: &[&str] = &[
     "region",
     "gmsh:physical",
@@ -91,7 +92,7 @@ const REGION_ARRAYS: &[&str] = &[
     "gmsh:geometrical",
 ];
 
-/// Arrays in which the ecosystem keeps labels of surface cells, first choice first.
+/// Arrays in which other tools store labels of surface cells, in order of preference.
 const PATCH_ARRAYS: &[&str] = &[
     "patch",
     "gmsh:physical",
@@ -103,37 +104,38 @@ const PATCH_ARRAYS: &[&str] = &[
 ];
 
 impl Mesh {
-    /// Labels of the volume cells, found under the names that the ecosystem uses;
-    /// `None` where the mesh has none.
+    /// Labels of the volume cells, from the first of the array names in common use that has any; `None` if
+    /// the mesh has none.
     pub fn regions(&self) -> Option<Labels> {
         self.labels_of(3, REGION_ARRAYS, &self.label_names.regions)
     }
 
-    /// Labels of the surface cells, found likewise.
+    /// Labels of the surface cells, from the first of the array names in common use that has any; `None` if
+    /// the mesh has none.
     pub fn patches(&self) -> Option<Labels> {
         self.labels_of(2, PATCH_ARRAYS, &self.label_names.patches)
     }
 
-    /// The region that a word means: its name, or its number.
+    /// The region denoted by `word`: its name, or its number.
     ///
     /// # Errors
-    /// When the mesh has no such region; it says which there are.
+    /// If the mesh has no such region; the error lists those it has.
     pub fn find_region(&self, word: &str) -> Result<i32> {
         find(self.regions(), word, ["region", "regions"])
     }
 
-    /// The patch that a word means: its name, or its number.
+    /// The patch denoted by `word`: its name, or its number.
     ///
     /// # Errors
-    /// When the mesh has no such patch; it says which there are.
+    /// If the mesh has no such patch; the error lists those it has.
     pub fn find_patch(&self, word: &str) -> Result<i32> {
         find(self.patches(), word, ["patch", "patches"])
     }
 
-    /// The patches that words mean, in their order.
+    /// The patches denoted by `words`, in their order.
     ///
     /// # Errors
-    /// As [`Self::find_patch`].
+    /// If the mesh lacks one of them, as for [`Self::find_patch`].
     pub fn find_patches(&self, words: &[String]) -> Result<Vec<i32>> {
         words.iter().map(|word| self.find_patch(word)).collect()
     }
@@ -156,8 +158,8 @@ fn find(labels: Option<Labels>, word: &str, [what, several]: [&str; 2]) -> Resul
     })
 }
 
-/// The labels that `field` gives to the cells where `on_dim` holds; `None` when
-/// it is not made of whole numbers, or gives none of them a label.
+/// The labels that `field` gives to the cells where `on_dim` is `true`; `None` if its values are not whole
+/// numbers, or if none of these cells has a label.
 fn label_ids(field: &Field, on_dim: &[bool]) -> Option<Vec<i32>> {
     if field.components != 1 || matches!(field.values, Values::Text(_)) {
         return None;

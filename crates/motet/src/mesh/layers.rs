@@ -1,4 +1,4 @@
-//! Boundary layers: tets that are thin on purpose.
+//! Detection of boundary layers: tets that are thin on purpose.
 //!
 //! ```text
 //!     v2 ------- .        A column rises from a wall vertex along the normal of the wall, edge by edge, each much shorter than
@@ -7,30 +7,32 @@
 //!     |  layer 1          stretched along the normal to the width of the facet.
 //!     w ======== .  wall
 //! ```
-//! Where a mesh has layers, most of what looks bad is thin on purpose; where few of the bad are, there are no layers.
-//! A sliver in a mesh without layers has no short edge, and a needle's short edge does not stand in columns side by side: neither is taken
-//! for a layer.
+//! If a mesh has layers, most of its low-quality tets are thin on purpose; if only a minority of them are,
+//! the mesh is taken to have no layers. Slivers in a mesh without layers have no short edge, and the short
+//! edges of needles do not stand side by side in columns, so neither is mistaken for a layer tet.
 
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::quality::eas;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot, norm, scale, sub};
 
-/// A column's edges are shorter than this part of the wall's edges at its foot.
+/// A column's edges are shorter than this fraction of the mean length of the wall edges at its foot.
 const SHORT: f64 = 0.6;
-/// A column leans from the normal by less: cosine of 35 degrees.
+/// Cosine of 35 degrees: a column leans by less from the normal of the wall, and each edge of it from the one
+/// below.
 const UPRIGHT: f64 = 0.82;
-/// An edge of a column is at most so many times as long as the one below.
+/// An edge of a column is at most this many times as long as the edge below it.
 const GROWTH: f64 = 3.0;
-/// Layers are looked for only where this part of some wall vertices has a column.
+/// Layers are looked for only if at least this fraction of the sampled wall vertices has a column.
 const ENOUGH: f64 = 0.4;
-/// How many wall vertices are looked at to tell.
+/// Largest number of wall vertices that are sampled for this test.
 const SAMPLE: usize = 256;
-/// No column is higher.
+/// Columns have fewer levels than this.
 const MOST_LEVELS: u32 = 64;
 
-/// Which of the tets `low`, by their places in `tets`, belong to layers: none where these are fewer than the others. `low` are below `min_eas`, tets are oriented,
-/// `walls` are the facets on the boundary, between regions, and with a triangle.
+/// For each tet in `low` (indices into `tets`), whether it belongs to a boundary layer; all `false` if fewer
+/// than half of them do. `low` lists the tets whose EAS is below `min_eas`, `tets` are oriented, and `walls`
+/// are the facets on the boundary, between regions, and with a triangle.
 pub(crate) fn are_layers(
     points: &[Point],
     tets: &[[VertexId; 4]],
@@ -45,18 +47,20 @@ pub(crate) fn are_layers(
     if 2 * n_thin < low.len() { vec![false; low.len()] } else { are_thin }
 }
 
-/// Which vertex stands in which column.
+/// The columns that the vertices stand in.
 struct Layers {
-    /// For each vertex the wall vertex at the foot of its column, and how many edges it stands above; [`NO_COLUMN`].
+    /// For each vertex, the wall vertex at the foot of its column and the number of edges between them;
+    /// [`NO_COLUMN`] if it stands in none.
     columns: Vec<(VertexId, u32)>,
-    /// For each foot the way in which its column rises.
+    /// For each foot, the unit direction in which its column rises; zero elsewhere.
     ways: Vec<Point>,
 }
 
 const NO_COLUMN: (VertexId, u32) = (VertexId(u32::MAX), 0);
 
 impl Layers {
-    /// The layers of oriented `tets` whose boundary, interfaces and labelled facets are `walls`; `None` where there are none.
+    /// The layers of oriented `tets` whose boundary, interfaces and labelled facets are `walls`; `None` if
+    /// there are none.
     fn of(points: &[Point], tets: &[[VertexId; 4]], walls: &[[VertexId; 3]]) -> Option<Self> {
         let n = points.len();
         let mut at_walls = vec![Foot::default(); n];
@@ -95,7 +99,8 @@ impl Layers {
         Some(Self { columns, ways })
     }
 
-    /// Whether a tet belongs to a layer and is well shaped there: at least `min_eas` when it is as high as it is wide.
+    /// Whether a tet belongs to a layer and is well shaped there: its EAS is at least `min_eas` after it has
+    /// been stretched along the normal until it is as high as it is wide.
     fn holds(&self, points: &[Point], vertices: [VertexId; 4], min_eas: f64) -> bool {
         let columns = vertices.map(|v| self.columns.get(v.index()).copied().unwrap_or(NO_COLUMN));
         let levels = columns.map(|c| c.1);
@@ -112,7 +117,7 @@ impl Layers {
     }
 }
 
-/// The tets of each of `n` vertices of which the tets are wanted.
+/// The tets around each of `n` vertices that satisfy `is_wanted`; an empty list for any other vertex.
 fn stars(n: usize, tets: &[[VertexId; 4]], is_wanted: impl Fn(VertexId) -> bool) -> Csr<u32> {
     let is_wanted: Vec<bool> = (0..n).map(|v| is_wanted(VertexId::new(v))).collect();
     let all = || (0..).zip(tets).flat_map(|(t, tet)| tet.map(|v| (v.index(), t)));
@@ -141,10 +146,10 @@ fn stretched_eas(corners: [Point; 4], normal: Point) -> f64 {
     eas(stretched)
 }
 
-/// What a column stands on.
+/// The wall around the foot of a column.
 #[derive(Clone, Copy, Default)]
 struct Foot {
-    /// The sum of the lengths of the edges of the walls at the vertex.
+    /// Sum of the lengths of the wall edges at the vertex, each counted once per wall facet.
     width: f64,
     n_edges: u32,
 }
@@ -159,13 +164,14 @@ struct Climber<'a> {
     points: &'a [Point],
     tets: &'a [[VertexId; 4]],
     vertex_to_tets: Csr<u32>,
-    /// Of each wall.
+    /// The unit normal of each wall facet.
     normals: Vec<Point>,
     vertex_to_walls: Csr<u32>,
 }
 
 impl Climber<'_> {
-    /// The end of the shortest edge from a vertex that `is_upright` and shorter than `limit`, and the way there.
+    /// The far end of the shortest edge at `from` that is shorter than `limit` and satisfies `is_upright`,
+    /// and the vector to it.
     fn above(
         &self,
         from: VertexId,
@@ -186,7 +192,8 @@ impl Climber<'_> {
         best.map(|(_, v, way)| (v, way))
     }
 
-    /// The first vertex of a column: upright on one of the walls at its foot. It may lie on another wall, that of an inlet say.
+    /// The first vertex above a foot: upright on one of the wall facets there. It may itself lie on another
+    /// wall, such as an inlet.
     fn first(&self, foot: VertexId, wall: &Foot) -> Option<(VertexId, Point)> {
         self.above(foot, wall.limit(), |way, length| {
             let walls = self.vertex_to_walls.list(foot.index());
@@ -194,7 +201,8 @@ impl Climber<'_> {
         })
     }
 
-    /// Follows the column of a wall vertex up, level by level, until no short edge leads on; the way in which it sets out.
+    /// Follows the column of a wall vertex upward, level by level, until no short edge leads on, and records
+    /// its vertices in `columns`. Returns the unit direction of its first edge; zero if there is none.
     fn climb(&self, foot: VertexId, wall: &Foot, columns: &mut [(VertexId, u32)]) -> Point {
         let mut next = self.first(foot, wall);
         let first = next.map_or([0.0; 3], |(_, way)| scale(way, 1.0 / norm(way)));

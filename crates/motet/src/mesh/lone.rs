@@ -1,16 +1,18 @@
-//! The facets of tets that no other tet has: the boundary of a mesh of nothing but tets, found in half the time.
+//! The facets that only one tet has: the boundary of a mesh of tets alone, found in half the time of the
+//! general method.
 //!
-//! [`Facets::for_each_shared`](super::adjacency::Facets::for_each_shared) keeps with each facet who uses it. Here only keys
-//! are sorted, 8 bytes a facet, and a last walk over the tets asks which of their facets were left alone. Of a tet
-//! with vertices `a < b < c < d` three facets begin with `a` and one with `b`: two places are written to where
-//! one facet after the other would write to four. For 939,138 tets in the order of a mesh generator: 70 ms in place of 146.
+//! [`Facets::for_each_shared`](super::adjacency::Facets::for_each_shared) stores the users of each facet.
+//! Here only keys are sorted, 8 bytes per facet, and a final pass over the tets finds which of their facets
+//! occur once. Of a tet with vertices `a < b < c < d`, three facets begin with `a` and one with `b`, so a tet
+//! writes to two places, where facet by facet it would write to four. For 939,138 tets in the order of a mesh
+//! generator this takes 70 ms instead of 146 ms.
 
 use super::adjacency::{FacetUse, VTK_TET_FACETS, pack};
 use crate::base::VertexId;
 use crate::mesh::Cells;
 
-/// Facets that only one of the tets among `cells` has, in the order of the tets and of VTK's facets. A facet of which
-/// two vertices are the same does not count.
+/// The facets that only one of the tets among `cells` has, in the order of the tets and of VTK's facets.
+/// Facets that name a vertex twice do not count.
 pub(super) fn lone_facets(cells: &Cells) -> Vec<FacetUse> {
     let n_vertices = cells.connectivity().items().iter().map(|v| v.index() + 1).max().unwrap_or(0);
     let lone = Keys::of(cells.tets().map(|(_, tet)| sorted(tet)), n_vertices).lone();
@@ -32,7 +34,7 @@ pub(super) fn lone_facets(cells: &Cells) -> Vec<FacetUse> {
     facets
 }
 
-/// The vertices in rising order: five exchanges without a branch.
+/// The vertices in rising order, by five branch-free compare-exchanges.
 #[inline(always)]
 fn sorted([a, b, c, d]: [VertexId; 4]) -> [u32; 4] {
     let (a, b) = (a.0.min(b.0), a.0.max(b.0));
@@ -42,14 +44,14 @@ fn sorted([a, b, c, d]: [VertexId; 4]) -> [u32; 4] {
     [a, b.min(c), b.max(c), d]
 }
 
-/// Facets by their smallest vertex: the other two, packed.
+/// Facets grouped by their smallest vertex; a key packs the other two.
 struct Keys {
     offsets: Vec<u32>,
     keys: Vec<u64>,
 }
 
 impl Keys {
-    /// The facets of tets with sorted vertices, in rising order at each vertex.
+    /// The facets of tets with sorted vertices; the keys of each smallest vertex are in rising order.
     fn of(tets: impl Iterator<Item = [u32; 4]> + Clone, n_vertices: usize) -> Self {
         let mut offsets = vec![0u32; n_vertices + 1];
         for tet in tets.clone() {
@@ -98,7 +100,8 @@ impl Keys {
     }
 }
 
-/// First vertex and key of the facets of a tet that are no edges.
+/// Calls `see` with the first vertex and the key of each facet of a tet, leaving out facets that name a
+/// vertex twice.
 #[inline(always)]
 fn each_facet([a, b, c, d]: [u32; 4], mut see: impl FnMut(u32, u64)) {
     if a < b && b < c && c < d {

@@ -1,16 +1,16 @@
-//! Arrays of 0 and 1 that mark points and cells, under the names that Medit's sections have here.
+//! Arrays of 0 and 1 that mark points and cells, named after the sections of Medit files.
 
 use crate::mesh::{CellKind, Mesh};
 
-/// Points and cells that stay as they are.
+/// Marks points and cells that must stay as they are.
 pub const REQUIRED: &str = "medit:required";
-/// Points at which features meet.
+/// Marks points at which features meet.
 pub const CORNER: &str = "medit:corner";
-/// Lines along sharp edges.
+/// Marks lines along sharp edges.
 pub const RIDGE: &str = "medit:ridge";
 
 impl Mesh {
-    /// The points that are required or corners, rising.
+    /// The points marked as required or as corners, in rising order.
     pub fn marked_points(&self) -> Vec<usize> {
         let mut marked: Vec<usize> =
             [REQUIRED, CORNER].iter().flat_map(|array| self.point_field(array)).flat_map(rows).collect();
@@ -19,13 +19,13 @@ impl Mesh {
         marked
     }
 
-    /// The cells of a kind that are required, rising.
+    /// The cells of a kind that are marked as required, in rising order.
     pub fn required_cells(&self, kind: CellKind) -> Vec<usize> {
         let marked = self.cell_field(REQUIRED).map(rows).unwrap_or_default();
         marked.into_iter().filter(|&cell| self.cells.kinds()[cell] == kind).collect()
     }
 
-    /// Takes the marks off points that no mesh had before; `point_to_old` has [`u32::MAX`] for these.
+    /// Clears the marks of new points, for which `point_to_old` has [`u32::MAX`].
     pub fn unmark_new_points(&mut self, point_to_old: &[u32]) {
         let is_mark = |name: &str| name == REQUIRED || name == CORNER;
         for field in self.point_data.iter_mut().filter(|field| is_mark(&field.name) && field.components == 1)
@@ -37,7 +37,7 @@ impl Mesh {
     }
 }
 
-/// The rows that a field marks.
+/// The rows whose value is not 0; none if the field is not scalar.
 fn rows(field: &crate::mesh::Field) -> Vec<usize> {
     if field.components != 1 {
         return Vec::new();

@@ -1,17 +1,18 @@
-//! A measure of every tet as a cell array, to be looked at in ParaView.
+//! Measures of tets as cell arrays, for display in ParaView.
 
 use crate::base::Point;
 use crate::geometry::tet::volume;
 use crate::mesh::{Field, Mesh, OrientedTets};
 
 impl Mesh {
-    /// The cell array `name` with `measure` of each linear tet as its neighbours orient it, such as
-    /// [`eas`](fn@crate::geometry::quality::eas); cells of other kinds get no number (NaN).
+    /// A cell array `name` with `measure` of each linear tet as oriented by its neighbours, for example
+    /// [`eas`](fn@crate::geometry::quality::eas); NaN for cells of other kinds.
     pub fn tet_field(&self, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
         OrientedTets::of_linear(self).field(self, name, measure)
     }
 
-    /// Whether most tets are numbered the other way round, so that their volumes are negative: some writers do so.
+    /// Whether most linear tets have a negative volume, since some writers number the vertices the other way
+    /// around.
     pub fn is_turned(&self) -> bool {
         let (mut n_tets, mut n_negative) = (0usize, 0usize);
         for (_, tet) in self.cells.tets() {

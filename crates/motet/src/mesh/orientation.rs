@@ -1,21 +1,25 @@
-//! Which way each tet is turned: by its neighbours, not by its volume.
+//! The orientation of tets, derived from their neighbours rather than from their volume.
 //!
-//! Some writers number the vertices of a tet in rising order, some the other way round than others. Two tets that share a facet
-//! must see it from opposite sides: that tells one that is only *numbered* the other way from one that the motion has turned inside
-//! out, which keeps the orientation of its neighbours and has a negative volume.
+//! Some writers number the vertices of a tet in rising order, some the other way around. Two tets that share
+//! a facet must see it from opposite sides. This distinguishes a tet that is only *numbered* the other way
+//! around from one that a motion has turned inside out, which agrees with its neighbours but has a negative
+//! volume.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::predicates::orient3d;
 use crate::geometry::tet::{FACETS, volume_6};
 
-/// Which facet of which tet lies behind a facet of a tet: both tets by their place; `None` on the boundary.
+/// For a facet of a tet, the neighbour across it and the same facet there, all by index; `None` on the
+/// boundary.
 pub(crate) trait Across: Fn(usize, usize) -> Option<(usize, usize)> {}
 impl<F: Fn(usize, usize) -> Option<(usize, usize)>> Across for F {}
 
-/// Turns `tets` so that neighbours agree and each connected part has a positive volume in all; returns which it turned.
+/// Reorients `tets` so that neighbours agree and each connected part has a positive total volume; returns
+/// which tets were reversed.
 ///
 /// # Errors
-/// A tet that cannot be turned the same way as all of its neighbours: the mesh is one-sided. Then no tet is turned.
+/// If a tet cannot agree with all of its neighbours, since the mesh is not orientable: that tet. No tet is
+/// changed then.
 pub(crate) fn orient(
     tets: &mut [[VertexId; 4]],
     across: impl Across,
@@ -60,10 +64,11 @@ pub(crate) fn orient(
     Ok(is_turned)
 }
 
-/// The tets that are folded over others, in rising order: in the file they were positive like those that they share a facet with, and lay on the same
-/// side of it. `tets` are as [`orient`] has turned them.
+/// The tets that are folded over others, in rising order: as numbered in the file, they were positive like a
+/// neighbour across a facet, but lay on the same side of that facet. `tets` are oriented by [`orient`].
 ///
-/// Where the file numbers tets now one way, now the other, nothing tells such a tet from one that a motion has inverted: then there are none.
+/// If the file numbers tets now one way, now the other, such a tet cannot be distinguished from one that a
+/// motion has inverted, and none is reported.
 pub(crate) fn folded(
     tets: &[[VertexId; 4]],
     points: &[Point],
@@ -88,7 +93,7 @@ pub(crate) fn folded(
             }
         }
     }
-    // What lies on a folded tet is folded with it.
+    // Inverted neighbours that agree with a folded tet are folded with it.
     let mut next = 0;
     while let Some(&t) = found.get(next) {
         next += 1;
@@ -107,7 +112,7 @@ pub(crate) fn facet(tet: &[VertexId; 4], i: usize) -> [VertexId; 3] {
     FACETS[i].map(|place| tet[place])
 }
 
-/// Whether one is an odd permutation of the other.
+/// Whether two facets with the same vertices are odd permutations of each other.
 pub(crate) fn see_from_opposite_sides(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let start = b.iter().position(|&v| v == a[0]).unwrap_or(0);
     b[(start + 1) % 3] == a[2]

@@ -1,10 +1,12 @@
-//! The one way to judge the tets of a mesh: which are inverted, which are bad, and which are thin on purpose. Every verb that reports such a count
-//! takes it from here.
+//! Judges the tets of a mesh: which are inverted, which are bad, and which are thin on purpose. Every command
+//! that reports such a count takes it from here.
 //!
-//! - *Oriented*: two tets that share a facet must see it from opposite sides, and the tets that hang together by facets have a positive volume in all. Whichever
-//!   way a file numbers its vertices, the tets that a motion has turned over are found, and no others.
-//! - *Inverted*: the volume of the oriented tet is not positive, by exact signs: flat tets count as well.
-//! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet: one of a boundary layer, thin on purpose (see [`layers`](super::layers)).
+//! - *Oriented*: two tets that share a facet see it from opposite sides, and each part of tets connected
+//!   through facets has a positive total volume. However a file numbers its vertices, exactly those tets are
+//!   found that a motion has turned inside out.
+//! - *Inverted*: the volume of the oriented tet is not positive, by exact signs; flat tets count as well.
+//! - *Bad*: the EAS is below a limit, and the tet is not a *layer* tet, which is thin on purpose (see
+//!   [`layers`](super::layers)).
 
 use crate::base::{CellId, Point, VertexId};
 use crate::geometry::predicates::orient3d;
@@ -15,28 +17,29 @@ use crate::mesh::orientation::{facet, orient, see_from_opposite_sides};
 use crate::mesh::tet_facets::{Sharing, for_each_tet_facet};
 use crate::mesh::{CellKind, Field, Mesh, TetMesh};
 
-/// More tets and triangles have no facet numbers; they stay as the file numbers them.
+/// Facets are numbered only below this number of tets and triangles; more tets keep the orientation of the
+/// file.
 const MOST: usize = 1 << 29;
 
 /// The tets of a mesh, oriented by their neighbours, and the facets that bound them.
 #[derive(Clone, Debug, Default)]
 pub struct OrientedTets {
-    /// The vertices of each tet, of a quadratic one the corners.
+    /// The vertices of each tet; of a quadratic one, the corners.
     pub tets: Vec<[VertexId; 4]>,
-    /// The cell that each tet is.
+    /// The cell of each tet.
     pub cells: Vec<CellId>,
-    /// Which tets the file numbers the other way round, in rising order of their places.
+    /// Indices of the tets that the file numbers the other way around, in rising order.
     pub turned: Vec<usize>,
     /// Facets on the boundary, between two regions, or with a triangle.
     walls: Vec<[VertexId; 3]>,
 }
 
-/// The tets below a limit of EAS, by their places in [`OrientedTets::tets`], in rising order.
+/// The tets below a limit of EAS, as indices into [`OrientedTets::tets`], in rising order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Judged {
-    /// The bad ones.
+    /// The bad tets.
     pub bad: Vec<usize>,
-    /// Those of boundary layers, which do not count as bad.
+    /// The tets of boundary layers, which do not count as bad.
     pub layers: Vec<usize>,
 }
 
@@ -72,7 +75,7 @@ impl OrientedTets {
         oriented
     }
 
-    /// The tets of plain arrays; each is the cell of its own place.
+    /// The tets of plain arrays; the cell of a tet is its index.
     pub fn of_tets(mesh: &TetMesh) -> Self {
         let cells = (0..mesh.tets.len()).map(CellId::new).collect();
         let mut oriented = Self { tets: mesh.tets.clone(), cells, ..Self::default() };
@@ -80,13 +83,14 @@ impl OrientedTets {
         oriented
     }
 
-    /// Tets that are oriented already, each the cell of its own place, and their walls: see [`Sharing::is_wall`].
+    /// Tets that are already oriented, each with its index as its cell, and their walls: see
+    /// [`Sharing::is_wall`].
     pub(crate) fn given(tets: Vec<[VertexId; 4]>, walls: Vec<[VertexId; 3]>) -> Self {
         let cells = (0..tets.len()).map(CellId::new).collect();
         Self { tets, cells, turned: Vec::new(), walls }
     }
 
-    /// The points of a tet, with the vertices of the mesh at `points`.
+    /// The corner points of a tet, with the vertices of the mesh at `points`.
     #[inline]
     pub fn corners(&self, tet: usize, points: &[Point]) -> [Point; 4] {
         self.tets[tet].map(|v| points[v.index()])
@@ -97,7 +101,7 @@ impl OrientedTets {
         is_inverted(self.corners(tet, points))
     }
 
-    /// The cell array `name` of the mesh with `measure` of each tet; other cells get no number (NaN).
+    /// A cell array `name` for the mesh, with `measure` of each tet, and NaN for other cells.
     pub fn field(&self, mesh: &Mesh, name: &str, measure: impl Fn([Point; 4]) -> f64) -> Field {
         let mut values = vec![f64::NAN; mesh.cells.len()];
         for (i, cell) in self.cells.iter().enumerate() {
@@ -106,14 +110,14 @@ impl OrientedTets {
         Field::scalars(name, values)
     }
 
-    /// For each of `n_cells` cells whether it is a tet that the file numbers the other way round.
+    /// For each of `n_cells` cells, whether it is a tet that the file numbers the other way around.
     pub(crate) fn are_turned(&self, n_cells: usize) -> Vec<bool> {
         let mut are_turned = vec![false; n_cells];
         self.turned.iter().for_each(|&tet| are_turned[self.cells[tet].index()] = true);
         are_turned
     }
 
-    /// Parts `low`, the tets whose EAS is below `min_eas`, into those that are bad and those of boundary layers.
+    /// Divides `low`, the tets whose EAS is below `min_eas`, into bad tets and tets of boundary layers.
     pub fn judge(&self, points: &[Point], low: Vec<usize>, min_eas: f64) -> Judged {
         let is_thin = are_layers(points, &self.tets, &self.walls, &low, min_eas);
         let [bad, layers] = [false, true].map(|thin| {
@@ -146,7 +150,7 @@ impl OrientedTets {
                 let half = Some(across[t][i]).filter(|half| *half != NONE)?;
                 Some(((half >> 2) as usize, (half & 3) as usize))
             };
-            // A one-sided mesh stays as the file numbers it.
+            // A mesh that cannot be oriented keeps the numbering of the file.
             let is_turned = orient(&mut self.tets, behind, points).unwrap_or_default();
             self.turned = (0..is_turned.len()).filter(|&t| is_turned[t]).collect();
         }
@@ -158,10 +162,11 @@ pub fn is_inverted([a, b, c, d]: [Point; 4]) -> bool {
     orient3d(a, b, c, d) <= 0
 }
 
-/// No facet.
+/// Stands for the absence of a facet.
 const NONE: u32 = u32::MAX;
 
-/// The facet behind each facet, as four times its tet and its place there; [`NONE`] on the boundary, and where more than two tets share it.
+/// For each facet of each tet, the same facet of the neighbour, as four times the neighbour plus the index of
+/// the facet there; [`NONE`] on the boundary, and where more than two tets share the facet.
 fn across(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
     let mut across = vec![[NONE; 4]; tets.len()];
     for_each_tet_facet(tets, &[], |sharing| {

@@ -1,4 +1,4 @@
-//! How good all tets of a mesh are together: what the worst one does not tell.
+//! Quality statistics over all tets of a mesh: what the worst tet alone does not show.
 
 use serde::Serialize;
 
@@ -7,9 +7,10 @@ use crate::geometry::quality::{eas, mean_ratio};
 use crate::geometry::vector::in_range;
 use crate::mesh::{Mesh, OrientedTets};
 
-/// The distribution of the EAS of tets, and the mean of their mean ratios; all 1 where there is no tet.
+/// The distribution of the EAS of a set of tets, and the mean of their mean ratios. All values are 1 if there
+/// are no tets.
 ///
-/// A percentile is the value of the tet at that part of the way from the worst to the best, rounded down.
+/// A percentile is the EAS at that fraction of the way from the worst to the best tet, rounded down to a tet.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Qualities {
     /// The worst EAS.
@@ -33,7 +34,7 @@ impl Default for Qualities {
 }
 
 impl Qualities {
-    /// Looks at every tet, with the vertices at `points`.
+    /// The statistics of `tets` with vertices at `points`.
     pub fn of(points: &[Point], tets: &[[VertexId; 4]], threads: &Threads) -> Self {
         let of_tet = |i: usize| {
             let corners = tets[i].map(|v| points[v.index()]);
@@ -43,18 +44,21 @@ impl Qualities {
         Self::of_values(&mut eas, ratios.iter().sum()).unwrap_or_default()
     }
 
-    /// Looks at every tet of a mesh, of quadratic ones at the corners, as their neighbours orient them; `None` where there is no tet of finite points.
+    /// The statistics of the linear and quadratic tets of a mesh (of quadratic ones, by their corners), as
+    /// oriented by their neighbours. Tets with a point that is not finite are left out; `None` if no tets
+    /// remain.
     pub fn of_mesh(mesh: &Mesh, threads: &Threads) -> Option<Self> {
         let OrientedTets { mut tets, .. } = OrientedTets::of(mesh);
         tets.retain(|tet| tet.iter().all(|v| in_range(mesh.points[v.index()])));
         (!tets.is_empty()).then(|| Self::of(&mesh.points, &tets, threads))
     }
 
-    /// From the EAS of all tets, which it puts in another order, and the sum of their mean ratios; `None` where there is no tet.
+    /// The statistics from the EAS of all tets, which are reordered, and the sum of their mean ratios; `None`
+    /// if there are no tets.
     pub fn of_values(eas: &mut [f64], ratios: f64) -> Option<Self> {
         let n = eas.len() as f64;
         let mean = eas.iter().sum::<f64>() / n;
-        // What is above the median need not be looked at again for what is below, and so on.
+        // Each selection needs only the part below the previous, higher percentile.
         let (mut low, places) = (eas, [0.5, 0.05, 0.01, 0.0]);
         let mut values = [1.0; 4];
         let n_last = low.len().checked_sub(1)?;

@@ -1,13 +1,15 @@
 //! Seams: where a surface continues at the same places under other vertex ids.
 //!
-//! Files that store corners triangle by triangle (STL), or once more for each normal, texture or part (OBJ, PLY, CAD), repeat vertices. Such a surface encloses what it
-//! encloses, but its ids alone show open edges.
+//! Files that store the corners of each triangle separately (STL), or repeat vertices for each normal,
+//! texture or part (OBJ, PLY, CAD), have several vertices at one place. Such a surface may be closed, but its
+//! connectivity shows open edges.
 
 use crate::base::{Csr, Point, VertexId};
 use crate::mesh::firsts_at_place;
 
-/// The edges that triangles use more often one way than the other, each once, ends rising. A surface without any has an inside, and winds round each point a whole number
-/// of times. Sides of triangles that begin and end at one vertex do not count.
+/// The edges that triangles traverse more often in one direction than in the other, each once, with its ends
+/// in rising order. A surface without open edges has an inside: its winding number around each point is an
+/// integer. Sides that begin and end at the same vertex do not count.
 pub fn open_edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     let n_points = triangles.as_flattened().iter().map(|v| v.index() + 1).max().unwrap_or(0);
     let ways = |&[a, b, c]: &[VertexId; 3]| [[a, b], [b, c], [c, a]].into_iter().filter(|[u, v]| u != v);
@@ -26,11 +28,13 @@ pub fn open_edges(triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     open
 }
 
-/// The vertices that seams repeat, each with the first one of its place: both are ends of [open edges](open_edges), at exactly the same place. Rising.
+/// The duplicate vertices along seams, each paired with the first vertex at its place: both are ends of [open
+/// edges](open_edges), at exactly the same place. In rising order.
 ///
-/// Vertices that are not on an open edge keep their own id, whatever else is at their place: the two sides of a slit, or two bodies that touch, are not one surface.
+/// Vertices that are not on an open edge are not listed, whatever else lies at their place: the two sides of
+/// a slit, or two bodies that touch, are not one surface.
 ///
-/// Panics when a triangle names a point beyond `points`.
+/// Panics if a triangle names a point beyond `points`.
 pub fn seams(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]> {
     let mut rim: Vec<VertexId> = open_edges(triangles).into_iter().flatten().collect();
     rim.sort_unstable();
@@ -41,9 +45,9 @@ pub fn seams(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 2]
     repeated.map(|i| [rim[i], rim[firsts[i].index()]]).collect()
 }
 
-/// The triangles with every vertex that a [seam](seams) repeats under the id of the first one.
+/// The triangles with every duplicate vertex along a [seam](seams) replaced by the first vertex at its place.
 ///
-/// Panics when a triangle names a point beyond `points`.
+/// Panics if a triangle names a point beyond `points`.
 pub fn seamless(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
     let repeated = seams(points, triangles);
     let first = |v: VertexId| repeated.binary_search_by_key(&v, |pair| pair[0]).map_or(v, |i| repeated[i][1]);
@@ -72,7 +76,7 @@ mod tests {
         assert_eq!(points.len() - repeated.len(), surface.vertices().len());
         assert!(open_edges(&seamless(&points, &soup)).is_empty());
         assert!(repeated.iter().all(|[v, first]| first < v && points[v.index()] == points[first.index()]));
-        // Twice the same ball, each closed under ids of its own: no vertex is on an open edge.
+        // The same ball twice, each closed under ids of its own: no vertex is on an open edge.
         let shift = surface.points.len() as u32;
         let again = surface.triangles.iter().map(|t| t.map(|v| VertexId(v.0 + shift)));
         let twice: Vec<[VertexId; 3]> = surface.triangles.iter().copied().chain(again).collect();

@@ -1,4 +1,4 @@
-//! What a mesh is, in numbers: what `motet info` prints.
+//! The summary of a mesh in numbers, as printed by `motet info`.
 
 use std::collections::BTreeMap;
 
@@ -17,35 +17,38 @@ use crate::mesh::{
 /// A tet below this EAS is bad.
 pub const BAD_EAS: f64 = 0.2;
 
-/// What a mesh is, in numbers. Names of the fields are those of `motet info --json`.
+/// The summary of a mesh in numbers. Field names are those of `motet info --json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// How many points.
+    /// Number of points.
     pub points: usize,
-    /// How many cells of each type, by meshio's names.
+    /// Number of cells of each type, by meshio's names.
     pub cells: BTreeMap<String, usize>,
-    /// Corners of the box around all finite points.
+    /// The lowest and the highest corner of the bounding box of all finite points.
     pub bounds: Option<[Point; 2]>,
     /// The sum of the signed volumes of all volume cells, tets oriented by their neighbours, edges taken as straight.
     pub volume: f64,
-    /// Volume cells by label; empty where the mesh has no labels for them.
+    /// Volume cells by label; empty if the mesh has no labels for them.
     pub regions: BTreeMap<String, RegionSummary>,
-    /// Surface cells by label; empty where the mesh has no labels for them.
+    /// Surface cells by label; empty if the mesh has no labels for them.
     pub patches: BTreeMap<String, PatchSummary>,
-    /// All surface cells together; `None` where there is none.
+    /// All surface cells together; `None` if there are none.
     pub surface: Option<PatchSummary>,
-    /// Shape of the triangles of a mesh without volume cells; `None` where it has volume cells, or no triangle of finite points.
+    /// Shape of the triangles of a mesh without volume cells; `None` if it has volume cells, or no triangles
+    /// with finite points.
     pub triangles: Option<TriangleSummary>,
-    /// The boundary of the volume cells; `None` where there is no volume cell.
+    /// The boundary of the volume cells; `None` if there are none.
     pub boundary: Option<BoundarySummary>,
-    /// Shape of the tets (of quadratic ones the corners); `None` where there is no tet.
+    /// Shape of the tets (of quadratic ones, by their corners); `None` if there are none.
     pub quality: Option<QualitySummary>,
-    /// Quadratic volume cells by their Jacobian; `None` where there is none.
+    /// Quadratic volume cells by their Jacobian; `None` if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub curved: Option<CurvedSummary>,
-    /// How many volume cells are inverted or flat: their volume, of tets as oriented by their neighbours, is not positive, or they are quadratic and folded inside.
+    /// Number of volume cells that are inverted or flat: their volume, for tets as oriented by their
+    /// neighbours, is not positive, or they are quadratic and folded inside.
     pub inverted: usize,
-    /// How many tets the file numbers the other way round than their orientation; inverted or not, they are judged as oriented.
+    /// Number of tets that the file numbers opposite to their orientation. They are judged as oriented, and
+    /// are not inverted for that alone.
     pub turned: usize,
     /// Whether cells meet facet to facet.
     pub conforming: bool,
@@ -56,9 +59,9 @@ pub struct Summary {
 /// The volume cells of one label.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RegionSummary {
-    /// How many of them are tets.
+    /// Number of tets among them.
     pub tets: usize,
-    /// How many there are, of any kind.
+    /// Number of cells of any kind.
     pub cells: usize,
     /// The sum of their signed volumes.
     pub volume: f64,
@@ -67,9 +70,9 @@ pub struct RegionSummary {
 /// The surface cells of one label.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct PatchSummary {
-    /// How many triangles they make.
+    /// Number of triangles that they are divided into.
     pub triangles: usize,
-    /// How many there are, of any kind.
+    /// Number of cells of any kind.
     pub cells: usize,
     /// The sum of their areas.
     pub area: f64,
@@ -80,24 +83,24 @@ pub struct PatchSummary {
 /// Shape of the triangles of a surface.
 #[derive(Clone, Debug, Serialize)]
 pub struct TriangleSummary {
-    /// The least, the median and the largest length of their edges.
+    /// The shortest, the median and the longest edge length.
     pub edges: [f64; 3],
     /// `4 sqrt(3) area / sum of squared edge lengths`: 1 for an equilateral triangle, 0 for one without area.
     pub mean_ratio: MinMean,
     /// The smallest angle in degrees.
     pub min_angle_deg: f64,
-    /// The cell of the triangle of least mean ratio.
+    /// The cell that has the triangle of least mean ratio.
     pub worst_cell: CellId,
-    /// The centre of that triangle.
+    /// The centroid of that triangle.
     pub worst_at: Point,
 }
 
 /// The boundary of the volume cells.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct BoundarySummary {
-    /// How many facets.
+    /// Number of facets.
     pub facets: usize,
-    /// How many vertices.
+    /// Number of vertices.
     pub vertices: usize,
 }
 
@@ -110,43 +113,43 @@ pub struct QualitySummary {
     pub dihedral_deg: Range,
     /// `12 (3V)^(2/3) / sum of squared edge lengths`.
     pub mean_ratio: MinMean,
-    /// How good all tets are together.
+    /// Quality statistics over all tets.
     pub distribution: Qualities,
-    /// The least, the median and the largest length of their edges.
+    /// The shortest, the median and the longest edge length.
     pub edges: [f64; 3],
 }
 
 /// Equi-angle quality of the tets.
 #[derive(Clone, Debug, Serialize)]
 pub struct EasSummary {
-    /// The worst.
+    /// The worst EAS.
     pub min: f64,
-    /// The value that 1 % are below, that 5 % are below, and the median.
+    /// The 1st percentile, the 5th percentile and the median.
     pub percentiles: [f64; 3],
-    /// The mean.
+    /// The mean EAS.
     pub mean: f64,
-    /// How many are bad: below [`BAD_EAS`], and not of a boundary layer.
+    /// Number of bad tets: below [`BAD_EAS`], and not in a boundary layer.
     pub bad: usize,
-    /// How many are below [`BAD_EAS`] and of a boundary layer: thin on purpose.
+    /// Number of tets below [`BAD_EAS`] in a boundary layer: thin on purpose.
     pub layers: usize,
-    /// The cell that has the worst.
+    /// The cell with the worst EAS.
     pub worst_cell: CellId,
-    /// The centre of that cell.
+    /// The centroid of the corners of that cell.
     pub worst_at: Point,
-    /// How many lie below 0, in [0, 0.1), [0.1, 0.2), ... and [0.9, 1].
+    /// Number of tets with an EAS below 0, in [0, 0.1), [0.1, 0.2), ... and [0.9, 1].
     pub histogram: [usize; 11],
 }
 
-/// The smallest and the largest.
+/// The smallest and the largest value.
 #[derive(Clone, Debug, Serialize)]
 pub struct Range {
     /// The smallest.
     pub min: f64,
-    /// The largest.
+    /// The largest value.
     pub max: f64,
 }
 
-/// The smallest and the mean.
+/// The smallest value and the mean.
 #[derive(Clone, Debug, Serialize)]
 pub struct MinMean {
     /// The smallest.
@@ -156,7 +159,7 @@ pub struct MinMean {
 }
 
 impl Summary {
-    /// Looks at everything: about two seconds for a million tets.
+    /// Summarises a mesh; about two seconds for a million tets.
     pub fn of(mesh: &Mesh) -> Self {
         let boundary = Boundary::of(&mesh.cells);
         let tets = OrientedTets::of(mesh);
@@ -169,7 +172,7 @@ impl Summary {
             points: mesh.points.len(),
             cells: mesh.cells.counts().into_iter().map(|(kind, n)| (kind.label(), n)).collect(),
             bounds: mesh.bounds(),
-            // A sum of nothing is -0 in Rust.
+            // An empty sum is -0 in Rust.
             volume: volumes.iter().sum::<f64>() + 0.0,
             regions: mesh.regions().map(|labels| regions(mesh, &labels, &volumes)).unwrap_or_default(),
             patches: mesh.patches().map(|labels| patches(mesh, &labels)).unwrap_or_default(),
@@ -189,7 +192,7 @@ impl Summary {
     }
 }
 
-/// The volume of each cell, of tets as oriented, 0 where a point is not finite.
+/// The volume of each cell, for tets as oriented; 0 where it is not finite.
 fn finite_volumes(mesh: &Mesh, tets: &OrientedTets) -> Vec<f64> {
     let facets = Facets::of(&mesh.cells);
     let are_turned = tets.are_turned(mesh.cells.len());
@@ -200,7 +203,7 @@ fn finite_volumes(mesh: &Mesh, tets: &OrientedTets) -> Vec<f64> {
     (0..mesh.cells.len()).map(|i| Some(volume(i)).filter(|v| v.is_finite()).unwrap_or(0.0)).collect()
 }
 
-/// The name of each label, with its number where two share a name.
+/// The name of each label in use, with its number added where two labels share a name.
 fn keys(labels: &Labels) -> BTreeMap<i32, String> {
     let used = labels.used();
     let name = |id: &i32| labels.name(*id);
@@ -227,7 +230,7 @@ fn patches(mesh: &Mesh, labels: &Labels) -> BTreeMap<String, PatchSummary> {
     named(labels, by_id.into_iter().map(|(id, cells)| (id, patch(mesh, &cells))).collect())
 }
 
-/// By name; cells without a label are left to the totals.
+/// The summaries by label name; cells without a label count only in the totals.
 fn named<T>(labels: &Labels, by_id: BTreeMap<i32, T>) -> BTreeMap<String, T> {
     let keys = keys(labels);
     by_id.into_iter().filter_map(|(id, summary)| Some((keys.get(&id)?.clone(), summary))).collect()
@@ -278,14 +281,14 @@ fn triangle_shapes(mesh: &Mesh) -> Option<TriangleSummary> {
     })
 }
 
-/// 1 for an equilateral triangle, 0 for one without area or extent.
+/// The mean ratio of a triangle: 1 if it is equilateral, 0 if it has no area or no extent.
 fn triangle_mean_ratio([a, b, c]: [Point; 3]) -> f64 {
     let squares: f64 = [[a, b], [b, c], [c, a]].iter().map(|[p, q]| distance(*p, *q).powi(2)).sum();
     let ratio = 4.0 * 3f64.sqrt() * triangle::area([a, b, c]) / squares;
     if ratio.is_finite() { ratio } else { 0.0 }
 }
 
-/// Shape of the tets whose points are finite.
+/// Shape of the tets whose points are finite; `None` if there are none.
 fn tet_quality(mesh: &Mesh, tets: &OrientedTets) -> Option<QualitySummary> {
     let mut total: Option<QualitySummary> = None;
     let (mut all, mut low) = (Vec::new(), Vec::new());
@@ -321,7 +324,8 @@ impl QualitySummary {
         Self { eas, dihedral_deg, mean_ratio, distribution: Qualities::default(), edges: [0.0; 3] }
     }
 
-    /// Adds a tet, and answers its EAS. Until [`Self::finished`] the mean ratio is a sum, angles are radians, and there is no distribution.
+    /// Adds a tet and returns its EAS. Until [`Self::finished`] is called, the mean ratio is a sum, angles
+    /// are in radians, and the distribution is not set.
     fn add(&mut self, cell: CellId, tet: [Point; 4]) -> f64 {
         let (eas, mean_ratio) = (quality::eas(tet), quality::mean_ratio(tet));
         if eas < self.eas.min {
@@ -338,7 +342,7 @@ impl QualitySummary {
         eas
     }
 
-    /// `all` are the EAS of all tets.
+    /// Completes the summary. `all` holds the EAS of all tets, and is reordered.
     fn finished(mut self, all: &mut [f64], judged: &Judged) -> Self {
         let all = Qualities::of_values(all, self.mean_ratio.mean).unwrap_or_default();
         self.eas.percentiles = [all.p1, all.p5, all.median];

@@ -1,4 +1,4 @@
-//! A surface of triangles, taken from a mesh: what distances and contact work on.
+//! A surface of triangles extracted from a mesh, the form that distance and contact computations use.
 
 use std::collections::BTreeMap;
 
@@ -6,15 +6,15 @@ use crate::base::{CellId, Point, VertexId, rising};
 use crate::mesh::triangulate::triangulate;
 use crate::mesh::{Boundary, CellKind, Labels, Mesh, cone_volume};
 
-/// Triangles over the points of a mesh. Vertices keep the ids they have there.
+/// Triangles over the points of a mesh. Vertices keep their ids in the mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// All points of the mesh, also those that no triangle uses.
+    /// All points of the mesh, including those that no triangle uses.
     pub points: Vec<Point>,
-    /// The triangles, turned as the cells they come from.
+    /// The triangles, oriented like the cells they come from.
     pub triangles: Vec<[VertexId; 3]>,
-    /// The cell each triangle is a part of: a surface cell, or for a boundary
-    /// that was found ([`Surface::boundary_of`]) the volume cell behind it.
+    /// The cell that each triangle is part of: a surface cell or, for a surface made by
+    /// [`Surface::boundary_of`], the volume cell behind it.
     pub triangle_to_cell: Vec<CellId>,
     /// The patch of each triangle; 0 where it has none.
     pub patches: Vec<i32>,
@@ -23,8 +23,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// The surface cells of a mesh as triangles, with their patches: triangles,
-    /// quads, polygons with or without dents, strips, pixels, quadratic ones.
+    /// The surface cells of a mesh as triangles, with their patches: triangles, quads, convex and non-convex
+    /// polygons, strips, pixels and quadratic cells.
     pub fn of(mesh: &Mesh) -> Self {
         let labels = mesh.patches();
         let cells = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
@@ -39,13 +39,15 @@ impl Surface {
         Self::from_cells(mesh, None, facets.map(|((&cell, &kind), vertices)| (cell, kind, vertices)))
     }
 
-    /// The surface cells of a mesh; where it has none, its boundary.
+    /// The surface cells of a mesh as triangles or, if it has none, its boundary.
     pub fn own_or_boundary_of(mesh: &Mesh) -> Self {
         let surface = Self::of(mesh);
         if surface.triangles.is_empty() { Self::boundary_of(mesh) } else { surface }
     }
 
-    /// Triangles turned as this surface has them, such as outward as a [boundary](Self::boundary_of) is; `None` where one is not among its own.
+    /// Each of `triangles` replaced by the triangle of this surface with the same vertices, and so oriented
+    /// as here, for example outward on a [boundary](Self::boundary_of); `None` if one has no counterpart
+    /// here.
     pub fn turned(&self, triangles: &[[VertexId; 3]]) -> Option<Vec<[VertexId; 3]>> {
         let key = |t: &[VertexId; 3]| rising(*t);
         let mut own = self.triangles.clone();
@@ -73,14 +75,14 @@ impl Surface {
         surface
     }
 
-    /// The corners of a triangle.
+    /// The points of the corners of a triangle.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Point; 3] {
         self.triangles[triangle].map(|v| self.points[v.index()])
     }
 
-    /// The signed volume that the triangles enclose, positive where they face outward; of those that are not closed, that between them and their
-    /// first corner.
+    /// The signed volume that the triangles enclose, positive if they face outward. For a surface that is not
+    /// closed, the volume between the triangles and the first corner of the first of them.
     pub fn enclosed_volume(&self) -> f64 {
         let Some(origin) = self.triangles.first().map(|t| self.points[t[0].index()]) else { return 0.0 };
         self.triangles.iter().map(|t| cone_volume(t.iter().copied(), &self.points, origin)).sum()

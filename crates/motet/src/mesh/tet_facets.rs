@@ -1,22 +1,24 @@
-//! Which tets share which facet, in a mesh of nothing but tets: the ground of every walk from tet to tet.
+//! Which tets share which facet, in a mesh of tets alone: the basis for walking from tet to tet.
 //!
-//! Facets lie in buckets by their lowest vertex, some twenty in each. A bucket is not sorted: a small hash table tells of each of its facets whether
-//! its like has been seen, in a third of the time of looking for it among those behind and a sixth of the time of sorting. Only a bucket with
-//! too many for the table is sorted.
+//! Facets are put into buckets by their lowest vertex, about twenty in each. Buckets are not sorted: a small
+//! hash table detects equal facets, in a third of the time of a linear search and a sixth of the time of
+//! sorting. Only a bucket too large for the table is sorted.
 
 use crate::base::{TetId, VertexId};
 
-/// What has a facet: at most two tets in a sound mesh, and the triangles at the same three vertices.
+/// The cells that share a facet: at most two tets in a sound mesh, and the triangles with the same three
+/// vertices.
 #[derive(Clone, Copy, Debug)]
 pub struct Sharing<'a> {
-    /// Each tet, and which of its facets: facet `i` lies opposite vertex `i`.
+    /// Each tet, and the index of the facet in it: facet `i` lies opposite vertex `i`.
     pub tets: &'a [(TetId, usize)],
     /// The triangles, in rising order.
     pub triangles: &'a [u32],
 }
 
 impl Sharing<'_> {
-    /// Whether it is a facet that bounds the tets or parts their regions, or has a triangle.
+    /// Whether the facet lies on the boundary of the tets, separates two regions, or has a triangle; `true`
+    /// if more than two tets share it, `false` if no tet has it.
     pub fn is_wall(&self, regions: &[i32]) -> bool {
         match *self.tets {
             [] => false,
@@ -26,9 +28,11 @@ impl Sharing<'_> {
     }
 }
 
-/// Calls `see` once for every facet of `tets` and every triangle, with everything that has it. Facets come in the order of their lowest vertex.
+/// Calls `see` once for every distinct facet of `tets` and `triangles`, with all tets and triangles that have
+/// it, in the order of the lowest vertex.
 ///
-/// A facet of a tet that names a vertex twice does not count. Panics past 2^29 tets and triangles.
+/// Facets and triangles that name a vertex twice do not count. Panics if there are 2^29 tets and triangles or
+/// more.
 pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], mut see: impl FnMut(Sharing)) {
     assert!(tets.len() + triangles.len() < 1 << 29, "too many tets to number their facets");
     let buckets = Buckets::fill(tets, triangles);
@@ -47,12 +51,12 @@ pub fn for_each_tet_facet(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], m
     });
 }
 
-/// Says that no tet lies behind a facet.
+/// Stands for the absence of a tet behind a facet.
 pub const NO_TET: u32 = u32::MAX;
 
-/// The tet behind each facet of each tet: `[t][i]` lies opposite vertex `i` of
-/// tet `t`; [`NO_TET`] on the boundary, and where more than two tets share the
-/// facet (then nothing says which).
+/// The neighbour of each tet across each of its facets: `[t][i]` for the facet opposite vertex `i` of tet
+/// `t`; [`NO_TET`] on the boundary, and where more than two tets share the facet, so that the neighbour is
+/// ambiguous.
 pub fn tet_neighbors(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
     let mut neighbors = vec![[NO_TET; 4]; tets.len()];
     for_each_tet_facet(tets, &[], |sharing| {
@@ -64,10 +68,11 @@ pub fn tet_neighbors(tets: &[[VertexId; 4]]) -> Vec<[u32; 4]> {
     neighbors
 }
 
-/// Buckets with more facets are sorted.
+/// Buckets with more facets than this are sorted.
 const LARGEST_UNSORTED: usize = 96;
 
-/// Facets by their lowest vertex: the other two, packed, and whose they are.
+/// Facets grouped by their lowest vertex: keys that pack the other two, and the tet (with the index of the
+/// facet) or triangle of each.
 struct Buckets {
     offsets: Vec<u32>,
     keys: Vec<u64>,
@@ -122,14 +127,15 @@ impl Buckets {
 const N_SLOTS: usize = 256;
 const NOTHING: u8 = u8::MAX;
 
-/// Which facets of a bucket are the same, by their places in it.
+/// Groups the equal facets of a bucket, by their indices in it.
 struct Pairing {
-    /// By hash: the last facet seen of one key.
+    /// A hash table: the last facet seen of each key.
     slots: [u8; N_SLOTS],
     /// The first facet of each key.
     firsts: [u8; LARGEST_UNSORTED],
     n_firsts: usize,
-    /// The next facet with the key of each; one place more, where what comes first is noted.
+    /// For each facet, the next one with the same key. The extra entry takes the writes for facets that have
+    /// no predecessor.
     next: [u8; LARGEST_UNSORTED + 1],
 }
 
@@ -145,7 +151,8 @@ impl Default for Pairing {
 }
 
 impl Pairing {
-    /// Nobody can tell beforehand whether a facet is the first of its key: what follows from that is done without a branch.
+    /// Links equal facets. Whether a facet is the first of its key is unpredictable, so that case is handled
+    /// without a branch.
     #[inline(always)]
     fn find(&mut self, keys: &[u64]) {
         self.slots.fill(NOTHING);
@@ -179,13 +186,14 @@ impl Pairing {
     }
 }
 
-/// Multiplied by 2^64 over the golden ratio (Knuth 1998, volume 3, 6.4).
+/// Multiplication by 2^64 over the golden ratio (Knuth 1998, volume 3, 6.4).
 #[inline(always)]
 fn hash(key: u64) -> usize {
     (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 56) as usize
 }
 
-/// Lowest vertex, key and id of each facet.
+/// Calls `see` with the lowest vertex, the key and the id of each facet, leaving out those that name a vertex
+/// twice.
 #[inline(always)]
 fn each(tets: &[[VertexId; 4]], triangles: &[[VertexId; 3]], mut see: impl FnMut(u32, u64, u32)) {
     for (t, tet) in (0u32..).zip(tets) {
@@ -222,7 +230,8 @@ fn pack(middle: u32, last: u32) -> u64 {
     u64::from(middle) << 32 | u64::from(last)
 }
 
-/// The vertices in rising order, each with its place in the lowest two bits: five exchanges without a branch.
+/// The vertices in rising order, each with its local index in the lowest two bits, by five branch-free
+/// compare-exchanges.
 #[inline(always)]
 fn sorted(tet: [VertexId; 4]) -> [u64; 4] {
     let packed = |place: usize| u64::from(tet[place].0) << 2 | place as u64;

@@ -1,12 +1,13 @@
-//! What verbs that change connectivity work on: tets, labelled triangles, and what must stay as it is.
+//! The input of operations that change connectivity: tets, labelled triangles and lines, and what must stay
+//! fixed.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::in_range;
 
-/// A tetrahedral mesh as plain arrays: what a solver hands over and gets back.
+/// A tetrahedral mesh as plain arrays: what a solver passes and gets back.
 ///
-/// Every tet has a region, every triangle a patch. Triangles are facets of tets, on the boundary or inside; boundary
-/// facets and facets between two regions need no triangle to be kept.
+/// Every tet has a region, every triangle a patch. Triangles are facets of tets, on the boundary or inside;
+/// boundary facets and facets between two regions are kept even without a triangle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TetMesh {
     /// Coordinates of each vertex.
@@ -19,27 +20,29 @@ pub struct TetMesh {
     pub triangles: Vec<[VertexId; 3]>,
     /// The patch of each triangle.
     pub patches: Vec<i32>,
-    /// The vertices of each labelled edge. One that is an edge of a tet is divided and merged with it, any other stays.
+    /// The vertices of each labelled edge. A line that is an edge of a tet is divided and merged with that
+    /// edge; any other stays as it is.
     pub lines: Vec<[VertexId; 2]>,
     /// The label of each line; lines of different labels are never merged.
     pub line_labels: Vec<i32>,
-    /// Vertices that neither move nor go, such as those of cells of other kinds.
+    /// Vertices that are neither moved nor removed, such as those of cells of other kinds.
     pub fixed_vertices: Vec<VertexId>,
-    /// Edges that stay, such as those of hexahedra beside the tets.
+    /// Edges that stay as they are, such as those of hexahedra beside the tets.
     pub fixed_edges: Vec<[VertexId; 2]>,
 }
 
 impl TetMesh {
-    /// Tets of one region, without triangles.
+    /// A mesh of tets in one region, without triangles.
     pub fn new(points: Vec<Point>, tets: Vec<[VertexId; 4]>) -> Self {
         let regions = vec![0; tets.len()];
         Self { points, tets, regions, ..Self::default() }
     }
 
-    /// Checks that every array fits, every vertex id exists and every coordinate of a tet is a number.
+    /// Checks that array lengths match, that every vertex id exists, that no row names a vertex twice and
+    /// that every coordinate of a tet is a finite number.
     ///
     /// # Errors
-    /// Names the first tet, triangle or edge that does not fit.
+    /// If a check fails; the error names the first tet, triangle, line, edge or vertex at fault.
     pub fn validate(&self) -> Result<()> {
         if self.regions.len() != self.tets.len() {
             return Err(Error::input(format!("{} regions for {} tets", self.regions.len(), self.tets.len())));

@@ -1,4 +1,5 @@
-//! The tets of a mesh that holds more: taken out to be worked on, and where each was.
+//! The linear tets, triangles and lines of a mesh with any cells, extracted to be worked on, and the cell
+//! that each was.
 
 use std::collections::BTreeMap;
 
@@ -7,24 +8,25 @@ use crate::geometry::tet::FACETS;
 use crate::mesh::history::numbers_cells;
 use crate::mesh::{CellKind, Mesh, TetMesh, Values};
 
-/// The linear tets, triangles and lines of a mesh, as plain arrays. Cells of other kinds stay behind, and hold their vertices and edges where they are.
+/// The linear tets, triangles and lines of a mesh, as plain arrays. Cells of other kinds are left out; their
+/// vertices and edges become fixed.
 #[derive(Clone, Debug, Default)]
 pub struct TetPart {
-    /// The tets with their regions, the triangles with their patches.
+    /// The tets with their regions, the triangles with their patches, the lines with their labels.
     pub mesh: TetMesh,
-    /// The cell that each tet is.
+    /// The cell of each tet.
     pub tet_to_cell: Vec<CellId>,
-    /// The cell that each triangle is.
+    /// The cell of each triangle.
     pub triangle_to_cell: Vec<CellId>,
-    /// The cell that each line is.
+    /// The cell of each line.
     pub line_to_cell: Vec<CellId>,
 }
 
 impl TetPart {
-    /// The tets of `mesh`, with every point of it.
+    /// Extracts the tets, triangles and lines of `mesh`; all points stay, so vertex ids are unchanged.
     ///
     /// # Errors
-    /// When there is no linear tet; the remedy depends on what there is.
+    /// If there is no linear tet; the remedy depends on the cells that there are.
     pub fn of(mesh: &Mesh) -> Result<Self> {
         let [regions, patches] = [mesh.regions(), mesh.patches()];
         let label = |labels: &Option<crate::mesh::Labels>, cell: CellId| {
@@ -60,7 +62,8 @@ impl TetPart {
         Ok(part)
     }
 
-    /// Holds its lines as cells of other kinds are held, for verbs that do not divide them.
+    /// Fixes the lines like cells of other kinds and removes them from the part, for operations that do not
+    /// divide lines.
     #[must_use]
     pub fn with_lines_held(mut self) -> Self {
         let lines = std::mem::take(&mut self.mesh.lines);
@@ -70,7 +73,8 @@ impl TetPart {
         self
     }
 
-    /// An error whose place is a tet or a triangle, with the cell that it is in its place.
+    /// The error with its place, a tet, triangle or line of this part, replaced by the cell that it is.
+    /// Errors at other places are returned unchanged.
     pub fn at_cell(&self, error: Error) -> Error {
         let cell = error.place().and_then(|place| {
             let (what, id) = place.split_once(' ')?;
@@ -90,7 +94,7 @@ impl TetPart {
         }
     }
 
-    /// Vertices of a cell of another kind stay, and every edge that might be one of its edges.
+    /// Fixes the vertices of a cell of another kind, and every edge between two of them.
     fn hold(&mut self, vertices: &[VertexId]) {
         let fixed = &mut self.mesh;
         fixed.fixed_vertices.extend_from_slice(vertices);
@@ -100,14 +104,15 @@ impl TetPart {
         }
     }
 
-    /// Faces of polyhedra may name vertices that the polyhedra do not.
+    /// Fixes the faces of polyhedra, which may name vertices that the polyhedra do not.
     fn hold_polyhedra(&mut self, mesh: &Mesh) {
         for face in mesh.cells.polyhedron_faces().iter().flat_map(|faces| faces.iter()) {
             self.hold(face);
         }
     }
 
-    /// Triangles that are no facet of a tet, and all but the first of those that are the same, stay as well.
+    /// Fixes the triangles that are not a facet of any tet, and all but the first of several with the same
+    /// vertices.
     fn hold_loose_triangles(&mut self) {
         let fixed = &self.mesh;
         let sorted = |mut triangle: [VertexId; 3]| {
@@ -137,7 +142,8 @@ impl TetPart {
     }
 }
 
-/// A number for each line that it shares with the lines that have the same whole numbers and texts in all cell arrays, but for those that number cells.
+/// A label for each line: two lines have the same label if they agree in all integer and text cell arrays,
+/// except those that number cells.
 fn line_labels(mesh: &Mesh, lines: &[CellId]) -> Vec<i32> {
     let mut keys: Vec<Vec<String>> = vec![Vec::new(); lines.len()];
     for field in mesh.cell_data.iter().filter(|field| !lines.is_empty() && !numbers_cells(&field.name)) {

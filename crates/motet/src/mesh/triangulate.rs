@@ -1,11 +1,11 @@
-//! Surface cells of any kind into triangles.
+//! Division of surface cells of any kind into triangles.
 
 use crate::base::{Point, VertexId};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, dot};
 use crate::mesh::CellKind;
 
-/// Triangles of a quadratic cell by places of its vertices, middles included.
+/// Triangles of quadratic cells by local vertex indices, middle nodes included.
 const TRIANGLE_6: &[[usize; 3]] = &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
 const TRIANGLE_7: &[[usize; 3]] = &[[0, 3, 6], [3, 1, 6], [1, 4, 6], [4, 2, 6], [2, 5, 6], [5, 0, 6]];
 const QUAD_6: &[[usize; 3]] = &[[0, 4, 5], [0, 5, 3], [4, 1, 2], [4, 2, 5]];
@@ -13,9 +13,9 @@ const QUAD_8: &[[usize; 3]] = &[[0, 4, 7], [4, 1, 5], [5, 2, 6], [6, 3, 7], [4, 
 const QUAD_9: &[[usize; 3]] =
     &[[0, 4, 8], [4, 1, 8], [1, 5, 8], [5, 2, 8], [2, 6, 8], [6, 3, 8], [3, 7, 8], [7, 0, 8]];
 
-/// Gives `put` the triangles of one surface cell, turned as the cell is; none
-/// for cells of other dimensions and of unknown kinds. Quadratic cells are
-/// divided at their middle nodes, so that every vertex stays.
+/// Calls `put` with the triangles of one surface cell, oriented like the cell. Cells of other dimensions and
+/// of unknown kinds have none. Quadratic cells are divided at their middle nodes, so that every vertex is
+/// used.
 pub fn triangulate(kind: CellKind, cell: &[VertexId], points: &[Point], put: &mut dyn FnMut([VertexId; 3])) {
     let table = match kind {
         CellKind::TRIANGLE => &[[0, 1, 2]][..],
@@ -37,16 +37,16 @@ pub fn triangulate(kind: CellKind, cell: &[VertexId], points: &[Point], put: &mu
     table.iter().for_each(|places| put(places.map(|i| cell[i])));
 }
 
-/// Every second triangle of a strip is turned over.
+/// The triangles of a strip, of which every second one is reversed.
 fn strip(cell: &[VertexId], put: &mut dyn FnMut([VertexId; 3])) {
     for (i, w) in cell.windows(3).enumerate() {
         put(if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] });
     }
 }
 
-/// Cuts a ring into triangles ear by ear (Meisters 1975), so that rings with dents
-/// come out right; a convex ring becomes the fan around its first corner. Where no
-/// ear is left (the ring crosses itself or is flat) the next corner goes regardless.
+/// Triangulates a ring by ear clipping (Meisters 1975), which handles non-convex rings; a convex ring becomes
+/// the fan around its first corner. If no ear is left (the ring crosses itself or is flat), the next corner
+/// is cut off regardless.
 fn clip_ears(ring: &[VertexId], points: &[Point], put: &mut dyn FnMut([VertexId; 3])) {
     let mut left = ring.to_vec();
     let normal = ring_normal(ring, points);
@@ -61,7 +61,7 @@ fn clip_ears(ring: &[VertexId], points: &[Point], put: &mut dyn FnMut([VertexId;
     }
 }
 
-/// The corner at `i` with its neighbours.
+/// The corner at `i` between its two neighbours.
 fn corner(ring: &[VertexId], i: usize) -> [VertexId; 3] {
     let n = ring.len();
     [ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]]
@@ -73,7 +73,7 @@ fn ring_normal(ring: &[VertexId], points: &[Point]) -> Point {
     ring.windows(2).map(|w| area_vector([first, w[0], w[1]].map(|v| points[v.index()]))).fold([0.0; 3], add)
 }
 
-/// Whether the corner at `i` turns the way of the ring and no other vertex lies in its triangle.
+/// Whether the corner at `i` is convex and no other vertex lies in its triangle.
 fn is_ear(ring: &[VertexId], i: usize, normal: Point, points: &[Point]) -> bool {
     let ear = corner(ring, i);
     let [a, b, c] = ear.map(|v| points[v.index()]);

@@ -6,13 +6,12 @@ use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Cells};
 
-/// The signed volume of one cell, its edges taken as straight: positive when
-/// its facets face outward. 0 for cells that are no volume, or of a kind whose
-/// facets are not known.
+/// The signed volume of one cell, its edges taken as straight: positive if its facets face outward. 0 for
+/// cells that are not volume cells, or of a kind whose facets are not known.
 ///
-/// A facet of more than three corners is taken as the fan around its mean
-/// corner, which both of its cells see alike: volumes of cells add up to the
-/// volume that their common boundary encloses, also where facets are warped.
+/// A facet with more than three corners is divided into a fan around the mean of its corners, which both of
+/// its cells see alike. The volumes of cells therefore add up to the volume that their common boundary
+/// encloses, even where facets are warped.
 pub fn cell_volume(facets: &Facets, cell: CellId, points: &[Point]) -> f64 {
     let cells = facets.cells();
     let vertices = cells.vertices(cell);
