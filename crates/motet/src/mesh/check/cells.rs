@@ -12,7 +12,8 @@ use crate::mesh::curved::{Jacobian, is_curved_kind, is_upright};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 
-/// `are_turned` says for each cell whether its volume counts with the other sign: see [`OrientedTets`](crate::mesh::OrientedTets).
+/// The defects of single cells. `are_turned` tells for each cell whether the sign of its volume is reversed:
+/// see [`OrientedTets`](crate::mesh::OrientedTets).
 pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> Vec<Defect> {
     let facets = Facets::of(&mesh.cells);
     let mut repeated = Defect::none(DefectKind::RepeatedVertex);
@@ -50,19 +51,19 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> 
     vec![unknown, repeated, inverted, flat, folded, zero_area]
 }
 
-/// How the determinant of the Jacobian of a quadratic cell is.
+/// The sign of the Jacobian determinant of a quadratic cell.
 enum Curved {
-    /// Positive everywhere, or not to be told: a point is not finite.
+    /// Positive everywhere, or undetermined since a point is not finite.
     Sound,
     /// Negative everywhere.
     Inverted,
     /// Zero everywhere.
     Flat,
-    /// Not of one sign; where it is least.
+    /// Not of one sign; the place where it is least.
     Folded(Point),
 }
 
-/// `is_turned`: the determinant counts with the other sign.
+/// Judges a quadratic cell; if `is_turned`, the determinant counts with the opposite sign.
 fn curved(kind: CellKind, vertices: &[VertexId], points: &[Point], is_turned: bool) -> Curved {
     let nodes: Vec<Point> = vertices.iter().map(|v| points[v.index()]).collect();
     if !nodes.iter().all(|&p| in_range(p)) || is_upright(kind, &nodes, is_turned) {
@@ -91,8 +92,8 @@ fn is_unknown(kind: CellKind) -> bool {
     kind.dim() == Some(3) && kind != CellKind::POLYHEDRON && facet_shapes(kind).is_none()
 }
 
-/// The dimension of a cell and the sign of its measure; `None` where it has
-/// none, or a point that is not finite. Exact for tets and surface cells.
+/// The dimension of a cell and the sign of its measure; `None` if it has no measure, or a point is not
+/// finite. Exact for tets and surface cells.
 fn measure(
     facets: &Facets,
     cell: CellId,
@@ -119,7 +120,7 @@ fn orientation([a, b, c, d]: [Point; 4]) -> Ordering {
     orient3d(a, b, c, d).cmp(&0)
 }
 
-/// Whether a ring has no area, exactly: every triangle of its fan is a line.
+/// Whether a ring has no area, by an exact test: every triangle of its fan is collinear.
 fn is_line(ring: &[VertexId], points: &[Point]) -> bool {
     let Some(&first) = ring.first() else { return true };
     let at = |v: VertexId| points[v.index()];

@@ -30,7 +30,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -
                 Example::new(&[x.cell, y.cell], &facets.corners(x).collect::<Vec<_>>(), &mesh.points)
             });
         }
-        // Cells of the same vertices share every facet, so their pairs show here.
+        // Cells with the same vertices share every facet, so their pairs are found here.
         match uses {
             [_] => {}
             [x, y] if !may_be_twins(mesh, x.cell, y.cell) => {}
@@ -45,7 +45,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -
     vec![duplicate, overshared, folded, unmerged(mesh, boundary, canonical), hanging::defects(mesh, boundary)]
 }
 
-/// Whether two tets that share a facet lie on the same side of it, though their volumes have one sign.
+/// Whether two tets that share a facet lie on the same side of it, although their volumes have the same sign.
 fn is_folded(mesh: &Mesh, x: CellId, y: CellId) -> bool {
     let is_tet = |cell| mesh.cells.kind(cell) == CellKind::TETRA;
     if !is_tet(x) || !is_tet(y) {
@@ -63,31 +63,32 @@ fn is_folded(mesh: &Mesh, x: CellId, y: CellId) -> bool {
     are_numbers && sign(of_x) != 0 && sign(across) == sign(of_x) && sign(of_y) == sign(of_x)
 }
 
-/// A quick look before the sorting: nearly all neighbours fail it.
+/// A quick test before sorting, which nearly all neighbours fail: whether two cells may have the same
+/// vertices.
 fn may_be_twins(mesh: &Mesh, x: CellId, y: CellId) -> bool {
     let [x, y] = [x, y].map(|cell| mesh.cells.vertices(cell));
     x.len() == y.len() && x.iter().take(8).all(|v| y.contains(v))
 }
 
-/// A cell behind its sorted vertices.
+/// A cell, keyed by its sorted vertices.
 fn by_vertices(mesh: &Mesh, cell: CellId) -> (Vec<VertexId>, CellId) {
     (rising_list(mesh.cells.vertices(cell)), cell)
 }
 
-/// Surface cells of the same vertices as another.
+/// Pairs of surface cells with the same vertices.
 fn surface_twins(mesh: &Mesh) -> Vec<(CellId, CellId)> {
     let surface = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
     pairs(surface.map(|(cell, ..)| by_vertices(mesh, cell)).collect())
 }
 
-/// Pairs that follow one another, of equal key, after sorting.
+/// Pairs of equal key that are consecutive after sorting.
 fn pairs<T: Ord + Copy>(mut keyed: Vec<(Vec<VertexId>, T)>) -> Vec<(T, T)> {
     keyed.sort_unstable();
     keyed.dedup();
     keyed.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| (w[0].1, w[1].1)).collect()
 }
 
-/// Boundary facets whose corners lie where those of another do: a crack.
+/// Boundary facets whose corners are at the same places as those of another: a crack.
 fn unmerged(mesh: &Mesh, boundary: &Boundary, canonical: &Canonical) -> Defect {
     let mut defect = Defect::none(DefectKind::UnmergedFacet);
     let ring = |i: usize| corners(boundary.kinds[i], boundary.facets.list(i));

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh: a name, how often, and where.
+//! Kinds of defects of a mesh, with how often and where each occurs.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ macro_rules! defect_kinds {
                 match self { $(Self::$variant => $name,)* }
             }
 
-            /// What it means, in words.
+            /// The meaning in words.
             pub fn meaning(self) -> &'static str {
                 match self { $(Self::$variant => $meaning,)* }
             }
@@ -51,7 +51,7 @@ defect_kinds! {
     SeparatePart = "separate_part", "cells that hang together with no others";
 }
 
-/// How many examples of a defect are kept.
+/// Number of examples of a defect that are kept.
 const MAX_EXAMPLES: usize = 5;
 
 /// Where a defect is.
@@ -70,22 +70,22 @@ pub struct Example {
 /// A defect of one kind: how often it occurs, and the first few places.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Defect {
-    /// What kind.
+    /// The kind of defect.
     #[serde(rename = "name")]
     pub kind: DefectKind,
-    /// How many there are.
+    /// Number of occurrences.
     pub count: usize,
-    /// The first of them, five at most.
+    /// The first occurrences, five at most.
     pub examples: Vec<Example>,
 }
 
 impl Defect {
-    /// None of this kind yet.
+    /// A defect of this kind without occurrences yet.
     pub(super) fn none(kind: DefectKind) -> Self {
         Self { kind, count: 0, examples: Vec::new() }
     }
 
-    /// Counts one more, and keeps it as an example while few are known.
+    /// Counts one more occurrence, and keeps it as an example while there are few.
     pub(super) fn add(&mut self, example: impl FnOnce() -> Example) {
         self.count += 1;
         if self.examples.len() < MAX_EXAMPLES {

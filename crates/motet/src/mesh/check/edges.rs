@@ -1,22 +1,22 @@
-//! Edges and vertices where a surface is open, turned over, or no manifold.
+//! Edges and vertices where a surface is open, inconsistently oriented, or not a manifold.
 
 use crate::base::{Sets, VertexId};
 use crate::mesh::Mesh;
 use crate::mesh::check::SurfaceFacets;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 
-/// One side of a facet: the edge, which way the facet runs along it, and where
-/// its first corner stands among all corners of all facets.
+/// One side of a facet: the edge, the direction in which the facet runs along it, and where its corners are
+/// among all corners of all facets.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Side {
     edge: [VertexId; 2],
     facet: u32,
     forward: bool,
-    /// Places of the corners at `edge[0]` and `edge[1]`.
+    /// Indices of the corners at `edge[0]` and `edge[1]`.
     corners: [u32; 2],
 }
 
-/// All sides of all facets, those of one edge together.
+/// All sides of all facets, sorted by edge.
 fn sorted_sides(facets: &SurfaceFacets) -> Vec<Side> {
     let mut sides = Vec::with_capacity(facets.rings.items().len());
     for (f, ring) in facets.rings.iter().enumerate() {
@@ -35,8 +35,7 @@ fn sorted_sides(facets: &SurfaceFacets) -> Vec<Side> {
     sides
 }
 
-/// Whether exactly two facets meet at every edge of these rings of corners, of
-/// which there is at least one.
+/// Whether exactly two facets meet at every edge of these rings of corners, and there is at least one edge.
 pub fn is_closed<'a>(rings: impl Iterator<Item = &'a [VertexId]>) -> bool {
     let mut edges: Vec<[VertexId; 2]> = Vec::new();
     for ring in rings {
@@ -51,7 +50,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
     let mut open = Defect::none(DefectKind::OpenEdge);
     let mut non_manifold = Defect::none(DefectKind::NonManifoldEdge);
     let mut misoriented = Defect::none(DefectKind::MisorientedEdge);
-    // Corners at one vertex hang together where their facets share an edge there.
+    // Corners at one vertex are connected if their facets share an edge there.
     let mut corners = Sets::new(facets.rings.items().len());
     let sides = sorted_sides(facets);
     for same in sides.chunk_by(|x, y| x.edge == y.edge) {
@@ -61,7 +60,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
         };
         match same {
             [_] => open.add(example),
-            // Boundaries turn with their cells, and inverted cells are told of already.
+            // Boundary facets are oriented by their cells, and inverted cells are reported already.
             [x, y] if x.forward == y.forward && !facets.of_volume => misoriented.add(example),
             [_, _] => {}
             _ => non_manifold.add(example),
@@ -74,7 +73,7 @@ pub(super) fn defects(mesh: &Mesh, facets: &SurfaceFacets) -> Vec<Defect> {
     vec![open, misoriented, non_manifold, pinched(mesh, facets, &mut corners)]
 }
 
-/// Vertices whose corners fall into more than one set.
+/// Vertices whose corners form more than one connected set.
 fn pinched(mesh: &Mesh, facets: &SurfaceFacets, corners: &mut Sets) -> Defect {
     let mut defect = Defect::none(DefectKind::NonManifoldVertex);
     let mut fan_of = vec![u32::MAX; mesh.points.len()];

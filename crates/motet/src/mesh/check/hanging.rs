@@ -1,7 +1,7 @@
-//! Boundary vertices that lie on a boundary facet of which they are no corner.
+//! Boundary vertices that lie on a boundary facet of which they are not a corner.
 //!
-//! Where one side of a wall is divided and the other is not, both sides are
-//! boundary, and vertices of one hang on the other.
+//! Where one side of a wall is divided and the other is not, both sides are boundary, and vertices of the one
+//! hang on the other.
 
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::triangle;
@@ -10,34 +10,33 @@ use crate::geometry::vector::in_range;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::{Boundary, Mesh, bounds, triangulate};
 
-/// A vertex this close to a facet, as a part of its longest edge, lies on it:
-/// rounding of coordinates of double precision, and nothing coarser.
+/// A vertex within this fraction of the longest edge of a facet lies on it: enough for the rounding of
+/// double-precision coordinates, and for nothing coarser.
 const TOLERANCE: f64 = 1e-12;
 
-/// Looks at this many pairs and grid cells in all, and so many more a facet, then
-/// stops: only a tangle of facets each as large as the mesh needs more, and
-/// that has other defects to show.
+/// The search stops after this many pairs and grid cells, plus the second number per facet. Only a tangle of
+/// facets each as large as the mesh needs more, and it has other defects to report.
 const BUDGET: usize = 20_000_000;
 const BUDGET_A_FACET: usize = 200;
 
-/// A boundary vertex that lies on a boundary facet of which it is no corner.
+/// A boundary vertex that lies on a boundary facet of which it is not a corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HangingVertex {
     /// The vertex.
     pub vertex: VertexId,
-    /// The place of the facet in the boundary.
+    /// Index of the facet in the boundary.
     pub facet: usize,
     /// The triangle of the facet that it lies on.
     pub triangle: [VertexId; 3],
-    /// The weights of that triangle's corners at the vertex.
+    /// The barycentric weights of the vertex in that triangle.
     pub weights: [f64; 3],
 }
 
 impl HangingVertex {
-    /// How far the vertex is from its place on the triangle, with vertices at `points`.
+    /// The distance of the vertex from its place on the triangle, with vertices at `points`.
     ///
     /// # Panics
-    /// When there are fewer points than the mesh has.
+    /// If there are fewer points than the mesh has.
     pub fn opening(&self, points: &[Point]) -> f64 {
         distance(
             points[self.vertex.index()],
@@ -54,7 +53,7 @@ pub(super) fn defects(mesh: &Mesh, boundary: &Boundary) -> Defect {
     defect
 }
 
-/// The boundary vertices that hang on facets, each with one of these; rising.
+/// The boundary vertices that hang on facets, each with one such facet, in rising order.
 pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> {
     let mut found: Vec<HangingVertex> = Vec::new();
     let Some(grid) = Grid::of(&boundary.vertices, &mesh.points) else { return found };
@@ -79,7 +78,8 @@ pub fn hanging_vertices(mesh: &Mesh, boundary: &Boundary) -> Vec<HangingVertex> 
     found
 }
 
-/// The weights of a place on the triangle, but at none of its corners: two vertices at one place are another defect.
+/// The barycentric weights of a point on the triangle; `None` if it is off the triangle, or at a corner,
+/// since two vertices at one place are another defect.
 fn lies_on(corners: [Point; 3], p: Point) -> Option<[f64; 3]> {
     let longest = (0..3).map(|i| distance(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max);
     let near = |q: Point| distance(p, q) <= TOLERANCE * longest;
@@ -111,7 +111,7 @@ impl Grid {
     fn place(&self, p: Point) -> [usize; 3] {
         [0, 1, 2].map(|k| {
             let steps = (p[k] - self.low[k]) / self.cell[k];
-            // A grid without extent, and what lies outside, fall into the end cells.
+            // Points outside the grid, and all points of one without extent, are put into the end cells.
             if steps > 0.0 { (steps as usize).min(self.n[k] - 1) } else { 0 }
         })
     }

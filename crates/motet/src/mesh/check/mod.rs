@@ -1,16 +1,15 @@
-//! What is wrong with a mesh: every defect by name, with ids and coordinates.
+//! Checks of a mesh: every defect by name, with ids and coordinates.
 //!
-//! | looked at | defects |
+//! | checked | defects |
 //! |---|---|
 //! | points | not finite, used by no cell, two at one place |
-//! | cells | of unknown kind, a vertex named twice, inverted, flat, quadratic and folded inside, without area, twice there |
-//! | facets | more than two cells, two tets on one side, unmerged, with hanging vertices |
+//! | cells | of unknown kind, a vertex named twice, inverted, flat, quadratic and folded inside, without area, duplicated |
+//! | facets | of more than two cells, two tets on one side, unmerged, with hanging vertices |
 //! | surface | open, misoriented and non-manifold edges, pinched vertices |
-//! | the whole | separate parts |
+//! | the mesh | separate parts |
 //!
-//! The surface is the boundary of the volume cells; in a mesh without volume
-//! cells it is made of the surface cells. Nothing here has a tolerance except
-//! the search for hanging vertices.
+//! The surface is the boundary of the volume cells; in a mesh without volume cells it consists of the surface
+//! cells. No check has a tolerance, except the search for hanging vertices.
 
 mod cells;
 mod conformity;
@@ -30,12 +29,13 @@ pub use hanging::{HangingVertex, hanging_vertices};
 
 /// Every defect of a mesh, each kind once, with its count and a few examples.
 ///
-/// Ids have been checked by [`Mesh::validate`]. A million tets take about a second.
+/// Ids must have been checked by [`Mesh::validate`]. A million tets take about a second.
 pub fn check(mesh: &Mesh) -> Vec<Defect> {
     check_with(mesh, &Boundary::of(&mesh.cells), &OrientedTets::of(mesh))
 }
 
-/// Every defect of a mesh as [`check`] finds them, for a caller who has the boundary and the tets.
+/// Every defect of a mesh, as found by [`check`], for a caller that already has the boundary and the oriented
+/// tets.
 pub fn check_with(mesh: &Mesh, boundary: &Boundary, tets: &OrientedTets) -> Vec<Defect> {
     let canonical = points::Canonical::of(mesh);
     let mut defects = points::defects(mesh, &canonical);
@@ -64,11 +64,11 @@ pub fn is_conforming(defects: &[Defect]) -> bool {
 
 /// The facets that bound the mesh, by their corners.
 pub(crate) struct SurfaceFacets {
-    /// The corners of each as a ring.
+    /// The corners of each facet as a ring.
     pub(crate) rings: Csr<VertexId>,
-    /// The cell of each.
+    /// The cell of each facet.
     pub(crate) cells: Vec<CellId>,
-    /// Whether they come from volume cells, whose own numbering turns them.
+    /// Whether they come from volume cells, whose numbering orients them.
     pub(crate) of_volume: bool,
 }
 
@@ -83,7 +83,7 @@ impl SurfaceFacets {
         Self::from_cells(mesh.cells.iter())
     }
 
-    /// The surface cells among `cells`, strips as their triangles.
+    /// The surface cells among `cells`, with strips divided into triangles.
     pub(crate) fn from_cells<'a>(cells: impl Iterator<Item = (CellId, CellKind, &'a [VertexId])>) -> Self {
         let mut facets = Self { rings: Csr::default(), cells: Vec::new(), of_volume: false };
         for (cell, kind, vertices) in cells.filter(|(_, kind, _)| kind.dim() == Some(2)) {

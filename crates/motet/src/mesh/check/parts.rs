@@ -1,11 +1,11 @@
-//! Parts of a mesh that do not hang together.
+//! Parts of a mesh that are not connected.
 
 use crate::base::Sets;
 use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 
-/// One entry a part, when there is more than one: its first cell. Cells hang
-/// together that share a vertex; those of the highest dimension count.
+/// One example per part, its first cell, if there is more than one part. Cells that share a vertex are
+/// connected; only cells of the highest dimension count.
 pub(super) fn defects(mesh: &Mesh) -> Vec<Defect> {
     let mut defect = Defect::none(DefectKind::SeparatePart);
     let Some(dim) = mesh.cells.dim() else { return vec![defect] };

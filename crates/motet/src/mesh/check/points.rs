@@ -1,4 +1,4 @@
-//! Points that are no place, that nothing uses, or that lie on one another.
+//! Points that are not finite, that nothing uses, or that coincide.
 
 use crate::base::VertexId;
 use crate::geometry::vector::in_range;
@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::mesh::check::defect::{Defect, DefectKind, Example};
 use crate::mesh::coincident::firsts_at_place;
 
-/// For each vertex the first vertex at exactly the same place.
+/// For each vertex, the first vertex at exactly the same place.
 pub(super) struct Canonical {
     firsts: Vec<VertexId>,
     doubled: Vec<bool>,
@@ -22,12 +22,12 @@ impl Canonical {
         Self { firsts, doubled }
     }
 
-    /// The first vertex where `v` lies.
+    /// The first vertex at the place of `v`.
     pub(super) fn first(&self, v: VertexId) -> VertexId {
         self.firsts[v.index()]
     }
 
-    /// Whether another vertex lies where `v` does.
+    /// Whether another vertex lies at the place of `v`.
     pub(super) fn is_doubled(&self, v: VertexId) -> bool {
         self.doubled[v.index()]
     }

@@ -1,4 +1,4 @@
-//! The quadratic cells of a mesh, and which way round each kind of them is numbered.
+//! The quadratic volume cells of a mesh, and the way each kind of them is numbered.
 
 use serde::Serialize;
 
@@ -13,31 +13,32 @@ use crate::mesh::{CellKind, Cells, Mesh};
 /// The quadratic volume cells of a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct CurvedCells {
-    /// The cell of each, rising.
+    /// Their cell ids, in rising order.
     pub cells: Vec<CellId>,
     kinds: Vec<CellKind>,
     nodes: Csr<VertexId>,
-    /// Whether it is of a kind most of whose cells are numbered the other way round.
+    /// For each, whether most cells of its kind are numbered opposite to VTK's convention.
     is_reversed: Vec<bool>,
 }
 
-/// What the quadratic cells of a mesh come to.
+/// The summary of the quadratic volume cells of a mesh.
 #[derive(Clone, Debug, Serialize)]
 pub struct CurvedSummary {
-    /// How many there are.
+    /// Number of quadratic volume cells.
     pub cells: usize,
     /// The least scaled Jacobian: see [`LeastJacobian::scaled`].
     pub min_scaled_jacobian: f64,
-    /// The cell that has it.
+    /// The cell with the least scaled Jacobian.
     pub worst_cell: CellId,
-    /// Where it has it.
+    /// The place of the least Jacobian in that cell.
     pub worst_at: Point,
 }
 
 impl CurvedCells {
-    /// Those of `cells`, whose vertices are at `points`.
+    /// The quadratic volume cells among `cells`, with vertices at `points`.
     ///
-    /// Files do not agree on how to number cells: whatever most cells of a kind do counts as upright, as their straight cells show it.
+    /// Files differ in how they number cells: the numbering of most cells of a kind, judged with straight
+    /// edges, counts as upright.
     pub fn of(cells: &Cells, points: &[Point]) -> Self {
         let mut all = Self::default();
         let mut n_upright = [0i64; 256];
@@ -51,7 +52,7 @@ impl CurvedCells {
         all
     }
 
-    /// How many there are.
+    /// Number of quadratic volume cells.
     pub fn len(&self) -> usize {
         self.cells.len()
     }
@@ -61,13 +62,13 @@ impl CurvedCells {
         self.cells.is_empty()
     }
 
-    /// Whether the `i`-th of them stands upright with the vertices of the mesh at `points`.
+    /// Whether the `i`-th quadratic cell is upright, with the vertices of the mesh at `points`.
     pub fn is_upright(&self, i: usize, points: &[Point]) -> bool {
         is_upright(self.kinds[i], &places(self.nodes.list(i), points), self.is_reversed[i])
     }
 
-    /// The least `det J` of the `i`-th of them, positive where it stands upright; `None` where a coordinate is not finite, and where its scaled Jacobian is surely not below
-    /// `below`.
+    /// The least `det J` of the `i`-th quadratic cell, positive if it is upright; `None` if a coordinate is
+    /// not finite, or if its scaled Jacobian is certainly not below `below`.
     pub fn least(&self, i: usize, points: &[Point], below: f64) -> Option<LeastJacobian> {
         let (kind, nodes) = (self.kinds[i], places(self.nodes.list(i), points));
         if !nodes.iter().all(|&p| in_range(p)) {
@@ -78,11 +79,12 @@ impl CurvedCells {
         }
         let jacobian = Jacobian::of(kind, &nodes)?;
         let jacobian = if self.is_reversed[i] { jacobian.reversed() } else { jacobian };
-        // Most cells are far from the worst, and their coefficients say so.
+        // For most cells, the bound from their coefficients already shows that they are not the worst.
         (jacobian.scaled_bound() < below).then(|| jacobian.least())
     }
 
-    /// The one of `run` with the least scaled Jacobian, of equal ones the first: its cell, and what it has.
+    /// The cell with the least scaled Jacobian among those of `run`, the first if there are several, and its
+    /// least Jacobian.
     pub fn worst(&self, run: std::ops::Range<usize>, points: &[Point]) -> Option<(CellId, LeastJacobian)> {
         let mut worst: Option<(CellId, LeastJacobian)> = None;
         for i in run {
@@ -96,7 +98,7 @@ impl CurvedCells {
 }
 
 impl CurvedSummary {
-    /// Of a mesh; `None` where it has no quadratic volume cell whose points are finite.
+    /// Summarises a mesh; `None` if it has no quadratic volume cell whose points are finite.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let all = CurvedCells::of(&mesh.cells, &mesh.points);
         let (worst_cell, least) = all.worst(0..all.len(), &mesh.points)?;

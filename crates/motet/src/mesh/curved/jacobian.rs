@@ -1,4 +1,4 @@
-//! `det J` of one quadratic cell: its sign everywhere, its least value and where that is.
+//! `det J` of one quadratic cell: its sign everywhere, its least value and where that is attained.
 
 use crate::base::Point;
 use crate::geometry::bernstein::{Least, Place, least};
@@ -12,11 +12,11 @@ use crate::mesh::curved::tables::{Column, Tables, tables};
 #[derive(Clone)]
 pub struct Jacobian {
     tables: &'static Tables,
-    /// The place in space, as Bernstein coefficients.
+    /// The position in space, as Bernstein coefficients.
     net: Vec<Point>,
     /// `det J`, as Bernstein coefficients.
     coefficients: Vec<f64>,
-    /// A bound of the rounding errors in these.
+    /// A bound on the rounding errors of the coefficients.
     rounding: f64,
     /// `det J` at the centre of the cell with straight edges.
     straight: f64,
@@ -25,31 +25,35 @@ pub struct Jacobian {
 /// The least `det J` of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeastJacobian {
-    /// The least scaled Jacobian: `det J` over what it is at the centre of the cell between the same corners with straight edges (Gmsh's `minSJ` is a lower bound of it; Toulorge, Geuzaine,
-    /// Remacle, Lambrechts 2013, *Robust untangling of curvilinear meshes*). 1 for a tet with straight edges, 0 or less where the cell is folded. Where
-    /// the straight cell is not upright: over the largest coefficient of `det J`.
+    /// The least scaled Jacobian: `det J` divided by its value at the centre of the cell with the same
+    /// corners and straight edges (Gmsh's `minSJ` is a lower bound of it; Toulorge, Geuzaine, Remacle,
+    /// Lambrechts 2013, *Robust untangling of curvilinear meshes*). 1 for a tet with straight edges, 0 or
+    /// less if the cell is folded. If the straight cell is not upright, `det J` is divided by its largest
+    /// coefficient instead.
     pub scaled: f64,
-    /// `det J` there, in units of volume: 6 volumes of a tet with straight edges.
+    /// `det J` there, in units of volume: for a tet with straight edges, six times its volume.
     pub determinant: f64,
-    /// Where that is.
+    /// Where the least value is attained.
     pub place: Point,
 }
 
-/// `det J` within this part of its largest coefficient above 0 is not told from 0.
+/// Positive values of `det J` up to this fraction of its largest coefficient are not distinguished from 0.
 const LEAST_SHARE: f64 = 1e-9;
-/// A least value is found to within this part of the largest coefficient.
+/// The least value is found to within this fraction of the largest coefficient.
 const SHARP: f64 = 1e-6;
-/// Rounding of a coefficient, in products of the longest columns: a few sums of a few hundred terms, each off by 2^-53.
+/// Bound on the rounding error of a coefficient, in units of the product of the longest columns: a few sums
+/// of a few hundred terms, each off by 2^-53.
 const ROUNDING: f64 = 1e-14;
-/// A middle node is in the middle when it is no farther off than rounding: so many times the largest coordinate.
+/// A middle node counts as in the middle if rounding alone displaces it: by at most this many times the
+/// largest coordinate.
 const MIDDLE: f64 = 8.0 * f64::EPSILON;
 
 impl Jacobian {
-    /// Of a cell with these nodes, in VTK's order; `None` where the kind is no quadratic volume cell, or the number of nodes does not fit. Positive where the cell is numbered
-    /// as VTK has it.
+    /// `det J` of a cell with these nodes, in VTK's order, positive if the cell is numbered by VTK's
+    /// convention. `None` if the kind is not a quadratic volume cell, or the number of nodes is wrong.
     pub fn of(kind: CellKind, nodes: &[Point]) -> Option<Self> {
         let tables = tables(kind).filter(|_| kind.n_vertices() == Some(nodes.len()))?;
-        // From the first node on: what is far from the origin loses no digits in the products.
+        // Relative to the first node: cells far from the origin lose no digits in the products.
         let from_first: Vec<Point> = nodes.iter().map(|&p| sub(p, nodes[0])).collect();
         let weighted = |terms: &Vec<(u8, f64)>| {
             let term = |sum, &(node, weight): &(u8, f64)| add(sum, scale(from_first[node as usize], weight));
@@ -73,7 +77,7 @@ impl Jacobian {
         })
     }
 
-    /// Of the cell numbered the other way round.
+    /// `det J` of the same cell numbered the other way around.
     #[must_use]
     pub fn reversed(mut self) -> Self {
         self.coefficients.iter_mut().for_each(|x| *x = -*x);
@@ -81,7 +85,8 @@ impl Jacobian {
         self
     }
 
-    /// Whether `det J` is positive everywhere. What is not told from 0 (the least value is within rounding of it, or within 1e-9 of the largest coefficient) is not positive.
+    /// Whether `det J` is positive everywhere. A least value that cannot be distinguished from 0 (within
+    /// rounding, or within 1e-9 of the largest coefficient) does not count as positive.
     pub fn is_positive(&self) -> bool {
         let (rounding, close) = (self.rounding, LEAST_SHARE * self.largest());
         let found = least(&self.tables.domain, &self.coefficients, |bound, value| {
@@ -90,17 +95,17 @@ impl Jacobian {
         found.bound > rounding
     }
 
-    /// Whether `det J` is 0 everywhere, but for rounding.
+    /// Whether `det J` is 0 everywhere, up to rounding.
     pub fn is_zero(&self) -> bool {
         self.largest() <= self.rounding
     }
 
-    /// A value that no scaled Jacobian of the cell is below: the least coefficient.
+    /// A lower bound of the scaled Jacobian of the cell: the least coefficient.
     pub fn scaled_bound(&self) -> f64 {
         self.coefficients.iter().copied().fold(f64::INFINITY, f64::min) / self.scale()
     }
 
-    /// The least value, to within 1e-6 of the largest coefficient, and where it is.
+    /// The least `det J`, to within 1e-6 of the largest coefficient, and where it is attained.
     pub fn least(&self) -> LeastJacobian {
         let close = SHARP * self.largest();
         let Least { value, at, .. } =
@@ -108,7 +113,8 @@ impl Jacobian {
         LeastJacobian { scaled: value / self.scale(), determinant: value, place: self.place(&at) }
     }
 
-    /// `det J` of the straight cell at its centre; where that is not positive the largest coefficient, so that the sign stays. 1 where all is 0.
+    /// The divisor of the scaled Jacobian: `det J` of the straight cell at its centre or, if that is not
+    /// positive, the largest coefficient, so that the sign stays. 1 if all coefficients are 0.
     fn scale(&self) -> f64 {
         let scale = if self.straight > self.rounding { self.straight } else { self.largest() };
         if scale > 0.0 { scale } else { 1.0 }
@@ -125,7 +131,7 @@ impl Jacobian {
 }
 
 impl Column {
-    /// Of the cell whose place has these coefficients.
+    /// The coefficients of this column for the cell with the Bernstein coefficients `net`.
     fn of(&self, net: &[Point]) -> Vec<Point> {
         let difference = |&([to, from], weight): &([u16; 2], f64)| {
             scale(sub(net[to as usize], net[from as usize]), weight)
@@ -134,7 +140,7 @@ impl Column {
     }
 }
 
-/// `det J` at the centre of the cell between the same corners with straight edges.
+/// `det J` at the centre of the cell with the same corners and straight edges.
 fn straight_determinant(tables: &Tables, nodes: &[Point]) -> f64 {
     let [a, b, c] = tables.straight.each_ref().map(|weights| {
         let parts = weights.iter().zip(nodes).map(|(w, &p)| scale(sub(p, nodes[0]), *w));
@@ -143,13 +149,15 @@ fn straight_determinant(tables: &Tables, nodes: &[Point]) -> f64 {
     dot(cross(a, b), c)
 }
 
-/// Which way round a cell with straight edges between the same corners is numbered: positive as VTK has it; 0 for kinds that are no quadratic volume cells.
+/// The orientation of the cell with the same corners and straight edges: positive if it is numbered by VTK's
+/// convention; 0 for kinds other than quadratic volume cells.
 pub(super) fn straight_sign(kind: CellKind, nodes: &[Point]) -> i64 {
     let straight = tables(kind).map_or(0.0, |tables| straight_determinant(tables, nodes));
     i64::from(straight > 0.0) - i64::from(straight < 0.0)
 }
 
-/// What [`Jacobian::least`] finds of a tet whose edges are straight but for rounding; `None` for other cells.
+/// What [`Jacobian::least`] finds for a quadratic tet whose edges are straight up to rounding; `None` for
+/// other cells.
 pub(super) fn least_of_straight_tet(
     kind: CellKind,
     nodes: &[Point],
@@ -167,8 +175,9 @@ pub(super) fn least_of_straight_tet(
     })
 }
 
-/// Whether a quadratic cell stands upright: `det J` is positive everywhere, or negative if `is_reversed`. A tet whose edges are straight but for rounding is judged by the exact sign of
-/// its volume. `false` for kinds that are no quadratic volume cells.
+/// Whether a quadratic cell is upright: `det J` is positive everywhere, or negative if `is_reversed`. A tet
+/// whose edges are straight up to rounding is judged by the exact sign of its volume. `false` for kinds other
+/// than quadratic volume cells.
 pub fn is_upright(kind: CellKind, nodes: &[Point], is_reversed: bool) -> bool {
     if kind == CellKind::QUADRATIC_TETRA && is_straight(kind, nodes) {
         let sign = orient3d(nodes[0], nodes[1], nodes[2], nodes[3]);
@@ -178,7 +187,7 @@ pub fn is_upright(kind: CellKind, nodes: &[Point], is_reversed: bool) -> bool {
     jacobian.is_some_and(|jacobian| if is_reversed { jacobian.reversed() } else { jacobian }.is_positive())
 }
 
-/// Whether all middle nodes are in the middle, but for rounding.
+/// Whether all middle nodes are in the middle of their corners, up to rounding.
 fn is_straight(kind: CellKind, nodes: &[Point]) -> bool {
     let Some(tables) = tables(kind) else { return false };
     tables.middles.iter().all(|middle| {

@@ -1,18 +1,19 @@
-//! Which nodes of a quadratic cell lie in the middle of which corners.
+//! The middle nodes of quadratic cells, and the corners that each lies between.
 
 use crate::mesh::CellKind;
 use crate::mesh::facets::facet_shapes;
 
-/// A node that is no corner, and the corners that it lies between: two of an edge, four of a face, eight of a hexahedron.
+/// A node that is not a corner, and the corners that it lies between: two of an edge, four of a face, eight
+/// of a hexahedron.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Middle {
-    /// The node's place in the cell.
+    /// Local index of the node in the cell.
     pub node: usize,
-    /// Places of the corners, rising.
+    /// Local indices of the corners, in rising order.
     pub corners: Vec<usize>,
 }
 
-/// The nodes of a kind of quadratic volume cell that are no corners, rising; none for other kinds.
+/// The middle nodes of a kind of quadratic volume cell, in rising order; none for other kinds.
 pub fn middles(kind: CellKind) -> Vec<Middle> {
     let mut found: Vec<Middle> = Vec::new();
     let mut add = |node: u8, corners: &[u8]| {
@@ -23,7 +24,7 @@ pub fn middles(kind: CellKind) -> Vec<Middle> {
     for facet in facet_shapes(kind).unwrap_or_default() {
         let (ring, others) = facet.nodes.split_at(facet.n_corners);
         let n = ring.len();
-        // A facet that is straight in one direction has two middles; those are on triangles, too.
+        // A facet that is straight in one direction has two middle nodes, which are also on triangles.
         if others.len() < n {
             continue;
         }

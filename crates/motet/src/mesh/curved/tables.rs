@@ -1,4 +1,4 @@
-//! What has to be known of a kind of cell to get from its nodes to the coefficients of `det J`.
+//! The tables of each kind of cell, which lead from its nodes to the coefficients of `det J`.
 
 use std::sync::OnceLock;
 
@@ -6,7 +6,8 @@ use crate::geometry::bernstein::{Basis, Domain, Exponents, Product};
 use crate::mesh::CellKind;
 use crate::mesh::curved::nodes::{Middle, middles};
 
-/// The reference cell: its factors, and for each corner the barycentric coordinates that are 1 there.
+/// A reference cell: the number of barycentric coordinates of each factor, and for each corner the
+/// coordinates that are 1 there.
 struct Reference {
     factors: &'static [usize],
     corners: &'static [&'static [usize]],
@@ -28,11 +29,12 @@ const CUBE: Reference = Reference {
         &[0, 3, 5],
     ],
 };
-/// All places of the top are the tip, whose place in the cell is 4.
+/// The whole top is the tip, which is corner 4 of the cell.
 const PYRAMID: Reference =
     Reference { factors: &[2, 2, 2], corners: &[&[0, 2, 4], &[1, 2, 4], &[1, 3, 4], &[0, 3, 4], &[5]] };
 
-/// The two coordinates of a derivative, to the first from the second: the three of a right-handed frame.
+/// The directions of the three derivatives, towards the first coordinate and away from the second: a
+/// right-handed frame.
 const OF_TETRAHEDRON: [[usize; 2]; 3] = [[1, 0], [2, 0], [3, 0]];
 const OF_PRISM: [[usize; 2]; 3] = [[1, 0], [2, 0], [4, 3]];
 const OF_CUBE: [[usize; 2]; 3] = [[1, 0], [3, 2], [5, 4]];
@@ -40,27 +42,28 @@ const OF_CUBE: [[usize; 2]; 3] = [[1, 0], [3, 2], [5, 4]];
 /// The coordinate that is 0 at the tip of a pyramid.
 const BASE: usize = 4;
 
-/// A derivative of the place in one direction, as the coefficients of its monomials.
+/// The derivative of the position in one direction, as the coefficients of its monomials: a column of the
+/// Jacobian.
 pub(super) struct Column {
-    /// Each is a difference of two points of the net, times a weight.
+    /// Each coefficient is the difference of two points of the net, times a weight.
     pub(super) terms: Vec<([u16; 2], f64)>,
 }
 
 /// The tables of one kind of cell.
 pub(super) struct Tables {
-    /// Nodes beside the corners.
+    /// The nodes that are not corners.
     pub(super) middles: Vec<Middle>,
-    /// Of the place: degree 2 in each factor.
+    /// The basis of the position: degree 2 in each factor.
     pub(super) net: Basis,
-    /// Each point of the net as a sum of nodes, each times a weight.
+    /// Each point of the net as a weighted sum of nodes.
     pub(super) points: Vec<Vec<(u8, f64)>>,
     pub(super) columns: [Column; 3],
-    /// Of the first two columns; of that and the third.
+    /// The product of the first two columns, and that of the result with the third.
     pub(super) products: [Product; 2],
-    /// Of `det J`.
+    /// The basis of `det J`.
     pub(super) determinant: Basis,
     pub(super) domain: Domain,
-    /// The columns of the cell with straight edges, at its centre: weights of its corners.
+    /// The columns of the Jacobian of the cell with straight edges, at its centre, as weights of its corners.
     pub(super) straight: [Vec<f64>; 3],
 }
 
@@ -69,7 +72,7 @@ pub fn is_curved_kind(kind: CellKind) -> bool {
     tables(kind).is_some()
 }
 
-/// The tables of a kind, made when they are first needed.
+/// The tables of a kind, built when they are first needed; `None` if it is not a quadratic volume cell.
 pub(super) fn tables(kind: CellKind) -> Option<&'static Tables> {
     static ALL: [OnceLock<Tables>; 8] = [const { OnceLock::new() }; 8];
     let (i, reference, directions) = match kind {
@@ -104,7 +107,7 @@ impl Tables {
         let degrees = directions.map(|[to, _]| {
             let mut degrees = vec![2u8; factors.len()];
             degrees[factor_of(to)] -= 1;
-            // Columns along the base of a pyramid shrink to nothing at its tip: that factor is divided out.
+            // Columns along the base of a pyramid vanish at its tip: that factor is divided out.
             if is_pyramid && to < BASE {
                 degrees[2] -= 1;
             }
@@ -136,7 +139,8 @@ impl Tables {
 }
 
 impl Column {
-    /// The derivative to `to` from `from`; `lifted`: divided by the coordinate that is 0 at the tip of a pyramid.
+    /// The derivative towards coordinate `to` and away from `from`; if `lifted`, divided by the coordinate
+    /// that is 0 at the tip of a pyramid.
     fn new(net: &Basis, basis: &Basis, [to, from]: [usize; 2], lifted: bool) -> Self {
         let term = |e: &Exponents| {
             let mut e = *e;
@@ -146,7 +150,8 @@ impl Column {
                 e[coordinate] += 1;
                 net.number(&e) as u16
             };
-            // Degree 2 falls by one: a factor of 2, and multinomials of the exponents that are left.
+            // The derivative lowers degree 2 by one: a factor of 2, and multinomials of the remaining
+            // exponents.
             let factorials: f64 = e.iter().map(|&k| if k == 2 { 2.0 } else { 1.0 }).product();
             let n_factors = net.factors().len() as i32;
             ([with(to), with(from)], 2.0f64.powi(n_factors) / factorials)
@@ -155,18 +160,18 @@ impl Column {
     }
 }
 
-/// Nodes in all places that the functions of degree 2 need, as far as a cell has none of its own there.
+/// Nodes at all lattice points that functions of degree 2 need, computed where a cell has none of its own.
 struct Lattice<'a> {
     reference: &'a Reference,
     middles: &'a [Middle],
     is_pyramid: bool,
 }
 
-/// Weights of the nodes of a cell; none has more than 27.
+/// Weights of the nodes of a cell, which has at most 27.
 type Weights = [f64; 27];
 
 impl Lattice<'_> {
-    /// The place whose coordinates are half of these exponents, as a sum of nodes.
+    /// The lattice point with half these exponents as coordinates, as a weighted sum of nodes.
     fn node_weights(&self, exponents: &Exponents) -> Weights {
         if self.is_pyramid && exponents[BASE] == 0 {
             return only(4);
@@ -182,7 +187,8 @@ impl Lattice<'_> {
         self.middle(&corners)
     }
 
-    /// The corners of the edge, face or volume in whose middle the place is; of the base, for a pyramid.
+    /// The corners of the edge, face or volume that has the lattice point in its middle; for a pyramid, those
+    /// of the base.
     fn corners_between(&self, exponents: &Exponents) -> Vec<usize> {
         let is_between = |coordinates: &&[usize]| {
             coordinates.len() == self.reference.factors.len() && coordinates.iter().all(|&c| exponents[c] > 0)
@@ -191,8 +197,9 @@ impl Lattice<'_> {
         corners.filter(|(_, coordinates)| is_between(coordinates)).map(|(i, _)| i).collect()
     }
 
-    /// The node between these corners; where the cell has none, what transfinite interpolation gives: half of what is around in the dimension below, less a quarter
-    /// of that below, and so on.
+    /// The node between these corners. If the cell has none, the value of transfinite interpolation: half the
+    /// sum over the parts of one dimension less, minus a quarter of the sum over those of two dimensions
+    /// less, and so on.
     fn middle(&self, corners: &[usize]) -> Weights {
         if let [corner] = corners {
             return only(*corner);
@@ -215,7 +222,8 @@ impl Lattice<'_> {
         sum
     }
 
-    /// The vertices, edges and faces of an edge, a quadrilateral or a hexahedron with these corners: whatever its corners have in common.
+    /// The vertices, edges and faces of an edge, a quadrilateral or a hexahedron with these corners, found
+    /// from the coordinates that corners have in common.
     fn parts(&self, corners: &[usize]) -> Vec<Vec<usize>> {
         let coordinates = |corner: usize| self.reference.corners[corner];
         let mut parts: Vec<Vec<usize>> = Vec::new();
@@ -234,8 +242,10 @@ impl Lattice<'_> {
         parts
     }
 
-    /// Halfway between the tip of a pyramid and the middle of `corners` of its base. A function of the pyramid is `t + w q + w^2 s`, `w` from 0 at the tip to 1, where `q` is
-    /// bilinear and `s` quadratic over the base (of degree 3 in all): its values at the nodes leave this.
+    /// The point halfway between the tip of a pyramid and the middle of `corners` of its base. A shape
+    /// function of the pyramid is `t + w q + w^2 s`, with `w` from 0 at the tip to 1 at the base, where `q`
+    /// is bilinear and `s` quadratic over the base (of total degree 3); its values at the nodes determine the
+    /// weights.
     fn halfway_up(&self, corners: &[usize]) -> Weights {
         let mut sum = self.middle(corners).map(|x| 0.25 * x);
         let share = 1.0 / corners.len() as f64;
@@ -254,7 +264,8 @@ fn only(node: usize) -> Weights {
     weights
 }
 
-/// From values at the places of a lattice to Bernstein coefficients of degree 2, factor by factor: that in the middle of an edge is twice the value less the mean of the ends.
+/// Converts values at the points of a lattice to Bernstein coefficients of degree 2, factor by factor: the
+/// coefficient in the middle of an edge is twice the value minus the mean of the ends.
 fn control_points(net: &Basis, mut weights: Vec<Weights>) -> Vec<Vec<(u8, f64)>> {
     let mut first = 0;
     for &n in net.factors() {
@@ -276,7 +287,8 @@ fn control_points(net: &Basis, mut weights: Vec<Weights>) -> Vec<Vec<(u8, f64)>>
     weights.iter().map(nonzero).collect()
 }
 
-/// Weights of the corners in one column of the Jacobian of the cell with straight edges, at its centre: the mean of the edges in that direction. For a pyramid the mean of its four edges to the tip.
+/// Weights of the corners in one column of the Jacobian of the cell with straight edges, at its centre: the
+/// mean of the edges in that direction; towards the tip of a pyramid, the mean of its four edges to it.
 fn straight_column(reference: &Reference, [to, from]: [usize; 2]) -> Vec<f64> {
     let end = |coordinate: usize| {
         let n = reference.corners.iter().filter(|c| c.contains(&coordinate)).count() as f64;

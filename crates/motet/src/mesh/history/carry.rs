@@ -1,4 +1,4 @@
-//! Carries fields across a change: what was kept bit for bit, the rest by rule.
+//! Transfers fields across a change: bit for bit to what was kept, by a rule to the rest.
 
 use super::origins::{Origin, Origins};
 use super::rule::has_mean;
@@ -8,50 +8,52 @@ use crate::mesh::exchange::check_rows;
 use crate::mesh::{Field, Mesh, Values};
 
 impl History {
-    /// A point array of the old mesh on the points of the new one, by [`Rule::of_points`].
+    /// Transfers a point array of the old mesh to the points of the new one, by [`Rule::of_points`].
     ///
     /// # Errors
-    /// When the array has not one row for each old point.
+    /// If the array does not have one row for each old point.
     pub fn transfer_points(&self, field: &Field) -> Result<Field> {
         check(field, self.vertices.n_old(), "point")?;
         Ok(carried(&self.vertices, field, Rule::of_points(field)))
     }
 
-    /// A cell array of the old mesh on the cells of the new one, by [`Rule::of_cells`].
+    /// Transfers a cell array of the old mesh to the cells of the new one, by [`Rule::of_cells`].
     ///
     /// # Errors
-    /// When the array has not one row for each old cell.
+    /// If the array does not have one row for each old cell.
     pub fn transfer_cells(&self, field: &Field) -> Result<Field> {
         check(field, self.cells.n_old(), "cell")?;
         Ok(carried(&self.cells, field, Rule::of_cells(field)))
     }
 
-    /// [`Self::transfer_points`] by a rule of the caller's; `None` for [`Rule::Drop`].
+    /// Transfers a point array like [`Self::transfer_points`], by a given rule; `None` for [`Rule::Drop`].
     ///
     /// # Errors
-    /// Also when the rule means nothing: values on points are interpolated, not conserved, and whole numbers, texts have no mean.
+    /// If the array does not have one row for each old point, or the rule does not apply: values on points
+    /// are interpolated, not conserved, and whole numbers and texts have no mean.
     pub fn transfer_points_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
         check(field, self.vertices.n_old(), "point")?;
         check_rule(field, rule, &[Rule::Interpolate, Rule::Linear], "point")?;
         Ok((rule != Rule::Drop).then(|| carried(&self.vertices, field, rule)))
     }
 
-    /// [`Self::transfer_cells`] by a rule of the caller's; `None` for [`Rule::Drop`].
+    /// Transfers a cell array like [`Self::transfer_cells`], by a given rule; `None` for [`Rule::Drop`].
     ///
     /// # Errors
-    /// Also when the rule means nothing: values on cells are conserved, not interpolated, and whole numbers, texts have no mean.
+    /// If the array does not have one row for each old cell, or the rule does not apply: values on cells are
+    /// conserved, not interpolated, and whole numbers and texts have no mean.
     pub fn transfer_cells_by(&self, field: &Field, rule: Rule) -> Result<Option<Field>> {
         check(field, self.cells.n_old(), "cell")?;
         check_rule(field, rule, &[Rule::Conserve], "cell")?;
         Ok((rule != Rule::Drop).then(|| carried(&self.cells, field, rule)))
     }
 
-    /// Gives `new` all arrays that `old` has and it has not, on points, on cells and on the whole, and the names of
-    /// labels. Arrays that `new` has stay as they are.
+    /// Transfers to `new` all arrays of `old` that it lacks, on points, on cells and on the mesh as a whole,
+    /// and the names of labels. Arrays that `new` already has stay as they are.
     ///
     /// # Errors
-    /// When a mesh is not the one that the history is of, an array does not fit, or a rule names no array of `old` or
-    /// means nothing for it. `new` is then as it was.
+    /// If a mesh does not match the history, an array has the wrong length, or a rule names no array of `old`
+    /// or does not apply to it. `new` is then unchanged.
     pub fn transfer(&self, old: &Mesh, new: &mut Mesh, rules: &Rules) -> Result<()> {
         check_count("old mesh", "points", self.vertices.n_old(), old.points.len())?;
         check_count("old mesh", "cells", self.cells.n_old(), old.cells.len())?;
@@ -83,7 +85,7 @@ impl History {
     }
 }
 
-/// The arrays of `old` whose names `new` has not.
+/// The arrays of `old` whose names `new` does not have.
 fn missing<'a>(old: &'a [Field], new: &'a [Field]) -> impl Iterator<Item = &'a Field> {
     old.iter().filter(|field| new.iter().all(|other| other.name != field.name))
 }
@@ -123,7 +125,8 @@ fn check_names<'a>(fields: &[Field], mut names: impl Iterator<Item = &'a String>
         .at(format!("{what} array {name}")))
 }
 
-/// `field` has a row for each old thing, and means where the rule takes some.
+/// Transfers `field`, which has a row for each old entity. Floats follow the rule; all other values are
+/// inherited.
 fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule) -> Field {
     let values = match &field.values {
         Values::F64(old) if rule != Rule::Inherit => Values::F64(mixed(origins, field.components, rule, old)),
@@ -133,7 +136,7 @@ fn carried<I: Id>(origins: &Origins<I>, field: &Field, rule: Rule) -> Field {
     Field { name: field.name.clone(), components: field.components, values }
 }
 
-/// A float that sums are taken of in double precision.
+/// A floating-point type whose sums are taken in double precision.
 trait Float: Copy + Into<f64> {
     fn rounded(x: f64) -> Self;
 }
@@ -168,8 +171,9 @@ fn mixed<I: Id, T: Float>(origins: &Origins<I>, components: usize, rule: Rule, o
     new
 }
 
-/// The value by a row for linear fields, or by a further one for quadratic fields: no farther from the first than values in that row differ, so that a jump or what is no number
-/// two rings away makes nothing of a value.
+/// The value by a row for linear fields or, if there is one, by the row `wide` for quadratic fields. It
+/// differs from the linear value by no more than the spread of the values in `row`, so that a jump or a NaN
+/// two rings away does not spoil it.
 fn interpolated<I: Id>(row: &Row<'_, I>, wide: Option<&Row<'_, I>>, value: impl Fn(I) -> f64) -> f64 {
     let linear = mean(row, &value);
     let Some(wide) = wide else { return linear };
@@ -179,8 +183,9 @@ fn interpolated<I: Id>(row: &Row<'_, I>, wide: Option<&Row<'_, I>>, value: impl 
     if term.is_finite() && apart.is_finite() { linear + term.clamp(-apart, apart) } else { linear }
 }
 
-/// The mean of a row's values. Taken from the first one on, so that equal values give their own, to the bit; and
-/// never beyond the least or the largest, as rounding and negative shares might.
+/// The mean of a row's values. Differences from the first value are summed, so that equal values are
+/// reproduced to the bit; and the mean is limited to the range of the values, which rounding and negative
+/// shares might leave.
 fn mean<I: Id>(row: &Row<'_, I>, value: impl Fn(I) -> f64) -> f64 {
     let first = value(row.from[0]);
     let (mut sum, mut least, mut largest) = (0.0, first, first);
@@ -190,7 +195,7 @@ fn mean<I: Id>(row: &Row<'_, I>, value: impl Fn(I) -> f64) -> f64 {
         (least, largest) = (least.min(value), largest.max(value));
     }
     let mean = first + sum;
-    // NaN passes through: it was there before.
+    // NaN passes through: it was in the values before.
     if mean < least {
         least
     } else if mean > largest {

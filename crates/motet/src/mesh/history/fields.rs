@@ -1,4 +1,4 @@
-//! How well arrays were carried: their ranges, and their integrals over each region, before and after.
+//! How well arrays were transferred: their ranges, and their integrals over each region, before and after.
 
 use std::collections::BTreeMap;
 
@@ -10,19 +10,19 @@ use crate::base::VertexId;
 use crate::geometry::tet;
 use crate::mesh::{Field, Mesh, Values};
 
-/// What an array of real numbers was before a change and is after it.
+/// The range and the integrals of an array of real numbers before and after a change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldLedger {
-    /// Its name.
+    /// The name of the array.
     pub name: String,
-    /// Where it has its rows.
+    /// Whether it has its rows on points or on cells.
     pub on: On,
-    /// By what it was carried.
+    /// The rule by which it was transferred.
     pub rule: Rule,
-    /// Smallest and largest value before; of arrays with several components the lengths of the rows. What is no number does not
-    /// count; `None` where nothing else is there.
+    /// Smallest and largest value before the change; of arrays with several components, of the lengths of the
+    /// rows. NaN does not count; `None` if there is no other value.
     pub range_before: Option<[f64; 2]>,
-    /// The same after.
+    /// Smallest and largest value after the change, as in `range_before`.
     pub range_after: Option<[f64; 2]>,
     /// One entry for each region of the tets, by rising label.
     pub regions: Vec<FieldIntegral>,
@@ -32,35 +32,38 @@ pub struct FieldLedger {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum On {
-    /// One for each point: linear in each tet.
+    /// One row for each point; values are linear in each tet.
     Points,
-    /// One for each cell: constant in each tet.
+    /// One row for each cell; values are constant in each tet.
     Cells,
 }
 
-/// The integral of an array over the tets of one region, of either orientation, volumes counted as positive.
+/// The integral of an array over the tets of one region. Tets of either orientation count with positive
+/// volume.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FieldIntegral {
-    /// Its label; 0 where tets have none.
+    /// The label of the region; 0 for tets without one.
     pub region: i32,
-    /// The integral of each component before.
+    /// The integral of each component before the change.
     pub before: Vec<f64>,
-    /// The same after.
+    /// The integral of each component after the change.
     pub after: Vec<f64>,
-    /// How far the integral went, relative to that of the size of the values (the larger one of before and after).
+    /// The change of the integral, relative to the integral of the magnitude of the values (the larger one of
+    /// before and after).
     pub deviation: f64,
 }
 
 impl FieldLedger {
-    /// The largest deviation of its regions; not a number where one is not.
+    /// The largest deviation of its regions; NaN if one of them is NaN.
     pub fn deviation(&self) -> f64 {
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         self.regions.iter().map(|r| r.deviation).fold(0.0, larger)
     }
 }
 
-/// What became of each array of real numbers that both meshes have: those on points, then those on cells, in their order. `rules` are
-/// those that they were carried by. Takes a pass over the tets of each mesh, and one more for each array.
+/// Compares each array of real numbers that both meshes have, first those on points, then those on cells, in
+/// their order. `rules` are those by which they were transferred. Takes one pass over the tets of each mesh,
+/// and one more for each array.
 pub fn field_ledger(before: &Mesh, after: &Mesh, rules: &Rules) -> Vec<FieldLedger> {
     let sources = [
         (On::Points, &before.point_data, &after.point_data),
@@ -97,15 +100,15 @@ fn is_carried(old: &Field, new: &Field) -> bool {
     old.name == new.name && old.components == new.components && has_mean(old) && has_mean(new)
 }
 
-/// The tets of a mesh, with what integrals need.
+/// The tets of a mesh, with what integration needs.
 struct Tets {
-    /// The cell, its vertices, its volume and the place of its region.
+    /// The cell of each tet, its vertices, its volume and the index of its region.
     tets: Vec<(usize, [VertexId; 4], f64, usize)>,
-    /// The place of each region.
+    /// The index of each region.
     places: BTreeMap<i32, usize>,
 }
 
-/// Integrals over one region: of each component, then of the size of the rows.
+/// The integrals over each region: of each component, then of the magnitude of the rows.
 type Sums = BTreeMap<i32, Vec<f64>>;
 
 impl Tets {
@@ -142,7 +145,7 @@ impl Tets {
     fn sums_of(&self, on: On, components: usize, value: impl Fn(usize) -> f64) -> Sums {
         let n = components + 1;
         let mut sums = vec![Sum::default(); n * self.places.len()];
-        // Of one tet: each component, then the size.
+        // Sums over one tet: of each component, then of the magnitude.
         let mut held = vec![0.0; n];
         for &(cell, vertices, volume, place) in &self.tets {
             held.fill(0.0);
@@ -172,7 +175,8 @@ impl Tets {
     }
 }
 
-/// A sum that keeps what rounding leaves over, so that a million terms are as good as ten (Knuth's two-sum).
+/// A compensated sum, which adds up rounding errors separately, so that a million terms are as accurate as
+/// ten (Knuth's two-sum).
 #[derive(Clone, Copy, Default)]
 struct Sum {
     sum: f64,
@@ -189,7 +193,7 @@ impl Sum {
     }
 
     fn value(&self) -> f64 {
-        // Where the sum is infinite the rest is not a number.
+        // If the sum is infinite, the rest is NaN.
         if self.sum.is_finite() { self.sum + self.rest } else { self.sum }
     }
 }

@@ -1,40 +1,43 @@
-//! How well the volumes of old and new tets fit, region by region.
+//! How well the volumes of old and new tets match, region by region.
 
 use serde::{Deserialize, Serialize};
 
-/// What a change did to volumes, and to vertices that ended outside of the old tets.
+/// What a change did to volumes, and to vertices that ended outside the old tets.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     /// One entry for each region with a changed tet, by rising label.
     pub regions: Vec<RegionLedger>,
-    /// New and moved vertices that lie in none of the old tets that went: they take the values of the nearest place.
+    /// Number of new and moved vertices that lie in none of the removed old tets: they take the values at the
+    /// nearest place in these.
     pub n_outside: usize,
-    /// How far the farthest of these lies from there.
+    /// The largest distance of such a vertex from that place.
     pub farthest_outside: f64,
 }
 
-/// The volumes of one region. All in the cube of the unit of length, tets of either orientation counted as positive.
+/// The volumes of one region, in the cube of the unit of length. Tets of either orientation count as
+/// positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RegionLedger {
-    /// Its label.
+    /// The label of the region.
     pub region: i32,
-    /// Volume of the old tets that went.
+    /// Volume of the old tets that were removed.
     pub volume_before: f64,
-    /// Volume of the new tets that came.
+    /// Volume of the new tets that were inserted.
     pub volume_after: f64,
-    /// The volume that new tets took too much or too little from each old one, added up without sign: a conserved
-    /// field whose values lie between -m and m changes its integral over the region by at most `m` times this. Rounding alone
-    /// where old and new tets fill the same place once; more where a surface gave way or old tets lay on top of each other.
+    /// The volume that new tets took too much or too little from each old one, summed in absolute value. A
+    /// conserved field with values between -m and m changes its integral over the region by at most `m` times
+    /// this. Only rounding if old and new tets fill the same space exactly once; more if a surface changed
+    /// its shape or old tets overlapped.
     pub deviation: f64,
 }
 
 impl Ledger {
-    /// The entry of a region.
+    /// The entry of a region, if there is one.
     pub fn region(&self, region: i32) -> Option<&RegionLedger> {
         self.regions.iter().find(|r| r.region == region)
     }
 
-    /// Both changes, one after the other: volumes and deviations add up.
+    /// Both changes in sequence: volumes and deviations add up.
     pub(super) fn then(&self, later: &Self) -> Self {
         let mut both = self.clone();
         for entry in &later.regions {

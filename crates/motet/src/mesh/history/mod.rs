@@ -1,15 +1,17 @@
-//! Where each vertex and each cell of a changed mesh came from; carries any field across the change.
+//! Where each vertex and each cell of a changed mesh came from; transfers fields across the change.
 //!
-//! A [`History`] is data: it can be stored, sent, and applied later to any number of fields and time levels. Most of a
-//! mesh is *kept*, and values go over bit for bit. What changed has a row of old things with shares that sum to 1:
+//! A [`History`] is data: it can be stored, sent, and applied later to any number of fields and time levels.
+//! Most of a mesh is *kept*, and its values are copied bit for bit. Whatever changed has a row of old
+//! entities (vertices or cells) with shares that sum to 1:
 //!
-//! | of the new mesh | its row |
+//! | in the new mesh | its row |
 //! |---|---|
-//! | a vertex that is new or moved | the vertices of the old tet that held its place, with their weights there; off walls also a row of the vertices around that is exact for quadratic fields |
-//! | a tet that is new | the old tets it overlaps, with their parts of its volume |
-//! | any other cell that is new | the one cell it inherits from |
+//! | a new or moved vertex | the vertices of the old tet at its place, with their weights there; away from walls also a row of the vertices around that is exact for quadratic fields |
+//! | a new tet | the old tets that it overlaps, each with its fraction of the new tet's volume |
+//! | any other new cell | the one cell that it inherits from |
 //!
-//! What becomes of a value is its [`Rule`]: interpolated, conserved, inherited or dropped. [`field_ledger`] tells how well that went.
+//! How values are transferred is determined by a [`Rule`]: interpolated, conserved, inherited or dropped.
+//! [`field_ledger`] reports how well that went.
 
 mod carry;
 mod fields;
@@ -32,7 +34,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::{CellId, VertexId};
 
-/// What a change did to a mesh, in arrays: where everything came from, and how well volumes fit.
+/// What a change did to a mesh, in arrays: where everything came from, and how well volumes match.
 ///
 /// ```
 /// use motet::base::{CellId, VertexId};
@@ -59,7 +61,7 @@ pub struct History {
     pub vertices: Origins<VertexId>,
     /// Where each cell of the new mesh came from, of any kind.
     pub cells: Origins<CellId>,
-    /// How well the volumes of old and new tets fit.
+    /// How well the volumes of old and new tets match.
     pub ledger: Ledger,
 }
 
@@ -73,10 +75,11 @@ impl History {
         }
     }
 
-    /// This change and then a `later` one, as one: from this one's old mesh to the later one's new mesh. Transferring by it
-    /// gives what two transfers give, up to rounding and where [`Rule::Interpolate`] limits a value; inherited values go the same way exactly.
+    /// This change followed by a `later` one, as one: from the old mesh of this change to the new mesh of the
+    /// later one. A transfer by it gives what the two transfers give, up to rounding and except where
+    /// [`Rule::Interpolate`] limits a value; inherited values are exactly the same.
     ///
-    /// Panics when `later` does not start from as many vertices and cells as this one ends with.
+    /// Panics if `later` does not start from as many vertices and cells as this one ends with.
     #[must_use]
     pub fn then(&self, later: &Self) -> Self {
         Self {

@@ -1,12 +1,12 @@
-//! Arrays that tell points and cells apart: what comes new must not have the number of another.
+//! Arrays that number points and cells: a new one must not get the number of another.
 
 use crate::base::{CellId, Id};
 use crate::mesh::{CellKind, Field, Mesh, Values};
 
-/// SimVascular's numbers of points and cells.
+/// SimVascular's arrays that number points and cells.
 const NODE_ID: &str = "GlobalNodeID";
 const ELEMENT_ID: &str = "GlobalElementID";
-/// Which tets came from one by refinement: -1 where that is not known.
+/// The cell array that tells which tets were refined from the same one; -1 where that is not known.
 pub const REFINE_ROOT: &str = "refine_root";
 
 /// Whether a cell array gives every cell a number of its own.
@@ -14,7 +14,8 @@ pub(crate) fn numbers_cells(array: &str) -> bool {
     array == ELEMENT_ID
 }
 
-/// Gives new points and new tets numbers of their own, after the largest. `point_to_old` has [`u32::MAX`] for a new point.
+/// Gives new points and new tets numbers of their own, after the largest in use, and sets the [`REFINE_ROOT`]
+/// of new tets to -1. `point_to_old` has [`u32::MAX`] for a new point.
 pub fn number_anew(mesh: &mut Mesh, point_to_old: &[u32], cell_to_old: &[CellId]) {
     let is_named = |field: &&mut Field, name: &str| field.name == name && field.components == 1;
     let is_new = |c: &usize| cell_to_old[*c] == Id::NONE && mesh.cells.kinds()[*c] == CellKind::TETRA;

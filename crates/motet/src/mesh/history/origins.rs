@@ -5,34 +5,36 @@ use serde::{Deserialize, Serialize};
 use super::row::{Row, Rows, Signs};
 use crate::base::{Error, Id, Result};
 
-/// Rows for quadratic fields that would be longer than this are left out where changes are joined: each change makes them longer.
+/// Rows for quadratic fields that are longer than this are dropped when changes are joined, since each change
+/// makes them longer.
 const LONGEST: usize = 400;
 
-/// For each thing of the new mesh the old thing that it is, or a row of old things with shares.
+/// For each entity of the new mesh, a vertex or a cell, the old entity that it is, or a row of old entities
+/// with shares.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts<I>")]
 #[serde(bound(serialize = "I: Id + Serialize", deserialize = "I: Id + Deserialize<'de>"))]
 pub struct Origins<I> {
     n_old: usize,
-    /// The old id of each new thing that was kept; `NONE` where it changed.
+    /// The old id of each new entity that was kept; `NONE` if it changed.
     kept: Vec<I>,
-    /// A row for each new thing that changed, in their order.
+    /// A row for each new entity that changed, in their order.
     changed: Rows<I>,
-    /// A further row for some of those that changed.
+    /// A further row, for quadratic fields, for some of the entities that changed.
     #[serde(skip_serializing_if = "Rows::is_empty")]
     quadratic: Rows<I>,
 }
 
-/// Where one thing came from.
+/// Where one entity came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin<'a, I> {
-    /// It is this old thing.
+    /// It is this old entity.
     Kept(I),
     /// It is new, or was moved.
     Changed(Row<'a, I>),
 }
 
-/// What a stored [`Origins`] brings, before it is known to fit together.
+/// The stored parts of [`Origins`], not yet validated.
 #[derive(Deserialize)]
 #[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
 struct Parts<I> {
@@ -52,11 +54,12 @@ impl<I: Id> TryFrom<Parts<I>> for Origins<I> {
 }
 
 impl<I: Id> Origins<I> {
-    /// `kept` has the old id of each new thing, or [`Id::NONE`] where the thing changed and `changed` has its row. `n_old` is
-    /// how many old things there were.
+    /// Origins of new entities from `n_old` old ones. `kept` has the old id of each new entity, or
+    /// [`Id::NONE`] if it changed and `changed` has its row.
     ///
     /// # Errors
-    /// When an old id does not exist, or something has both an old id and a row, or neither.
+    /// If an old id does not exist, shares are not valid, or an entity has both an old id and a row, or
+    /// neither.
     pub fn new(n_old: usize, kept: Vec<I>, changed: Rows<I>) -> Result<Self> {
         changed.check(n_old, Signs::Positive)?;
         if let Some(new) = kept.iter().position(|&old| old != I::NONE && old.place() >= n_old) {
@@ -74,10 +77,10 @@ impl<I: Id> Origins<I> {
         Ok(Self { n_old, kept, changed, quadratic: Rows::new() })
     }
 
-    /// With rows for quadratic fields of some of those that changed, in place of those that it had.
+    /// Replaces the rows for quadratic fields, which only entities that changed may have.
     ///
     /// # Errors
-    /// When an old id does not exist, shares do not sum to 1, or something with such a row has not changed.
+    /// If an old id does not exist, shares do not sum to 1, or an entity with such a row has not changed.
     pub fn with_quadratic(self, rows: Rows<I>) -> Result<Self> {
         rows.check(self.n_old, Signs::Any)?;
         match rows.ids().iter().find(|id| self.changed.ids().binary_search(id).is_err()) {
@@ -87,46 +90,47 @@ impl<I: Id> Origins<I> {
         }
     }
 
-    /// Everything stayed.
+    /// The origins of `n` entities that all were kept.
     ///
-    /// Panics when `n` is more than ids can count.
+    /// Panics if `n` is more than ids can count.
     pub fn identity(n: usize) -> Self {
         Self { n_old: n, kept: (0..n).map(I::of).collect(), changed: Rows::new(), quadratic: Rows::new() }
     }
 
-    /// How many things the old mesh had.
+    /// Number of entities in the old mesh.
     pub fn n_old(&self) -> usize {
         self.n_old
     }
 
-    /// How many things the new mesh has.
+    /// Number of entities in the new mesh.
     pub fn len(&self) -> usize {
         self.kept.len()
     }
 
-    /// Whether the new mesh has none.
+    /// Whether the new mesh has no such entities.
     pub fn is_empty(&self) -> bool {
         self.kept.is_empty()
     }
 
-    /// For each new thing the old one that it is, or [`Id::NONE`].
+    /// For each new entity, the old one that it is, or [`Id::NONE`].
     pub fn kept(&self) -> &[I] {
         &self.kept
     }
 
-    /// The rows of those that changed.
+    /// The rows of the entities that changed.
     pub fn changed(&self) -> &Rows<I> {
         &self.changed
     }
 
-    /// Rows of more old things for some of those that changed: exact not only for linear fields, but for quadratic ones, too. Their shares may be negative.
+    /// Longer rows for some of the entities that changed, exact for quadratic fields as well as linear ones.
+    /// Their shares may be negative.
     pub fn quadratic(&self) -> &Rows<I> {
         &self.quadratic
     }
 
     /// Where `id` of the new mesh came from.
     ///
-    /// Panics when there is no such thing.
+    /// Panics if there is no such entity.
     pub fn of(&self, id: I) -> Origin<'_, I> {
         match self.changed.of(id) {
             Some(row) => Origin::Changed(row),
@@ -134,7 +138,7 @@ impl<I: Id> Origins<I> {
         }
     }
 
-    /// Where everything came from, in the order of the new mesh.
+    /// Where every entity came from, in the order of the new mesh.
     pub fn iter(&self) -> impl Iterator<Item = Origin<'_, I>> + '_ {
         let mut rows = self.changed.iter();
         self.kept.iter().map(move |&old| match old == I::NONE {
@@ -143,14 +147,14 @@ impl<I: Id> Origins<I> {
         })
     }
 
-    /// For each new thing the old one that it inherits from.
+    /// For each new entity, the old one that it inherits from.
     pub fn main(&self) -> impl Iterator<Item = I> + '_ {
         self.iter().map(|origin| origin.main())
     }
 
-    /// This change and then a `later` one, as one.
+    /// This change followed by a `later` one, as one.
     ///
-    /// Panics when `later` does not start from as many things as this one ends with.
+    /// Panics if `later` does not start from as many entities as this one ends with.
     #[must_use]
     pub fn then(&self, later: &Self) -> Self {
         assert_eq!(later.n_old, self.len(), "the later change starts where this one ends");
@@ -179,13 +183,14 @@ impl<I: Id> Origins<I> {
         Self { n_old: self.n_old, kept, changed, quadratic }
     }
 
-    /// Where `id` came from, by its row for quadratic fields where it has one.
+    /// Where `id` came from, by its row for quadratic fields if it has one.
     fn of_quadratic(&self, id: I) -> Origin<'_, I> {
         self.quadratic.of(id).map_or_else(|| self.of(id), Origin::Changed)
     }
 }
 
-/// The parts of an origin, each with its parts in turn; one entry for each old thing, by rising id.
+/// Puts into `parts` the parts of an origin, each replaced by the parts of its own origin; one entry for each
+/// old entity, by rising id.
 fn joined<'a, I: Id + 'a>(
     origin: &Origin<'_, I>,
     of: impl Fn(I) -> Origin<'a, I>,
@@ -202,7 +207,7 @@ fn joined<'a, I: Id + 'a>(
 }
 
 impl<I: Id> Origin<'_, I> {
-    /// The old thing whose ids, names and directions are inherited.
+    /// The old entity whose ids, names and directions are inherited.
     pub fn main(&self) -> I {
         match self {
             Self::Kept(old) => *old,
@@ -210,7 +215,7 @@ impl<I: Id> Origin<'_, I> {
         }
     }
 
-    /// The old things and their shares, one of share 1 for what was kept.
+    /// The old entities and their shares; for a kept entity the old one with share 1.
     pub fn parts(&self) -> (&[I], &[f64]) {
         match self {
             Self::Kept(old) => (std::slice::from_ref(old), &[1.0]),
@@ -219,7 +224,7 @@ impl<I: Id> Origin<'_, I> {
     }
 }
 
-/// One entry for each old thing, by rising id.
+/// Sorts the parts by id, and adds up the shares of equal ids.
 pub(crate) fn merge<I: Id>(parts: &mut Vec<(I, f64)>) {
     parts.sort_by_key(|p| p.0);
     parts.dedup_by(|later, first| {

@@ -1,20 +1,20 @@
-//! The rows of what changed: old things with shares, and the main one among them.
+//! The rows of entities that changed: old entities with shares, and the main one among them.
 
 use serde::{Deserialize, Serialize};
 
 use crate::base::{Csr, Error, Id, Result};
 
-/// Shares of a row sum to 1 up to this, or the row is refused.
+/// Tolerance on the sum of the shares of a row, which must be 1.
 const SUM: f64 = 1e-9;
 
-/// For each thing that changed the old things it came from.
+/// For each entity that changed, the old entities that it came from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts<I>")]
 #[serde(bound(deserialize = "I: Id + Deserialize<'de>"))]
 pub struct Rows<I> {
-    /// New ids, rising.
+    /// The new ids, in rising order.
     ids: Vec<I>,
-    /// Old ids a row.
+    /// The old ids of each row.
     from: Csr<I>,
     /// A share for each old id of each row.
     shares: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Rows<I> {
     main: Vec<I>,
 }
 
-/// What stored [`Rows`] bring, before they are known to fit together.
+/// The stored parts of [`Rows`], not yet validated.
 #[derive(Deserialize)]
 struct Parts<I> {
     ids: Vec<I>,
@@ -53,15 +53,16 @@ impl<I: Id> TryFrom<Parts<I>> for Rows<I> {
     }
 }
 
-/// Where one thing that changed came from.
+/// Where one entity that changed came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row<'a, I> {
-    /// Old things.
+    /// The old entities.
     pub from: &'a [I],
-    /// The share of each, 1 in sum; all positive but in [rows for quadratic fields](super::Origins::quadratic).
+    /// The share of each; they sum to 1. All are positive except in [rows for quadratic
+    /// fields](super::Origins::quadratic).
     pub shares: &'a [f64],
-    /// The old thing whose ids, names and directions are inherited: the one with the largest share, and for a moved
-    /// vertex the vertex itself.
+    /// The old entity whose ids, names and directions are inherited: the one with the largest share or, for a
+    /// moved vertex, the vertex itself.
     pub main: I,
 }
 
@@ -77,10 +78,10 @@ impl<I: Id> Rows<I> {
         Self::default()
     }
 
-    /// Adds the row of `id`, which is larger than all ids before. Shares are scaled to sum to 1; those that are not
-    /// above 0 are left out; where none is left, `main` gives everything.
+    /// Adds the row of `id`, which must be larger than all ids before. Shares that are not positive are left
+    /// out, and the others are scaled to sum to 1; if none are left, `main` gets share 1.
     ///
-    /// Panics when `id` is not the largest.
+    /// Panics if `id` is not the largest.
     pub fn push(&mut self, id: I, parts: &[(I, f64)], main: I) {
         let sum: f64 = parts.iter().map(|p| p.1).filter(|&share| share > 0.0).sum();
         if sum > 0.0 && sum.is_finite() {
@@ -91,9 +92,10 @@ impl<I: Id> Rows<I> {
         }
     }
 
-    /// Adds the row of `id`, which is larger than all ids before. Shares of either sign stay as they are, but that the largest gets what their sum lacks to 1.
+    /// Adds the row of `id`, which must be larger than all ids before. Shares may be of either sign and stay
+    /// as they are, except that the largest is adjusted to make them sum to 1.
     ///
-    /// Panics when `id` is not the largest, or there are no parts.
+    /// Panics if `id` is not the largest, or there are no parts.
     pub fn push_signed(&mut self, id: I, parts: &[(I, f64)], main: I) {
         assert!(self.ids.last().is_none_or(|&last| last < id), "rows come in rising order of their ids");
         assert!(!parts.is_empty(), "a row has parts");
@@ -105,7 +107,7 @@ impl<I: Id> Rows<I> {
         self.main.push(main);
     }
 
-    /// How many rows there are.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.ids.len()
     }
@@ -115,12 +117,12 @@ impl<I: Id> Rows<I> {
         self.ids.is_empty()
     }
 
-    /// The new ids that have rows, rising.
+    /// The new ids that have rows, in rising order.
     pub fn ids(&self) -> &[I] {
         &self.ids
     }
 
-    /// The row of a new id, where it has one.
+    /// The row of a new id, if it has one.
     pub fn of(&self, id: I) -> Option<Row<'_, I>> {
         self.ids.binary_search(&id).ok().map(|i| self.row(i))
     }
@@ -135,7 +137,7 @@ impl<I: Id> Rows<I> {
         Row { from: self.from.list(i), shares: &self.shares[range], main: self.main[i] }
     }
 
-    /// Checks that the rows name only the `n_old` old things, with shares that are some.
+    /// Checks that the rows name only the `n_old` old entities, and that their shares are valid.
     pub(super) fn check(&self, n_old: usize, signs: Signs) -> Result<()> {
         let fault =
             self.iter().zip(&self.ids).find_map(|(row, id)| row.fault(n_old, signs).map(|what| (id, what)));
@@ -143,7 +145,7 @@ impl<I: Id> Rows<I> {
     }
 }
 
-/// Which shares a row may have.
+/// Which signs the shares of a row may have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Signs {
     Positive,
@@ -165,7 +167,7 @@ impl<I: Id> Row<'_, I> {
     }
 }
 
-/// Gives the largest share what rounding left over, so that the sum is 1 to the last digit.
+/// Adjusts the largest share by what rounding left over, so that the sum is 1 to the last digit.
 fn settle(shares: &mut [f64]) {
     let largest = (1..shares.len()).fold(0, |best, i| if shares[i] > shares[best] { i } else { best });
     let others: f64 = (0..shares.len()).filter(|&i| i != largest).map(|i| shares[i]).sum();

@@ -1,4 +1,4 @@
-//! What becomes of a field's values where the mesh changed.
+//! How the values of a field are transferred where the mesh changed.
 
 use std::collections::BTreeMap;
 
@@ -7,39 +7,44 @@ use serde::{Deserialize, Serialize};
 use crate::base::{Error, Result};
 use crate::mesh::{Field, Mesh, Values};
 
-/// What becomes of a field's values where the mesh changed. Where it did not, they go over bit for bit.
+/// How the values of a field are transferred where the mesh changed. Where it did not, they are copied bit
+/// for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
-    /// Points: by the [row for quadratic fields](super::Origins::quadratic) where there is one, linear in each old tet elsewhere. Fields that are linear in space
-    /// stay so to the last digits, others between the values around, no farther from the linear value than those at the tet's vertices differ.
+    /// For points: by the [row for quadratic fields](super::Origins::quadratic) if there is one, otherwise
+    /// linear in each old tet. Fields that are linear in space are reproduced to the last digits. Other
+    /// values lie between the values around, and differ from the linear value by no more than the spread of
+    /// the values at the tet's vertices.
     Interpolate,
-    /// Points: linear in each old tet. Fields that are linear in space stay so to the last digits, others between the values at its vertices.
+    /// For points: linear in each old tet. Fields that are linear in space are reproduced to the last digits;
+    /// other values lie between those at its vertices.
     Linear,
-    /// Cells: the mean over what a new tet overlaps. The integral over each region stays (up to its
-    /// [`deviation`](super::RegionLedger::deviation)), constants stay to the bit, other values between those they came from.
+    /// For cells: the mean over what a new tet overlaps. The integral over each region is conserved (up to
+    /// its [`deviation`](super::RegionLedger::deviation)), constants are reproduced to the bit, and other
+    /// values lie between those they come from.
     Conserve,
-    /// The value of the old thing with the largest share: ids, names, directions, which have no mean.
+    /// The value of the old entity with the largest share: for ids, names and directions, which have no mean.
     Inherit,
     /// The array is left out.
     Drop,
 }
 
 impl Rule {
-    /// What a point array gets when nobody says otherwise: floats are interpolated; whole numbers, texts and directions
+    /// The default rule for a point array: floats are interpolated; whole numbers, texts and directions are
     /// inherited.
     pub fn of_points(field: &Field) -> Self {
         if has_mean(field) && !is_direction(field) { Self::Interpolate } else { Self::Inherit }
     }
 
-    /// What a cell array gets when nobody says otherwise: floats are conserved; whole numbers, texts and directions
+    /// The default rule for a cell array: floats are conserved; whole numbers, texts and directions are
     /// inherited.
     pub fn of_cells(field: &Field) -> Self {
         if has_mean(field) && !is_direction(field) { Self::Conserve } else { Self::Inherit }
     }
 }
 
-/// Rules for arrays by their names; arrays that are not named get [`Rule::of_points`] and [`Rule::of_cells`].
+/// Rules for arrays by their names; all other arrays get [`Rule::of_points`] and [`Rule::of_cells`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Rules {
@@ -49,13 +54,13 @@ pub struct Rules {
     pub cells: BTreeMap<String, Rule>,
 }
 
-/// What a user says of an array, wherever it is.
+/// How a user wants an array to be transferred, on points as on cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carry {
-    /// On points interpolated, on cells averaged by volume.
+    /// [`Rule::Interpolate`] on points, [`Rule::Conserve`] on cells.
     Mean,
-    /// On points [`Rule::Linear`], on cells averaged by volume.
+    /// [`Rule::Linear`] on points, [`Rule::Conserve`] on cells.
     Linear,
     /// [`Rule::Inherit`].
     Inherit,
@@ -64,10 +69,10 @@ pub enum Carry {
 }
 
 impl Rules {
-    /// The rule that `carry` means, for the arrays of this name: on points, on cells, or on both.
+    /// Sets the rule that `carry` stands for, for the arrays of this name: on points, on cells, or on both.
     ///
     /// # Errors
-    /// When `mesh` has no such array.
+    /// If `mesh` has no such array.
     pub fn carry(&mut self, mesh: &Mesh, name: &str, carry: Carry) -> Result<()> {
         let rule = |mean, linear| match carry {
             Carry::Mean => mean,
@@ -92,18 +97,19 @@ impl Rules {
     }
 }
 
-/// Whether a mean of two of its values is a value again.
+/// Whether a mean of values is meaningful: only for floats.
 pub(super) fn has_mean(field: &Field) -> bool {
     matches!(field.values, Values::F32(_) | Values::F64(_))
 }
 
-/// Parts of the names under which the heart community keeps directions in tissue.
+/// Parts of the names that cardiac modelling uses for arrays of tissue directions.
 const DIRECTION_NAMES: &[&str] = &["fibre", "fiber", "sheet", "direction"];
-/// How far from 1 the squared length of a unit vector may be, written in single precision or with five digits.
+/// Tolerance on the squared length of a unit vector, which may be written in single precision or with five
+/// digits.
 const UNIT: f64 = 1e-4;
 
-/// Whether the rows are directions: so named, or vectors that all have the length 1 (or 0, where there is no direction).
-/// A mean of directions is shorter than they are, and of opposite ones nothing at all.
+/// Whether the rows are directions: by their name, or since all are vectors of length 1 (or 0, where there is
+/// no direction). A mean of directions is shorter than they are, and that of opposite ones is zero.
 fn is_direction(field: &Field) -> bool {
     let name = field.name.to_lowercase();
     field.components.is_multiple_of(3)
