@@ -8,23 +8,24 @@ use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
 use crate::mesh::shapes::junction::{Arm, junction};
 use crate::mesh::shapes::labelled::skins;
 
-/// What a vessel with an aneurysm looks like: the middle of its bend is the origin, it lies in the plane of x and y, and the sac is where y
-/// is positive. Lengths in one unit.
+/// The parameters of a vessel with an aneurysm: the middle of its bend is the origin, it lies in the plane of
+/// x and y, and the sac is where y is positive. All lengths are in one unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aneurysm {
     /// Radius of the vessel; default 1.
     pub radius: f64,
     /// Length of the vessel's axis; default 10.
     pub length: f64,
-    /// How far the axis turns, in degrees; 0 is straight. Default 90.
+    /// Angle by which the axis bends, in degrees; 0 is straight. Default 90.
     pub bend_deg: f64,
     /// Radius of the sac; default 1.4.
     pub sac_radius: f64,
-    /// From the axis of the vessel to the middle of the sac; default 2.2.
+    /// Distance from the axis of the vessel to the centre of the sac; default 2.2.
     pub sac_height: f64,
-    /// Within which difference of distances vessel and sac are blended; larger is rounder. Default 0.5.
+    /// Vessel and sac are blended where their distances differ by less than this; larger is rounder. Default
+    /// 0.5.
     pub blend: f64,
-    /// Vertices around; put to the next even number. Default 24.
+    /// Number of vertices around, rounded up to an even number; default 24.
     pub around: usize,
 }
 
@@ -42,15 +43,18 @@ impl Default for Aneurysm {
     }
 }
 
-/// Where in the sac its arm ends, from its middle and in width, as parts of its radius: on its sphere.
+/// Where the arm of the sac ends, as fractions of the sac's radius: the distance from its centre, and the
+/// radius of the arm there, which puts the end on the sphere.
 const TIP: [f64; 2] = [0.6, 0.8];
 
 impl Aneurysm {
-    /// Its surface, closed, turned outward; patches `wall` (the sac is a part of it), `inlet` (where x is negative), `outlet`.
+    /// The closed surface, facing outward, with patches `wall` (the sac is part of it), `inlet` (where x is
+    /// negative) and `outlet`.
     ///
     /// # Errors
-    /// When sizes are not larger than 0, there are fewer than 6 around, the vessel turns more sharply than it is wide, the sac does not
-    /// rise over the vessel or does not touch it, or is near the vessel's ends.
+    /// If a size is not positive, there are fewer than 6 vertices around, the vessel bends more sharply than
+    /// its width allows, or the sac does not rise over the vessel, does not touch it, or is near the vessel's
+    /// ends.
     pub fn mesh(&self) -> Result<Mesh> {
         self.check()?;
         check_count(
@@ -106,7 +110,7 @@ impl Aneurysm {
     }
 }
 
-/// How far a point is from the axis of the vessel: a circle through the origin, or the line along x.
+/// The distance of a point from the axis of the vessel: a circle through the origin, or the line along x.
 fn from_axis([x, y, z]: Point, curvature: f64) -> f64 {
     if curvature == 0.0 {
         return y.hypot(z);

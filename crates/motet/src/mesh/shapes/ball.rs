@@ -8,14 +8,14 @@ use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::to_tets;
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// Half the diagonal of the core, as a part of the radius.
+/// Half the diagonal of the core, as a fraction of the radius.
 const CORE: f64 = 0.5;
 
-/// How round the core is: 0 a cube, 1 a ball (whose edges would be flat).
+/// Roundness of the core: 0 is a cube, 1 a ball (on which the edges of the cube would be flat).
 const ROUNDNESS: f64 = 0.5;
 
-/// The ball of radius 1 around the origin: a core of `n^3` cells and `layers`
-/// shells around it, of six tets a cell. Region `ball`; patch `sphere`.
+/// The ball of radius 1 around the origin: a core of `n^3` cells and `layers` shells around it, with six tets
+/// per cell. Region `ball`; patch `sphere`.
 ///
 /// Panics unless `n` and `layers` are at least 1.
 pub fn ball(n: usize, layers: usize) -> Mesh {
@@ -41,7 +41,7 @@ pub fn ball(n: usize, layers: usize) -> Mesh {
     labelled(points, to_tets(&cells), "ball", &["sphere"], |_| 0)
 }
 
-/// The vertices of the core by lattice place: the innermost shell, and new ones within.
+/// The vertices of the core by lattice index: those of the innermost shell, and new ones inside.
 fn core_vertices(
     n: usize,
     shell: &Shell,

@@ -1,4 +1,4 @@
-//! A vessel that parts in two, smooth where the three meet.
+//! A vessel that branches into two, smooth where the three meet.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{dot, norm, scale, sub};
@@ -7,23 +7,25 @@ use crate::mesh::shapes::even_out::{Implicit, smooth_minimum};
 use crate::mesh::shapes::junction::{Arm, junction};
 use crate::mesh::shapes::labelled::skins;
 
-/// What a bifurcation looks like: the vessel comes along x, parts at the origin, and its branches lie in the plane of x and y. Lengths in
-/// one unit.
+/// The parameters of a bifurcation: the vessel comes along x and branches at the origin, and its branches lie
+/// in the plane of x and y. All lengths are in one unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bifurcation {
-    /// Radius of the vessel that parts; default 1.
+    /// Radius of the vessel before it branches; default 1.
     pub radius: f64,
-    /// Radius of each branch; default 0.79, with which the cubes sum to that of the vessel (Murray 1926).
+    /// Radius of each branch; default 0.79, for which the cubes of the radii sum to that of the vessel
+    /// (Murray 1926).
     pub branch_radii: [f64; 2],
-    /// Between the axis and each branch, in degrees; default 40.
+    /// Angle between the axis and each branch, in degrees; default 40.
     pub branch_angles_deg: [f64; 2],
     /// Length of the vessel up to where the axes meet; default 4.
     pub length: f64,
     /// Length of each branch from there; default 5.
     pub branch_lengths: [f64; 2],
-    /// Within which difference of distances two vessels are blended; larger is rounder. Default 0.6.
+    /// Two vessels are blended where their distances differ by less than this; larger is rounder. Default
+    /// 0.6.
     pub blend: f64,
-    /// Vertices around each vessel; put to the next even number. Default 24.
+    /// Number of vertices around each vessel, rounded up to an even number; default 24.
     pub around: usize,
 }
 
@@ -42,10 +44,12 @@ impl Default for Bifurcation {
 }
 
 impl Bifurcation {
-    /// Its surface, closed, turned outward; patches `wall`, `inlet`, `outlet_1` (where y is positive), `outlet_2`.
+    /// The closed surface, facing outward, with patches `wall`, `inlet`, `outlet_1` (where y is positive) and
+    /// `outlet_2`.
     ///
     /// # Errors
-    /// When sizes are not larger than 0, there are fewer than 6 around, or vessels are too near each other at their ends.
+    /// If a size is not positive, there are fewer than 6 vertices around, an angle is not between 0 and 150
+    /// degrees, or vessels are too near each other at their ends.
     pub fn mesh(&self) -> Result<Mesh> {
         self.check()?;
         let [left, right] = self.branch_angles_deg.map(f64::to_radians);
@@ -83,7 +87,7 @@ impl Bifurcation {
     }
 }
 
-/// How far a point is from the ray that starts at the origin.
+/// The distance of a point from a ray that starts at the origin.
 fn from_ray(p: Point, heading: f64) -> f64 {
     let along = [heading.cos(), heading.sin(), 0.0];
     norm(sub(p, scale(along, dot(p, along).max(0.0))))

@@ -1,13 +1,12 @@
-//! A box, divided evenly.
+//! A uniformly divided box.
 
 use crate::base::{Point, VertexId};
 use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::to_tets;
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// The box between two corners, `n` cells along each axis, six tets a cell
-/// (Kuhn's, all around one diagonal). Region `box`; patches `xmin`, `xmax`,
-/// `ymin`, `ymax`, `zmin`, `zmax`.
+/// The box between two corners, with `n` cells along each axis and six tets per cell (Kuhn's, all around one
+/// diagonal). Region `box`; patches `xmin`, `xmax`, `ymin`, `ymax`, `zmin`, `zmax`.
 ///
 /// Panics unless `n` is at least 1 and `low < high` along each axis.
 pub fn box_grid(n: [usize; 3], [low, high]: [Point; 2]) -> Mesh {
@@ -32,7 +31,7 @@ pub(super) fn lattice_points(n: [usize; 3], at: impl Fn(usize, usize) -> f64) ->
     lattice([n[0] + 1, n[1] + 1, n[2] + 1]).map(|ijk| [0, 1, 2].map(|k| at(k, ijk[k]))).collect()
 }
 
-/// All places of a lattice of `n` places along each axis, x fastest.
+/// The indices of all points of a lattice of `n` points along each axis, x fastest.
 pub(super) fn lattice(n: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..n[0] * n[1] * n[2]).map(move |i| [i % n[0], i / n[0] % n[1], i / (n[0] * n[1])])
 }

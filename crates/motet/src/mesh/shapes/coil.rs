@@ -1,4 +1,4 @@
-//! A coil: a wire wound round a line, as it fills an aneurysm.
+//! A coil: a wire wound around a line, such as those that fill aneurysms.
 
 use std::f64::consts::TAU;
 
@@ -7,23 +7,23 @@ use crate::geometry::vector::{LARGEST, add};
 use crate::mesh::Mesh;
 use crate::mesh::shapes::{check_count, wire};
 
-/// A helix about a line along z. Lengths in one unit.
+/// A helix around a line along z. All lengths are in one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coil {
     /// The middle of its axis.
     pub centre: Point,
-    /// From the axis to the middle of the wire.
+    /// Distance from the axis to the centre line of the wire.
     pub radius: f64,
-    /// From turn to turn.
+    /// Distance between turns along the axis.
     pub pitch: f64,
-    /// How often it goes round; need not be whole.
+    /// Number of turns; need not be whole.
     pub turns: f64,
-    /// Half of the thickness of the wire.
+    /// Radius of the wire.
     pub wire_radius: f64,
 }
 
 impl Coil {
-    /// The middle of the wire: `steps` straight pieces a turn.
+    /// The centre line of the wire, with `steps` straight segments per turn.
     pub fn line(&self, steps: usize) -> Vec<Point> {
         let n = (self.turns * steps as f64).ceil().max(1.0) as usize;
         let place = |i: usize| {
@@ -35,10 +35,11 @@ impl Coil {
         (0..=n).map(place).collect()
     }
 
-    /// Its surface, closed, of the patch `wire`: `steps` pieces a turn, `around` sides.
+    /// The closed surface, as the patch `wire`, with `steps` segments per turn and `around` sides.
     ///
     /// # Errors
-    /// As for [`wire`]; when a number is not finite, and when the coil would have more points than a shape may.
+    /// As for [`wire`]; also if a number is not finite or `turns` is negative, and if the coil would have
+    /// more points than a shape may have.
     pub fn mesh(&self, steps: usize, around: usize) -> Result<Mesh> {
         let n_points = (self.turns * steps as f64 + 1.0) * (around as f64 + 1.0);
         let sizes = [

@@ -19,18 +19,18 @@ use crate::mesh::{CellKind, Cells, Mesh};
 /// Half the edge of the box; the sphere has radius 1.
 const HALF_EDGE: f64 = 5.0;
 
-/// Shell `s` of `layers` cuts a ray of length R at `R^((s / layers)^GRADING)`.
-/// At 1 the cells of a ray would all be alike in shape; a little more makes those at
-/// the slanted walls flatter, where the worst are. Tried 1 to 1.3: the worst EAS
-/// of the mesh of 32 k vertices is 0.187 at 1, 0.199 at 1.1, 0.182 at 1.2.
+/// Shell `s` of `layers` cuts a ray of length R at `R^((s / layers)^GRADING)`. At 1, the cells along a ray
+/// would all have the same shape; a little more makes those at the slanted walls flatter, where the worst
+/// are. Of the values tried, 1 to 1.3, the worst EAS of the mesh of 32 k vertices is 0.187 at 1, 0.199 at
+/// 1.1, 0.182 at 1.2.
 const GRADING: f64 = 1.1;
 
 /// The space between the sphere of radius 1 around the origin and the box
 /// `[-5, 5]^3`: `layers + 1` shells of `6 n^2 + 2` vertices each, sphere first.
 /// Region `fluid`; patches `sphere` and `box`.
 ///
-/// The four sizes of the paper that this benchmark comes from are about
-/// `(n, layers)` = (15, 7), (22, 10), (30, 13), (38, 17).
+/// The four mesh sizes of the paper that introduced this benchmark are about `(n, layers)` = (15, 7), (22,
+/// 10), (30, 13), (38, 17).
 ///
 /// Panics unless `n` and `layers` are at least 1.
 pub fn sphere_in_box(n: usize, layers: usize) -> Mesh {
@@ -55,23 +55,23 @@ fn cut(ray: Point, fraction: f64) -> Point {
     scale(ray, length.powf(fraction) / length)
 }
 
-/// The surface of a cube of `n` x `n` quads a face.
+/// The surface of a cube, with `n` x `n` quads per face.
 pub(super) struct Shell {
-    /// Where each vertex lies on the cube `[-1, 1]^3`, angles evenly divided, those
-    /// farthest from the origin first. Since a smaller id chooses the diagonal,
-    /// quads are cut towards the corners of the cube, which on the sphere is the short way,
-    /// and quads along rays from the longer ray within to the shorter one without.
+    /// The position of each vertex on the cube `[-1, 1]^3`, with evenly divided angles; those farthest from
+    /// the origin come first. Since the smallest id determines the diagonal, quads are cut towards the
+    /// corners of the cube, which is the shorter way on the sphere, and quads along rays from the inner end
+    /// of the longer ray to the outer end of the shorter one.
     pub(super) directions: Vec<Point>,
     /// Its quads, facing outward.
     pub(super) quads: Vec<[VertexId; 4]>,
-    /// The lattice place of each vertex, 0 to n along each axis.
+    /// The lattice indices of each vertex, 0 to n along each axis.
     pub(super) places: Vec<[usize; 3]>,
 }
 
 impl Shell {
     pub(super) fn new(n: usize) -> Self {
         let direction = |place: [usize; 3]| place.map(|i| even_angle(i, n));
-        // Integers, so that mirror images are equally far, to the bit.
+        // In integers, so that mirror images are equally far, to the bit.
         let farness = |place: &[usize; 3]| -> usize {
             let mut squares: Vec<usize> = place.iter().map(|&i| (2 * i).abs_diff(n)).collect();
             squares.sort_unstable();
@@ -105,13 +105,13 @@ impl Shell {
     }
 }
 
-/// The tangent of -45 to 45 degrees in `n` even steps, exactly odd in the middle.
+/// The tangent at step `i` of `n` even steps from -45 to 45 degrees, exactly antisymmetric about the middle.
 pub(super) fn even_angle(i: usize, n: usize) -> f64 {
     let step = 2.0 * i as f64 - n as f64;
     if step.abs() == n as f64 { step.signum() } else { (step / n as f64 * std::f64::consts::FRAC_PI_4).tan() }
 }
 
-/// The quads on the faces of a cube of `n` cells along each axis, by lattice place, facing outward.
+/// The quads on the faces of a cube of `n` cells along each axis, by lattice indices, facing outward.
 fn quads(n: usize) -> impl Iterator<Item = [[usize; 3]; 4]> {
     (0..6 * n * n).map(move |q| {
         let (side, s, t) = (q / (n * n), q / n % n, q % n);

@@ -1,24 +1,25 @@
-//! Triangles on an implicit surface made even: vertices moved to the middle of their neighbours and back onto the surface, edges flipped.
+//! Makes triangles on an implicit surface even: vertices move to the mean of their neighbours and back onto
+//! the surface, and edges are flipped.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Point, VertexId};
 use crate::geometry::vector::{add, cross, dot, norm, scale, sub};
 
-/// How often vertices are moved and edges flipped. Shapes have come to rest by then.
+/// Number of times that vertices are moved and edges flipped; the shapes have settled by then.
 const ROUNDS: usize = 30;
 
-/// Newton's steps onto the surface; functions that are nearly distances need few.
+/// Number of Newton steps onto the surface; functions that are nearly distances need few.
 const STEPS: usize = 6;
 
-/// A surface where a function of the place is 0, and a length of the size of its features.
+/// The surface where a function of the position is 0, and a length of the size of its features.
 pub(super) struct Implicit<F> {
     pub(super) function: F,
     pub(super) size: f64,
 }
 
 impl<F: Fn(Point) -> f64> Implicit<F> {
-    /// The place on the surface that the gradient leads to.
+    /// The point on the surface to which the gradient leads from `p`.
     pub(super) fn project(&self, mut p: Point) -> Point {
         for _ in 0..STEPS {
             let gradient = self.gradient(p);
@@ -30,7 +31,8 @@ impl<F: Fn(Point) -> f64> Implicit<F> {
         p
     }
 
-    /// Where the ray from the origin along a unit vector leaves what is inside; `reach` bounds how far it looks.
+    /// The point where the ray from the origin along a unit vector leaves the inside; the search ends at the
+    /// distance `reach`.
     pub(super) fn leave(&self, direction: Point, reach: f64) -> Point {
         let is_outside = |s: f64| (self.function)(scale(direction, s)) > 0.0;
         let step = 0.05 * self.size;
@@ -61,14 +63,14 @@ impl<F: Fn(Point) -> f64> Implicit<F> {
     }
 }
 
-/// The distance to both of two things, rounded where both are within `blend` of each other's distance, and exactly the smaller
+/// A smooth minimum of two distances: rounded where they differ by less than `blend`, and exactly the smaller
 /// one elsewhere.
 pub(super) fn smooth_minimum(a: f64, b: f64, blend: f64) -> f64 {
     let share = (1.0 - (a - b).abs() / blend).max(0.0);
     a.min(b) - 0.25 * share * share * blend
 }
 
-/// Moves vertices that are not fixed, and flips edges, until triangles are even.
+/// Moves vertices that are not fixed, and flips edges, to make triangles even.
 pub(super) fn even_out<F: Fn(Point) -> f64>(
     surface: &Implicit<F>,
     points: &mut [Point],
@@ -100,7 +102,8 @@ fn middles(points: &[Point], triangles: &[[VertexId; 3]]) -> Vec<Option<Point>> 
     sums.into_iter().map(|(sum, n)| (n > 0.0).then(|| scale(sum, 1.0 / n))).collect()
 }
 
-/// Flips edges while that makes the smallest angle of their two triangles larger, each triangle once.
+/// Flips edges where that makes the smallest angle of their two triangles larger; each triangle changes at
+/// most once.
 fn flip(points: &[Point], triangles: &mut [[VertexId; 3]]) {
     let mut sides: BTreeMap<[VertexId; 2], usize> = BTreeMap::new();
     for (t, &[a, b, c]) in triangles.iter().enumerate() {
@@ -118,7 +121,8 @@ fn flip(points: &[Point], triangles: &mut [[VertexId; 3]]) {
         if is_new && is_better(points, [triangles[s], triangles[t]], after) {
             [triangles[s], triangles[t]] = after;
             [is_flipped[s], is_flipped[t]] = [true; 2];
-            // So that no edge comes twice; where the others lead is not asked again.
+            // Prevents that the same edge is made twice; the other sides of these triangles are not looked up
+            // again.
             sides.extend([([c, d], s), ([d, c], t)]);
         }
     }
@@ -128,7 +132,7 @@ fn opposite(triangle: [VertexId; 3], a: VertexId, b: VertexId) -> VertexId {
     triangle.into_iter().find(|&v| v != a && v != b).unwrap_or(a)
 }
 
-/// Whether two triangles are better than two others, and face the same way.
+/// Whether the smallest angle of two triangles is larger than that of two others, and they face the same way.
 fn is_better(points: &[Point], before: [[VertexId; 3]; 2], after: [[VertexId; 3]; 2]) -> bool {
     let corners = |t: [VertexId; 3]| t.map(|v| points[v.index()]);
     let normal = |t: [VertexId; 3]| {
@@ -141,7 +145,7 @@ fn is_better(points: &[Point], before: [[VertexId; 3]; 2], after: [[VertexId; 3]
     after.iter().all(|&t| dot(normal(t), facing) > 0.0) && least(after) > least(before) + 1e-9
 }
 
-/// In radians.
+/// The smallest angle of a triangle, in radians.
 fn smallest_angle([a, b, c]: [Point; 3]) -> f64 {
     let at = |p: Point, q: Point, r: Point| {
         let (u, v) = (sub(q, p), sub(r, p));

@@ -1,4 +1,5 @@
-//! A vessel with a dissection flap: a sheet inside the lumen that shares vertices with the wall where it hangs on it.
+//! A vessel with a dissection flap: a sheet inside the lumen that shares vertices with the wall where it is
+//! attached.
 //!
 //! ```text
 //!    .-""-.       cross-section: the flap joins two lines of the wall, or only the first, and then its
@@ -17,28 +18,32 @@ use crate::mesh::disc::disc;
 use crate::mesh::shapes::labelled::skins;
 use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
 
-/// What a vessel with a flap looks like. It starts at the origin, along z. Lengths in one unit.
+/// The parameters of a vessel with a flap. It starts at the origin and runs along z. All lengths are in one
+/// unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flap {
     /// Radius of the vessel; default 1.
     pub radius: f64,
     /// Length along the axis; default 6.
     pub length: f64,
-    /// How far the axis turns, towards x, in degrees; default 0, a straight vessel.
+    /// Angle by which the axis bends towards x, in degrees; default 0, a straight vessel.
     pub bend_deg: f64,
-    /// Vertices around; default 24.
+    /// Number of vertices around; default 24.
     pub around: usize,
-    /// Steps along the axis; default 24.
+    /// Number of steps along the axis; default 24.
     pub slices: usize,
-    /// Where on the circumference the flap is held, in degrees; put to the nearest vertices. Default 200 and 340.
+    /// Where on the circumference the flap is attached, in degrees, rounded to the nearest vertices. Default
+    /// 200 and 340.
     pub lines_deg: [f64; 2],
-    /// From where to where it reaches along the axis, as parts of the length; put to the nearest slices. Default 0.2 to 0.8.
+    /// The start and the end of the flap along the axis, as fractions of the length, rounded to the nearest
+    /// slices. Default 0.2 to 0.8.
     pub extent: [f64; 2],
-    /// How far it reaches from its first line towards the second: 1 to hang on both, less for a free edge. Default 1.
+    /// How far the flap reaches from its first line towards the second: 1 to be attached to both, less for a
+    /// free edge. Default 1.
     pub reach: f64,
-    /// How far waves move it, as a part of the radius; default 0.
+    /// Amplitude of the waves of the flap, as a fraction of the radius; default 0.
     pub wave_height: f64,
-    /// Waves along its length; default 2.
+    /// Number of waves along its length; default 2.
     pub waves: f64,
 }
 
@@ -60,11 +65,12 @@ impl Default for Flap {
 }
 
 impl Flap {
-    /// Its surface; patches `wall`, `inlet`, `outlet`, `flap`. The first three are closed and face outward.
+    /// The surface, with patches `wall`, `inlet`, `outlet` and `flap`. The first three together are closed
+    /// and face outward.
     ///
     /// # Errors
-    /// When sizes are not larger than 0 or counts too small, the vessel turns more sharply than it is wide, the flap has no width
-    /// or length or does not end inside, or its waves are higher than there is room for.
+    /// If a size is not positive or a count too small, the vessel bends more sharply than its width allows,
+    /// the flap has no width or length or does not end inside, or its waves would reach the wall.
     pub fn mesh(&self) -> Result<Mesh> {
         self.check()?;
         let wall = Sleeve { first: 0, around: self.around };
@@ -82,7 +88,7 @@ impl Flap {
         Ok(skins(points, &parts))
     }
 
-    /// The triangles of the flap; those of its points that are not on the wall are added.
+    /// The triangles of the flap. Those of its points that are not on the wall are added to `points`.
     fn sheet(&self, points: &mut Vec<Point>, wall: Sleeve) -> Vec<[VertexId; 3]> {
         let ([from, to], [first, last]) = (self.lines(), self.ends());
         let span = |slice: usize| [from, to].map(|i| wall.at(slice, i));
@@ -111,7 +117,7 @@ impl Flap {
         (0..last - first).flat_map(|r| (0..columns).flat_map(move |c| halves(quad(r, c), r + c))).collect()
     }
 
-    /// A place on the flap: on the chord between two points of the wall, and off it by the wave.
+    /// A point of the flap: on the chord between two points of the wall, displaced from it by the wave.
     fn place(&self, [a, b]: [Point; 2], across: f64, along: f64) -> Point {
         let chord = sub(b, a);
         let off = cross(chord, [0.0, 0.0, 1.0 / norm(chord)]);
@@ -119,7 +125,7 @@ impl Flap {
         add(add(a, scale(chord, across)), scale(off, self.wave_height * self.radius * wave))
     }
 
-    /// The vertices around where it hangs.
+    /// The indices around the circumference at which it is attached.
     fn lines(&self) -> [usize; 2] {
         let n = self.around as f64;
         self.lines_deg.map(|deg| (deg.rem_euclid(360.0) / 360.0 * n).round() as usize % self.around)
@@ -155,7 +161,7 @@ impl Flap {
         if !(self.reach > 0.0 && self.reach <= 1.0) {
             return refuse("a flap without width, or beyond the wall", "give a reach above 0, at most 1");
         }
-        // From the middle of the chord to the nearer side of the wall.
+        // The distance from the middle of the chord to the nearer side of the wall.
         let room = 1.0 - (PI * apart as f64 / self.around as f64).cos().abs();
         if !(self.wave_height.abs() < 0.8 * room && self.waves.is_finite()) {
             return refuse("waves that reach the wall", "give a smaller wave height, or move the lines");

@@ -1,4 +1,4 @@
-//! Frames along a curve that do not twist, and bending what was built along z onto a curve.
+//! Frames along a curve that do not twist, and bending of shapes built along z onto a curve.
 
 use crate::base::{Error, Point, Result};
 use crate::geometry::vector::{add, cross, distance, dot, in_range, norm, scale, sub};
@@ -6,11 +6,12 @@ use crate::geometry::vector::{add, cross, distance, dot, in_range, norm, scale, 
 /// Two directions across the curve and the one along it: orthonormal, right-handed.
 pub(super) type Frame = [Point; 3];
 
-/// A frame at each point of a polyline, without twist: each is the one before turned no more than it must. By two reflections
-/// (Wang, Juettler, Zheng and Liu 2008), which is off from the exact frame of the smooth curve by the fourth power of the step. Of a closed line the turn
-/// by which the last frame misses the first is spread evenly.
+/// A frame without twist at each point of a polyline: each is the previous one rotated no more than
+/// necessary. Computed by double reflection (Wang, Juettler, Zheng and Liu 2008), with an error of fourth
+/// order in the step against the exact frame of the smooth curve. For a closed line, the angle by which the
+/// last frame misses the first is spread evenly.
 ///
-/// Points must be finite and those that follow each other apart.
+/// Points must be finite, and consecutive points distinct.
 pub(super) fn frames(points: &[Point], closed: bool) -> Vec<Frame> {
     let n = points.len();
     let tangents: Vec<Point> = (0..n).map(|i| tangent(points, closed, i)).collect();
@@ -32,7 +33,8 @@ pub(super) fn frames(points: &[Point], closed: bool) -> Vec<Frame> {
         .collect()
 }
 
-/// The directions of the segments before and after a point of a polyline, as unit vectors; at an end they are one.
+/// The directions of the segments before and after a point of a polyline, as unit vectors; at an end both are
+/// the same.
 pub(super) fn directions(points: &[Point], closed: bool, i: usize) -> [Point; 2] {
     let n = points.len();
     let unit = |from: usize, to: usize| {
@@ -48,11 +50,11 @@ fn tangent(points: &[Point], closed: bool, i: usize) -> Point {
     let [before, after] = directions(points, closed, i);
     let sum = add(before, after);
     let length = norm(sum);
-    // Where the line turns back on itself there is no middle.
+    // If the line turns back on itself, there is no mean direction.
     if length > 1e-6 { scale(sum, 1.0 / length) } else { after }
 }
 
-/// A unit vector at right angles to another.
+/// A unit vector perpendicular to another.
 fn any_across(along: Point) -> Point {
     let least = (0..3).min_by(|&i, &j| along[i].abs().total_cmp(&along[j].abs())).unwrap_or(0);
     let mut axis = [0.0; 3];
@@ -61,7 +63,7 @@ fn any_across(along: Point) -> Point {
     scale(across, 1.0 / norm(across))
 }
 
-/// `v` reflected in the plane at right angles to `normal`; a normal of no length changes nothing.
+/// `v` reflected in the plane perpendicular to `normal`; unchanged if `normal` is zero.
 fn reflected(v: Point, normal: Point) -> Point {
     let squared = dot(normal, normal);
     if squared == 0.0 { v } else { sub(v, scale(normal, 2.0 * dot(normal, v) / squared)) }
@@ -82,10 +84,10 @@ pub struct CenterLine {
 }
 
 impl CenterLine {
-    /// A line through these points. The more of them, the smoother what is bent.
+    /// A polyline through these points. The more of them, the smoother a bent shape.
     ///
     /// # Errors
-    /// When there are fewer than two, one is not finite, or two that follow each other coincide.
+    /// If there are fewer than two points, one is not finite, or two consecutive ones coincide.
     pub fn new(points: &[Point]) -> Result<Self> {
         check_line(points)?;
         let mut arc = vec![0.0];
@@ -95,15 +97,15 @@ impl CenterLine {
         Ok(Self { points: points.to_vec(), frames: frames(points, false), arc })
     }
 
-    /// How long the line is.
+    /// The length of the line.
     pub fn length(&self) -> f64 {
         self.arc[self.arc.len() - 1]
     }
 
-    /// Where a point of a shape along z goes: z becomes the length along the line, x and y go across it, in a frame that does
-    /// not twist. Before the line and after it all is straight.
+    /// The image of a point of a shape built along z: z becomes the length along the line, x and y are
+    /// measured across it, in a frame that does not twist. Beyond both ends the map continues straight.
     ///
-    /// Shapes stay free of crossings where the line bends in no narrower circle than they are wide.
+    /// Shapes do not intersect themselves as long as no bend of the line is narrower than they are wide.
     pub fn place(&self, [x, y, z]: Point) -> Point {
         let last = self.points.len() - 2;
         let i = self.arc.partition_point(|&s| s <= z).saturating_sub(1).min(last);
@@ -121,13 +123,13 @@ impl CenterLine {
         add(scale(at(i), 1.0 - share), scale(at(i + 1), share))
     }
 
-    /// All points of a shape.
+    /// The images of all points of a shape: see [`Self::place`].
     pub fn bent(&self, points: &[Point]) -> Vec<Point> {
         points.iter().map(|p| self.place(*p)).collect()
     }
 }
 
-/// Whether points can be a polyline.
+/// Checks that points can be a polyline.
 fn check_line(points: &[Point]) -> Result<()> {
     if points.len() < 2 {
         return Err(Error::input(format!("a line needs two points, and there are {}", points.len()))

@@ -1,4 +1,4 @@
-//! Three arms that meet, as triangles on an implicit surface: vessels that part, and a sac on a vessel.
+//! Three arms that meet, as triangles on an implicit surface: branching vessels, or a sac on a vessel.
 //!
 //! ```text
 //!      \    |    /     Seen from above: the arms lie in one plane. Between each two of them a curve runs over the surface
@@ -21,19 +21,19 @@ const UP: Point = [0.0, 0.0, 1.0];
 /// An arm from the origin, in the plane of x and y.
 #[derive(Clone, Copy)]
 pub(super) struct Arm {
-    /// Where it heads at the origin, in radians; arms are given counter-clockwise.
+    /// Its direction at the origin as an angle in radians; arms are given counter-clockwise.
     pub(super) heading: f64,
-    /// How its heading changes with length; 0 is straight.
+    /// The change of its direction per unit of length; 0 is straight.
     pub(super) curvature: f64,
     pub(super) length: f64,
     /// Radius at its end.
     pub(super) radius: f64,
-    /// It ends in a flat disc; otherwise in a round tip, which is a part of the wall.
+    /// Whether it ends in a flat disc; otherwise it ends in a round tip, which is part of the wall.
     pub(super) has_cap: bool,
 }
 
 impl Arm {
-    /// The place on its axis at a share of its length, and the directions up, left and along there.
+    /// The point on its axis at a fraction of its length, and the directions up, left and along there.
     fn axis(&self, share: f64) -> (Point, [Point; 3]) {
         let (from, s) = (self.heading, share * self.length);
         let to = from + self.curvature * s;
@@ -45,7 +45,8 @@ impl Arm {
         ([x, y, 0.0], [UP, cross(UP, along), along])
     }
 
-    /// A vertex of a ring, blended from the first ring into a circle of the end's radius.
+    /// The position of a vertex of a ring, blended from the first ring into a circle with the radius of the
+    /// end.
     fn place(&self, share: f64, angle: f64, first: Point) -> Point {
         let (_, start) = self.axis(0.0);
         let (centre, frame) = self.axis(share);
@@ -57,7 +58,7 @@ impl Arm {
     }
 }
 
-/// What became of three arms.
+/// The triangulated surface of three arms.
 pub(super) struct Junction {
     pub(super) points: Vec<Point>,
     pub(super) wall: Vec<[VertexId; 3]>,
@@ -65,10 +66,11 @@ pub(super) struct Junction {
     pub(super) caps: [Vec<[VertexId; 3]>; 3],
 }
 
-/// Three arms that meet at the origin, on this surface; every ring has `around` vertices, an even number.
+/// Triangulates three arms that meet at the origin, on this surface; every ring has `around` vertices, an
+/// even number.
 ///
 /// # Errors
-/// When an arm has no circle at its end: it is too short, or too near another.
+/// If the end of an arm is not a circle, since the arm is too short, or too near another.
 pub(super) fn junction<F: Fn(Point) -> f64>(
     arms: [Arm; 3],
     surface: &Implicit<F>,
@@ -115,7 +117,8 @@ fn middle<F: Fn(Point) -> f64>(arms: &[Arm; 3], surface: &Implicit<F>, half: usi
     points
 }
 
-/// Curve `i`, left of arm `i`, from the pole above to the one below; then the one right of it, back.
+/// The first ring of arm `i`: curve `i`, left of it, from the upper pole to the lower one, then the curve
+/// right of it, back.
 fn first_ring(i: usize, half: usize) -> Vec<VertexId> {
     let inner = |curve: usize, step: usize| VertexId::new(2 + curve % 3 * (half - 1) + step - 1);
     let left = (1..half).map(|step| inner(i, step));
@@ -123,7 +126,8 @@ fn first_ring(i: usize, half: usize) -> Vec<VertexId> {
     std::iter::once(VertexId(0)).chain(left).chain([VertexId(1)]).chain(right).collect()
 }
 
-/// The rings of an arm; the last one, counter-clockwise seen from beyond the arm.
+/// Adds the rings of an arm and the triangles between them. Returns the last ring, counter-clockwise seen
+/// from beyond the arm.
 fn rings(
     arm: &Arm,
     first: &[VertexId],
@@ -149,7 +153,7 @@ fn rings(
 }
 
 /// # Errors
-/// When the rim of a cap is not on the surface.
+/// If the rim of a cap is not on the surface.
 fn check_circle<F: Fn(Point) -> f64>(
     surface: &Implicit<F>,
     points: &[Point],

@@ -1,13 +1,12 @@
-//! Volume cells and their boundary, or a surface alone, labelled, as one mesh.
+//! Labelled meshes: volume cells and their boundary, or a surface alone.
 
 use std::collections::BTreeMap;
 
 use crate::base::{Point, VertexId};
 use crate::mesh::{Boundary, CellKind, Cells, Field, LabelNames, Mesh};
 
-/// The mesh of `cells`, all of one region, with its boundary facets behind them
-/// as cells of the patches. `patch_of` says to which of `patches` (names of
-/// labels 1, 2, ...) a facet belongs, by its place in the list.
+/// A mesh of `cells`, all of one region, followed by its boundary facets as surface cells. `patch_of` returns
+/// the patch of a facet, as an index into `patches` (the names of labels 1, 2, ...).
 pub(super) fn labelled(
     points: Vec<Point>,
     mut cells: Cells,
@@ -33,12 +32,12 @@ pub(super) fn labelled(
     }
 }
 
-/// A surface alone: triangles, all of one patch.
+/// A surface mesh of triangles, all of one patch.
 pub(super) fn skin(points: Vec<Point>, triangles: &[[VertexId; 3]], patch: &str) -> Mesh {
     skins(points, &[(patch, triangles)])
 }
 
-/// A surface alone: the triangles of each patch, which are labelled 1, 2, ...
+/// A surface mesh of the triangles of several patches, which are labelled 1, 2, ...
 pub(super) fn skins(points: Vec<Point>, parts: &[(&str, &[[VertexId; 3]])]) -> Mesh {
     let (mut cells, mut patches, mut names) = (Cells::new(), Vec::new(), BTreeMap::new());
     for (label, (name, triangles)) in (1..).zip(parts) {

@@ -8,9 +8,9 @@ use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::fan;
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// The box `[0, 3] x [0, 1] x [0, 1]` in cells of edge `1 / n`: hexahedra in
-/// `x < 1`, wedges up to `x < 2`, then each cell as pyramids around its centre,
-/// of which those at the boundary are two tets each. Region `mixed`; patch `surface`.
+/// The box `[0, 3] x [0, 1] x [0, 1]` in cells of edge `1 / n`: hexahedra in `x < 1`, wedges up to `x < 2`,
+/// beyond that pyramids around the centre of each cell, those at the boundary divided into two tets each.
+/// Region `mixed`; patch `surface`.
 ///
 /// Panics unless `n` is at least 1.
 pub fn mixed(n: usize) -> Mesh {

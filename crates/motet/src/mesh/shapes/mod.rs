@@ -5,22 +5,22 @@
 //! | [`box_grid`] | tets | `xmin` `xmax` `ymin` `ymax` `zmin` `zmax` |
 //! | [`ball`] | tets | `sphere` |
 //! | [`sphere_in_box`] | tets | `sphere` `box` |
-//! | [`tube`] | tets; wedges or thin tets at the wall, if wanted | `wall` `inlet` `outlet` |
+//! | [`tube`] | tets; optionally wedges or thin tets at the wall | `wall` `inlet` `outlet` |
 //! | [`mixed`] | hexahedra, wedges, pyramids, tets | `surface` |
-//! | [`quadratic`] | quadratic tets, from any of the tet shapes | as they were |
+//! | [`quadratic`] | quadratic tets, from any of the tet shapes | unchanged |
 //! | [`Stent`] | triangles, the same at every radius | `stent` |
-//! | [`Coil`] | triangles, a wire wound round a line | `wire` |
+//! | [`Coil`] | triangles, a wire wound around a line | `wire` |
 //! | [`wire`] | triangles, round tubes along line segments | `wire` |
 //! | [`Flap`] | triangles, a vessel and a sheet inside it | `wall` `inlet` `outlet` `flap` |
 //! | [`ThickTube`] | triangles, a vessel and its wall | `lumen_inlet` `lumen_outlet` `interface` `outer` `wall_inlet` `wall_outlet` |
-//! | [`Bifurcation`] | triangles, a vessel that parts in two | `wall` `inlet` `outlet_1` `outlet_2` |
+//! | [`Bifurcation`] | triangles, a vessel that branches into two | `wall` `inlet` `outlet_1` `outlet_2` |
 //! | [`Aneurysm`] | triangles, a bent vessel with a sac | `wall` `inlet` `outlet` |
 //!
-//! Each has a cell array `region` on its volume cells and `patch` on its surface
-//! cells, which cover the whole boundary, and names for both. Cells are positive
-//! and conforming, and the same arguments give the same bytes. Most are built of
-//! hexahedra that [`to_tets`] then splits. Those of triangles are closed and turned outward, apart from what lies inside them (a flap, the
-//! interface of lumen and wall); [`CenterLine`] bends what lies along z.
+//! Each has a cell array `region` on its volume cells and `patch` on its surface cells, which cover the whole
+//! boundary, and names for both. Cells are positive and conforming, and the same arguments give the same
+//! bytes. Most volume meshes are built of hexahedra that [`to_tets`] then splits. Triangle surfaces are
+//! closed and face outward, apart from the sheets inside them (a flap, the interface of lumen and wall);
+//! [`CenterLine`] bends shapes built along z.
 
 mod aneurysm;
 mod ball;
@@ -60,13 +60,13 @@ pub use wire::{Chain, chains, wire};
 
 use crate::base::{Error, Result};
 
-/// More points than this nobody asks of a shape on purpose, and few machines hold.
+/// Largest number of points of a shape: nobody wants more on purpose, and few machines could hold them.
 const MOST_POINTS: f64 = (1u64 << 26) as f64;
 
-/// Refuses to make a shape of so many points, before memory is asked for.
+/// Refuses a shape of too many points before memory is allocated.
 ///
 /// # Errors
-/// When they are too many, or no number.
+/// If `n_points` is too large, or NaN.
 pub fn check_count(n_points: f64) -> Result<()> {
     if n_points <= MOST_POINTS {
         return Ok(());

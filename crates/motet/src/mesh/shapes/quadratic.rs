@@ -1,4 +1,4 @@
-//! Middle nodes for a mesh of tets and triangles.
+//! Adds middle nodes to a mesh of tets and triangles.
 
 use std::collections::BTreeMap;
 
@@ -10,9 +10,9 @@ use crate::mesh::{CellKind, Cells, Mesh};
 const TRIANGLE_EDGES: &[[usize; 2]] = &[[0, 1], [1, 2], [2, 0]];
 const TET_EDGES: &[[usize; 2]] = &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
-/// The mesh with its tets and triangles made quadratic, a new vertex in the
-/// middle of each edge. Other cells, labels and cell arrays stay; point arrays
-/// are dropped, having no values at the new vertices.
+/// The mesh with its tets and triangles made quadratic by a new vertex in the middle of each edge. Other
+/// cells, labels and cell arrays stay; point arrays are dropped, since they have no values at the new
+/// vertices.
 pub fn quadratic(mesh: &Mesh) -> Mesh {
     let mut points = mesh.points.clone();
     let mut middles = BTreeMap::new();

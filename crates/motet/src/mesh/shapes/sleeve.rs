@@ -1,11 +1,11 @@
-//! Triangles of tubes: rings of vertices along z, and their points bent onto an arc.
+//! Triangulated tubes: rings of vertices along z, whose points can be bent onto an arc.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
 use crate::base::{Point, VertexId};
 
-/// Rings of `around` vertices each, numbered from `first` on, ring by ring.
+/// Rings of `around` vertices each, numbered ring by ring from `first` on.
 #[derive(Clone, Copy)]
 pub(super) struct Sleeve {
     pub(super) first: usize,
@@ -17,12 +17,12 @@ impl Sleeve {
         VertexId::new(self.first + ring * self.around + i % self.around)
     }
 
-    /// The vertices of a ring, counter-clockwise seen against z.
+    /// The vertices of a ring, counter-clockwise seen from positive z.
     pub(super) fn ring(&self, ring: usize) -> Vec<VertexId> {
         (0..self.around).map(|i| self.at(ring, i)).collect()
     }
 
-    /// The triangles between rings that follow each other, facing away from the axis.
+    /// The triangles between consecutive rings, facing away from the axis.
     pub(super) fn triangles(&self, rings: Range<usize>) -> Vec<[VertexId; 3]> {
         rings
             .flat_map(|ring| (0..self.around).map(move |i| (ring, i)))
@@ -33,12 +33,13 @@ impl Sleeve {
     }
 }
 
-/// A quad in two; odd ones along the other diagonal, so that no direction is special.
+/// Divides a quad into two triangles; for odd `parity` along the other diagonal, so that no direction is
+/// preferred.
 pub(super) fn halves([a, b, c, d]: [VertexId; 4], parity: usize) -> [[VertexId; 3]; 2] {
     if parity.is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
 }
 
-/// Rings of a cylinder along z, `slices` steps long.
+/// The points of the rings of a cylinder along z, `slices` steps long.
 pub(super) fn cylinder(radius: f64, length: f64, around: usize, slices: usize) -> Vec<Point> {
     (0..=slices)
         .flat_map(|s| (0..around).map(move |i| (s, i)))
@@ -49,7 +50,7 @@ pub(super) fn cylinder(radius: f64, length: f64, around: usize, slices: usize) -
         .collect()
 }
 
-/// Bends what lies along z, from 0 to `length`, onto an arc of `bend_deg` degrees towards x.
+/// Bends points that lie along z, from 0 to `length`, onto an arc of `bend_deg` degrees towards x.
 pub(super) fn bend(points: &mut [Point], length: f64, bend_deg: f64) {
     if bend_deg == 0.0 {
         return;

@@ -1,20 +1,19 @@
-//! Cells of any kind into tets, conforming without looking at neighbours.
+//! Division of cells of any kind into tets that conform without regard to neighbours.
 
 use crate::base::VertexId;
 use crate::mesh::adjacency::{FacetUse, Facets};
 use crate::mesh::{CellKind, Cells};
 
-/// Splits every volume cell into tets; surface cells, curves and points stay
-/// out. Middle nodes of quadratic cells are dropped.
+/// Splits every volume cell into tets; surface cells, curves and points are left out. Middle nodes of
+/// quadratic cells are dropped.
 ///
-/// A cell is a cone over its facets from its vertex of smallest id, and a facet
-/// a fan from its own (the "pulling" of polytopes; for hexahedra, wedges and
-/// pyramids see Dompierre, Labbé, Vallet, Camarero 1999). Both cells at a facet
-/// see the same fan, so the tets conform. Who numbers the vertices chooses the
-/// diagonals.
+/// A cell is divided into the cone over its facets from its vertex of smallest id, and a facet into the fan
+/// from its own (the "pulling" of polytopes; for hexahedra, wedges and pyramids see Dompierre, Labbé, Vallet,
+/// Camarero 1999). Both cells at a facet see the same fan, so the tets conform. The numbering of the vertices
+/// determines the diagonals.
 ///
-/// Positive for convex cells of positive volume. A hexahedron gives six tets, a
-/// wedge three, a pyramid two.
+/// The tets are positive for convex cells of positive volume. A hexahedron gives six tets, a wedge three, a
+/// pyramid two.
 pub fn to_tets(cells: &Cells) -> Cells {
     let facets = Facets::of(cells);
     let mut tets = Vec::new();
@@ -39,7 +38,7 @@ pub fn to_tets(cells: &Cells) -> Cells {
     split
 }
 
-/// The triangles of a ring, all around its vertex of smallest id.
+/// The triangles of a ring, as a fan from its vertex of smallest id.
 pub(crate) fn fan(ring: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> + '_ {
     let n = ring.len();
     let first = (0..n).min_by_key(|&i| ring[i]).unwrap_or(0);

@@ -1,4 +1,5 @@
-//! A stent as a closed surface: rings that zigzag round a cylinder, joined by links, the same triangles at every radius.
+//! A stent as a closed surface: rings that zigzag around a cylinder, joined by links, with the same triangles
+//! at every radius.
 //!
 //! ```text
 //!    /\    /\    /\     ring 1, and a link to ring 0 where a valley meets a crown.
@@ -18,24 +19,25 @@ use crate::mesh::Mesh;
 use crate::mesh::shapes::check_count;
 use crate::mesh::shapes::labelled::skin;
 
-/// What a stent looks like. It lies along z from 0; its radius is told where points are asked for.
+/// The parameters of a stent. It lies along z from 0; its radius is an argument of [`Self::points`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stent {
     /// Length; the same at every radius. Default 10.
     pub length: f64,
-    /// Rings along it; default 6.
+    /// Number of rings; default 6.
     pub rings: usize,
-    /// Crowns of each ring; default 8.
+    /// Number of crowns of each ring; default 8.
     pub crowns: usize,
-    /// Width of the struts, seen from outside; default 0.15. Where crimping leaves no room for it they are narrower.
+    /// Width of the struts, seen from outside; default 0.15. Where crimping leaves no space for it, they are
+    /// narrower.
     pub strut_width: f64,
-    /// Thickness along the radius, inward; default 0.1.
+    /// Thickness in radial direction, inward; default 0.1.
     pub thickness: f64,
-    /// Length of the links, which is the room between rings; default 0.15.
+    /// Length of the links, which is the gap between rings; default 0.15.
     pub link_length: f64,
     /// A link at every crown (1), at every second one (2) and so on; default 1.
     pub link_every: usize,
-    /// Segments from a crown to the next valley; the links are one wide. Default 6.
+    /// Number of segments from a crown to the next valley; links are one segment wide. Default 6.
     pub segments: usize,
 }
 
@@ -54,7 +56,7 @@ impl Default for Stent {
     }
 }
 
-/// The corners of the section of a strut, round about.
+/// The corners of the cross-section of a strut, in order around it.
 #[derive(Clone, Copy)]
 enum Corner {
     LowInner,
@@ -65,10 +67,11 @@ enum Corner {
 use Corner::{HighInner, HighOuter, LowInner, LowOuter};
 
 impl Stent {
-    /// The triangles, turned outward: each edge is in two of them, once each way.
+    /// The triangles, facing outward: each edge belongs to two of them, once in each direction.
     ///
     /// # Errors
-    /// When the parts do not fit: counts too small, rings that are no longer than their struts are wide.
+    /// If the parameters do not fit: counts too small or too large, lengths that are not positive, or rings
+    /// that are no longer than their struts are wide.
     pub fn triangles(&self) -> Result<Vec<[VertexId; 3]>> {
         self.check()?;
         let mut quads = Vec::new();
@@ -77,7 +80,7 @@ impl Stent {
                 let at = |corner, next| self.vertex(ring, i + next, corner);
                 quads.push([at(LowOuter, 0), at(LowOuter, 1), at(HighOuter, 1), at(HighOuter, 0)]);
                 quads.push([at(LowInner, 0), at(HighInner, 0), at(HighInner, 1), at(LowInner, 1)]);
-                // Both cut along the same diagonal, so that they stay apart however steep the strut is.
+                // Both are cut along the same diagonal, so that they stay apart however steep the strut is.
                 if !self.has_link(ring, i) {
                     quads.push([at(HighOuter, 0), at(HighOuter, 1), at(HighInner, 1), at(HighInner, 0)]);
                 }
@@ -96,10 +99,10 @@ impl Stent {
         Ok(quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())
     }
 
-    /// The points at an outer radius; the triangles are the same at each.
+    /// The points of the stent at an outer radius; the triangles are the same at every radius.
     ///
     /// # Errors
-    /// As [`Stent::triangles`], and when the radius is not larger than the thickness.
+    /// As for [`Stent::triangles`], and if the radius is not larger than the thickness.
     pub fn points(&self, radius: f64) -> Result<Vec<Point>> {
         self.check()?;
         if !(radius > self.thickness && radius <= LARGEST) {
@@ -128,12 +131,12 @@ impl Stent {
     /// Points and triangles as a mesh with the patch `stent`.
     ///
     /// # Errors
-    /// As [`Stent::points`].
+    /// As for [`Stent::points`].
     pub fn mesh(&self, radius: f64) -> Result<Mesh> {
         Ok(skin(self.points(radius)?, &self.triangles()?, "stent"))
     }
 
-    /// How many links there are.
+    /// Number of links.
     pub fn n_links(&self) -> usize {
         let linked = |ring: usize| (0..self.n_around()).filter(|&i| self.has_link(ring, i)).count();
         (0..self.rings).map(linked).sum()
@@ -145,7 +148,7 @@ impl Stent {
             return Err(Error::options("a stent has rings, crowns and links, and two segments to a strut")
                 .remedy("give rings, crowns and link_every of at least 1 and segments of at least 2"));
         }
-        // Beyond this ids would not fit; nobody means it.
+        // Counts beyond this are a mistake, and ids would not fit.
         let n = [self.rings, self.crowns, self.segments].map(|n| n as f64).iter().product::<f64>() * 8.0;
         check_count(n)?;
         let lengths = [self.length, self.strut_width, self.thickness, self.link_length];
@@ -163,7 +166,7 @@ impl Stent {
         Ok(())
     }
 
-    /// Half the way along z from valley to crown, along the middle of the strut.
+    /// Half the distance along z from valley to crown, on the centre line of the strut.
     fn amplitude(&self) -> f64 {
         let links = self.link_length * (self.rings as f64 - 1.0);
         ((self.length - links) / self.rings as f64 - self.strut_width) / 2.0
@@ -173,17 +176,19 @@ impl Stent {
         2 * self.segments * self.crowns
     }
 
-    /// The angle within the zigzag, 2 pi for each crown. Crowns and valleys are in the middle of a segment, where links fit.
+    /// The phase of the zigzag at position `i`, 2 pi for each crown. Crowns and valleys are in the middle of
+    /// a segment, where links fit.
     fn phase(&self, i: usize) -> f64 {
         let in_crown = i % (2 * self.segments);
         let crown = i / (2 * self.segments);
         TAU * crown as f64 + PI * (in_crown as f64 + 0.5) / self.segments as f64
     }
 
-    /// Where the middle of a strut is along z, and half its height there: its width over the cosine of its slope.
+    /// The position along z of the centre line of a strut, and half the height of the strut there: half its
+    /// width over the cosine of its slope.
     ///
-    /// It must not grow faster than crowns part from the valleys of the next ring, by `amplitude (1 - |cos|)`; half as fast
-    /// leaves the rings their link's length apart at every radius.
+    /// The height must not grow faster than crowns move away from the valleys of the next ring, by `amplitude
+    /// (1 - |cos|)`; growing half as fast keeps the rings a link length apart at every radius.
     fn strut(&self, ring: usize, phase: f64, radius: f64) -> (f64, f64) {
         let amplitude = self.amplitude();
         let sign = if ring.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -195,9 +200,9 @@ impl Stent {
         (middle, (half * slope.hypot(1.0)).min(half + amplitude * (1.0 - phase.cos().abs()) / 2.0))
     }
 
-    /// Whether the segment from `i` has a link up from this ring.
+    /// Whether a link leads up from this ring at the segment from `i`.
     fn has_link(&self, ring: usize, i: usize) -> bool {
-        // Even rings have their crowns where the phase is 0, odd ones half a turn on.
+        // Even rings have their crowns where the phase is 0, odd ones half a period later.
         let shift = if ring.is_multiple_of(2) { 1 } else { 1 + self.segments };
         let (crown, place) = ((i + shift) / (2 * self.segments), (i + shift) % (2 * self.segments));
         ring + 1 < self.rings && place == 0 && (crown % self.crowns + ring).is_multiple_of(self.link_every)

@@ -7,7 +7,8 @@ use crate::mesh::disc::disc;
 use crate::mesh::shapes::labelled::skins;
 use crate::mesh::shapes::sleeve::{Sleeve, bend, cylinder, halves, turned};
 
-/// What a vessel with a thick wall looks like. It starts at the origin, along z. Lengths in one unit.
+/// The parameters of a vessel with a thick wall. It starts at the origin and runs along z. All lengths are in
+/// one unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThickTube {
     /// Radius of the lumen; default 1.
@@ -16,13 +17,13 @@ pub struct ThickTube {
     pub thickness: f64,
     /// Length along the axis; default 6.
     pub length: f64,
-    /// How far the axis turns, towards x, in degrees; default 0, a straight vessel.
+    /// Angle by which the axis bends towards x, in degrees; default 0, a straight vessel.
     pub bend_deg: f64,
-    /// Vertices around; default 24.
+    /// Number of vertices around; default 24.
     pub around: usize,
-    /// Steps along the axis; default 24.
+    /// Number of steps along the axis; default 24.
     pub slices: usize,
-    /// Steps through the wall, at its ends; default 1.
+    /// Number of steps through the wall, at its ends; default 1.
     pub layers: usize,
 }
 
@@ -33,11 +34,13 @@ impl Default for ThickTube {
 }
 
 impl ThickTube {
-    /// Its surface; patches `lumen_inlet`, `lumen_outlet`, `interface`, `outer`, `wall_inlet`, `wall_outlet`. The interface faces the
-    /// wall, all else outward. Three patches meet in the rims of the lumen.
+    /// The surface, with patches `lumen_inlet`, `lumen_outlet`, `interface`, `outer`, `wall_inlet`,
+    /// `wall_outlet`. The interface faces the wall, all others outward. Three patches meet at each rim of the
+    /// lumen.
     ///
     /// # Errors
-    /// When sizes are not larger than 0, counts too small, or the vessel turns more sharply than it is wide.
+    /// If a size is not positive, a count is too small, or the vessel bends more sharply than its width
+    /// allows.
     pub fn mesh(&self) -> Result<Mesh> {
         self.check()?;
         let (around, slices) = (self.around, self.slices);
@@ -102,7 +105,7 @@ impl ThickTube {
     }
 }
 
-/// The triangles between two rings of as many vertices, counter-clockwise as they are.
+/// The triangles between two rings with the same number of vertices, counter-clockwise as the rings are.
 fn annulus(within: &[VertexId], without: &[VertexId]) -> Vec<[VertexId; 3]> {
     let n = within.len();
     let quad = |i: usize| [within[i], without[i], without[(i + 1) % n], within[(i + 1) % n]];

@@ -1,4 +1,4 @@
-//! A straight tube, the simplest vessel, with thin wall layers if wanted.
+//! A straight tube, the simplest vessel, optionally with thin layers at the wall.
 //!
 //! ```text
 //!    .-""""-.        cross-section: a core of n x n quads, bent outward, then rings
@@ -18,35 +18,35 @@ use crate::mesh::shapes::labelled::labelled;
 use crate::mesh::shapes::split::{fan, to_tets};
 use crate::mesh::{CellKind, Cells, Mesh};
 
-/// What cells the thin layers at the wall are made of.
+/// The kind of cells in the thin layers at the wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WallCells {
-    /// Tets, three to each half of a quad of the wall.
+    /// Tets, three for each half of a quad of the wall.
     Tets,
-    /// Wedges, one to each half of a quad of the wall.
+    /// Wedges, one for each half of a quad of the wall.
     Wedges,
 }
 
-/// What a tube looks like.
+/// The parameters of a tube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TubeOptions {
     /// Radius; default 1.
     pub radius: f64,
     /// Length along z, from 0; default 5.
     pub length: f64,
-    /// Cells along each side of the core, a quarter of the cells around; default 4.
+    /// Number of cells along each side of the core, a quarter of the number around; default 4.
     pub n: usize,
-    /// Rings of cells between core and wall layers; default 2.
+    /// Number of rings of cells between the core and the thin layers; default 2.
     pub rings: usize,
-    /// Cells along the axis; default 15.
+    /// Number of cells along the axis; default 15.
     pub slices: usize,
-    /// Thin layers at the wall; default 0.
+    /// Number of thin layers at the wall; default 0.
     pub wall_layers: usize,
-    /// Thickness of the outermost of the thin layers, as a part of the radius; default 0.01.
+    /// Thickness of the outermost thin layer, as a fraction of the radius; default 0.01.
     pub first_layer: f64,
-    /// How much thicker each thin layer is than its outer neighbour; default 1.3.
+    /// Ratio of the thickness of each thin layer to that of its outer neighbour; default 1.3.
     pub growth: f64,
-    /// What the thin layers are made of; default tets.
+    /// The kind of cells in the thin layers; default tets.
     pub wall_cells: WallCells,
 }
 
@@ -67,11 +67,11 @@ impl Default for TubeOptions {
 }
 
 impl TubeOptions {
-    /// Refuses what [`tube`] cannot make.
+    /// Checks that [`tube`] can build these options.
     ///
     /// # Errors
-    /// When a count is 0 (thin layers apart), when there would be more points than a shape may have, when a length is none, and when the thin layers leave no
-    /// room for the core.
+    /// If a count is 0 (other than `wall_layers`), there would be more points than a shape may have, a length
+    /// is not positive, or the thin layers leave no space for the core.
     pub fn check(&self) -> Result<()> {
         let Self { n, rings, slices, wall_layers, .. } = *self;
         if n == 0 || rings == 0 || slices == 0 {
@@ -94,13 +94,13 @@ impl TubeOptions {
         Ok(())
     }
 
-    /// The radius within the thin layers, as a part of the tube's.
+    /// The radius inside the thin layers, as a fraction of the tube's radius.
     fn outer_radius(&self) -> f64 {
         let layers = std::iter::successors(Some(self.first_layer), |thickness| Some(thickness * self.growth));
         layers.take(self.wall_layers).fold(1.0, |radius, thickness| radius - thickness)
     }
 
-    /// The radius of each ring of vertices, wall first, as a part of the tube's.
+    /// The radius of each ring of vertices, from the wall inward, as a fraction of the tube's radius.
     fn ring_radii(&self) -> Vec<f64> {
         let mut radii = vec![1.0];
         let mut thickness = self.first_layer;
@@ -116,16 +116,17 @@ impl TubeOptions {
     }
 }
 
-/// Where the corners of the core lie, as a part of the radius.
+/// Distance of the corners of the core from the axis, as a fraction of the radius.
 const CORE: f64 = 0.6;
 
-/// How round the core is: 0 a square, 1 a disc (whose corners would be flat).
+/// Roundness of the core: 0 is a square, 1 a disc (on which the corners would be flat).
 const ROUNDNESS: f64 = 0.6;
 
-/// The tube that `options` describe, along z from 0. Region `lumen`; patches
-/// `wall`, `inlet` (at z = 0) and `outlet`.
+/// The tube described by `options`, along z from 0. Region `lumen`; patches `wall`, `inlet` (at z = 0) and
+/// `outlet`.
 ///
-/// Panics when a count is 0 (thin layers apart) or the thin layers fill the tube: see [`TubeOptions::check`].
+/// Panics if a count is 0 (other than `wall_layers`), or if the thin layers fill the tube: see
+/// [`TubeOptions::check`].
 pub fn tube(options: &TubeOptions) -> Mesh {
     assert!(options.n > 0 && options.rings > 0 && options.slices > 0, "a mesh has cells");
     let section = Section::new(options);
@@ -148,8 +149,8 @@ pub fn tube(options: &TubeOptions) -> Mesh {
     })
 }
 
-/// The cross-section, and how its copies along the axis are numbered: rings
-/// from the wall inward, all slices of one before the next, then the core's inside.
+/// The cross-section, and the numbering of its copies along the axis: rings from the wall inward, all slices
+/// of one before the next, then the inside of the core.
 struct Section {
     n: usize,
     n_slices: usize,
@@ -185,7 +186,7 @@ impl Section {
         let core_rim = self.rings.len() - 1;
         let mut points = Vec::new();
         for (r, &radius) in self.rings.iter().enumerate() {
-            // Circles at the wall, the outline of the core within.
+            // Circles at the wall, blended inward into the outline of the core.
             let share = r.saturating_sub(options.wall_layers) as f64 / options.rings as f64;
             let plane = (0..self.n_around()).map(|around| {
                 let square = self.rim_place(around).map(|i| self.even_angle(i));
@@ -211,12 +212,13 @@ impl Section {
         (self.n - 1) * (self.n - 1)
     }
 
-    /// The place in the core of its inner vertex `i`.
+    /// The indices in the grid of the core of its inner vertex `i`.
     fn inside_place(&self, i: usize) -> [usize; 2] {
         [i % (self.n - 1) + 1, i / (self.n - 1) + 1]
     }
 
-    /// The place on the core's rim, counter-clockwise from its lower left corner.
+    /// The indices in the grid of the core of a vertex on its rim, counter-clockwise from its lower left
+    /// corner.
     fn rim_place(&self, around: usize) -> [usize; 2] {
         let (side, i) = (around / self.n % 4, around % self.n);
         match side {
@@ -231,7 +233,7 @@ impl Section {
         VertexId::new((ring * self.n_slices + slice) * self.n_around() + around % self.n_around())
     }
 
-    /// The vertex of the core at a place of its `(n + 1)^2`.
+    /// The vertex of the core at indices in its grid of `(n + 1)^2`.
     fn in_core(&self, [i, j]: [usize; 2], slice: usize) -> VertexId {
         let n = self.n;
         let rim = |around: usize| self.on_ring(self.rings.len() - 1, around, slice);
@@ -258,7 +260,7 @@ impl Section {
                         [(0, 0), (1, 0), (1, 1), (0, 1)]
                             .map(|(a, s)| self.on_ring(ring, around + a, slice + s))
                     };
-                    // Quads of a ring face outward, so a cell between two has them turned.
+                    // Quads of a ring face outward, so a cell between two rings takes them reversed.
                     if wedges {
                         push_wedges(quad(ring), quad(ring + 1), &mut done);
                     } else {
@@ -293,7 +295,7 @@ fn push_wedges(outer: [VertexId; 4], inner: [VertexId; 4], cells: &mut Cells) {
     }
 }
 
-/// A point of the core: of the square `[-1, 1]^2`, bent towards a disc.
+/// The point of the core for a point of the square `[-1, 1]^2`: bent towards a disc.
 fn core_point([x, y]: [f64; 2]) -> [f64; 2] {
     let length = x.hypot(y);
     let round = if length > 0.0 { x.abs().max(y.abs()) / length } else { 0.0 };

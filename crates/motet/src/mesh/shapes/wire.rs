@@ -8,22 +8,23 @@ use crate::mesh::Mesh;
 use crate::mesh::shapes::frames::{directions, frames};
 use crate::mesh::shapes::labelled::skin;
 
-/// How far a ring is stretched at most where the wire bends.
+/// The largest factor by which a ring is stretched where the wire bends.
 const LARGEST_STRETCH: f64 = 2.0;
 
-/// A line of segments that follow each other.
+/// A chain of consecutive segments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chain {
-    /// Its vertices in order; of a closed one the first is not repeated.
+    /// Its vertices in order; the first of a closed chain is not repeated.
     pub vertices: Vec<VertexId>,
-    /// Whether the last is joined to the first.
+    /// Whether the last vertex is joined to the first.
     pub closed: bool,
 }
 
-/// Line segments as chains: from end to end, an end being where other than two segments meet, and then the closed ones. Segments
-/// that come twice, or lead nowhere, count once and not at all. The chains depend on the order of the segments only.
+/// Joins line segments into chains: first the open ones, from end to end, where an end is a point at which
+/// other than two segments meet; then the closed ones. Duplicate segments count once, and segments from a
+/// point to itself are left out. The order of the segments does not matter.
 ///
-/// Panics when a segment names a point beyond `n_points`.
+/// Panics if a segment names a point beyond `n_points`.
 pub fn chains(n_points: usize, segments: &[[VertexId; 2]]) -> Vec<Chain> {
     let mut edges: Vec<[VertexId; 2]> =
         segments.iter().filter(|[a, b]| a != b).map(|&[a, b]| [a.min(b), a.max(b)]).collect();
@@ -66,13 +67,13 @@ pub fn chains(n_points: usize, segments: &[[VertexId; 2]]) -> Vec<Chain> {
     found
 }
 
-/// A round tube of this radius and `around` sides along each chain of the segments, closed at its ends, turned outward, of
-/// the patch `wire`. Its rings stand in the planes that halve the angles of bends, stretched so that the sides keep their
-/// distance. Where wires cross or meet, so do their tubes.
+/// A round tube of this radius with `around` sides along each chain of the segments, closed at its ends and
+/// facing outward, as the patch `wire`. At bends its rings lie in the planes that halve the angle, stretched
+/// so that the sides keep their distance from the line. Where wires cross or meet, so do their tubes.
 ///
 /// # Errors
-/// When a segment names a point that is not there, has no length or an end that is not finite; when there are none; when the radius is not larger
-/// than 0 or there are fewer than three sides.
+/// If a segment names a point that does not exist, has no length or an end that is not finite; if there are
+/// no segments; if the radius is not positive, or there are fewer than three sides.
 pub fn wire(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: usize) -> Result<Mesh> {
     check(points, segments, radius, around)?;
     let (mut out, mut triangles) = (Vec::new(), Vec::new());
@@ -108,7 +109,8 @@ pub fn wire(points: &[Point], segments: &[[VertexId; 2]], radius: f64, around: u
     Ok(skin(out, &triangles, "wire"))
 }
 
-/// Makes offsets longer in the plane of a bend, by one over the cosine of half its angle.
+/// A function that lengthens offsets in the plane of a bend by one over the cosine of half its angle, up to
+/// [`LARGEST_STRETCH`].
 fn stretch([before, after]: [Point; 2]) -> impl Fn(Point) -> Point {
     let bend = sub(after, before);
     let length = norm(bend);
