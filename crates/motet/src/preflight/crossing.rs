@@ -1,16 +1,17 @@
-//! Which triangles of two surfaces meet, or of one surface with itself: exact, touching included.
+//! Finds which triangles of two surfaces meet, or of one surface with itself: exact, touching included.
 //!
-//! Neighbours on a surface meet in the vertices that they share, and that is no crossing. So pairs with vertices in common are judged by
-//! what they have in common beyond:
+//! Neighbours on a surface meet in the vertices that they share, which is not a crossing. Pairs with vertices
+//! in common are therefore judged by what else they have in common:
 //!
-//! | shared | the pair counts where |
+//! | shared | the pair counts if |
 //! |---|---|
 //! | no vertex | the triangles have a point in common |
-//! | one vertex | the edge opposite to it, of one of them, meets the other: whoever walks within both triangles away from the shared vertex leaves one of them through that edge |
+//! | one vertex | the edge opposite to it, of one of them, meets the other: a path within both triangles away from the shared vertex leaves one of them through that edge |
 //! | two vertices | both lie in one plane on the same side of the shared edge |
-//! | all three | always: it is the same triangle twice |
+//! | all three | always: the triangle is duplicated |
 //!
-//! Vertices are shared when they have one id. Two vertices of different ids at one place are points that touch.
+//! Vertices are shared if they have the same id. Two vertices with different ids at one place are points that
+//! touch.
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::distance::triangle_triangle;
@@ -19,11 +20,12 @@ use crate::geometry::predicates::{collinear, orient3d};
 use crate::spatial::BoxTree;
 use crate::spatial::runs::{around, corners, in_runs};
 
-/// All pairs of a triangle of `a` and one of `b` that meet in more than vertices and edges that they share; rising.
+/// All pairs of a triangle of `a` and one of `b` that meet in more than the vertices and edges that they
+/// share, in rising order.
 ///
-/// Triangles with a corner that is not finite meet nothing. Those without area are their edges.
+/// Triangles with a corner that is not finite meet nothing. Triangles without area count as their edges.
 ///
-/// Panics when a triangle names a point beyond `points`.
+/// Panics if a triangle names a point beyond `points`.
 pub fn crossings(
     points: &[Point],
     a: &[[VertexId; 3]],
@@ -33,14 +35,16 @@ pub fn crossings(
     crossings_of(points, [a, b], threads, |_, _| true)
 }
 
-/// All pairs of triangles of one surface that meet in more than they share, the smaller id first; rising.
+/// All pairs of triangles of one surface that meet in more than they share, the smaller id first, in rising
+/// order.
 ///
-/// Panics when a triangle names a point beyond `points`.
+/// Panics if a triangle names a point beyond `points`.
 pub fn own_crossings(points: &[Point], triangles: &[[VertexId; 3]], threads: &Threads) -> Vec<[u32; 2]> {
     crossings_of(points, [triangles, triangles], threads, |i, j| i < j)
 }
 
-/// The pairs of a triangle of `a` and one of `b` that `admit` wants and that meet in more than vertices and edges that they share; rising.
+/// The pairs of a triangle of `a` and one of `b` that `admit` accepts and that meet in more than the vertices
+/// and edges that they share, in rising order.
 pub(super) fn crossings_of(
     points: &[Point],
     [a, b]: [&[[VertexId; 3]]; 2],
@@ -70,9 +74,9 @@ fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let ((rest_a, n_a), (rest_b, n_b)) = (distinct(a, |v| !b.contains(&v)), distinct(b, |v| !a.contains(&v)));
     let at = |v: VertexId| points[v.index()];
     match (n_a, n_b) {
-        // The same vertices: a triangle twice, unless it is but an edge or a point.
+        // The same vertices: a duplicated triangle, unless it is only an edge or a point.
         (0, 0) => distinct(a, |_| true).1 == 3,
-        // An edge or a vertex of the other.
+        // One of them is an edge or a vertex of the other.
         (0, _) | (_, 0) => false,
         (1, 1) if shared[0] != shared[1] => {
             overlap_beside([at(shared[0]), at(shared[1])], at(rest_a[0]), at(rest_b[0]))
@@ -85,7 +89,7 @@ fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     }
 }
 
-/// The first and the last of the different vertices of a triangle that are wanted, and how many they are.
+/// The first and the last of the distinct vertices of a triangle that are `wanted`, and the number of these.
 fn distinct(t: [VertexId; 3], wanted: impl Fn(VertexId) -> bool) -> ([VertexId; 2], usize) {
     let (mut ends, mut n) = ([t[0]; 2], 0);
     for (k, &v) in t.iter().enumerate() {
@@ -97,7 +101,7 @@ fn distinct(t: [VertexId; 3], wanted: impl Fn(VertexId) -> bool) -> ([VertexId; 
     (ends, n)
 }
 
-/// Whether the triangles of an edge with `p` and with `q` have more in common than the edge.
+/// Whether the triangles formed by an edge with `p` and with `q` have more in common than the edge.
 fn overlap_beside(edge: [Point; 2], p: Point, q: Point) -> bool {
     let [u, v] = edge;
     if orient3d(u, v, p, q) != 0 {
@@ -109,7 +113,7 @@ fn overlap_beside(edge: [Point; 2], p: Point, q: Point) -> bool {
     }
     match flat {
         [false, false] => is_same_side(edge, p, q),
-        // All on one line, along which points follow each other as their coordinates do.
+        // All on one line, along which points are ordered like their coordinates.
         [true, true] => {
             let (first, last) = if u < v { (u, v) } else { (v, u) };
             p < first && q < first || p > last && q > last

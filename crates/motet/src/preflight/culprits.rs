@@ -1,4 +1,4 @@
-//! What is wrong with surfaces as a mesh of its own, to be looked at.
+//! The faults of surfaces as a mesh of their own, for display.
 
 use super::fault::{Fault, FaultKind};
 use super::report::Preflight;
@@ -6,23 +6,25 @@ use crate::base::{Point, VertexId};
 use crate::geometry::vector::in_range;
 use crate::mesh::{CellKind, Cells, Field, Mesh};
 
-/// What stands in the array `triangle` for a vertex or an edge.
+/// The value of the array `triangle` for a vertex or an edge.
 const NO_TRIANGLE: i32 = -1;
 
-/// One cell of the picture.
+/// One cell of the mesh of faults.
 struct Cell {
     vertices: Vec<VertexId>,
     triangle: i32,
     fault: usize,
 }
 
-/// The vertices, edges and triangles with faults: vertex, line and triangle cells, in this order, over the points that they use.
+/// A mesh of the vertices, edges and triangles with faults: vertex, line and triangle cells, in this order,
+/// over the points that they use.
 ///
-/// Arrays on cells: `fault`, its place in [`Preflight::faults`]; `kind`, its [code](FaultKind::code), which the field data `kind:NAME` explain;
-/// `fatal`, 1 or 0; `surface`; `triangle`, the id of the triangle among those that were given, -1 on vertices and lines. On points:
-/// `vertex`, their ids. What is not finite cannot be shown; the other corners of its triangles are.
+/// Arrays on cells: `fault`, the index in [`Preflight::faults`]; `kind`, its [code](FaultKind::code),
+/// explained by the field data `kind:NAME`; `fatal`, 1 or 0; `surface`; `triangle`, the id of the given
+/// triangle, -1 for vertices and lines. On points: `vertex`, the given ids. Points that are not finite cannot
+/// be shown; the other corners of their triangles are.
 ///
-/// Panics when the report is about other triangles.
+/// Panics if the report is about other triangles.
 pub fn culprits(points: &[Point], triangles: &[[VertexId; 3]], report: &Preflight) -> Mesh {
     let mut cells: Vec<Cell> =
         (0..).zip(&report.faults).flat_map(|(i, fault)| cells_of(points, triangles, i, fault)).collect();
@@ -46,7 +48,7 @@ pub fn culprits(points: &[Point], triangles: &[[VertexId; 3]], report: &Prefligh
     mesh
 }
 
-/// The cells over the points in use.
+/// The cells, renumbered to the points in use.
 fn connected(cells: &[Cell], used: &[VertexId]) -> Cells {
     let place = |v: &VertexId| VertexId::new(used.partition_point(|u| u < v));
     let mut connected = Cells::new();
@@ -57,7 +59,7 @@ fn connected(cells: &[Cell], used: &[VertexId]) -> Cells {
     connected
 }
 
-/// What shows a fault.
+/// The cells that show a fault.
 fn cells_of(points: &[Point], triangles: &[[VertexId; 3]], i: usize, fault: &Fault) -> Vec<Cell> {
     let lone = |vertices: &[VertexId]| Cell { vertices: vertices.to_vec(), triangle: NO_TRIANGLE, fault: i };
     let corners = || fault.triangles.iter().flat_map(|&t| triangles[t as usize]);

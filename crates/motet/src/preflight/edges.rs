@@ -1,4 +1,4 @@
-//! Edges where a surface ends, branches or turns over, and vertices where it touches itself.
+//! Edges where a surface ends, branches or reverses its orientation, and vertices where it touches itself.
 
 use super::fault::{Fault, FaultKind};
 use super::sides::{Side, edges};
@@ -13,7 +13,7 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
             [_] => (FaultKind::OpenEdge, is_boundary),
             [x, y] if x.is_forward != y.is_forward => continue,
             [_, _] => (FaultKind::MisorientedEdge, false),
-            // Walls meet there, or surfaces touch: tets fit all the same.
+            // Walls meet there, or surfaces touch: tets conform all the same.
             _ => (FaultKind::NonManifoldEdge, false),
         };
         let triangles = same.iter().map(|side| side.triangle).collect();
@@ -23,7 +23,8 @@ pub(super) fn faults(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     faults
 }
 
-/// Vertices round which the triangles of a surface, joined where they share an edge, are more than one fan.
+/// Vertices around which the triangles of a surface, connected where they share an edge, form more than one
+/// fan.
 fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
     let mut fans = Sets::new(3 * surfaces.triangles.len());
     for same in edges(sides) {
@@ -32,7 +33,7 @@ fn pinched(surfaces: &Surfaces, sides: &[Side]) -> Vec<Fault> {
             (0..2).for_each(|end| fans.join(first[end], side.corners()[end]));
         }
     }
-    // Each fan once, by its first corner. A side for each corner is there.
+    // Each fan once, by its first corner. There is a side for each corner.
     let mut firsts: Vec<(u32, VertexId, u32)> = Vec::new();
     for side in sides {
         let corner = 3 * side.triangle + u32::from(side.corner);

@@ -1,4 +1,4 @@
-//! Which way a closed surface faces: the sign of the volume that it encloses, proven.
+//! The side that a closed surface faces: the sign of the volume that it encloses, proven.
 
 use std::cmp::Ordering;
 
@@ -10,12 +10,13 @@ use crate::geometry::unit::unit_of;
 use crate::geometry::vector::in_range;
 use crate::geometry::vector::scale;
 
-/// More than all underflow together can amount to, with coordinates below 2.
+/// An upper bound of the underflow per triangle, with coordinates below 2.
 const UNDERFLOW: f64 = 1e-290;
 
-/// The sign of the volume that closed triangles enclose: `Greater` where they face outward. `Equal` where it is nothing, or (with 100,000 triangles) less than
-/// 1e-21 of the volumes of the cones from one of the vertices to the triangles, summed as they come: then neither
-/// side is the inside. `None` where a corner is not finite.
+/// The sign of the volume that closed triangles enclose: `Greater` if they face outward. `Equal` if it is
+/// zero, or too small to be certain of (with 100,000 triangles, below 1e-21 of the sum of the magnitudes of
+/// the cones from one of the vertices to the triangles): then neither side is the inside. `None` if a corner
+/// is not finite.
 pub(super) fn volume_sign(points: &[Point], triangles: &[[VertexId; 3]]) -> Option<Ordering> {
     let at = |v: VertexId| points[v.index()];
     let all = || triangles.iter().flatten().map(|&v| at(v));
@@ -39,14 +40,15 @@ pub(super) fn volume_sign(points: &[Point], triangles: &[[VertexId; 3]]) -> Opti
     Some(if value > 0.0 { Ordering::Greater } else { Ordering::Less })
 }
 
-/// The determinant with all its six terms added.
+/// The permanent: the determinant with all its six terms added.
 fn permanent([a, b, c]: [Point; 3]) -> f64 {
     let minor = |i: usize, j: usize| a[i] * b[j] + a[j] * b[i];
     minor(1, 2) * c[0] + minor(2, 0) * c[1] + minor(0, 1) * c[2]
 }
 
-/// What rounding can have done to the sum, by the rules in `pair`: a term is off by at most 53 u^2 of its permanent, and each of
-/// `n` sums adds 2 k + 1 to that and 1 to k, which starts at 8; the factor 2 is for the permanents' own rounding.
+/// A bound on the rounding error of the sum, by the rules in `pair`: a term is off by at most 53 u^2 of its
+/// permanent, and each of `n` sums adds 2 k + 1 to that and 1 to k, which starts at 8; the factor 2 covers
+/// the rounding of the permanents.
 fn bound(n: usize, absolute: f64) -> f64 {
     let n = n as f64;
     (53.0 + n * (n + 41.0)) * 2.0 * U * U * absolute + n * UNDERFLOW

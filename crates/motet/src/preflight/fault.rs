@@ -1,4 +1,4 @@
-//! What can be wrong with surfaces that are to be meshed: a name, whether it stops the meshing, and where.
+//! Faults of surfaces that are to be meshed: a name, whether it prevents meshing, and where.
 
 use std::fmt;
 
@@ -9,14 +9,15 @@ use crate::geometry::vector::{add, in_range, scale};
 
 macro_rules! fault_kinds {
     ($($variant:ident = $name:literal, $meaning:literal, $remedy:literal;)*) => {
-        /// A kind of fault. Those that [`DefectKind`](crate::mesh::check::DefectKind) knows too have the same names there.
+        /// A kind of fault. Kinds that are also among [`DefectKind`](crate::mesh::check::DefectKind) have the
+        /// same names there.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
         pub enum FaultKind {
             $(#[doc = $meaning] #[serde(rename = $name)] $variant,)*
         }
 
         impl FaultKind {
-            /// All kinds, by their codes.
+            /// All kinds, in the order of their codes.
             pub const ALL: &'static [Self] = &[$(Self::$variant,)*];
 
             /// The name that scripts see.
@@ -24,7 +25,7 @@ macro_rules! fault_kinds {
                 match self { $(Self::$variant => $name,)* }
             }
 
-            /// What it means, in words.
+            /// The meaning in words.
             pub fn meaning(self) -> &'static str {
                 match self { $(Self::$variant => $meaning,)* }
             }
@@ -65,7 +66,7 @@ fault_kinds! {
 }
 
 impl FaultKind {
-    /// The number that stands for it in arrays: its place in [`Self::ALL`].
+    /// The number that stands for it in arrays: its index in [`Self::ALL`].
     pub fn code(self) -> i32 {
         self as i32
     }
@@ -74,25 +75,25 @@ impl FaultKind {
 /// One place where surfaces are not what meshing expects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fault {
-    /// What kind.
+    /// The kind of fault.
     #[serde(rename = "name")]
     pub kind: FaultKind,
-    /// Whether surfaces cannot be meshed as long as it is there.
+    /// Whether surfaces with this fault cannot be meshed.
     pub is_fatal: bool,
     /// The surface, or that of the first triangle.
     pub surface: u32,
-    /// The triangles concerned, rising. Of a part that faces inward the first one.
+    /// The triangles concerned, in rising order; for a part that faces inward, its first one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<u32>,
     /// The vertices concerned: the ends of an edge, the corners of a triangle, what a crossing pair shares.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub vertices: Vec<VertexId>,
-    /// A place on it; `None` where that is not finite.
+    /// A place on it; `None` if that is not finite.
     pub at: Option<Point>,
 }
 
 impl Fault {
-    /// One at the mean of its vertices.
+    /// A fault located at the mean of its vertices.
     pub(super) fn new(
         (kind, is_fatal): (FaultKind, bool),
         surface: u32,
@@ -105,7 +106,7 @@ impl Fault {
     }
 }
 
-/// The mean of some vertices, where there is one.
+/// The mean of some vertices; `None` if there are none, or it is not finite.
 pub(super) fn mean(vertices: &[VertexId], points: &[Point]) -> Option<Point> {
     let part = 1.0 / vertices.len() as f64;
     let sum = vertices.iter().fold([0.0; 3], |sum, v| add(sum, scale(points[v.index()], part)));
@@ -124,7 +125,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The first few ids.
+/// Writes the first few ids.
 fn list(f: &mut fmt::Formatter<'_>, [one, many]: [&str; 2], ids: &[impl fmt::Display]) -> fmt::Result {
     for (i, id) in ids.iter().take(4).enumerate() {
         match i {

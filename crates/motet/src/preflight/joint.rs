@@ -1,11 +1,13 @@
-//! Meshes that end at a common edge are one surface: a wall, its inlet and its outlets, as programs that make vessels write them.
+//! Joins meshes that end at a common edge into one surface: a wall, its inlet and its outlets, as vessel
+//! modelling programs write them.
 
 use super::sides::{edges, sorted_sides};
 use super::single::Firsts;
 use super::surfaces::{Role, Surfaces};
 use crate::base::{Point, Sets, VertexId};
 
-/// For each surface, that of which it is a part: its own number or a lower one. Only boundaries are joined: a membrane may end where it likes.
+/// For each surface, the joint surface that it is part of: its own number or a lower one. Only boundaries are
+/// joined, since a membrane may end anywhere.
 pub(crate) fn joint(
     points: &[Point],
     triangles: &[[VertexId; 3]],
@@ -46,10 +48,10 @@ mod tests {
 
     #[test]
     fn what_ends_at_a_common_edge_is_one() {
-        // The sides of a tet: three apart, all in a chain.
+        // The sides of a tet in three surfaces, connected in a chain.
         let sides = triangles(&[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]);
         assert_eq!(joined(&sides, &[2, 0, 1, 0], &[Boundary; 3]), [0, 0, 0]);
-        // A closed tet beside, with an edge of the open one.
+        // Beside it a closed tet that has an edge of the open one.
         let more = [sides.clone(), triangles(&[[4, 1, 0], [5, 0, 1], [4, 5, 1], [4, 0, 5]])].concat();
         assert_eq!(joined(&more, &[1, 1, 1, 2, 0, 0, 0, 0], &[Boundary; 3]), [0, 1, 1]);
     }

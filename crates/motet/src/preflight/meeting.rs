@@ -9,8 +9,8 @@ use crate::geometry::distance::triangle_triangle;
 use crate::geometry::triangle;
 use crate::geometry::vector::in_range;
 
-/// All pairs of sound triangles. Of several with the same vertices the first one stands for all, and none without area is looked at:
-/// those are told of once, and would meet all that is round them.
+/// The faults of all pairs of sound triangles that meet. Of several with the same vertices only the first is
+/// tested, and none without area: those are reported elsewhere, and would meet everything around them.
 pub(super) fn faults(
     surfaces: &Surfaces,
     shapes: &[Shape],
@@ -30,7 +30,7 @@ fn tell(surfaces: &Surfaces, [i, j]: [u32; 2]) -> Fault {
     let at = match shared[..] {
         [] => common_point(surfaces.corners(i), surfaces.corners(j)),
         [_] => beyond_vertex(surfaces, [a, b]),
-        // They lie on each other along the whole edge.
+        // They overlap along the whole edge.
         _ => mean(&shared, surfaces.points),
     };
     Fault {
@@ -43,7 +43,7 @@ fn tell(surfaces: &Surfaces, [i, j]: [u32; 2]) -> Fault {
     }
 }
 
-/// Where triangles that share one vertex meet beside: on the edge opposite to it, of one of them.
+/// Another point in which triangles that share one vertex meet: on the edge opposite to it, of one of them.
 fn beyond_vertex(surfaces: &Surfaces, [a, b]: [[VertexId; 3]; 2]) -> Option<Point> {
     let at = |v: VertexId| surfaces.points[v.index()];
     let opposite = |own: [VertexId; 3], other: [VertexId; 3]| {
@@ -54,7 +54,7 @@ fn beyond_vertex(surfaces: &Surfaces, [a, b]: [[VertexId; 3]; 2]) -> Option<Poin
     opposite(a, b).or_else(|| opposite(b, a))
 }
 
-/// A point that triangles have in common, up to rounding.
+/// A point that triangles have in common, up to rounding; `None` if it is not finite.
 fn common_point(a: [Point; 3], b: [Point; 3]) -> Option<Point> {
     let at = triangle::at(a, triangle_triangle::closest(a, b).on_a);
     in_range(at).then_some(at)

@@ -1,17 +1,18 @@
-//! Floor 4: what stops closed surfaces from being meshed: found exactly, all of it.
+//! Floor 4: everything that prevents closed surfaces from being meshed, found exactly.
 //!
-//! | looked at | faults |
+//! | checked | faults |
 //! |---|---|
 //! | surfaces | without triangles |
-//! | triangles | with a corner that is not finite, without area, there twice |
+//! | triangles | with a corner that is not finite, without area, duplicated |
 //! | pairs of triangles | that meet in more than they share |
-//! | edges | where a surface ends, branches, turns over |
+//! | edges | where a surface ends, branches, reverses its orientation |
 //! | vertices | where a surface touches itself |
 //! | closed parts | that face inward |
 //!
-//! [`preflight`] lists every one, with ids and a place. Some are *fatal*: a conforming mesh of tets with these triangles as facets cannot be
-//! made, or what is inside is not said. Others are notes. [`repair`] mends what is requested, and reports what it did; triangles that meet are divided by `cut`; [`culprits`] shows what is wrong.
-//! All tests are exact, and have no tolerance.
+//! [`preflight`] lists every fault, with ids and a place. Some are *fatal*: a conforming mesh of tets with
+//! these triangles as facets cannot be made, or the inside is undefined. Others are notes. [`repair`] repairs
+//! what is requested, and reports what it did; triangles that meet are divided by `cut`; [`culprits`] shows
+//! the faults. All tests are exact, without tolerance.
 //!
 //! ```
 //! use motet::base::{Threads, VertexId};

@@ -1,4 +1,5 @@
-//! The parts of surfaces that hang together where two triangles meet at an edge, and which way the closed ones face.
+//! The parts of surfaces, connected where two triangles meet at an edge, and the side that the closed ones
+//! face.
 
 use std::cmp::Ordering;
 
@@ -8,16 +9,18 @@ use super::sides::{Side, edges};
 use super::surfaces::Surfaces;
 use crate::base::{Sets, VertexId};
 
-/// The triangles that count, part by part.
+/// The triangles that have sides, part by part.
 pub(super) struct Parts {
-    /// The part's first triangle and the triangle; sorted.
+    /// Pairs of the first triangle of a part and a triangle of that part; sorted.
     members: Vec<(u32, u32)>,
-    /// For each triangle that is the first of its part: whether each edge is used as often one way as the other, by the part alone.
+    /// For each triangle that is the first of its part: whether the part alone uses each edge as often in one
+    /// direction as in the other.
     is_closed: Vec<bool>,
 }
 
 impl Parts {
-    /// An edge of more triangles joins none of them: which belong together there is not said.
+    /// Finds the parts. An edge of more than two triangles joins none of them, since it is not clear which
+    /// belong together.
     pub(super) fn new(n_triangles: usize, sides: &[Side]) -> Self {
         let mut sets = Sets::new(n_triangles);
         for same in edges(sides) {
@@ -43,7 +46,7 @@ impl Parts {
         Self { members, is_closed }
     }
 
-    /// The triangles of each part, rising, and whether it is closed and oriented alike.
+    /// The triangles of each part, in rising order, and whether it is closed and consistently oriented.
     pub(super) fn iter(&self) -> impl Iterator<Item = (Vec<u32>, bool)> {
         let parts = self.members.chunk_by(|x, y| x.0 == y.0);
         parts.map(|part| (part.iter().map(|member| member.1).collect(), self.is_closed[part[0].0 as usize]))
@@ -61,7 +64,7 @@ impl Parts {
     }
 }
 
-/// The closed parts that face inward, each by its first triangle.
+/// A fault for each closed part that faces inward, at its first triangle.
 pub(super) fn faults(surfaces: &Surfaces, parts: &Parts) -> Vec<Fault> {
     let tell = |part: Vec<u32>| {
         let (first, what) = (part[0], (FaultKind::InwardPart, false));

@@ -1,4 +1,4 @@
-//! What a search before meshing found: the certificate.
+//! The report of a preflight: the certificate.
 
 use std::fmt;
 
@@ -9,33 +9,34 @@ use super::rims::Rim;
 use super::surfaces::Surfaces;
 use crate::base::Error;
 
-/// An error names so many rims.
+/// Number of rims that an error names.
 const TOLD_RIMS: usize = 4;
 
-/// How many faults of a kind there are.
+/// The number of faults of a kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FaultCount {
     /// The kind.
     #[serde(rename = "name")]
     pub kind: FaultKind,
-    /// How many of them stop the meshing.
+    /// Number of those that prevent meshing.
     pub fatal: usize,
-    /// How many do not.
+    /// Number of those that do not.
     pub notes: usize,
 }
 
-/// What is wrong with surfaces that are to be meshed: every fault, by kind, then by triangles and vertices.
+/// The faults of surfaces that are to be meshed, sorted by kind, then by triangles and vertices.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Preflight {
-    /// How many surfaces there are.
+    /// Number of surfaces.
     pub n_surfaces: usize,
-    /// How many triangles they have together.
+    /// Number of triangles of all surfaces together.
     pub n_triangles: usize,
-    /// How many points no triangle uses.
+    /// Number of points that no triangle uses.
     pub n_orphans: usize,
     /// The rims of surfaces that have to be closed, the longest first.
     pub rims: Vec<Rim>,
-    /// How many of the open edges of such surfaces are in no rim, since triangles there do not face the same side.
+    /// Number of open edges of such surfaces that are in no rim, since triangles there do not face the same
+    /// side.
     pub n_torn_edges: usize,
     /// The kinds that occur, with their counts.
     pub counts: Vec<FaultCount>,
@@ -63,12 +64,12 @@ impl Preflight {
         }
     }
 
-    /// Whether nothing stops the meshing.
+    /// Whether nothing prevents the surfaces from being meshed.
     pub fn is_fit(&self) -> bool {
         self.counts.iter().all(|count| count.fatal == 0)
     }
 
-    /// How many rims there are, and the longest ones.
+    /// The number of rims, and the longest ones, in words.
     fn told_rims(&self) -> String {
         let n = self.rims.len();
         let longest: Vec<String> = self.rims.iter().take(TOLD_RIMS).map(Rim::to_string).collect();
@@ -76,12 +77,12 @@ impl Preflight {
         format!("the open edges make {n} rim{}: {}{more}", if n == 1 { "" } else { "s" }, longest.join("; "))
     }
 
-    /// How many faults of this kind there are, notes included.
+    /// Number of faults of this kind, notes included.
     pub fn count(&self, kind: FaultKind) -> usize {
         self.counts.iter().filter(|count| count.kind == kind).map(|count| count.fatal + count.notes).sum()
     }
 
-    /// The first fault that stops the meshing, as an error; `None` where nothing does.
+    /// The first fault that prevents meshing, as an error; `None` if there is none.
     pub fn first_error(&self) -> Option<Error> {
         let fault = self.faults.iter().find(|fault| fault.is_fatal)?;
         let kind = fault.kind;
@@ -100,7 +101,7 @@ impl Preflight {
     }
 }
 
-/// What faults are sorted by.
+/// The sort key of faults.
 fn key(fault: &Fault) -> (FaultKind, &[u32], &[crate::base::VertexId], u32) {
     (fault.kind, &fault.triangles, &fault.vertices, fault.surface)
 }

@@ -1,4 +1,5 @@
-//! The rims of holes: open edges, one after the other, as a triangle in the hole would run along them.
+//! The rims of holes: chains of open edges, in the direction in which a triangle in the hole would run along
+//! them.
 
 use std::fmt;
 
@@ -15,11 +16,11 @@ pub(super) struct RimEdge {
     pub(super) surface: u32,
     pub(super) from: VertexId,
     pub(super) to: VertexId,
-    /// The triangle beyond.
+    /// The triangle that has the edge.
     pub(super) triangle: u32,
 }
 
-/// Rims that lead back to their start, without touching themselves, and the edges that lead nowhere.
+/// Rims that close without touching themselves, and chains of open edges that do not close.
 #[derive(Debug, Default)]
 pub(super) struct Rims {
     pub(super) closed: Vec<Vec<RimEdge>>,
@@ -31,18 +32,18 @@ pub(super) struct Rims {
 pub struct Rim {
     /// The surface.
     pub surface: u32,
-    /// How many edges it has.
+    /// Number of edges.
     pub edges: usize,
     /// The sum of their lengths.
     pub length: f64,
-    /// The largest distance of its vertices from its centre, twice.
+    /// Twice the largest distance of its vertices from its centre.
     pub diameter: f64,
     /// The mean of its vertices.
     pub centre: Point,
 }
 
 impl Rim {
-    /// `None` where a vertex is not finite.
+    /// Measures a rim; `None` if a vertex is not finite.
     fn of(points: &[Point], edges: &[RimEdge]) -> Option<Self> {
         let at = |v: VertexId| points[v.index()];
         if !edges.iter().all(|edge| in_range(at(edge.from)) && in_range(at(edge.to))) {
@@ -71,7 +72,8 @@ impl fmt::Display for Rim {
     }
 }
 
-/// The closed rims of surfaces that have to be closed, the longest first; and how many open edges are in none.
+/// The closed rims of surfaces that have to be closed, the longest first; and the number of open edges that
+/// are in none.
 pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> (Vec<Rim>, usize) {
     let found = rims(surfaces.points.len(), sides, |surface| surfaces.role(surface) == Role::Boundary);
     let mut rims: Vec<Rim> = found.closed.iter().filter_map(|rim| Rim::of(surfaces.points, rim)).collect();
@@ -79,10 +81,11 @@ pub(super) fn of_boundaries(surfaces: &Surfaces, sides: &[Side]) -> (Vec<Rim>, u
     (rims, found.torn.iter().map(Vec::len).sum())
 }
 
-/// The rims of one surface: vertices in the order in which a triangle in the hole would have them, and those of open edges that lead nowhere, since triangles there
-/// do not face the same side.
+/// The rims of one surface: first the closed ones, with their vertices in the order in which a triangle in
+/// the hole would have them; then the vertices of chains of open edges that do not close, since triangles
+/// there do not face the same side.
 ///
-/// Panics when a triangle names a point that is not there.
+/// Panics if a triangle names a point that does not exist.
 pub fn open_rims(points: &[Point], triangles: &[[VertexId; 3]]) -> [Vec<Vec<VertexId>>; 2] {
     let surface_of = vec![0; triangles.len()];
     let surfaces = Surfaces::new(points, triangles, &surface_of, &[Role::Boundary]);
@@ -91,7 +94,7 @@ pub fn open_rims(points: &[Point], triangles: &[[VertexId; 3]]) -> [Vec<Vec<Vert
     [rims.closed, rims.torn].map(|all| all.into_iter().map(vertices).collect())
 }
 
-/// The rims of the surfaces that are asked about.
+/// The rims of the surfaces for which `is_asked` is `true`.
 pub(super) fn rims(n_points: usize, sides: &[Side], is_asked: impl Fn(u32) -> bool) -> Rims {
     let mut open: Vec<RimEdge> = edges(sides)
         .filter(|same| same.len() == 1 && is_asked(same[0].surface))
@@ -114,14 +117,16 @@ pub(super) fn rims(n_points: usize, sides: &[Side], is_asked: impl Fn(u32) -> bo
 struct Walk {
     open: Vec<RimEdge>,
     is_used: Vec<bool>,
-    /// For the first edge of a vertex: how many of the vertex's edges are known to be used, so that none is asked twice.
+    /// For the first edge of a vertex: how many of the vertex's edges are known to be used, so that none is
+    /// tested twice.
     n_passed: Vec<usize>,
-    /// Where on the path its edge from a vertex stands.
+    /// For each vertex, the index on the path of the edge that starts there.
     place: Vec<Option<usize>>,
 }
 
 impl Walk {
-    /// Walks until nothing leads on; whenever the path comes back to itself, a rim is cut off.
+    /// Walks from an edge until no unused edge leads on; whenever the path returns to itself, a closed rim is
+    /// cut off.
     fn go(&mut self, start: usize, rims: &mut Rims) {
         if self.is_used[start] {
             return;
@@ -146,7 +151,7 @@ impl Walk {
         }
     }
 
-    /// The first edge that starts where this one ends and is not used yet.
+    /// The first unused edge that starts where this one ends.
     fn leading_on(&mut self, edge: RimEdge) -> Option<usize> {
         let key = (edge.surface, edge.to);
         let start = self.open.partition_point(|x| (x.surface, x.from) < key);

@@ -1,4 +1,4 @@
-//! The search for everything that stops surfaces from being meshed.
+//! The search for everything that prevents surfaces from being meshed.
 
 use super::fault::{Fault, FaultKind};
 use super::parts::Parts;
@@ -9,13 +9,14 @@ use super::surfaces::{Role, Surfaces};
 use super::{edges, meeting, parts, rims, single};
 use crate::base::{Point, Threads, VertexId};
 
-/// Everything that stops surfaces from being meshed, and what else is worth knowing of them.
+/// Finds everything that prevents surfaces from being meshed, and what else is worth knowing of them.
 ///
-/// Points at one place have one id: [`crate::mesh::firsts_at_place`] sees to that. `surface_of` tells which surface each triangle is of, `roles` what each
-/// surface is for. Edges are those of triangles with three different vertices; of duplicates that face the same side one counts, and two that face
-/// opposite sides do not, since they enclose nothing. The answer is the same for any number of threads.
+/// Points at one place must have one id: use [`crate::mesh::firsts_at_place`]. `surface_of` gives the surface
+/// of each triangle, `roles` the role of each surface. Edges are those of triangles with three distinct
+/// vertices; of duplicates that face the same side one counts, and two that face opposite sides cancel, since
+/// they enclose nothing. The answer is the same for any number of threads.
 ///
-/// Panics when the lists do not fit together, or a triangle names a point or a surface that is not there.
+/// Panics if the lists do not match in length, or a triangle names a point or a surface that does not exist.
 pub fn preflight(
     points: &[Point],
     triangles: &[[VertexId; 3]],
@@ -35,7 +36,7 @@ pub fn preflight(
     Preflight::new(&surfaces, faults, rims::of_boundaries(&surfaces, &sides))
 }
 
-/// The surfaces without a triangle.
+/// A fault for each surface without triangles.
 fn empty(surfaces: &Surfaces) -> Vec<Fault> {
     let mut is_empty = vec![true; surfaces.roles.len()];
     surfaces.surface_of.iter().for_each(|&s| is_empty[s as usize] = false);

@@ -1,4 +1,5 @@
-//! The sides of triangles, those of one edge of one surface together: sorted once, for all who ask what meets at an edge.
+//! The sides of triangles, grouped by surface and edge: sorted once, for all queries of what meets at an
+//! edge.
 
 use super::surfaces::Surfaces;
 use crate::base::VertexId;
@@ -7,7 +8,7 @@ use crate::base::VertexId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Side {
     pub(super) surface: u32,
-    /// Its ends, rising.
+    /// Its ends, in rising order.
     pub(super) edge: [VertexId; 2],
     pub(super) triangle: u32,
     /// Which corner of the triangle it starts at.
@@ -17,14 +18,15 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// Where its triangle's corners at the two ends of the edge stand among all corners.
+    /// The indices of its triangle's corners at the two ends of `edge`, among all corners.
     pub(super) fn corners(&self) -> [u32; 2] {
         let [start, end] = [self.corner, (self.corner + 1) % 3].map(|k| 3 * self.triangle + u32::from(k));
         if self.is_forward { [start, end] } else { [end, start] }
     }
 }
 
-/// The sides of the triangles that count, sorted. No side joins a vertex with itself.
+/// The sides of the triangles for which `counts` is `true`, sorted. Sides from a vertex to itself are left
+/// out.
 pub(super) fn sorted_sides(surfaces: &Surfaces, counts: impl Fn(u32) -> bool) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * surfaces.triangles.len());
     for t in surfaces.ids().filter(|&t| counts(t)) {
@@ -42,7 +44,7 @@ pub(super) fn sorted_sides(surfaces: &Surfaces, counts: impl Fn(u32) -> bool) ->
     sides
 }
 
-/// The sides of each edge of each surface, one after the other.
+/// The sides of each edge of each surface, edge by edge.
 pub(super) fn edges(sides: &[Side]) -> impl Iterator<Item = &[Side]> {
     sides.chunk_by(|x, y| (x.surface, x.edge) == (y.surface, y.edge))
 }

@@ -1,4 +1,4 @@
-//! Triangles that are none by themselves, and those that are there more than once.
+//! Triangles that are degenerate by themselves, and duplicates.
 
 use super::fault::{Fault, FaultKind};
 use super::surfaces::Surfaces;
@@ -6,10 +6,10 @@ use crate::base::{Csr, Threads, VertexId, rising};
 use crate::geometry::predicates::collinear;
 use crate::geometry::vector::in_range;
 
-/// What a triangle is worth by itself.
+/// Whether a triangle is sound by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// It has three corners, and area.
+    /// It has three distinct corners, and area.
     Sound,
     /// A corner is not finite.
     NotFinite,
@@ -33,15 +33,17 @@ pub(super) fn shapes(surfaces: &Surfaces, threads: &Threads) -> Vec<Shape> {
     })
 }
 
-/// Triangles of three vertices that are there more than once.
+/// The duplicates among triangles of three distinct vertices.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Firsts {
-    /// For each triangle the first one of its surface with the same vertices; a triangle that names one twice is its own.
+    /// For each triangle, the first one of its surface with the same vertices; a triangle that names a vertex
+    /// twice is its own first.
     pub(super) of_surface: Vec<u32>,
-    /// The same among all surfaces.
+    /// For each triangle, the first one of all surfaces with the same vertices.
     pub(super) of_all: Vec<u32>,
-    /// Which triangles are left once two that face opposite sides, and so enclose nothing, have gone together, and of those that face
-    /// the same side one has stayed. Without those that name a vertex twice.
+    /// Which triangles remain without duplicates in one surface: two that face opposite sides enclose nothing
+    /// and cancel, and of those that face the same side one remains. `false` for triangles that name a vertex
+    /// twice.
     pub(super) stays: Vec<bool>,
 }
 
@@ -72,11 +74,12 @@ impl Firsts {
     }
 }
 
-/// Of triangles with the same vertices the first that faces where more of them face; `None` where as many face either side.
+/// Of triangles with the same vertices, the first that faces the side of the majority; `None` if as many face
+/// either side.
 fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> Option<u32> {
     let is_rising = |t: u32| {
         let [a, b, c] = surfaces.triangles[t as usize];
-        // A turn of the corners leaves the number of falling steps as it is: one, or two.
+        // Rotating the corners does not change the number of rising steps: one, or two.
         [a < b, b < c, c < a].iter().filter(|rises| **rises).count() == 2
     };
     let (n, n_rising) = (same.clone().count(), same.clone().filter(|&t| is_rising(t)).count());
@@ -84,7 +87,8 @@ fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> O
     if 2 * n_rising == n { None } else { of_more.next() }
 }
 
-/// Points of triangles that are not finite, triangles without area, duplicates, and facets that surfaces share.
+/// The faults of points of triangles that are not finite, triangles without area, duplicates, and facets that
+/// surfaces share.
 pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], firsts: &Firsts) -> Vec<Fault> {
     let mut faults = not_finite(surfaces);
     for (t, &shape) in surfaces.ids().zip(shapes) {

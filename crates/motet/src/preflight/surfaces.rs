@@ -1,4 +1,4 @@
-//! Surfaces as they were given, and what each has to be.
+//! The given surfaces, and the role of each.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,8 @@ pub(super) struct Surfaces<'a> {
 }
 
 impl<'a> Surfaces<'a> {
-    /// Panics when lists do not fit together, or a triangle names a point or a surface that is not there.
+    /// Panics if the lists do not match in length, or a triangle names a point or a surface that does not
+    /// exist.
     pub(super) fn new(
         points: &'a [Point],
         triangles: &'a [[VertexId; 3]],

@@ -121,8 +121,8 @@ fn flip(points: &[Point], triangles: &mut [[VertexId; 3]]) {
         if is_new && is_better(points, [triangles[s], triangles[t]], after) {
             [triangles[s], triangles[t]] = after;
             [is_flipped[s], is_flipped[t]] = [true; 2];
-            // Prevents that the same edge is made twice; the other sides of these triangles are not looked up
-            // again.
+            // Prevents the same edge from being made twice; the other sides of these triangles are not looked
+            // up again.
             sides.extend([([c, d], s), ([d, c], t)]);
         }
     }

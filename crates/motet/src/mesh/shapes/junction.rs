@@ -152,8 +152,10 @@ fn rings(
     below
 }
 
+/// Checks that the rim of a cap lies on the surface.
+///
 /// # Errors
-/// If the rim of a cap is not on the surface.
+/// If a vertex of the rim does not.
 fn check_circle<F: Fn(Point) -> f64>(
     surface: &Implicit<F>,
     points: &[Point],

@@ -1,18 +1,18 @@
-//! What two triangles have in common: points, and how those hang together.
+//! What two triangles have in common: points, and how they are connected.
 
 use crate::base::{Point, VertexId};
 use crate::geometry::segment;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{add, cross, distance, dot, norm, scale, sub};
 
-/// What a point is, so that every pair of triangles that has it gives it the same name.
+/// The identity of a point, so that every pair of triangles that has it gives it the same name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Name {
     /// A vertex.
     Vertex(VertexId),
-    /// Where two edges cross, the smaller one first; of each the smaller vertex first.
+    /// Where two edges cross, the smaller edge first, each with its smaller vertex first.
     Edges([VertexId; 2], [VertexId; 2]),
-    /// Where an edge goes through a triangle, by its number.
+    /// Where an edge passes through a triangle, by its number.
     Through([VertexId; 2], u32),
 }
 
@@ -20,7 +20,7 @@ pub(super) enum Name {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum On {
     Corner(usize),
-    /// From this corner to the next.
+    /// On the edge from this corner to the next.
     Edge(usize),
     Inside,
 }
@@ -41,7 +41,7 @@ impl On {
 pub(super) struct Shared {
     pub(super) name: Name,
     pub(super) at: Point,
-    /// Where it lies on the first, and on the second.
+    /// Where it lies on the first triangle, and on the second.
     pub(super) on: [On; 2],
 }
 
@@ -49,9 +49,9 @@ pub(super) struct Shared {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Common {
     pub(super) points: Vec<Shared>,
-    /// Which of the points an edge joins.
+    /// Pairs of points that an edge joins.
     pub(super) segments: Vec<[usize; 2]>,
-    /// Whether they lie in one plane, and may have an area in common.
+    /// Whether the triangles lie in one plane, and may have an area in common.
     pub(super) is_flat: bool,
 }
 
@@ -70,7 +70,8 @@ impl Side {
         ([self.vertices[i], self.vertices[j]], [self.corners[i], self.corners[j]])
     }
 
-    /// How far in front of its plane points lie; 0 where that is no more than `near`.
+    /// How far the corners of another triangle lie in front of the plane of this one; 0 for those within
+    /// `near` of it or shared. `None` if this triangle has no area.
     fn offsets(&self, of: &Side, near: f64) -> Option<[f64; 3]> {
         let normal = area_vector(self.corners);
         let length = norm(normal);
@@ -84,7 +85,7 @@ impl Side {
         (length > 0.0).then(|| [offset(0), offset(1), offset(2)])
     }
 
-    /// Where a point of its plane lies on it.
+    /// Where on the triangle a point of its plane lies; `None` if it is outside.
     fn locate(&self, p: Point, near: f64) -> Option<On> {
         if let Some(k) = (0..3).find(|&k| distance(self.corners[k], p) <= near) {
             return Some(On::Corner(k));
@@ -106,7 +107,7 @@ impl Side {
 }
 
 impl Common {
-    /// What is nearer than `near` is one place.
+    /// What two triangles have in common, `None` if nothing. Points nearer than `near` are one place.
     pub(super) fn of(a: &Side, b: &Side, near: f64) -> Option<Self> {
         let (of_a, of_b) = (b.offsets(a, near)?, a.offsets(b, near)?);
         if [of_a, of_b].iter().any(|o| o.iter().all(|x| *x > 0.0) || o.iter().all(|x| *x < 0.0)) {
@@ -132,27 +133,28 @@ impl Common {
         self.points.iter().any(|p| !matches!(p.on, [On::Corner(_), On::Corner(_)]))
     }
 
-    /// Whether the triangles go through each other: what they have in common is a segment that lies on no edge of either. Where it lies on an edge,
-    /// they touch.
+    /// Whether the triangles cross: what they have in common is a segment that lies on no edge of either. If
+    /// it lies on an edge, they touch.
     pub(super) fn is_crossing(&self) -> bool {
         let is_on_edge = |s: usize| (0..3).any(|k| self.points.iter().all(|p| p.on[s].is_along(k)));
         let goes_through = self.points.iter().any(|p| matches!(p.name, Name::Through(..)));
         !self.is_flat && (goes_through || self.points.len() > 1 && !is_on_edge(0) && !is_on_edge(1))
     }
 
-    /// Whether the triangles lie on each other, in one plane with an area in common.
+    /// Whether the triangles overlap: they lie in one plane, with an area in common.
     pub(super) fn is_overlap(&self) -> bool {
         let is_on_edge = |s: usize| (0..3).any(|k| self.points.iter().all(|p| p.on[s].is_along(k)));
         self.is_flat && self.points.len() > 2 && !is_on_edge(0) && !is_on_edge(1)
     }
 
-    /// The mean of what they have in common.
+    /// The mean of the points that they have in common.
     pub(super) fn middle(&self) -> Point {
         let part = 1.0 / self.points.len() as f64;
         self.points.iter().fold([0.0; 3], |sum, p| add(sum, scale(p.at, part)))
     }
 
-    /// `on` tells where the point lies on triangle `first` of the two, and on the other.
+    /// Adds a point, unless one of its name is known. `on` states where it lies on triangle `first` of the
+    /// two, and on the other.
     fn add(&mut self, first: usize, name: Name, at: Point, on: [On; 2]) {
         let on = if first == 0 { on } else { [on[1], on[0]] };
         if !self.points.iter().any(|known| known.name == name) {
@@ -160,7 +162,7 @@ impl Common {
         }
     }
 
-    /// Vertices of `a` that lie on `b`.
+    /// Adds the vertices of `a` that lie on `b`.
     fn add_vertices(&mut self, first: usize, [a, b]: [&Side; 2], of_a: [f64; 3], near: f64) {
         for k in (0..3).filter(|&k| of_a[k] == 0.0) {
             let on = match b.vertices.iter().position(|v| *v == a.vertices[k]) {
@@ -173,7 +175,7 @@ impl Common {
         }
     }
 
-    /// Edges of `a` that go through the plane of `b`, within `b`.
+    /// Adds the points in which edges of `a` pass through the plane of `b`, within `b`.
     fn add_passages(&mut self, first: usize, [a, b]: [&Side; 2], of_a: [f64; 3], near: f64) {
         for k in 0..3 {
             let (of_k, of_next) = (of_a[k], of_a[(k + 1) % 3]);
@@ -193,7 +195,7 @@ impl Common {
         }
     }
 
-    /// Where edges cross within one plane.
+    /// Adds the points in which edges cross within one plane.
     fn add_crossings(&mut self, a: &Side, b: &Side, near: f64) {
         let normal = area_vector(a.corners);
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
@@ -215,7 +217,7 @@ impl Common {
         }
     }
 
-    /// Points of triangles that cross lie in line.
+    /// Joins the points of triangles that are not in one plane: these points lie on a line.
     fn join_in_line(&mut self) {
         let far = |from: usize| {
             let off = |i: &usize| distance(self.points[from].at, self.points[*i].at);
@@ -228,7 +230,8 @@ impl Common {
         self.segments = order.windows(2).map(|pair| [pair[0], pair[1]]).collect();
     }
 
-    /// In one plane, what they have in common is bounded by parts of edges.
+    /// Joins the points of triangles in one plane along their edges, parts of which bound what they have in
+    /// common.
     fn join_along_edges(&mut self, sides: [&Side; 2]) {
         for (side, k) in [0, 1].into_iter().flat_map(|side| (0..3).map(move |k| (side, k))) {
             let start = sides[side].corners[k];

@@ -1,4 +1,4 @@
-//! What was found where triangles met: for a report.
+//! Records of where triangles met, for a report.
 
 use super::Pair;
 use super::points::Points;
@@ -7,11 +7,11 @@ use crate::base::{Point, VertexId};
 /// How triangles met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum MetKind {
-    /// A given vertex lies on an edge that it is no end of.
+    /// A given vertex lies on an edge of which it is not an end.
     VertexOnEdge,
-    /// Two triangles lie on each other, in one plane.
+    /// Two triangles overlap in one plane.
     Overlap,
-    /// Two triangles go through each other.
+    /// Two triangles cross.
     Crossing,
 }
 
@@ -19,14 +19,14 @@ pub(crate) enum MetKind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Met {
     pub(crate) kind: MetKind,
-    /// The triangles, as they were given; none of a vertex on an edge.
+    /// The given triangles; none for a vertex on an edge.
     pub(crate) triangles: Vec<u32>,
-    /// The vertex on an edge, and the ends of that.
+    /// The vertex on an edge, and the ends of the edge; none for a pair of triangles.
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) at: Point,
 }
 
-/// The pairs that lie on each other or go through each other, of triangles that were given apart.
+/// The pairs of different given triangles that overlap or cross.
 pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Met> {
     let met = |(numbers, common): &Pair| {
         let kind = match () {
@@ -46,7 +46,7 @@ pub(super) fn of_pairs(pairs: &[Pair], origin: impl Fn(u32) -> u32) -> Vec<Met> 
     pairs.iter().filter_map(met).collect()
 }
 
-/// The given vertices that lie on edges of given vertices.
+/// The given vertices that lie on edges between given vertices.
 pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<Met> {
     let is_given = |v: &VertexId| v.index() < n_given;
     let edges = found.on_edges().filter(|(ends, _)| ends.iter().all(is_given));
@@ -62,7 +62,7 @@ pub(super) fn of_edges(found: &Points, n_given: usize, points: &[Point]) -> Vec<
     edges.flat_map(met).collect()
 }
 
-/// Puts them in order, each pair and each vertex on an edge once, wherever a round found it.
+/// Sorts the records, and leaves each pair and each vertex on an edge once, whichever rounds found it.
 pub(super) fn sort(met: &mut Vec<Met>) {
     met.sort_by(|x, y| key(x).cmp(&key(y)));
     met.dedup_by(|x, y| key(x) == key(y));

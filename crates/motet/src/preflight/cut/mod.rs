@@ -1,14 +1,16 @@
-//! Triangles divided where they meet, so that what they have in common is vertices, edges and whole triangles of both.
+//! Divides triangles where they meet, so that what they have in common is vertices, edges and whole triangles
+//! of both.
 //!
 //! | step | file | how |
 //! |---|---|---|
-//! | pairs | `common` | points that two triangles have in common, by what they are: a vertex, two edges, an edge and a triangle |
-//! | points | `points` | each once, whatever pair has found it; put on edges and in triangles |
-//! | pieces | `plane` | each triangle with its points and segments |
+//! | pairs | `common` | points that two triangles have in common, identified by their origin: a vertex, two edges, an edge and a triangle |
+//! | points | `points` | each point once, whichever pairs have found it; assigned to edges and triangles |
+//! | pieces | `plane` | each triangle, divided at its points and segments |
 //!
-//! Points have names, so pieces fit by their ids, whatever rounding does to coordinates. What is nearer than a given distance is one place. Where three triangles
-//! cross in one point, two of them are divided along one segment first; the next round divides their pieces, of which that segment is an edge. Whether the pieces
-//! meet in what they share alone is asked with exact signs at the end.
+//! Points have names, so pieces match by their ids, whatever rounding does to coordinates. Points nearer than
+//! a given distance are one place. If three triangles cross in one point, two of them are divided along one
+//! segment first; the next round divides their pieces, of which that segment is an edge. Exact signs decide
+//! at the end whether the pieces meet only in what they share.
 
 mod common;
 mod met;
@@ -27,48 +29,51 @@ use common::{Common, Side};
 pub(crate) use met::{Met, MetKind};
 use points::Points;
 
-/// Pieces that still meet after so many rounds are not looked at again.
+/// Largest number of rounds: if pieces still meet then, dividing fails.
 const ROUNDS: usize = 8;
 
-/// So many pairs of triangles are not divided: they take too much memory.
+/// Largest number of pairs of triangles that are divided: more take too much memory.
 const MOST_PAIRS: usize = 2_000_000;
 
-/// The check of divided triangles stops where the boxes of more pairs of pieces touch than this many per piece, or than the second number where that is more. Only in a soup of triangles
-/// that nearly all cross each other do so many touch, and the exact signs of all these pairs take minutes.
+/// Limits of the check of divided triangles: it stops if the boxes of more pairs of pieces touch than the
+/// first number per piece, or than the second number where that is more. So many touch only in a soup of
+/// triangles that nearly all cross each other, and the exact signs of all these pairs take minutes.
 const MOST_TOUCHING: (usize, usize) = (100, 200_000);
 
 /// Which triangles are divided where they meet.
 pub(crate) struct Rule<'a> {
     /// The group of each triangle.
     pub(crate) group_of: &'a [u32],
-    /// Whether triangles of two groups are looked at.
+    /// Whether triangles of two groups are compared.
     pub(crate) admits: &'a (dyn Fn(u32, u32) -> bool + Sync),
-    /// What is nearer than this is one place.
+    /// Points nearer than this are one place.
     pub(crate) near: f64,
-    /// Whether triangles that go through each other are divided too, or only those that touch or lie on each other.
+    /// Whether triangles that cross are divided too, or only those that touch or overlap.
     pub(crate) crossings: bool,
 }
 
-/// Triangles that are divided.
+/// The result of dividing triangles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cut {
-    /// The points that were given, then new ones.
+    /// The given points, then new ones.
     pub(crate) points: Vec<Point>,
-    /// The pieces, turned as the triangles are, and the triangle that each is or is a part of; in the order of those.
+    /// The pieces, oriented like the triangles, each with the triangle that it is or is part of; in the order
+    /// of the triangles.
     pub(crate) pieces: Vec<([VertexId; 3], u32)>,
-    /// The vertex that each given point is now.
+    /// The vertex that each given point has become.
     pub(crate) names: Vec<VertexId>,
     /// Where triangles met.
     pub(crate) met: Vec<Met>,
 }
 
-/// A pair of triangles, and what they have in common beside corners of both.
+/// A pair of triangles, and what they have in common besides corners of both.
 type Pair = ([u32; 2], Common);
 
 impl Cut {
-    /// Divides triangles by a rule. `None` where pieces of those that are looked at would still meet in more than they share.
+    /// Divides triangles by a rule. `None` if there are too many pairs, or if pieces of triangles that are
+    /// compared would still meet in more than they share.
     ///
-    /// Of two vertices at one place the one of smaller id stays.
+    /// Of two vertices at one place, the one of smaller id stays.
     pub(crate) fn new(
         points: &[Point],
         triangles: &[[VertexId; 3]],
@@ -119,7 +124,7 @@ impl Cut {
         Some(())
     }
 
-    /// Makes one of vertices at one place; pieces that this leaves without area go.
+    /// Merges vertices at one place, and removes pieces that this leaves without area.
     fn join_vertices(&mut self, rule: &Rule) {
         let names = joined(&self.points, &self.pieces, rule);
         let renamed = renamed(&self.triangles(), &names);
@@ -128,7 +133,7 @@ impl Cut {
         self.names.iter_mut().for_each(|v| *v = names[v.index()]);
     }
 
-    /// The pairs of pieces that have to be divided. `None` where there are too many.
+    /// The pairs of pieces that have to be divided. `None` if there are too many.
     fn pairs(&self, rule: &Rule, threads: &Threads) -> Option<Vec<Pair>> {
         let corners = |i: usize| corners(&self.points, self.pieces[i].0);
         let boxes: Vec<_> = (0..self.pieces.len()).map(|i| widened(around(&corners(i)), rule.near)).collect();
@@ -163,12 +168,13 @@ impl Cut {
         (n_found.into_inner() <= MOST_PAIRS).then_some(found)
     }
 
-    /// How many pairs of pieces whose boxes touch are looked at.
+    /// The largest number of pairs of pieces with touching boxes that are compared.
     fn most_looked_at(&self) -> usize {
         MOST_TOUCHING.1.max(MOST_TOUCHING.0 * self.pieces.len())
     }
 
-    /// Whether pieces meet in what they share alone, or are the same triangle. `None` where the boxes of more than `most` pairs touch.
+    /// Whether pieces meet only in what they share, or are the same triangle; or cross, if the rule leaves
+    /// crossings. `None` if the boxes of more than `most` pairs touch.
     fn is_sound(&self, rule: &Rule, most: usize, threads: &Threads) -> Option<bool> {
         let n_looked_at = AtomicUsize::new(0);
         let group = |i: u32| rule.group_of[self.pieces[i as usize].1 as usize];
@@ -183,7 +189,7 @@ impl Cut {
         (n_looked_at.into_inner() <= most).then(|| crossings.iter().all(is_fit))
     }
 
-    /// Whether two pieces go through each other.
+    /// Whether two pieces cross.
     fn goes_through(&self, pair: [u32; 2], near: f64) -> bool {
         let [a, b] = pair.map(|number| {
             let vertices = self.pieces[number as usize].0;
@@ -193,7 +199,8 @@ impl Cut {
     }
 }
 
-/// For each vertex that pieces use the one that it is to be: the nearest of smaller id at its place, of a group that its own are held against.
+/// For each vertex that pieces use, the one that replaces it: the nearest of smaller id at its place, of a
+/// group that is compared with its own.
 fn joined(points: &[Point], pieces: &[([VertexId; 3], u32)], rule: &Rule) -> Vec<VertexId> {
     let mut groups: Vec<(VertexId, u32)> =
         pieces.iter().flat_map(|(t, origin)| t.map(|v| (v, rule.group_of[*origin as usize]))).collect();

@@ -1,8 +1,9 @@
-//! One triangle in pieces: every point on it a vertex, every segment an edge.
+//! Divides one triangle into pieces such that every point on it is a vertex and every segment an edge.
 //!
-//! Points come one by one; edges that cross a segment are flipped until it is there (Sloan 1993, *A fast algorithm for generating constrained
-//! Delaunay triangulations*), then the others until opposite angles sum to no more than a half turn (Lawson 1977).
-//! Points on an edge of the triangle count as in line, however rounding put them; all others are seen from one point beside the plane, with exact signs.
+//! Points are inserted one by one; edges that cross a segment are flipped until it is an edge (Sloan 1993, *A
+//! fast algorithm for generating constrained Delaunay triangulations*), then the others until opposite angles
+//! sum to no more than 180 degrees (Lawson 1977). Points on an edge of the triangle count as collinear,
+//! however they are rounded; all others are seen from one point beside the plane, with exact signs.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
@@ -12,19 +13,20 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
-/// A walk of more steps than this goes round in circles, or is longer than looking at all triangles takes.
+/// A walk of more steps than this goes around in circles, or takes longer than testing all triangles.
 const MOST_STEPS: usize = 1000;
 
-/// So many points leave many edges in the way of a segment.
+/// With more points than this, many edges are in the way of a segment.
 const MANY: usize = 64;
 
-/// Where flips go round in circles.
+/// After this many flips, they go around in circles.
 const MOST_FLIPS: usize = 10_000;
 
-/// Opposite angles may sum to so much more than a half turn, as the sum of their cotangents: ties stay as they are.
+/// An edge is flipped if the cotangents of its opposite angles sum to less than this: slightly below 0, so
+/// that ties stay as they are.
 const FLAT: f64 = -1e-9;
 
-/// The triangle and its pieces; points by their place in the list: its corners first.
+/// A triangle and its pieces. Points are indices into `points`, which starts with the corners.
 pub(super) struct Plane<'a> {
     points: &'a [Point],
     /// Which edges of the triangle each point lies on, as bits.
@@ -34,12 +36,13 @@ pub(super) struct Plane<'a> {
     /// The triangle to the left of each edge, by the vertex opposite.
     apex: BTreeMap<[usize; 2], usize>,
     fixed: BTreeSet<[usize; 2]>,
-    /// The point that came in last, or a corner.
+    /// The point that was inserted last, or a corner.
     last: usize,
 }
 
 impl<'a> Plane<'a> {
-    /// The first three points are the corners; `on_edges` has those between corner k and the next, in their order.
+    /// The first three points are the corners; `on_edges[k]` has those between corner `k` and the next, in
+    /// their order. `None` if the triangle has no area.
     pub(super) fn new(points: &'a [Point], on_edges: &[Vec<usize>; 3]) -> Option<Self> {
         let normal = area_vector([points[0], points[1], points[2]]);
         let axis = (0..3).max_by(|&i, &j| normal[i].abs().total_cmp(&normal[j].abs()))?;
@@ -80,7 +83,7 @@ impl<'a> Plane<'a> {
         });
     }
 
-    /// Puts a point on an edge, on both sides of it.
+    /// Inserts a point on an edge, on both sides of it.
     fn divide_edge(&mut self, [i, j]: [usize; 2], p: usize) {
         for [i, j] in [[i, j], [j, i]] {
             if let Some(&k) = self.apex.get(&[i, j]) {
@@ -91,13 +94,13 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// Each triangle once, rising.
+    /// Each triangle once, in rising order.
     pub(super) fn triangles(&self) -> Vec<[usize; 3]> {
         let firsts = self.apex.iter().filter(|([i, j], k)| i < j && i < *k);
         firsts.map(|([i, j], k)| [*i, *j, *k]).collect()
     }
 
-    /// Puts in a point within the triangle. None where it is not.
+    /// Inserts a point within the triangle. `None` if it does not lie there, or is at a vertex.
     pub(super) fn insert(&mut self, p: usize) -> Option<()> {
         let [i, j, k] = self.walk_to(p).or_else(|| {
             self.triangles()
@@ -118,7 +121,8 @@ impl<'a> Plane<'a> {
         Some(())
     }
 
-    /// The triangle that holds a point, by going towards it from where the last point came in. None where that leads nowhere soon.
+    /// The triangle that contains a point, found by walking from the point that was inserted last. `None` if
+    /// the walk leaves the triangle or takes too many steps.
     fn walk_to(&self, p: usize) -> Option<[usize; 3]> {
         let (&[mut i, mut j], &(mut k)) = self.apex.range([self.last, 0]..).next()?;
         for _ in 0..MOST_STEPS {
@@ -129,7 +133,7 @@ impl<'a> Plane<'a> {
         None
     }
 
-    /// Makes a segment an edge. None where another one is in the way.
+    /// Makes a segment an edge, or several if points lie on it. `None` if another segment is in the way.
     pub(super) fn join(&mut self, [p, q]: [usize; 2]) -> Option<()> {
         if self.on[p] & self.on[q] != 0 {
             return Some(());
@@ -149,7 +153,7 @@ impl<'a> Plane<'a> {
         Some(())
     }
 
-    /// The first vertex on the way from `p` to `q`.
+    /// The first vertex on the way from `p` to `q`: `q` itself if there is none between.
     fn next_on_way(&self, p: usize, q: usize) -> Option<usize> {
         let is_between = |v: usize| {
             let [to_v, to_q] = [v, q].map(|v| sub(self.points[v], self.points[p]));
@@ -166,7 +170,8 @@ impl<'a> Plane<'a> {
         self.apex.range([v, 0]..[v + 1, 0]).next().is_some()
     }
 
-    /// Flips what crosses the way between two vertices, with none on it.
+    /// Flips the edges that cross the segment between two vertices, on which no other vertex lies. `None` if
+    /// it does not become an edge.
     fn free_way(&mut self, [p, q]: [usize; 2]) -> Option<()> {
         let crosses = |plane: &Self, [a, b]: [usize; 2]| {
             ![p, q].iter().any(|v| [a, b].contains(v))
@@ -191,7 +196,7 @@ impl<'a> Plane<'a> {
         is_there.then_some(())
     }
 
-    /// The other diagonal, where the two triangles make a convex quadrilateral.
+    /// Flips an edge if its two triangles form a convex quadrilateral; returns the other diagonal.
     fn flip(&mut self, [a, b]: [usize; 2]) -> Option<[usize; 2]> {
         let (c, d) = (*self.apex.get(&[a, b])?, *self.apex.get(&[b, a])?);
         if self.side([a, d, c]) <= 0 || self.side([d, b, c]) <= 0 {
@@ -204,14 +209,15 @@ impl<'a> Plane<'a> {
         Some([c, d])
     }
 
-    /// Flips what is not Delaunay where there are many points: then few edges are in the way of segments.
+    /// Flips edges that are not Delaunay if there are many points, so that few edges are in the way of
+    /// segments.
     pub(super) fn even_out_many(&mut self) {
         if self.points.len() > MANY {
             self.even_out();
         }
     }
 
-    /// Flips what is not Delaunay.
+    /// Flips edges that are not Delaunay and not fixed.
     pub(super) fn even_out(&mut self) {
         let mut todo: VecDeque<[usize; 2]> = self.apex.keys().copied().filter(|[i, j]| i < j).collect();
         for _ in 0..MOST_FLIPS.max(todo.len() * todo.len()) {
@@ -226,7 +232,7 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// Of the angle at `apex`.
+    /// The cotangent of the angle at `apex`.
     fn cotangent(&self, apex: usize, a: usize, b: usize) -> f64 {
         let [u, v] = [a, b].map(|i| sub(self.points[i], self.points[apex]));
         dot(u, v) / norm(cross(u, v)).max(f64::MIN_POSITIVE)

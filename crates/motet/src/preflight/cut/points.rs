@@ -1,4 +1,4 @@
-//! The points that triangles have in common: each once, put on edges and in triangles, and those divided.
+//! The points that triangles have in common, each once: assigned to edges and triangles, which they divide.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -9,7 +9,7 @@ use crate::base::{Point, VertexId, rising};
 use crate::geometry::segment;
 use crate::geometry::vector::{add, distance, scale, sub};
 
-/// All points, and where they go.
+/// All points, and the edges and triangles that they lie on.
 pub(super) struct Points<'a> {
     triangles: &'a [[VertexId; 3]],
     near: f64,
@@ -17,21 +17,22 @@ pub(super) struct Points<'a> {
     names: HashMap<Name, VertexId>,
     on_edge: BTreeMap<[VertexId; 2], Vec<VertexId>>,
     inside: BTreeMap<u32, BTreeSet<VertexId>>,
-    /// The vertex that each point is now.
+    /// The vertex that each point has been merged into.
     same: Vec<VertexId>,
 }
 
 /// Triangles in pieces, and the points that they use.
 pub(super) struct Divided {
     pub(super) points: Vec<Point>,
-    /// The pieces, turned as the triangles are, and the triangle that each is or is a part of; in the order of those.
+    /// The pieces, oriented like the triangles, each with the triangle that it is or is part of; in the order
+    /// of the triangles.
     pub(super) pieces: Vec<([VertexId; 3], u32)>,
-    /// The vertex that each point is now.
+    /// The vertex that each point has become.
     pub(super) same: Vec<VertexId>,
 }
 
 impl<'a> Points<'a> {
-    /// The points of all pairs. What is nearer than `near` is one place.
+    /// Collects the points of all pairs. Points nearer than `near` are one place.
     pub(super) fn new(points: &[Point], triangles: &'a [[VertexId; 3]], pairs: &[Pair], near: f64) -> Self {
         let mut found = Self {
             triangles,
@@ -59,7 +60,7 @@ impl<'a> Points<'a> {
         found
     }
 
-    /// Puts a point where it lies on a triangle.
+    /// Assigns a point to the edge or the inside of a triangle that it lies on.
     fn put(&mut self, id: VertexId, triangle: u32, on: On) {
         let vertices = self.triangles[triangle as usize];
         match on {
@@ -73,7 +74,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The points on edges: the ends of the edge, and the points between in their order.
+    /// The points on edges: the ends of each edge, and the points between in their order.
     pub(super) fn on_edges(&self) -> impl Iterator<Item = ([VertexId; 2], &[VertexId])> {
         self.on_edge.iter().map(|(ends, list)| (*ends, list.as_slice()))
     }
@@ -96,7 +97,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Puts the points of edges in their order, and makes points at one place one.
+    /// Sorts the points of each edge, and merges points at one place.
     fn merge(&mut self) {
         let mut on_edge = std::mem::take(&mut self.on_edge);
         for ([from, to], list) in &mut on_edge {
@@ -126,7 +127,8 @@ impl<'a> Points<'a> {
         self.on_edge = on_edge;
     }
 
-    /// Given vertices come before those that were found: the smaller id stays.
+    /// Merges two points if they are at one place. The smaller id stays, so given vertices take precedence
+    /// over new ones.
     fn unite(&mut self, v: VertexId, w: VertexId) {
         let [v, w] = rising([self.id(v), self.id(w)]);
         if v != w && distance(self.at(v), self.at(w)) <= self.near {
@@ -134,7 +136,8 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Divides the triangles from the last to the first: of two that lie on each other, the first takes the edges of the other's pieces, so both are divided alike.
+    /// Divides the triangles, from the last to the first: of two that overlap, the first takes over the edges
+    /// of the other's pieces, so that both are divided alike. `None` if this fails.
     pub(super) fn divide(self, pairs: &[Pair]) -> Option<Divided> {
         let mut segments: BTreeMap<u32, BTreeSet<[VertexId; 2]>> = BTreeMap::new();
         let mut flat: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
@@ -164,7 +167,7 @@ impl<'a> Points<'a> {
         Some(Divided { points: self.points, pieces, same })
     }
 
-    /// The pieces of one triangle: none where points at one place have left it no area.
+    /// The pieces of one triangle; none if merged points have left it without area. `None` if this fails.
     fn triangle(&self, number: u32, segments: &BTreeSet<[VertexId; 2]>) -> Option<Vec<[VertexId; 3]>> {
         let given = self.triangles[number as usize];
         let triangle @ [a, b, c] = given.map(|v| self.id(v));
@@ -205,14 +208,14 @@ impl<'a> Points<'a> {
         let local: HashMap<VertexId, usize> = ids.iter().copied().zip(0..).collect();
         let places = segments.iter().filter_map(|[v, w]| Some([*local.get(v)?, *local.get(w)?]));
         for segment in places.flat_map(|ends| self.parted(&points, ends)) {
-            // What another segment is in the way of is divided when these pieces are looked at again.
+            // A segment that another one blocks is divided in the next round.
             let _ = plane.join(segment);
         }
         plane.even_out();
         Some(plane.triangles().into_iter().map(|t| t.map(|i| ids[i])).collect())
     }
 
-    /// A segment between two points, parted at those on it.
+    /// A segment between two points, divided at the points that lie on it.
     fn parted(&self, points: &[Point], [p, q]: [usize; 2]) -> Vec<[usize; 2]> {
         let ends = [points[p], points[q]];
         let place = |i: usize| segment::closest(ends, points[i]);

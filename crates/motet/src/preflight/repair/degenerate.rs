@@ -1,15 +1,17 @@
-//! Triangles without area go, and what was closed stays closed.
+//! Removes triangles without area; what was closed stays closed.
 //!
-//! One that names a vertex twice is but an edge: the triangles on its other two sides meet there without it. One with its corners on a line has
-//! two short edges along its long one; the triangles on the other side of the long one are divided at the middle corner, and
-//! then meet those of the short ones. What was divided may have no area either, so this is done in rounds.
+//! A triangle that names a vertex twice is only an edge: the triangles on its other two sides meet there
+//! without it. A triangle with its corners on a line has two short edges along its long one; the triangles on
+//! the other side of the long one are divided at the middle corner, and then meet those of the short ones.
+//! Their pieces may have no area either, so this is done in rounds.
 
 use super::report::RepairKind;
 use super::work::{Piece, Work};
 use crate::base::{Threads, VertexId};
 use crate::preflight::single::{Shape, shapes};
 
-/// More rounds than chains of triangles on one line need; what is left then is for the next search to tell of.
+/// Number of rounds, more than chains of triangles on one line need; what is left then is reported by the
+/// next search.
 const ROUNDS: usize = 64;
 
 pub(super) fn drop_all(work: &mut Work, threads: &Threads) {
@@ -23,7 +25,7 @@ pub(super) fn drop_all(work: &mut Work, threads: &Threads) {
     tell_left(work, threads);
 }
 
-/// Takes out what can go without touching one triangle twice. Whether anything went.
+/// Removes triangles without area as long as no triangle is changed twice. Returns whether any was removed.
 fn round(work: &mut Work, shapes: &[Shape]) -> bool {
     let edges = Edges::new(&work.pieces);
     let mut is_gone = vec![false; work.pieces.len()];
@@ -56,11 +58,11 @@ fn round(work: &mut Work, shapes: &[Shape]) -> bool {
     is_gone.contains(&true)
 }
 
-/// The corners in the order in which they lie on their line; `None` where two are at one place.
+/// The corners in their order along the line; `None` if two are at one place.
 fn along_line(work: &Work, t: usize) -> Option<[VertexId; 3]> {
     let mut vertices = work.pieces[t].vertices;
     let at = |v: &VertexId| work.points[v.index()];
-    // Points of a line follow each other as their coordinates do.
+    // Points on a line are ordered like their coordinates.
     vertices.sort_by(|u, v| at(u).partial_cmp(&at(v)).unwrap_or(std::cmp::Ordering::Equal));
     let [a, b, c] = vertices;
     (at(&a) != at(&b) && at(&b) != at(&c)).then_some([a, b, c])
@@ -98,7 +100,7 @@ impl Edges {
     }
 }
 
-/// Tells of those that stayed.
+/// Records the triangles that are left with their corners on a line.
 fn tell_left(work: &mut Work, threads: &Threads) {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);

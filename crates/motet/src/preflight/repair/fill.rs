@@ -1,14 +1,16 @@
-//! A ring of vertices filled with triangles of the least area together.
+//! Fills a ring of vertices with triangles of the least total area.
 //!
-//! Barequet and Sharir 1995, *Filling gaps in the boundary of a polyhedron*: the best fill of the ring from `i` to `j` is a triangle on that chord with the best fills on
-//! its two other edges, so all are found from the shortest up, in `n^3 / 6` steps.
+//! Barequet and Sharir 1995, *Filling gaps in the boundary of a polyhedron*: the best fill of the ring from
+//! `i` to `j` is a triangle on that chord and the best fills on its two other edges, so all are found by
+//! dynamic programming, from the shortest chord up, in `n^3 / 6` steps.
 
 use crate::base::{Point, VertexId};
 use crate::geometry::predicates::collinear;
 use crate::geometry::triangle::area;
 
-/// The places in the ring of the corners of each triangle, turned as the ring is, the smallest first. `is_taken` tells which
-/// chords cannot be new edges. `None` where there is no fill without those and without triangles that have no area.
+/// The triangles of the fill, by the indices of their corners in the ring, oriented like the ring, the
+/// smallest index first. `is_taken` returns whether a chord cannot be a new edge. `None` if there is no fill
+/// without such chords and without triangles that have no area.
 pub(super) fn fill(
     points: &[Point],
     ring: &[VertexId],
@@ -35,7 +37,7 @@ pub(super) fn fill(
     (n > 2 && best.area(0, n - 1) < f64::INFINITY).then(|| best.triangles(n))
 }
 
-/// The least area on each chord, and the corner opposite to it.
+/// For each chord, the least area of a fill, and the corner opposite to the chord in it.
 struct Table {
     n: usize,
     entries: Vec<(f64, u32)>,
@@ -46,7 +48,7 @@ impl Table {
         Self { n, entries: vec![(f64::INFINITY, 0); n * n] }
     }
 
-    /// Infinite where there is no fill.
+    /// The least area on a chord; infinite if there is no fill.
     fn area(&self, i: usize, j: usize) -> f64 {
         if j == i + 1 { 0.0 } else { self.entries[i * self.n + j].0 }
     }

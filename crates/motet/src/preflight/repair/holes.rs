@@ -1,4 +1,4 @@
-//! Small holes filled, if what fills them touches nothing else.
+//! Fills small holes, if the fill touches nothing else.
 
 use super::fill::fill;
 use super::report::RepairKind;
@@ -11,7 +11,7 @@ use crate::preflight::sides::Side;
 use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;
 
-/// The longest rim that is ever filled: its fill takes a second or so and 16 MB.
+/// The largest number of edges of a rim that is filled; filling it takes about a second and 16 MB.
 const LONGEST: usize = 1000;
 
 pub(super) fn close(work: &mut Work, longest: usize, threads: &Threads) {
@@ -44,7 +44,8 @@ fn tell(work: &mut Work, kind: RepairKind, rim: &[RimEdge]) {
     work.tell(kind, triangles, rim.iter().map(|edge| edge.from).collect());
 }
 
-/// The triangles that fill a rim; each takes after the one beyond the rim where its first corner is.
+/// The triangles that fill a rim; `None` if it cannot be filled. Each takes its labels from the triangle
+/// across the rim at its first corner.
 fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
     let ring: Vec<VertexId> = rim.iter().map(|edge| edge.from).collect();
     if !ring.iter().all(|v| in_range(work.points[v.index()])) {
@@ -65,7 +66,7 @@ fn filled(work: &Work, sides: &[Side], rim: &[RimEdge]) -> Option<Vec<Piece>> {
     Some(fill(work.points, &ring, is_taken)?.into_iter().map(piece).collect())
 }
 
-/// Whether the triangles of each fill meet others, of the surfaces or of any fill, in more than they share.
+/// For each fill, whether its triangles meet others, of the surfaces or of any fill, in more than they share.
 fn touching(work: &Work, fills: &[(&[RimEdge], Vec<Piece>)], threads: &Threads) -> Vec<bool> {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);

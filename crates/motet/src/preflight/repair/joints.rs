@@ -1,7 +1,10 @@
-//! Triangles divided where they touch, lie on each other or go through each other, so that they share vertices, edges and whole triangles.
+//! Divides triangles where they touch, overlap or cross, so that they share vertices, edges and whole
+//! triangles.
 //!
-//! What counts as one place is told by the digits of the coordinates (`geometry::rounding`). Surfaces that are right already stay as they are: within a part that
-//! hangs together by edges something must meet exactly, or a vertex of a rim must lie on an open edge; else only different parts are looked at.
+//! What counts as one place is determined from the digits of the coordinates (`geometry::rounding`). Surfaces
+//! that are already correct stay as they are: within a part connected by edges, triangles are compared only
+//! if some of them meet by exact tests, or a vertex of a rim lies on an open edge; otherwise only different
+//! parts are compared.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,10 +20,11 @@ use crate::preflight::single::{Shape, shapes};
 use crate::preflight::surfaces::Role;
 use crate::spatial::{BoxTree, WindingNumber, around};
 
-/// A new point of surfaces: the vertices of the triangle that it lies in, and their weights.
+/// The origin of a new point: the vertices of the triangle that it lies in, and their weights.
 pub(super) type Origin = ([VertexId; 3], [f64; 3]);
 
-/// What dividing came to: all points, where the new ones lie, and the vertex that each given one is now.
+/// The result of dividing: all points, the origins of the new ones, the vertex that each given one has
+/// become, and the pieces.
 pub(super) struct Joints {
     pub(super) points: Vec<Point>,
     pub(super) origins: Vec<Origin>,
@@ -28,7 +32,8 @@ pub(super) struct Joints {
     pub(super) pieces: Vec<Piece>,
 }
 
-/// Divides what meets; `crossings`: also what goes through each other. `None` where nothing has to be divided, or where no digits are left to do so, which is reported.
+/// Divides triangles that touch or overlap and, if `crossings`, those that cross. `None` if nothing has to be
+/// divided, or if dividing fails, which is reported.
 pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Option<Joints> {
     let lists = work.lists();
     let shapes = shapes(&lists.surfaces(work), threads);
@@ -39,7 +44,7 @@ pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Opt
         return None;
     }
     let used: Vec<Point> = triangles.as_flattened().iter().map(|v| work.points[v.index()]).collect();
-    // Two points can be off by as much each.
+    // Each of two points can be off by this much.
     let near = 2.0 * rounding::of(&used);
     let parts = Parts::new(work.points, &triangles, near, threads);
     let admits = |p: u32, q: u32| p != q || parts.is_faulty[p as usize];
@@ -60,7 +65,7 @@ pub(super) fn divide(work: &mut Work, crossings: bool, threads: &Threads) -> Opt
     (is_changed || is_shared).then_some(joints)
 }
 
-/// The parts of surfaces that hang together by edges, of whichever surface.
+/// The parts connected by edges, across all surfaces.
 struct Parts {
     /// The part of each triangle.
     part_of: Vec<u32>,
@@ -99,7 +104,7 @@ impl Parts {
     }
 }
 
-/// The triangles of open edges on which the end of another one lies.
+/// The triangles of open edges on which the end of another open edge lies.
 fn at_open_edges(points: &[Point], open: &[([VertexId; 2], u32)], near: f64) -> Vec<u32> {
     let at = |v: VertexId| points[v.index()];
     let mut ends: Vec<VertexId> = open.iter().flat_map(|edge| edge.0).collect();
@@ -123,7 +128,8 @@ fn at_open_edges(points: &[Point], open: &[([VertexId; 2], u32)], near: f64) -> 
     found
 }
 
-/// The pieces, each as the triangle that it is a part of; those without area stay as they are.
+/// The pieces, each with the data of the triangle that it is part of; triangles without area stay as they
+/// are.
 fn pieces(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Piece> {
     let mut is_sound = vec![false; work.pieces.len()];
     sound.iter().for_each(|&t| is_sound[t as usize] = true);
@@ -135,7 +141,7 @@ fn pieces(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Piece> {
     all.into_iter().map(|(t, vertices)| Piece { vertices, ..work.pieces[t] }).collect()
 }
 
-/// Where each new point lies in a triangle that has it.
+/// For each new point, its place in a triangle that contains it.
 fn origins(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Origin> {
     let n_given = work.points.len();
     let mut origins = vec![([VertexId(0); 3], [1.0, 0.0, 0.0]); cut.points.len() - n_given];
@@ -149,7 +155,7 @@ fn origins(work: &Work, cut: &Cut, sound: &[u32]) -> Vec<Origin> {
     origins
 }
 
-/// Reports what was found where triangles met.
+/// Records what was found where triangles met.
 fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
     for (v, &name) in cut.names.iter().enumerate().filter(|(v, name)| name.index() != *v) {
         work.tell(RepairKind::MergedVertex, Vec::new(), vec![VertexId::new(v), name]);
@@ -165,8 +171,9 @@ fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
     }
 }
 
-/// Of pieces of one surface with the same vertices leaves one; where as many face either side only if they lie inside the rest of the
-/// surface, since they part two bodies there, and else none. Whether there were any.
+/// Of the pieces of one surface with the same vertices, leaves one. If as many face either side, it remains
+/// only if it lies inside the rest of the surface, where it separates two bodies; otherwise none remains.
+/// Returns whether there were any such pieces.
 fn share(work: &mut Work, joints: &mut Joints) -> bool {
     let mut same: BTreeMap<(u32, [VertexId; 3]), Vec<usize>> = BTreeMap::new();
     for (i, piece) in joints.pieces.iter().enumerate() {
@@ -210,14 +217,14 @@ fn middle(joints: &Joints, piece: usize) -> Point {
     centroid(joints.pieces[piece].vertices.map(|v| joints.points[v.index()]))
 }
 
-/// Reports pieces with the same vertices, of which some go.
+/// Records pieces with the same vertices, of which some are removed.
 fn tell_shared(work: &mut Work, joints: &Joints, list: &[usize], goes: &[bool], kind: RepairKind) {
     let triangles = list.iter().filter(|&&i| goes[i]).map(|&i| joints.pieces[i].takes_after).collect();
     let (vertices, at) = (joints.pieces[list[0]].vertices.to_vec(), middle(joints, list[0]));
     work.done.push(Repair { kind, triangles, vertices, at: in_range(at).then_some(at) });
 }
 
-/// The pieces of a surface that stay, where their corners are finite.
+/// The winding number of the pieces of a surface that remain and whose corners are finite.
 fn rest_of(joints: &Joints, goes: &[bool], surface: u32) -> WindingNumber {
     let own = joints.pieces.iter().zip(goes).filter(|(piece, goes)| piece.surface == surface && !**goes);
     let is_finite = |t: &[VertexId; 3]| t.iter().all(|v| in_range(joints.points[v.index()]));

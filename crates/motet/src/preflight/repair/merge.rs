@@ -1,4 +1,4 @@
-//! Vertices that are near each other become one.
+//! Merges vertices that are near each other.
 
 use super::report::RepairKind;
 use super::work::Work;
@@ -7,7 +7,7 @@ use crate::geometry::vector::{distance, in_range};
 use crate::mesh::firsts_at_place;
 use crate::spatial::{Bounds, BoxTree};
 
-/// Merges the vertices that triangles use; for each vertex the one that stands for it.
+/// Merges the vertices that triangles use. Returns for each vertex the one that stands for it.
 pub(super) fn merge(work: &mut Work, within: f64) -> Vec<VertexId> {
     let mut is_used = vec![false; work.points.len()];
     work.pieces.iter().flat_map(|piece| piece.vertices).for_each(|v| is_used[v.index()] = true);
@@ -19,7 +19,7 @@ pub(super) fn merge(work: &mut Work, within: f64) -> Vec<VertexId> {
     kept
 }
 
-/// The first vertex in use at the place of each one in use; others stay themselves.
+/// For each vertex in use, the first vertex in use at its place; other vertices stand for themselves.
 fn at_one_place(work: &Work, is_used: &[bool]) -> Vec<VertexId> {
     let mut kept = firsts_at_place(work.points);
     let mut first_in_use = vec![None; kept.len()];
@@ -30,8 +30,8 @@ fn at_one_place(work: &Work, is_used: &[bool]) -> Vec<VertexId> {
     kept
 }
 
-/// Goes through the vertices as they come: each that is still there takes in all later ones that are near. Those that stay are apart, so each is
-/// looked at from a few of them only.
+/// Goes through the vertices in order: each that is not merged yet absorbs all later ones that are near.
+/// Those that remain are apart, so each vertex is near only a few of them.
 fn near(work: &Work, is_used: &[bool], within: f64) -> Vec<VertexId> {
     let points = work.points;
     let around = |v: usize| -> Bounds {

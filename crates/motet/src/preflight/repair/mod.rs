@@ -1,4 +1,4 @@
-//! Repairs of surfaces that are asked for one by one, each told with ids and place.
+//! Repairs of surfaces, requested one by one, each reported with ids and place.
 
 mod degenerate;
 mod fill;
@@ -18,34 +18,41 @@ use work::Work;
 
 pub use report::{Repair, RepairKind, Repaired};
 
-/// What to repair. By default nothing; what is asked for is done in the order of the fields, but triangles without area go before others are divided, and once more then.
+/// What to repair; by default nothing. Repairs are made in the order of the fields, except that triangles
+/// without area are removed before others are divided, and once more afterwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Repairs {
-    /// Vertices nearer to one of smaller id than this distance, in the unit of the points, become one with it. At 0 those at exactly
-    /// the same place do. No vertex moves farther than that: chains of near vertices do not run together.
+    /// Vertices nearer than this distance, in the unit of the points, to one of smaller id are merged into
+    /// it; at 0, those at exactly the same place. No vertex moves farther than that: chains of near vertices
+    /// do not collapse.
     pub merge: Option<f64>,
-    /// Edges are divided at vertices that lie on them (T-junctions), and triangles that touch or lie on each other where they do, so that they share vertices,
-    /// edges and whole triangles. What is nearer than the rounding of coordinates, as their digits tell it, is one place. Of triangles of one surface that then face each other
-    /// one stays, as the wall between two bodies.
+    /// Edges are divided at vertices that lie on them (T-junctions), and triangles where they touch or
+    /// overlap, so that they share vertices, edges and whole triangles. Points that are nearer than the
+    /// rounding of coordinates, as inferred from their digits, are one place. Of triangles of one surface
+    /// that then face each other one remains, as the wall between two bodies.
     pub imprint: bool,
-    /// Triangles that go through each other are divided along the line where they do; this imprints as well. What lies in two bodies becomes a body of its own.
+    /// Triangles that cross are divided along the line where they do; this includes `imprint`. Space that
+    /// lies in two bodies becomes a body of its own.
     pub cut: bool,
-    /// Triangles without area go. Where the middle one of three corners on a line divides the longest edge, the other triangles of that edge are
-    /// divided there, so that what was closed stays closed and nothing moves.
+    /// Triangles without area are removed. If three corners lie on a line, the other triangles of the longest
+    /// edge are divided at the corner in the middle, so that closed surfaces stay closed and nothing moves.
     pub drop_degenerate: bool,
-    /// Of triangles of one surface with the same vertices that face the same side one stays; two that face opposite sides go together, since
-    /// they enclose nothing.
+    /// Of triangles of one surface with the same vertices that face the same side one remains; two that face
+    /// opposite sides are both removed, since they enclose nothing.
     pub drop_duplicates: bool,
-    /// Triangles are turned so that neighbours face the same side; as few as can be of an open part, and a closed part outward, also within another.
+    /// Triangles are reversed so that neighbours face the same side: in an open part as few as possible, in a
+    /// closed part so that it faces outward, even within another part.
     pub orient: bool,
-    /// Closed parts that face inward stay so when triangles are turned: they bound voids.
+    /// With `orient`, closed parts that face inward stay so: they bound voids.
     pub keep_inward: bool,
-    /// Holes of boundaries with a rim of at most so many edges are filled without new points; of more than 1000 none is. Neighbours have to face the same side.
+    /// Holes of boundaries with a rim of at most this many edges are filled without new points; none with a
+    /// rim of more than 1000 is. Neighbours have to face the same side.
     pub close_holes: Option<usize>,
 }
 
 impl Repairs {
-    /// All of them but `cut`: points nearer than `merge` become one, holes of at most so many edges are closed.
+    /// All repairs except `cut`: points nearer than `merge` are merged, holes of at most `hole_edges` edges
+    /// are filled.
     pub fn all(merge: f64, hole_edges: usize) -> Self {
         Self {
             merge: Some(merge),
@@ -60,12 +67,13 @@ impl Repairs {
     }
 }
 
-/// Repairs surfaces; whether they are fit then is for [`preflight`](super::preflight) to say.
+/// Repairs surfaces; [`preflight`](super::preflight) then reports whether they are fit.
 ///
-/// Takes what [`preflight`](super::preflight) takes. Points stay as they are, and those that nothing uses any more are orphans; new ones stand behind them.
+/// The arguments are those of [`preflight`](super::preflight). Points stay as they are, and those that
+/// nothing uses any more become orphans; new ones are appended.
 ///
 /// # Errors
-/// When the distance to merge within is negative or no number.
+/// If the distance for merging is negative, too large or NaN.
 ///
 /// Panics where [`preflight`](super::preflight) does.
 pub fn repair(
@@ -104,7 +112,7 @@ pub fn repair(
     Ok(work.finish(vertex_to_kept, divided.origins))
 }
 
-/// What comes once triangles share what they have in common.
+/// The repairs that follow once triangles share what they have in common.
 fn finish(work: &mut Work, repairs: &Repairs, threads: &Threads) {
     if repairs.drop_duplicates {
         work.drop_duplicates();

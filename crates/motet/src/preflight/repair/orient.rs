@@ -1,4 +1,4 @@
-//! Triangles turned so that neighbours face the same side, and closed parts outward.
+//! Reverses triangles so that neighbours face the same side, and closed parts outward.
 
 use super::report::RepairKind;
 use super::work::Work;
@@ -32,11 +32,11 @@ fn turn_outward(work: &mut Work) {
     inward.into_iter().flatten().for_each(|t| work.turn(t));
 }
 
-/// Which triangles have to be turned, found by going from neighbour to neighbour.
+/// Which triangles have to be reversed, found by going from neighbour to neighbour.
 struct Turns {
     /// The neighbours of each triangle, and whether they face different sides.
     neighbors: Csr<(u32, bool)>,
-    /// For those that were reached: whether they are to be turned if the first one of their part is not.
+    /// For each triangle that was reached: whether it has to be reversed if the first one of its part is not.
     is_turned: Vec<Option<bool>>,
 }
 
@@ -52,7 +52,8 @@ impl Turns {
         Self { neighbors: Csr::from_pairs(n_triangles, pairs), is_turned: vec![None; n_triangles] }
     }
 
-    /// The smaller number of triangles of a part that have to be turned so that all face the same side; `None` where nothing helps.
+    /// The fewest triangles of a part that have to be reversed so that all face the same side; `None` if that
+    /// is impossible.
     fn of_part(&mut self, part: &[u32]) -> Option<Vec<u32>> {
         let mut open = vec![part[0]];
         self.is_turned[part[0] as usize] = Some(false);

@@ -1,4 +1,4 @@
-//! Triangles under repair: where each comes from, and what was done so far.
+//! Triangles under repair: where each comes from, and what has been done so far.
 
 use super::joints::Origin;
 use super::report::{Repair, RepairKind, Repaired};
@@ -8,12 +8,12 @@ use crate::preflight::sides::{Side, sorted_sides};
 use crate::preflight::single::Firsts;
 use crate::preflight::surfaces::{Role, Surfaces};
 
-/// A triangle, and what goes with it.
+/// A triangle, with its surface and where it comes from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     pub(super) vertices: [VertexId; 3],
     pub(super) surface: u32,
-    /// The triangle that it was, or whose labels it takes.
+    /// The given triangle that it is part of, or whose labels it takes.
     pub(super) takes_after: u32,
     /// Whether it fills a hole.
     pub(super) is_new: bool,
@@ -27,7 +27,7 @@ pub(super) struct Work<'a> {
     pub(super) done: Vec<Repair>,
 }
 
-/// Triangles and their surfaces, as the search wants them.
+/// Triangles and their surfaces, in the form that the search needs.
 pub(super) struct Lists {
     triangles: Vec<[VertexId; 3]>,
     surface_of: Vec<u32>,
@@ -64,7 +64,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The sides of the triangles that count, as the search has them.
+    /// The sides of the triangles that remain without duplicates, as the search has them.
     pub(super) fn sides(&self, lists: &Lists) -> Vec<Side> {
         let surfaces = Surfaces {
             points: self.points,
@@ -76,13 +76,13 @@ impl<'a> Work<'a> {
         sorted_sides(&surfaces, |t| firsts.stays[t as usize])
     }
 
-    /// Notes what was done, at the mean of the vertices.
+    /// Records a repair, located at the mean of the vertices.
     pub(super) fn tell(&mut self, kind: RepairKind, triangles: Vec<u32>, vertices: Vec<VertexId>) {
         let at = mean(&vertices, self.points);
         self.done.push(Repair { kind, triangles, vertices, at });
     }
 
-    /// The triangle before the repair.
+    /// The given triangle that a piece comes from.
     pub(super) fn old(&self, piece: u32) -> u32 {
         self.pieces[piece as usize].takes_after
     }
@@ -93,7 +93,7 @@ impl<'a> Work<'a> {
         piece.is_turned = !piece.is_turned;
     }
 
-    /// Takes out triangles that their surface has more than once.
+    /// Removes duplicate triangles of the same surface.
     pub(super) fn drop_duplicates(&mut self) {
         let lists = self.lists();
         let stays = Firsts::new(&lists.surfaces(self)).stays;
@@ -108,7 +108,7 @@ impl<'a> Work<'a> {
         self.pieces.retain(|_| goes.next() != Some(true));
     }
 
-    /// `new_points` tells where points that came lie in the surfaces as they were.
+    /// The result of the repair. `new_points` gives the place of each new point in the given surfaces.
     pub(super) fn finish(mut self, vertex_to_kept: Vec<VertexId>, new_points: Vec<Origin>) -> Repaired {
         for piece in self.pieces.clone().iter().filter(|piece| piece.is_turned && !piece.is_new) {
             self.tell(RepairKind::Turned, vec![piece.takes_after], piece.vertices.to_vec());
