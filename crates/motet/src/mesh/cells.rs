@@ -158,7 +158,7 @@ impl Cells {
         self.counts().iter().filter_map(|(kind, _)| kind.dim()).max()
     }
 
-    /// The same cells with `new[v]` for each vertex `v`.
+    /// The cells with each vertex `v` replaced by `new[v]`.
     pub(crate) fn renumbered(&self, new: &[VertexId]) -> Self {
         let of_list = |lists: &Csr<VertexId>| lists.with_items(|v| new[v.index()]);
         Self {

@@ -1,4 +1,4 @@
-//! The facets of each kind of cell: which of its vertices, in which order.
+//! The facets of each kind of cell, as local indices of its vertices in their order.
 
 use crate::mesh::CellKind;
 

@@ -61,7 +61,7 @@ impl Values {
         self.len() == 0
     }
 
-    /// Whether these are whole numbers.
+    /// Whether the values are of an integer type.
     pub fn is_integer(&self) -> bool {
         !matches!(self, Self::F32(_) | Self::F64(_) | Self::Text(_))
     }

@@ -1,4 +1,4 @@
-//! Which region a volume cell belongs to, and which patch a surface cell.
+//! Labels: the region of each volume cell, and the patch of each surface cell.
 
 use std::collections::BTreeMap;
 

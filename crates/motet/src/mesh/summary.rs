@@ -63,7 +63,7 @@ pub struct RegionSummary {
     pub tets: usize,
     /// Number of cells of any kind.
     pub cells: usize,
-    /// The sum of their signed volumes.
+    /// Sum of the signed volumes of these cells.
     pub volume: f64,
 }
 
@@ -74,9 +74,9 @@ pub struct PatchSummary {
     pub triangles: usize,
     /// Number of cells of any kind.
     pub cells: usize,
-    /// The sum of their areas.
+    /// Sum of the areas of these cells.
     pub area: f64,
-    /// Whether exactly two of them meet at each of their edges.
+    /// Whether exactly two of these cells meet at each edge.
     pub closed: bool,
 }
 

@@ -64,7 +64,7 @@ pub(super) fn crossings_of(
     })
 }
 
-/// Whether two triangles have more in common than what they share by their ids.
+/// Whether two triangles have more in common than the vertices and edges that they share by id.
 fn cross(points: &[Point], a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     let [of_a, of_b] = [a, b].map(|t| corners(points, t));
     if !a.iter().any(|v| b.contains(v)) {

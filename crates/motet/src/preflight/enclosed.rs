@@ -14,9 +14,9 @@ use crate::geometry::vector::scale;
 const UNDERFLOW: f64 = 1e-290;
 
 /// The sign of the volume that closed triangles enclose: `Greater` if they face outward. `Equal` if it is
-/// zero, or too small to be certain of (with 100,000 triangles, below 1e-21 of the sum of the magnitudes of
-/// the cones from one of the vertices to the triangles): then neither side is the inside. `None` if a corner
-/// is not finite.
+/// zero, or too small to be certain of (with 100,000 triangles, below 1e-21 of the summed magnitudes of the
+/// volumes of the cones from one of the vertices to the triangles): then neither side is the inside. `None`
+/// if a corner is not finite.
 pub(super) fn volume_sign(points: &[Point], triangles: &[[VertexId; 3]]) -> Option<Ordering> {
     let at = |v: VertexId| points[v.index()];
     let all = || triangles.iter().flatten().map(|&v| at(v));

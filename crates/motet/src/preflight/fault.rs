@@ -85,7 +85,8 @@ pub struct Fault {
     /// The triangles concerned, in rising order; for a part that faces inward, its first one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub triangles: Vec<u32>,
-    /// The vertices concerned: the ends of an edge, the corners of a triangle, what a crossing pair shares.
+    /// The vertices concerned: the ends of an edge, the corners of a triangle, those that a crossing pair
+    /// shares.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub vertices: Vec<VertexId>,
     /// A place on it; `None` if that is not finite.

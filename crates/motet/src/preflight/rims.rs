@@ -34,7 +34,7 @@ pub struct Rim {
     pub surface: u32,
     /// Number of edges.
     pub edges: usize,
-    /// The sum of their lengths.
+    /// Sum of the lengths of its edges.
     pub length: f64,
     /// Twice the largest distance of its vertices from its centre.
     pub diameter: f64,

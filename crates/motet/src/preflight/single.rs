@@ -87,8 +87,8 @@ fn what_stays(surfaces: &Surfaces, same: impl Iterator<Item = u32> + Clone) -> O
     if 2 * n_rising == n { None } else { of_more.next() }
 }
 
-/// The faults of points of triangles that are not finite, triangles without area, duplicates, and facets that
-/// surfaces share.
+/// The faults of single triangles: points that are not finite, triangles without area, duplicates, and facets
+/// that surfaces share.
 pub(super) fn faults(surfaces: &Surfaces, shapes: &[Shape], firsts: &Firsts) -> Vec<Fault> {
     let mut faults = not_finite(surfaces);
     for (t, &shape) in surfaces.ids().zip(shapes) {

@@ -12,7 +12,7 @@ use crate::mesh::curved::{Jacobian, is_curved_kind, is_upright};
 use crate::mesh::facets::facet_shapes;
 use crate::mesh::{Boundary, CellKind, Mesh, cell_volume};
 
-/// The defects of single cells. `are_turned` tells for each cell whether the sign of its volume is reversed:
+/// The defects of single cells. `are_turned` states for each cell whether the sign of its volume is reversed:
 /// see [`OrientedTets`](crate::mesh::OrientedTets).
 pub(super) fn defects(mesh: &Mesh, boundary: &Boundary, are_turned: &[bool]) -> Vec<Defect> {
     let facets = Facets::of(&mesh.cells);

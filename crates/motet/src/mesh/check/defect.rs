@@ -95,7 +95,7 @@ impl Defect {
 }
 
 impl Example {
-    /// An example at the mean of its vertices.
+    /// An example located at the mean of its vertices.
     pub(super) fn new(cells: &[CellId], vertices: &[VertexId], points: &[Point]) -> Self {
         let mut at = [0.0; 3];
         for v in vertices {

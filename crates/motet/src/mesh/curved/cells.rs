@@ -57,7 +57,7 @@ impl CurvedCells {
         self.cells.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no quadratic volume cells.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }

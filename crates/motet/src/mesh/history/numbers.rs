@@ -6,7 +6,7 @@ use crate::mesh::{CellKind, Field, Mesh, Values};
 /// SimVascular's arrays that number points and cells.
 const NODE_ID: &str = "GlobalNodeID";
 const ELEMENT_ID: &str = "GlobalElementID";
-/// The cell array that tells which tets were refined from the same one; -1 where that is not known.
+/// The cell array that records which tets were refined from the same one; -1 where that is not known.
 pub const REFINE_ROOT: &str = "refine_root";
 
 /// Whether a cell array gives every cell a number of its own.

@@ -48,9 +48,9 @@ impl Rule {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Rules {
-    /// For point arrays.
+    /// The rules of point arrays.
     pub points: BTreeMap<String, Rule>,
-    /// For cell arrays.
+    /// The rules of cell arrays.
     pub cells: BTreeMap<String, Rule>,
 }
 
@@ -62,9 +62,9 @@ pub enum Carry {
     Mean,
     /// [`Rule::Linear`] on points, [`Rule::Conserve`] on cells.
     Linear,
-    /// [`Rule::Inherit`].
+    /// [`Rule::Inherit`] on points and on cells.
     Inherit,
-    /// [`Rule::Drop`].
+    /// [`Rule::Drop`] on points and on cells.
     Drop,
 }
 

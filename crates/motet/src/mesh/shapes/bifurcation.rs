@@ -20,7 +20,7 @@ pub struct Bifurcation {
     pub branch_angles_deg: [f64; 2],
     /// Length of the vessel up to where the axes meet; default 4.
     pub length: f64,
-    /// Length of each branch from there; default 5.
+    /// Length of each branch from where the axes meet; default 5.
     pub branch_lengths: [f64; 2],
     /// Two vessels are blended where their distances differ by less than this; larger is rounder. Default
     /// 0.6.

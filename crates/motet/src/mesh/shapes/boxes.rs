@@ -26,7 +26,7 @@ pub fn box_grid(n: [usize; 3], [low, high]: [Point; 2]) -> Mesh {
     )
 }
 
-/// The points of a lattice, x fastest; `at` places index `i` along axis `k`.
+/// The points of a lattice, x fastest; `at(k, i)` is the coordinate of index `i` along axis `k`.
 pub(super) fn lattice_points(n: [usize; 3], at: impl Fn(usize, usize) -> f64) -> Vec<Point> {
     lattice([n[0] + 1, n[1] + 1, n[2] + 1]).map(|ijk| [0, 1, 2].map(|k| at(k, ijk[k]))).collect()
 }

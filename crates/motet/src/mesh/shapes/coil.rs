@@ -10,7 +10,7 @@ use crate::mesh::shapes::{check_count, wire};
 /// A helix around a line along z. All lengths are in one unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coil {
-    /// The middle of its axis.
+    /// The middle of the axis.
     pub centre: Point,
     /// Distance from the axis to the centre line of the wire.
     pub radius: f64,

@@ -1,4 +1,4 @@
-//! A ball inside a box: the everyday benchmark of mesh motion.
+//! A sphere inside a box: a common benchmark of mesh motion.
 //!
 //! ```text
 //!   +-----------+     Six blocks between the faces of the box and the sphere; each
@@ -62,7 +62,7 @@ pub(super) struct Shell {
     /// corners of the cube, which is the shorter way on the sphere, and quads along rays from the inner end
     /// of the longer ray to the outer end of the shorter one.
     pub(super) directions: Vec<Point>,
-    /// Its quads, facing outward.
+    /// The quads, facing outward.
     pub(super) quads: Vec<[VertexId; 4]>,
     /// The lattice indices of each vertex, 0 to n along each axis.
     pub(super) places: Vec<[usize; 3]>,

@@ -131,7 +131,7 @@ impl Flap {
         self.lines_deg.map(|deg| (deg.rem_euclid(360.0) / 360.0 * n).round() as usize % self.around)
     }
 
-    /// Its first and last slice.
+    /// The first and the last slice of the flap.
     fn ends(&self) -> [usize; 2] {
         self.extent.map(|share| (share * self.slices as f64).round() as usize)
     }

@@ -74,7 +74,7 @@ fn turn(from: Point, to: Point, along: Point) -> f64 {
     dot(cross(from, to), along).atan2(dot(from, to))
 }
 
-/// A curve that shapes along z can be bent onto, as a polyline.
+/// A curve, as a polyline, onto which shapes built along z can be bent.
 #[derive(Clone, Debug)]
 pub struct CenterLine {
     points: Vec<Point>,

@@ -60,7 +60,7 @@ pub use wire::{Chain, chains, wire};
 
 use crate::base::{Error, Result};
 
-/// Largest number of points of a shape: nobody wants more on purpose, and few machines could hold them.
+/// Largest number of points of a shape: more are only requested by mistake, and few machines could hold them.
 const MOST_POINTS: f64 = (1u64 << 26) as f64;
 
 /// Refuses a shape of too many points before memory is allocated.

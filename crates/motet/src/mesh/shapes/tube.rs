@@ -303,8 +303,8 @@ fn core_point([x, y]: [f64; 2]) -> [f64; 2] {
     [s * x, s * y]
 }
 
-/// A point on a ring: a circle of this radius outside, blended by `share` from
-/// the circle of radius `outer` into the core's rim.
+/// A point on a ring: on the circle of this radius if `share` is 0, otherwise blended by `share` from the
+/// circle of radius `outer` into the core's rim.
 fn ring_point(square: [f64; 2], radius: f64, share: f64, outer: f64) -> [f64; 2] {
     let [x, y] = square;
     let circle = |r: f64| [x, y].map(|c| r * c / x.hypot(y));

@@ -33,7 +33,7 @@ pub(super) struct Plane<'a> {
     on: Vec<u8>,
     beside: Point,
     turn: i8,
-    /// The triangle to the left of each edge, by the vertex opposite.
+    /// For each directed edge, the vertex opposite to it in the triangle on its left.
     apex: BTreeMap<[usize; 2], usize>,
     fixed: BTreeSet<[usize; 2]>,
     /// The point that was inserted last, or a corner.

@@ -167,7 +167,8 @@ impl<'a> Points<'a> {
         Some(Divided { points: self.points, pieces, same })
     }
 
-    /// The pieces of one triangle; none if merged points have left it without area. `None` if this fails.
+    /// The pieces of one triangle: an empty list if merged points have left it without area, `None` if
+    /// dividing it fails.
     fn triangle(&self, number: u32, segments: &BTreeSet<[VertexId; 2]>) -> Option<Vec<[VertexId; 3]>> {
         let given = self.triangles[number as usize];
         let triangle @ [a, b, c] = given.map(|v| self.id(v));

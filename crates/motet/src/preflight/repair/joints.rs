@@ -171,9 +171,9 @@ fn tell(work: &mut Work, cut: &Cut, sound: &[u32]) {
     }
 }
 
-/// Of the pieces of one surface with the same vertices, leaves one. If as many face either side, it remains
-/// only if it lies inside the rest of the surface, where it separates two bodies; otherwise none remains.
-/// Returns whether there were any such pieces.
+/// Leaves one of the pieces of a surface with the same vertices. If as many face either side, it remains only
+/// if it lies inside the rest of the surface, where it separates two bodies; otherwise none remains. Returns
+/// whether there were any such pieces.
 fn share(work: &mut Work, joints: &mut Joints) -> bool {
     let mut same: BTreeMap<(u32, [VertexId; 3]), Vec<usize>> = BTreeMap::new();
     for (i, piece) in joints.pieces.iter().enumerate() {
