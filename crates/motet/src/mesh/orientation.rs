@@ -1,9 +1,9 @@
 //! The orientation of tets, derived from their neighbours rather than from their volume.
 //!
-//! Some writers number the vertices of a tet in rising order, some the other way around. Two tets that share
-//! a facet must see it from opposite sides. This distinguishes a tet that is only *numbered* the other way
-//! around from one that a motion has turned inside out, which agrees with its neighbours but has a negative
-//! volume.
+//! Writers differ in the orientation of their tets; some simply number the vertices in rising order. Two tets
+//! that share a facet must see it from opposite sides. This distinguishes a tet that is only *numbered* the
+//! other way around from one that a motion has turned inside out, which agrees with its neighbours but has a
+//! negative volume.
 
 use crate::base::{Point, TetId, VertexId};
 use crate::geometry::predicates::orient3d;
@@ -18,8 +18,8 @@ impl<F: Fn(usize, usize) -> Option<(usize, usize)>> Across for F {}
 /// which tets were reversed.
 ///
 /// # Errors
-/// If a tet cannot agree with all of its neighbours, since the mesh is not orientable: that tet. No tet is
-/// changed then.
+/// A tet that cannot agree with all of its neighbours, if there is one, since the mesh is then not
+/// orientable. No tet is changed in that case.
 pub(crate) fn orient(
     tets: &mut [[VertexId; 4]],
     across: impl Across,

@@ -10,7 +10,7 @@
 //! | a new tet | the old tets that it overlaps, each with its fraction of the new tet's volume |
 //! | any other new cell | the one cell that it inherits from |
 //!
-//! How values are transferred is determined by a [`Rule`]: interpolated, conserved, inherited or dropped.
+//! A [`Rule`] determines how values are transferred: interpolated, conserved, inherited or dropped.
 //! [`field_ledger`] reports how well that went.
 
 mod carry;

@@ -14,8 +14,8 @@ use crate::mesh::{Field, Mesh, Values};
 pub enum Rule {
     /// For points: by the [row for quadratic fields](super::Origins::quadratic) if there is one, otherwise
     /// linear in each old tet. Fields that are linear in space are reproduced to the last digits. Other
-    /// values lie between the values around, and differ from the linear value by no more than the spread of
-    /// the values at the tet's vertices.
+    /// values lie between the surrounding values, and differ from the linear value by no more than the spread
+    /// of the values at the tet's vertices.
     Interpolate,
     /// For points: linear in each old tet. Fields that are linear in space are reproduced to the last digits;
     /// other values lie between those at its vertices.
@@ -24,7 +24,8 @@ pub enum Rule {
     /// its [`deviation`](super::RegionLedger::deviation)), constants are reproduced to the bit, and other
     /// values lie between those they come from.
     Conserve,
-    /// The value of the old entity with the largest share: for ids, names and directions, which have no mean.
+    /// The value of the [main](super::Row::main) old entity, as a rule that with the largest share: for ids,
+    /// names and directions, which have no mean.
     Inherit,
     /// The array is left out.
     Drop,
@@ -54,7 +55,7 @@ pub struct Rules {
     pub cells: BTreeMap<String, Rule>,
 }
 
-/// How a user wants an array to be transferred, on points as on cells.
+/// A user's choice of how an array is transferred, on points and on cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Carry {
