@@ -1,4 +1,4 @@
-//! Whether a newcomer lies inside the sphere of a tet, or beyond the hull facet of a ghost.
+//! Decides whether a newcomer lies inside the circumsphere of a tet, or beyond the hull facet of a ghost.
 
 use super::store::{Store, is_ghost};
 use crate::base::Point;
@@ -7,7 +7,7 @@ use crate::geometry::predicates::{break_tie, orient};
 use crate::geometry::vector::sub;
 use pulp::{Simd, WithSimd};
 
-/// States in a tet's mark, added to `4 * newcomer`.
+/// Seen but not yet tested. States of a tet are added to `4 * newcomer` in its mark.
 pub(super) const PENDING: u32 = 0;
 /// Tested: no conflict.
 pub(super) const OUT: u32 = 1;
@@ -22,15 +22,15 @@ pub(super) struct Newcomer {
 }
 
 impl Newcomer {
-    /// Marks from here on belong to this newcomer.
+    /// The least mark that belongs to this newcomer.
     #[inline(always)]
     pub(super) fn mark(self) -> u32 {
         4 * self.vertex
     }
 }
 
-/// Whether `tet` has to go when the newcomer comes. Ties count as no conflict while the newcomer has
-/// the highest number: it is lifted by the largest infinitesimal.
+/// Whether `tet` is in conflict with the newcomer. Ties count as no conflict while the newcomer has the
+/// highest number: it is lifted by the largest infinitesimal.
 #[inline(always)]
 pub(super) fn in_conflict<S: Simd>(
     simd: S,
@@ -40,21 +40,21 @@ pub(super) fn in_conflict<S: Simd>(
     new: Newcomer,
 ) -> bool {
     let (determinant, bound) = estimate::<S>(store, points, tet, new);
-    // One branch, taken seldom: the sign itself is a coin toss and stays a number.
+    // One branch, rarely taken: the sign itself is unpredictable and stays a number.
     if determinant.abs() > bound + UNDERFLOW {
         return determinant > 0.0;
     }
     simd.vectorize(Doubtful { store, points, tet, new, bound })
 }
 
-/// The determinant whose sign decides, and a bound of its error without underflow.
+/// The determinant whose sign decides, and a bound on its error that excludes underflow.
 #[inline(always)]
 fn estimate<S: Simd>(store: &Store, points: &[Point], tet: u32, new: Newcomer) -> (f64, f64) {
     let gauge = &store.gauges[tet as usize];
     gauge.evaluate::<S>(sub(new.point, points[gauge.origin as usize]))
 }
 
-/// A test that `f64` could not decide; out of line, but with the instructions of `S`.
+/// A test that `f64` could not decide; not inlined, but compiled with the instructions of `S`.
 struct Doubtful<'a> {
     store: &'a Store,
     points: &'a [Point],
@@ -82,7 +82,7 @@ impl Doubtful<'_> {
         }
     }
 
-    /// Five cospherical points: some 7 a newcomer on a grid, hardly any elsewhere.
+    /// Breaks the tie of five cospherical points: some seven per newcomer on a grid, hardly any elsewhere.
     fn tie(&self, [a, b, c, d]: [Point; 4]) -> bool {
         let [i, j, k, l] = self.store.vertices[self.tet as usize];
         let new = self.new;
@@ -92,7 +92,8 @@ impl Doubtful<'_> {
         break_tie([a, b, c, d, new.point], [i, j, k, l, new.vertex]) > 0
     }
 
-    /// Beyond the hull facet; or in its plane and inside its circle, which is to say inside the sphere of the tet behind it.
+    /// Whether the newcomer lies beyond the hull facet; or in its plane and inside its circumcircle, that is,
+    /// inside the sphere of the tet behind it.
     fn ghost<S: Simd>(&self, simd: S) -> bool {
         let [a, b, c, _] = self.store.corners(self.points, self.tet);
         let side = orient::beyond_filter(a, b, c, self.new.point);
@@ -108,8 +109,8 @@ impl Doubtful<'_> {
     }
 }
 
-/// [`in_conflict`] for a tet that is no ghost, without which the two would call each other for ever
-/// in the compiler's eyes.
+/// Does the same as [`in_conflict`] for a tet that is not a ghost; without it the two functions would be
+/// mutually recursive to the compiler.
 #[inline(always)]
 fn in_conflict_flat<S: Simd>(_: S, store: &Store, points: &[Point], tet: u32, new: Newcomer) -> bool {
     let (determinant, bound) = estimate::<S>(store, points, tet, new);

@@ -1,4 +1,4 @@
-//! Which new tet lies at a directed edge of the cavity's surface: a small matrix, or a hash table.
+//! Finds the new tet at a directed edge of the cavity's surface: in a small matrix, or in a hash table.
 
 /// A map from directed edges (pairs of local vertex numbers) to the facet of a new tet on their left. An entry is
 /// read only after it was written for the same cavity, so nothing needs clearing in between.
@@ -7,11 +7,11 @@ pub(super) trait Edges {
     fn get(&self, from: u32, to: u32) -> u32;
 }
 
-/// Cavities with more vertices are fewer than 7 in 10,000 on ordinary points; this many rows of the
-/// matrix (16 kB) still lie in the nearest cache.
+/// The most vertices a cavity may have to use the matrix. Fewer than 7 in 10,000 cavities of ordinary points
+/// have more; this many rows of the matrix (16 kB) still fit into the first-level cache.
 pub(super) const SMALL: usize = 64;
 
-/// All pairs of up to [`SMALL`] vertices.
+/// A matrix over all pairs of up to [`SMALL`] vertices.
 #[derive(Debug)]
 pub(super) struct Matrix(Box<[u32; SMALL * SMALL]>);
 
@@ -33,8 +33,8 @@ impl Edges for Matrix {
     }
 }
 
-/// Any number of vertices, in memory linear in the number of edges: points on two skew lines make cavities
-/// with as many vertices as there are points, where a matrix would be quadratic.
+/// A hash table for any number of vertices, in memory linear in the number of edges: points on two skew lines
+/// make cavities with as many vertices as there are points, where a matrix would be quadratic.
 #[derive(Debug, Default)]
 pub(super) struct Table {
     slots: Vec<(u32, u32, u32)>,
@@ -43,13 +43,13 @@ pub(super) struct Table {
 const EMPTY: (u32, u32, u32) = (u32::MAX, u32::MAX, 0);
 
 impl Table {
-    /// Empties the table and makes room for `n` edges.
+    /// Empties the table and reserves space for `n` edges.
     pub(super) fn clear(&mut self, n: usize) {
         self.slots.clear();
         self.slots.resize((2 * n).next_power_of_two(), EMPTY);
     }
 
-    /// Where the edge is, or the empty place where it belongs.
+    /// The place of the edge, or the empty place where it belongs.
     fn find(&self, from: u32, to: u32) -> usize {
         let mask = self.slots.len() - 1;
         let key = u64::from(from) << 32 | u64::from(to);

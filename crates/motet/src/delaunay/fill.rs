@@ -1,4 +1,4 @@
-//! Fills the cavity: a tet from the newcomer to each facet around it, linked to each other.
+//! Fills the cavity: a tet from the newcomer to each facet around it, each linked to its neighbours.
 
 use super::cavity::{Cavity, Facet, make_room};
 use super::conflict::Newcomer;
@@ -9,17 +9,17 @@ use crate::base::Point;
 use crate::geometry::vector::sub;
 use pulp::Simd;
 
-/// Working space, kept from one insertion to the next.
+/// Buffers reused from one insertion to the next.
 #[derive(Debug)]
 pub(super) struct Fill {
-    /// Vertices of the cavity.
+    /// The distinct vertices of the cavity.
     vertices: Vec<u32>,
-    /// Vertex to `base` and its place in `vertices`; anything below `base` is from an earlier cavity.
+    /// For each vertex, `base` plus its place in `vertices`; values below `base` are from an earlier cavity.
     place: Vec<u32>,
     base: u32,
     /// The vertices relative to the newcomer.
     arms: Vec<Arm>,
-    /// The facets in places.
+    /// The facets of the cavity as places in `vertices`.
     corners: Vec<[u32; 3]>,
     matrix: Matrix,
     table: Table,
@@ -28,7 +28,7 @@ pub(super) struct Fill {
 }
 
 impl Fill {
-    /// For points 0 to `n_points` - 1.
+    /// Makes buffers for vertices 0 to `n_points` - 1.
     pub(super) fn new(n_points: usize, least: f32) -> Self {
         Self {
             vertices: Vec::new(),
@@ -42,7 +42,7 @@ impl Fill {
         }
     }
 
-    /// Replaces the tets of the cavity; answers one of the new tets that is no ghost.
+    /// Replaces the tets of the cavity by new ones; returns one of these that is not a ghost.
     #[inline(always)]
     pub(super) fn fill<S: Simd>(
         &mut self,
@@ -73,9 +73,9 @@ impl Fill {
         }
     }
 
-    /// Numbers the vertices of the cavity in the order in which they are met; answers how many there are. Plain
-    /// loops over arrays that only grow, without a branch: iterator chains here were not inlined, and whether a vertex is
-    /// fresh is a coin toss.
+    /// Numbers the vertices of the cavity in the order in which they are met; returns how many there are. The
+    /// loops are plain, branchless and over arrays that only grow: iterator chains were not inlined here, and
+    /// whether a vertex is fresh is unpredictable.
     #[inline(always)]
     fn number(&mut self, facets: &[Facet]) -> usize {
         make_room(&mut self.corners, facets.len());
@@ -85,7 +85,7 @@ impl Fill {
             self.place.fill(0);
             self.base = 1;
         }
-        // Slices: their addresses stay in registers, a vector's would be read again after every write.
+        // Slices: their addresses stay in registers; those of vectors would be reloaded after every write.
         let (vertices, place, base) = (&mut self.vertices[..], &mut self.place[..], self.base);
         let mut n = 0;
         for (corner, facet) in self.corners.iter_mut().zip(facets) {
@@ -102,7 +102,7 @@ impl Fill {
         n as usize
     }
 
-    /// The first `n` vertices relative to the newcomer at `origin`.
+    /// Computes the first `n` vertices relative to the newcomer at `origin`.
     #[inline(always)]
     fn reach<S: Simd>(&mut self, points: &[Point], n: usize, origin: Point) {
         for (arm, &v) in self.arms[..n].iter_mut().zip(&self.vertices[..n]) {
@@ -111,7 +111,7 @@ impl Fill {
     }
 }
 
-/// All that making the new tets needs, numbered.
+/// Everything needed to make the new tets, in local numbers.
 struct Parts<'a> {
     store: &'a mut Store,
     slots: &'a [u32],
@@ -123,7 +123,8 @@ struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Two facets around the cavity share an edge, in opposite directions; so do their new tets.
+    /// Writes the new tets and links them: two facets of the cavity share an edge in opposite directions, and
+    /// so do their new tets.
     #[inline(always)]
     fn make<S: Simd, E: Edges>(self, edges: &mut E) -> u32 {
         for (&slot, &[a, b, c]) in self.slots.iter().zip(self.corners) {

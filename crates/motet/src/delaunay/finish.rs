@@ -1,21 +1,22 @@
-//! From the builder's arrays to what the caller sees: tets, neighbours and hull under the caller's ids.
+//! From the builder's arrays to the caller's: tets, neighbours and hull under the caller's ids.
 
 use super::HullFacet;
 use super::store::{FACETS, FREE, Store, is_ghost};
 use crate::base::{TetId, Threads, VertexId};
 use crate::spatial::OUTSIDE;
 
-/// Tets without ghosts and free slots.
+/// The finished triangulation, without ghosts and free slots.
 pub(super) struct Finished {
     pub(super) tets: Vec<[VertexId; 4]>,
     pub(super) neighbors: Vec<[TetId; 4]>,
     pub(super) hull: Vec<HullFacet>,
 }
 
-/// `vertex_to_id[v]` is the caller's id of vertex `v` (and anything for the one at infinity).
+/// Compacts the builder's arrays; `vertex_to_id[v]` is the caller's id of vertex `v` (arbitrary for the
+/// vertex at infinity).
 ///
-/// The arrays of the builder become those of the caller where they lie (a vector collected from its own elements
-/// keeps its memory): at a million points that saves 216 MB of fresh pages, which cost more than the work itself.
+/// The builder's arrays are converted in place (a vector collected from its own elements keeps its memory):
+/// at a million points that saves 216 MB of fresh pages, which cost more than the work itself.
 pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> Finished {
     let slot_to_tet = number(&store);
     let hull = hull(&store, &slot_to_tet, vertex_to_id);
@@ -31,7 +32,7 @@ pub(super) fn finish(store: Store, vertex_to_id: &[u32], threads: &Threads) -> F
     Finished { tets, neighbors, hull }
 }
 
-/// Numbers the tets that are neither ghosts nor free, in the order of slots; the others are [`OUTSIDE`].
+/// Numbers the tets that are neither ghosts nor free, in the order of slots; the others get [`OUTSIDE`].
 fn number(store: &Store) -> Vec<TetId> {
     let mut next = 0;
     let number = |&vertices: &[u32; 4]| {
@@ -42,7 +43,7 @@ fn number(store: &Store) -> Vec<TetId> {
     store.vertices.iter().map(number).collect()
 }
 
-/// The entries of slots with a number.
+/// Converts the entries of numbered slots and drops the others.
 fn compact<T: Copy, U>(slots: Vec<T>, slot_to_tet: &[TetId], entry: impl Fn(T) -> U) -> Vec<U> {
     let numbered = slots.into_iter().zip(slot_to_tet).filter(|(_, tet)| **tet != OUTSIDE);
     numbered.map(|(slot, _)| entry(slot)).collect()
@@ -53,10 +54,10 @@ fn hull(store: &Store, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> Vec<HullF
     ghosts.map(|ghost| hull_facet(store, store.links[ghost][3], slot_to_tet, vertex_to_id)).collect()
 }
 
-/// The facet of a tet at `link`, seen from outside.
+/// The hull facet at `link`, seen from outside.
 fn hull_facet(store: &Store, link: u32, slot_to_tet: &[TetId], vertex_to_id: &[u32]) -> HullFacet {
     let (slot, facet) = ((link >> 2) as usize, (link & 3) as usize);
-    // With the opposite vertex in front the facet is positive, so it turns its front outward.
+    // Together with the opposite vertex in front the facet is positive, so its front faces outward.
     let vertices = FACETS[facet].map(|i| VertexId(vertex_to_id[store.vertices[slot][i] as usize]));
     HullFacet { vertices, tet: slot_to_tet[slot], facet: facet as u8 }
 }

@@ -1,9 +1,10 @@
-//! The conflict test of a tet, prepared once and asked often: minors and error bound.
+//! The conflict test of a tet, prepared once and evaluated often: minors and error bound.
 //!
-//! One formula for all tets, with `x` the newcomer relative to the tet's vertex 0: conflict when
-//! `normal . x - volume |x|^2 > 0`. For a tet these are the minors of the in-sphere determinant (see
-//! `geometry::predicates::insphere`, with the error bounds); for a ghost `volume = 0` and `normal` that of its hull facet,
-//! outward. Storing the minors replaces 60 operations a test by 12, and a branch on ghosts by none.
+//! One formula serves all tets. With `x` the newcomer relative to the tet's vertex 0, there is a conflict
+//! when `normal . x - volume |x|^2 > 0`. For a tet, `normal` and `volume` are the minors of the in-sphere
+//! determinant (see `geometry::predicates::insphere`, with the error bounds); for a ghost, `volume` is 0 and
+//! `normal` is the outward normal of its hull facet. Storing the minors cuts a test from 60 operations to 12,
+//! and spares the branch on ghosts.
 
 use crate::base::Point;
 use crate::geometry::fused::{cross, dot, multiply_add};
@@ -11,7 +12,7 @@ use crate::geometry::predicates::insphere::{FILTER, minors};
 use crate::geometry::predicates::pair::U;
 use pulp::Simd;
 
-/// All that the conflict test wants to know of a tet.
+/// All that the conflict test needs to know of a tet.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub(super) struct Gauge {
@@ -19,11 +20,12 @@ pub(super) struct Gauge {
     pub(super) volume: f64,
     /// The tet's vertex 0, to which `x` is relative.
     pub(super) origin: u32,
-    /// `4 * newcomer + state` of the last newcomer that met the tet: no clearing between insertions.
+    /// `4 * newcomer + state` of the last newcomer that met the tet, so that nothing is cleared between
+    /// insertions.
     pub(super) mark: u32,
-    /// Error bound of the conflict test is `error (reach |x|_1 + |x|^2)`.
+    /// Factor of the error bound of the conflict test, `error (reach |x|_1 + |x|^2)`.
     pub(super) error: f32,
-    /// See `error`.
+    /// Length in the error bound; see `error`.
     pub(super) reach: f32,
 }
 
@@ -31,7 +33,7 @@ impl Gauge {
     pub(super) const FREE: Self =
         Self { normal: [0.0; 3], volume: 0.0, origin: 0, mark: 0, error: 0.0, reach: 0.0 };
 
-    /// `normal . x - volume |x|^2` and its error bound without underflow.
+    /// Returns `normal . x - volume |x|^2` and its error bound, which excludes underflow.
     #[inline(always)]
     pub(super) fn evaluate<S: Simd>(&self, x: Point) -> (f64, f64) {
         let squared = dot::<S>(x, x);
@@ -41,15 +43,15 @@ impl Gauge {
     }
 }
 
-/// Error of `normal . x` of a ghost over `|b||c||x|_1`: 8 to 9 u by the count in `insphere`.
+/// Error of a ghost's `normal . x` relative to `|b||c||x|_1`: 8 to 9 u by the count in `insphere`.
 const GHOST_FILTER: f64 = 10.0 * U;
-/// Makes a ghost's bound, which is linear in `x`, out of the formula for tets: a reach so large that
-/// its product with `|x|_1` dwarfs `|x|^2`.
+/// Makes the error formula for tets serve ghosts, whose bound is linear in `x`: a reach so large that its
+/// product with `|x|_1` dwarfs `|x|^2`.
 const GHOST_REACH: f64 = 1_099_511_627_776.0; // 2^40
 /// Covers the rounding of a bound to `f32`.
 const UP: f64 = 1.0 + 1e-6;
-/// Stands in for bounds too small for an `f32`; with points scaled to a box of 2^24 that concerns tets
-/// below 1e-14 of the box. Infinity in its place sends every test to exact arithmetic.
+/// Replaces bounds too small for an `f32`; with points scaled to a box of 2^24 this concerns tets below 1e-14
+/// of the box. Infinity in its place sends every test to exact arithmetic.
 pub(super) const LEAST: f32 = f32::MIN_POSITIVE;
 
 /// A vertex relative to vertex 0 of the tets being made.
@@ -68,7 +70,7 @@ impl Arm {
     }
 }
 
-/// The gauge of the tet of the vertex `origin` and these three arms from it.
+/// The gauge of the tet with the vertex `origin` and these three arms from it.
 #[inline(always)]
 pub(super) fn of_tet<S: Simd>(origin: u32, [b, c, d]: [&Arm; 3], mark: u32, least: f32) -> Gauge {
     let (normal, volume) = minors::<S>([b.vector, c.vector, d.vector], [b.squared, c.squared, d.squared]);

@@ -1,26 +1,27 @@
-//! Points as the builder wants them: finite, and scaled by a power of two into the range where its filters hold.
+//! Prepares points for the builder: checks that they are finite and scales them by a power of two into the
+//! range where its filters are valid.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::is_finite;
 
-/// The longest side of the box is scaled to 2^24 .. 2^25: then the error bounds fit into `f32`
-/// and no stage of the filters can overflow.
+/// The longest side of the bounding box is scaled to between 2^24 and 2^25: then the error bounds fit into
+/// `f32` and no stage of the filters can overflow.
 const EXPONENT: i32 = 24;
 
-/// More points than this do not fit into the marks (`4 * newcomer + state`).
+/// The largest number of points whose marks (`4 * newcomer + state`) fit into 32 bits.
 const MAX_POINTS: usize = (1 << 30) - 16;
 
-/// Scaled points.
+/// Points scaled by a power of two, or unscaled where scaling would lose digits.
 pub(super) struct Scaled {
     pub(super) points: Vec<Point>,
-    /// Whether scaling kept every digit. Where it could not (coordinates of 1e200 beside 1e-200), the
-    /// points stay as they came and only exact arithmetic may be trusted.
+    /// Whether scaling kept every digit. Where it could not (coordinates of 1e200 beside 1e-200), the points
+    /// stay as given and only exact arithmetic may be trusted.
     pub(super) filtered: bool,
-    /// Two powers of two by which a coordinate is multiplied to be what it was.
+    /// Two powers of two whose product undoes the scaling of a coordinate.
     pub(super) back: [f64; 2],
 }
 
-/// Refuses what is not a number and more points than can be counted.
+/// Rejects coordinates that are not finite, and more points than [`MAX_POINTS`].
 pub(super) fn check(points: &[Point]) -> Result<()> {
     if points.len() > MAX_POINTS {
         let what = format!("{} points, expected at most {MAX_POINTS}", points.len());
@@ -33,7 +34,7 @@ pub(super) fn check(points: &[Point]) -> Result<()> {
         .remedy("remove the point or mend the step that made it"))
 }
 
-/// Scales so that the longest side of the box is about 2^24.
+/// Scales the points so that the longest side of their bounding box is about 2^24.
 pub(super) fn scaled(points: Vec<Point>) -> Scaled {
     let extent = longest_side(&points);
     if !(extent > 0.0 && extent.is_finite()) {
@@ -54,12 +55,12 @@ pub(super) fn scaled(points: Vec<Point>) -> Scaled {
     }
 }
 
-/// Longest side of the box around the points.
+/// The longest side of the bounding box of the points.
 pub(super) fn longest_side(points: &[Point]) -> f64 {
     sides(points).into_iter().fold(0.0, f64::max)
 }
 
-/// The sides of the box around the points.
+/// The sides of the bounding box of the points.
 pub(super) fn sides(points: &[Point]) -> Point {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
@@ -72,13 +73,13 @@ pub(super) fn sides(points: &[Point]) -> Point {
     std::array::from_fn(|i| high[i] - low[i])
 }
 
-/// `e` with `2^e <= |x| < 2^(e+1)`, for `x` not 0.
+/// The exponent `e` with `2^e <= |x| < 2^(e+1)`, for nonzero `x`.
 fn exponent(x: f64) -> i32 {
     let biased = ((x.to_bits() >> 52) & 0x7ff) as i32;
     if biased == 0 { exponent(x * 2f64.powi(100)) - 100 } else { biased - 1023 }
 }
 
-/// `2^e`; 2^-1022 and 2^1023 at the ends. Exponents here are below 600 in size.
+/// `2^e`, clamped to 2^-1022 and 2^1023. The exponents used here are below 600 in magnitude.
 fn power_of_two(e: i32) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
 }

@@ -1,7 +1,8 @@
 //! The insertion loop: find a tet in conflict, dig the cavity, fill it (Bowyer 1981; Watson 1981).
 //!
-//! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once for thousands of points:
-//! everything it calls is inlined or dispatched with it. The signs are exact either way, so the results agree.
+//! The whole loop is compiled twice, for any machine and for one with AVX2 and FMA, and dispatched once per
+//! thousands of points: everything it calls is inlined or dispatched with it. The signs are exact either way,
+//! so the results agree.
 
 use super::cavity::Cavity;
 use super::conflict::Newcomer;
@@ -15,11 +16,11 @@ use crate::base::{Error, Point, Result, Watch};
 use crate::geometry::predicates::pair::U;
 use pulp::{Arch, Simd, WithSimd};
 
-/// Triangulates distinct points. Point 0 is not used: vertex 0 is the one at infinity. The first four points span a tet. `filtered` tells
-/// whether floating-point filters may be trusted.
+/// Triangulates distinct points, of which the first four span a tet. Point 0 is not used: vertex 0 is the one
+/// at infinity. `filtered` states whether floating-point filters may be trusted.
 pub(super) fn triangulate(points: &[Point], filtered: bool, watch: &Watch) -> Result<Store> {
     let least = if filtered { LEAST } else { f32::INFINITY };
-    // A million uniform points end with 6.77 tets a point, and 1.01 ghosts a hull facet.
+    // A million uniform points give 6.77 tets per point, and 1.01 ghosts per hull facet.
     let mut store = Store::with_capacity(7 * points.len() + 64);
     first_tet(&mut store, points, least);
     let sure = if filtered { static_bound(points) } else { f64::INFINITY };
@@ -34,23 +35,23 @@ pub(super) fn triangulate(points: &[Point], filtered: bool, watch: &Watch) -> Re
     Ok(store)
 }
 
-/// Error of any 3x3 determinant of differences within the box: 8 u times six products, twice over.
+/// Bounds the error of any 3x3 determinant of differences within the box: 8 u times six products, doubled.
 fn static_bound(points: &[Point]) -> f64 {
     let [x, y, z] = sides(&points[1..]);
     16.0 * U * 6.0 * (x * y * z) + f64::MIN_POSITIVE
 }
 
-/// Whoever watches is asked after so many points.
+/// The watch is consulted each time this many points have been inserted.
 const RUN: u32 = 8192;
 
-/// The loop and what it works on.
+/// The insertion loop with the data it works on.
 struct Insertion<'a> {
     store: &'a mut Store,
     points: &'a [Point],
     sure: f64,
     fill: &'a mut Fill,
     vertices: std::ops::Range<u32>,
-    /// Where to begin to look.
+    /// The tet where the first walk starts.
     hint: u32,
 }
 

@@ -1,31 +1,31 @@
-//! In which order points are inserted: random enough to be safe, spatial enough to be fast.
+//! The order of insertion: random enough to be safe, spatial enough to be fast.
 //!
-//! A biased randomised insertion order (Amenta, Choi and Rote 2003): a point goes to the last
-//! round with odds 7/8, to the one before with 7/64, and so on; within a round points follow a
-//! Hilbert curve. Without the rounds, the curve alone took 21 % longer on a million points in
-//! a cube, and 68 % longer on 200,000 points of a surface. The dice are a hash of the
-//! coordinates and equal keys are told apart by coordinates, so the order, and with it every tie,
-//! depends on the set of points only, not on how the caller numbered them.
+//! A biased randomised insertion order (Amenta, Choi and Rote 2003): a point goes to the last round with
+//! probability 7/8, to the one before with 7/64, and so on; within a round points follow a Hilbert curve. The
+//! curve alone, without rounds, took 21 % longer on a million points in a cube, and 68 % longer on 200,000
+//! points of a surface. The random numbers are a hash of the coordinates, and equal keys are ordered by
+//! coordinates, so the order, and with it every tie, depends only on the set of points, not on how the caller
+//! numbered them.
 
 use crate::base::{Point, Threads, mixed};
 use crate::spatial::hilbert::{Curve, KEY_BITS, cube};
 
 /// The first round has about this many points.
 const FIRST_ROUND: usize = 1000;
-/// Runs with one key up to this length are sorted by coordinates, longer ones by a finer curve.
+/// Runs of equal keys up to this length are sorted by coordinates, longer ones by a finer curve.
 const SMALL_RUN: usize = 32;
 
-/// Ids of the distinct points in the order of insertion, and the others with the id kept instead.
+/// The ids of the distinct points in the order of insertion, and the duplicates with the ids kept instead.
 pub(super) struct Order {
     pub(super) ids: Vec<u32>,
     /// `(duplicate, kept)`; the smallest id of equal points is kept.
     pub(super) duplicates: Vec<(u32, u32)>,
 }
 
-/// A point on its way: key in the upper, id in the lower bits.
+/// A sort entry: the key and the id of a point.
 type Keyed = (u64, u32);
 
-/// Sorts finite points.
+/// Orders finite points for insertion.
 pub(super) fn order(points: &[Point], threads: &Threads) -> Order {
     let last_round = last_round(points.len());
     let mut keyed = keys(points, threads, last_round);
@@ -34,7 +34,7 @@ pub(super) fn order(points: &[Point], threads: &Threads) -> Order {
     without_duplicates(&keyed, points)
 }
 
-/// Rounds are numbered from 0 to this one.
+/// The number of the last round; rounds are numbered from 0.
 fn last_round(n: usize) -> u32 {
     let mut round = 0;
     while n >> (3 * round) > FIRST_ROUND {
@@ -58,7 +58,7 @@ fn hash(p: Point) -> u64 {
     p.iter().fold(0x9e37_79b9_7f4a_7c15, |h, &x| mixed(h ^ (x + 0.0).to_bits()))
 }
 
-/// Sorts by the key, equal keys staying in order; least digits first, ten bits a pass.
+/// Sorts by key, stably: least significant digit first, ten bits per pass.
 fn radix_sort(keyed: &mut Vec<Keyed>, bits: u32) {
     const DIGIT: u32 = 10;
     if keyed.len() < 2000 {
@@ -81,8 +81,8 @@ fn radix_sort(keyed: &mut Vec<Keyed>, bits: u32) {
     }
 }
 
-/// Puts every run of equal keys into an order by coordinates: a finer curve where the run is long
-/// (points that crowd into one cell), lexicographic where it is short.
+/// Orders every run of equal keys by coordinates: along a finer curve where the run is long (points that
+/// crowd into one cell), lexicographically where it is short.
 fn sort_runs(keyed: &mut [Keyed], points: &[Point]) {
     let mut todo = vec![(0, keyed.len())];
     while let Some((from, to)) = todo.pop() {
@@ -101,8 +101,8 @@ fn sort_runs(keyed: &mut [Keyed], points: &[Point]) {
     }
 }
 
-/// New keys along a curve through the run's own box; false where the box is a point or so small that
-/// the keys could not tell its ends apart.
+/// Gives the run new keys along a curve through its own bounding box and sorts it; false where the box is a
+/// single point or so small that the keys could not distinguish its ends.
 fn refine(run: &mut [Keyed], points: &[Point]) -> bool {
     let (corner, extent) = cube(run.iter().map(|k| points[k.1 as usize]));
     if !(1e-300..1e300).contains(&extent) {
@@ -120,7 +120,7 @@ fn compare(points: &[Point], a: u32, b: u32) -> std::cmp::Ordering {
     by_coordinate(0).then_with(|| by_coordinate(1)).then_with(|| by_coordinate(2)).then(a.cmp(&b))
 }
 
-/// Equal points now follow each other, the smallest id first.
+/// Separates duplicates: equal points are adjacent in `keyed`, the smallest id first.
 fn without_duplicates(keyed: &[Keyed], points: &[Point]) -> Order {
     let mut ids: Vec<u32> = Vec::with_capacity(keyed.len());
     let mut duplicates = Vec::new();

@@ -7,7 +7,7 @@ use crate::geometry::predicates::{collinear, orient3d};
 use crate::geometry::vector::sub;
 use pulp::Scalar;
 
-/// Brings four points that span a tet to the front of `ids` (distinct points in the order of insertion).
+/// Moves four points that span a tet to the front of `ids` (distinct points in the order of insertion).
 pub(super) fn bring_tet_to_front(ids: &mut [u32], points: &[Point]) -> Result<()> {
     let point = |id: u32| points[id as usize];
     let all = format!("{} distinct points", ids.len());
@@ -26,7 +26,7 @@ pub(super) fn bring_tet_to_front(ids: &mut [u32], points: &[Point]) -> Result<()
     Ok(())
 }
 
-/// The tet of vertices 1 to 4, in slot 0, and its ghosts, in slots 1 to 4.
+/// Makes the tet of vertices 1 to 4, in slot 0, and its ghosts, in slots 1 to 4.
 pub(super) fn first_tet(store: &mut Store, points: &[Point], least: f32) {
     let [a, b, c, d] = [1, 2, 3, 4].map(|v| points[v]);
     let tet = if orient3d(a, b, c, d) > 0 { [1, 2, 3, 4] } else { [1, 3, 2, 4] };
@@ -49,7 +49,7 @@ fn push(store: &mut Store, points: &[Point], vertices: [u32; 4], least: f32) {
     });
 }
 
-/// Links facets of equal vertices: five tets, so by comparing all.
+/// Links facets with equal vertices by comparing all pairs; there are only five tets.
 fn link_all(store: &mut Store) {
     let sides: Vec<(u32, [u32; 3])> = (0..20u32)
         .map(|side| {

@@ -1,15 +1,15 @@
-//! The triangulation while it grows: flat arrays, a slot a tet.
+//! The triangulation while it grows: flat arrays with one slot per tet.
 //!
-//! Vertex 0 lies at infinity; each facet of the hull has a *ghost* tet that joins it to that
-//! vertex (Guibas and Stolfi 1985; Shewchuk 1997), so every facet has two sides and the hull needs no
-//! code of its own. In a ghost the vertex at infinity comes last.
+//! Vertex 0 lies at infinity; each facet of the hull has a *ghost* tet that joins it to that vertex (Guibas
+//! and Stolfi 1985; Shewchuk 1997), so every facet has two sides and the hull needs no separate code. In a
+//! ghost the vertex at infinity comes last.
 //!
-//! A link is `4 * tet + facet`: the tet on the other side of a facet and which of its facets it is.
+//! A link is `4 * tet + facet`: the tet across a facet, and the number of that facet within it.
 //!
-//! Three arrays and not one of records: the conflict test reads gauges alone, and setting a neighbour's mark
-//! brings its gauge into the cache some time before the test asks for it; vertices and links become the
-//! caller's arrays where they lie (`finish`). Next to records of a cache line that saves 190 of 780 bytes of fresh
-//! memory a vertex; a twentieth of the time at a million points.
+//! There are three arrays instead of one of records: the conflict test reads gauges alone, and setting a
+//! neighbour's mark brings its gauge into the cache well before the test needs it; vertices and links are
+//! converted in place into the caller's arrays (`finish`). Compared with records of a cache line this saves
+//! 190 of 780 bytes of fresh memory per vertex, and a twentieth of the time at a million points.
 
 use super::gauge::Gauge;
 use crate::base::Point;
@@ -17,14 +17,14 @@ use crate::base::Point;
 /// The vertex at infinity.
 pub(super) const INFINITY: u32 = 0;
 
-/// Vertices of facet `i`, so that vertex `i` followed by them is again positive. A ghost's vertex at
-/// infinity stays last.
+/// The vertices of facet `i`, ordered so that vertex `i` followed by them is positive again. In a ghost the
+/// vertex at infinity stays last.
 pub(super) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [2, 0, 3], [0, 1, 3], [0, 2, 1]];
 
-/// More tets than this do not fit into links.
+/// The number of tets up to which links fit into 32 bits.
 pub(super) const MAX_TETS: usize = 1 << 30;
 
-/// The vertices of a slot without a tet.
+/// The vertices recorded for a slot without a tet.
 pub(super) const FREE: [u32; 4] = [INFINITY; 4];
 
 /// The vertices of all facets, in the order of [`FACETS`].
@@ -58,7 +58,7 @@ impl Store {
         }
     }
 
-    /// How many slots there are, free ones included.
+    /// The number of slots, free ones included.
     #[inline(always)]
     pub(super) fn n_slots(&self) -> usize {
         self.gauges.len()
@@ -73,7 +73,7 @@ impl Store {
         }
     }
 
-    /// Finds free slots, at the end where there are no others.
+    /// Takes free slots; appends new ones at the end when none are left.
     #[inline(always)]
     pub(super) fn claim(&mut self, slots: &mut [u32]) {
         for slot in slots {
@@ -90,7 +90,7 @@ impl Store {
         slot
     }
 
-    /// Coordinates of the four vertices of a tet that is no ghost.
+    /// The coordinates of the four vertices of a tet that is not a ghost.
     #[inline(always)]
     pub(super) fn corners(&self, points: &[Point], tet: u32) -> [Point; 4] {
         let [a, b, c, d] = self.vertices[tet as usize];

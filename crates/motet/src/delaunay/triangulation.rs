@@ -11,17 +11,17 @@ use crate::spatial::{Located, Locator};
 /// A facet of the convex hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HullFacet {
-    /// Counter-clockwise seen from outside.
+    /// The three vertices, counter-clockwise seen from outside.
     pub vertices: [VertexId; 3],
     /// The tet behind it.
     pub tet: TetId,
-    /// Which of its facets: the one opposite this vertex.
+    /// The number of this facet in that tet: it lies opposite this vertex.
     pub facet: u8,
 }
 
-/// The Delaunay triangulation of a set of points: tets that fill its convex hull, and no point lies
-/// inside the sphere through any of them. Where more than four points lie on one sphere, the choice
-/// depends on the set of points only.
+/// The Delaunay triangulation of a set of points: tets that fill the convex hull, with no point inside the
+/// circumsphere of any of them. Where more than four points lie on one sphere, the choice depends only on the
+/// set of points.
 #[derive(Clone, Debug)]
 pub struct Triangulation {
     points: Vec<Point>,
@@ -32,17 +32,18 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// Triangulates any set of finite points. The result is the same for any number of threads, and, ids apart, for any order
-    /// of the points.
+    /// Triangulates any set of finite points. The result is the same for any number of threads and, apart
+    /// from ids, for any order of the points.
     ///
     /// # Errors
-    /// When a coordinate is not finite, when the points do not span a volume (fewer than four
-    /// distinct ones, all on a line, all in a plane), when there are more than 2^30.
+    /// When a coordinate is not finite, when the points do not span a volume (fewer than four distinct ones,
+    /// or all on a line or in a plane), or when there are more than 2^30.
     pub fn new(points: &[Point], threads: &Threads) -> Result<Self> {
         Self::ordered(points, threads).map(|(triangulation, _)| triangulation)
     }
 
-    /// The triangulation, and its points in the order by which ties are broken, from 1 on; place 0 is none.
+    /// Returns the triangulation, and its points in the order by which ties are broken, from 1 on; entry 0 is
+    /// unused.
     pub(super) fn ordered(points: &[Point], threads: &Threads) -> Result<(Self, Vec<u32>)> {
         input::check(points)?;
         let scaled = input::scaled(points.to_vec());
@@ -67,7 +68,8 @@ impl Triangulation {
         &self.tets
     }
 
-    /// For each tet the tet across the facet opposite each vertex, or [`crate::spatial::OUTSIDE`].
+    /// For each tet, the tets across the facets opposite its vertices; [`crate::spatial::OUTSIDE`] where
+    /// there is none.
     pub fn neighbors(&self) -> &[[TetId; 4]] {
         &self.neighbors
     }
@@ -77,17 +79,18 @@ impl Triangulation {
         &self.hull
     }
 
-    /// Points that coincide with another: `(duplicate, kept)`, rising. The kept one, of smallest id, is the vertex of tets.
+    /// Points that coincide with another one, as `(duplicate, kept)` in ascending order. The kept point, the
+    /// one with the smallest id, is the vertex of tets.
     pub fn duplicates(&self) -> &[(VertexId, VertexId)] {
         &self.duplicates
     }
 
-    /// For looking up points.
+    /// A locator that finds the tets of points.
     pub fn locator(&self) -> Locator<'_> {
         Locator::new(&self.points, &self.tets, &self.neighbors)
     }
 
-    /// Where `q` lies; the walk starts at `hint`, any tet.
+    /// Finds where `q` lies; the walk starts at `hint`, any tet.
     pub fn locate(&self, q: Point, hint: TetId) -> Located {
         self.locator().locate(q, hint)
     }

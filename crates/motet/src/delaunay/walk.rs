@@ -1,8 +1,9 @@
-//! From the last tet to one in conflict with the newcomer, facet by facet.
+//! Walks from the last tet to one in conflict with the newcomer, facet by facet.
 //!
-//! A visibility walk (Devillers, Pion and Teillaud 2002, *Walking in a triangulation*): cross any facet that has the
-//! newcomer on its other side. It cannot go round in circles in a Delaunay triangulation (Edelsbrunner 1989). It
-//! stops at the first tet in conflict, mostly one before the tet that holds the point.
+//! This is a visibility walk (Devillers, Pion and Teillaud 2002, *Walking in a triangulation*): it crosses
+//! any facet that has the newcomer on its other side. It cannot cycle in a Delaunay triangulation
+//! (Edelsbrunner 1989). It stops at the first tet in conflict, usually one before the tet that contains the
+//! point.
 
 use super::conflict::{Newcomer, in_conflict};
 use super::store::{FACETS, Store, is_ghost};
@@ -12,7 +13,7 @@ use crate::geometry::predicates::orient;
 use crate::geometry::vector::sub;
 use pulp::Simd;
 
-/// Finds a tet in conflict. `None` when there is none: the newcomer is a vertex already.
+/// Finds a tet in conflict; `None` when there is none because the newcomer is a vertex already.
 #[inline(always)]
 pub(super) fn walk<S: Simd>(
     simd: S,
@@ -34,8 +35,9 @@ pub(super) fn walk<S: Simd>(
     }
 }
 
-/// The link across a facet that has `q` strictly on its other side; `entered` is the link by which the walk came. `sure`
-/// bounds the error of any determinant within the box of all points (static filter); closer calls ask the exact sign.
+/// The link across a facet that has `q` strictly on its other side; `entered` is the link by which the walk
+/// entered the tet. `sure` bounds the error of any determinant within the box of all points (static filter);
+/// closer cases are decided by the exact sign.
 #[inline(always)]
 fn exit<S: Simd>(
     store: &Store,
@@ -53,7 +55,8 @@ fn exit<S: Simd>(
     let came_by = if entered >> 2 == tet { entered & 3 } else { 4 };
     let arm = |i: usize| sub(points[vertices[i] as usize], q);
     let arms = [arm(0), arm(1), arm(2), arm(3)];
-    // All four at once: which one it is cannot be guessed, so a branch for each costs more than the arithmetic.
+    // All four at once: which facet it is cannot be predicted, so a branch for each costs more than the
+    // arithmetic.
     let (mut beyond, mut decided) = (0u32, 0u32);
     for (i, [a, b, c]) in FACETS.into_iter().enumerate() {
         let determinant = dot::<S>(cross::<S>(arms[a], arms[b]), arms[c]);
