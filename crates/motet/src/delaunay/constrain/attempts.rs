@@ -1,4 +1,5 @@
-//! Ways to join triangles to flat facets are tried one after the other, until all triangles are kept and every tet has a volume.
+//! Tries ways of joining triangles to flat facets one after the other, until all triangles are kept and every
+//! tet has a volume.
 
 use super::Filled;
 use super::flats::{Flats, Grown};
@@ -7,20 +8,21 @@ use super::sites::Sites;
 use super::unmade::{Order, Unmade};
 use crate::base::{Point, Result, VertexId, Watch};
 
-/// How many ways of joining triangles are tried at most.
+/// The largest number of ways of joining triangles that are tried.
 const ATTEMPTS: usize = 6;
 
-/// How often an attempt is restarted in another order, where only triangles in exactly one plane are joined.
+/// How often an attempt is restarted in another order, where only exactly coplanar triangles are joined.
 const RETRIES: usize = 8;
 
-/// How often an attempt is restarted in another order, where triangles are joined that are in one plane but for rounding. Joining others helps more often
-/// than another order does.
+/// How often an attempt is restarted in another order, where triangles coplanar only up to rounding are
+/// joined. Joining triangles differently helps more often than another order does.
 const RETRIES_ROUNDED: usize = 2;
 
-/// The best of what `fill` makes of flat facets. Each attempt changes how triangles are joined where the one before has failed.
+/// Returns the best result of `fill` on flat facets. Each attempt changes how triangles are joined where the
+/// previous one has failed.
 ///
 /// # Errors
-/// When no attempt fills the surfaces; the error is that of the first attempt. When `watch` stops the work.
+/// When no attempt fills the surfaces: the error of the first attempt. When `watch` stops the work.
 pub(super) fn best(
     sites: &Sites,
     triangles: &[[VertexId; 3]],
@@ -39,7 +41,7 @@ pub(super) fn best(
     let mut failed = failures(&best, &levels, triangles);
     for n_left in (0..ATTEMPTS - 1).rev() {
         let is_stopped = best.as_ref().is_err_and(|unmade| unmade.what.is_none());
-        // With each triangle for itself all its edges are there, if in pieces.
+        // With each triangle on its own all its edges are present, perhaps in pieces.
         let may_separate = faults(&best).0;
         let next = std::iter::from_fn(|| {
             let has_changed =
@@ -59,7 +61,7 @@ pub(super) fn best(
     best.map_err(|unmade| unmade.error)
 }
 
-/// The triangles that another way of joining may help.
+/// The triangles for which another way of joining may help.
 fn failures(filled: &Result<Filled, Unmade>, levels: &Levels, triangles: &[[VertexId; 3]]) -> Vec<u32> {
     match filled {
         Ok(filled) => filled.failed(triangles),
@@ -67,8 +69,9 @@ fn failures(filled: &Result<Filled, Unmade>, levels: &Levels, triangles: &[[Vert
     }
 }
 
-/// What an attempt falls short by: whether flat facets have other triangles than were given, or there is nothing at all; how many facets there are more than
-/// triangles; and how many tets have no volume.
+/// The shortcomings of an attempt, in order of importance: whether it failed or left flat facets whose
+/// triangles differ from those given; the number of facets in excess of triangles; and the number of tets
+/// without volume.
 fn faults(filled: &Result<Filled, Unmade>) -> (bool, usize, usize) {
     let of =
         |filled: &Filled| (!filled.unrestored.is_empty(), filled.n_in_pieces(), filled.flat_tets().count());

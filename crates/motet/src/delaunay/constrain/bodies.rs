@@ -1,4 +1,4 @@
-//! What the surfaces enclose: tets that are joined without crossing one of them are one body.
+//! The bodies that the surfaces enclose: a body is a set of tets connected without crossing a surface.
 
 use super::flats::Flats;
 use super::tets::Tets;
@@ -7,11 +7,11 @@ use crate::base::{Csr, Error, TetId, VertexId, runs_alike};
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
-/// Where facets of the surface are, and the bodies between them.
+/// The bodies, and those on both sides of each flat facet.
 pub(super) struct Bodies {
-    /// The body of each slot; 0 lies outside of all, [`Self::NONE`] has no tet.
+    /// The body of each slot; 0 is the outside, [`Self::NONE`] marks a slot without a tet.
     pub(super) of_slot: Vec<u32>,
-    /// How many there are, the outside included.
+    /// The number of bodies, the outside included.
     count: u32,
     /// The bodies in front of each flat facet and behind it.
     pub(super) sides: Vec<[u32; 2]>,
@@ -20,10 +20,10 @@ pub(super) struct Bodies {
 impl Bodies {
     pub(super) const NONE: u32 = u32::MAX;
 
-    /// Finds the facets of all parts, and what they part; `corner` is a vertex outside.
+    /// Finds the facets of all parts, and the bodies that they separate; `corner` is a vertex outside.
     ///
     /// # Errors
-    /// When a part is no facet.
+    /// When a part is not a facet of tets.
     pub(super) fn find(
         tets: &mut Tets,
         flats: &Flats,
@@ -77,7 +77,7 @@ impl Bodies {
     }
 }
 
-/// Whether the tet of a facet lies in front of it, turned as `part`.
+/// Whether the tet of a facet lies in front of it, the facet having the orientation of `part`.
 fn faces(tets: &Tets, half: HalfFacet, part: [VertexId; 3]) -> bool {
     runs_alike(part, tets.inward(half))
 }

@@ -1,11 +1,12 @@
-//! The tets that a missing part of a facet cuts, and the two hollows that they leave, one on each side.
+//! The tets cut by a missing part of a facet, and the two hollows that they leave, one on each side.
 //!
-//! No edge of tets crosses an edge of the part, since those are edges of tets themselves. So where a tet is cut at all its whole slice lies
-//! in the part, and the tets behind its cut facets are cut as well: nothing needs to be known of the part but its plane and one edge.
+//! No edge of a tet crosses an edge of the part, since the edges of the part are edges of tets themselves. So
+//! where a tet is cut at all, its whole slice lies in the part, and the tets behind its cut facets are cut as
+//! well: all that needs to be known of the part is its plane and one edge.
 //!
-//! A vertex may have cut tets only, and then stands alone in a hollow.
-//! A facet between two tets that are cut may itself be whole, where it meets the plane in a vertex or an edge. It is forgotten, unless it is of the
-//! surface: then it stands in the hollow as a wall with two sides.
+//! A vertex all of whose tets are cut stands alone in a hollow.
+//! A facet between two cut tets may itself be whole, where it meets the plane in a vertex or an edge. It is
+//! dropped, unless it belongs to the surface: then it stands in the hollow as a wall with two sides.
 
 use super::sides::Sides;
 use super::sites::Sites;
@@ -20,7 +21,7 @@ pub(super) struct Face {
     pub(super) outer: HalfFacet,
 }
 
-/// Working space.
+/// Buffers reused from one part to the next.
 #[derive(Default)]
 pub(super) struct Cut {
     sides: Sides,
@@ -35,11 +36,12 @@ pub(super) struct Cut {
     star: Vec<TetId>,
 }
 
-/// What must not be, and is not where no facets cross.
+/// A failure that cannot occur where no facets cross.
 pub(super) struct Stuck;
 
 impl Cut {
-    /// Finds the tets cut by a part of the plane of `corners`, which has `edge` and near it lies on the side of `beyond`; `own` are facets in that plane.
+    /// Finds the tets cut by a part of the plane of `corners`. The part has `edge`, near which it lies on the
+    /// side of `beyond`; `own` are facets in that plane.
     pub(super) fn find(
         &mut self,
         tets: &mut Tets,
@@ -69,7 +71,7 @@ impl Cut {
         Ok(())
     }
 
-    /// Collects the tets that are cut, from the first one on.
+    /// Collects the cut tets, starting from `first`.
     fn spread(&mut self, tets: &mut Tets, sites: &Sites, first: TetId) -> Result<(), Stuck> {
         tets.begin();
         tets.mark(first);
@@ -93,7 +95,7 @@ impl Cut {
         Ok(())
     }
 
-    /// Notes a facet of a tet that is cut, where it bounds a hollow.
+    /// Records a facet of a cut tet where it bounds a hollow.
     fn enclose(
         &mut self,
         tets: &Tets,
@@ -125,7 +127,7 @@ impl Cut {
         [sides.contains(&1), sides.contains(&-1)]
     }
 
-    /// Of the tets around `edge` the one that the plane cuts on the side of `beyond`.
+    /// The tet around `edge` that the plane cuts on the side of `beyond`.
     fn first(
         &mut self,
         tets: &mut Tets,

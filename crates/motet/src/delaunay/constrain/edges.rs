@@ -1,9 +1,11 @@
-//! Every edge of the surface becomes an edge of tets: by swaps of tets where that goes, by points on the edge where it does not.
+//! Makes every edge of the surface an edge of tets: by swaps of tets where possible, by points on the edge
+//! elsewhere.
 //!
-//! As tets need not stay Delaunay, nothing of the surface that is there is lost again, so there is no cascade: each swap lessens the facets that one
-//! edge meets, and a point halves them. If all else fails, points at all of these facets leave pieces that meet a single facet each, and
-//! of the two tets there two-three swaps are always possible (George, Borouchaki and Saltel 2003, *'Ultimate' robustness in meshing an arbitrary
-//! polyhedron*).
+//! As tets need not stay Delaunay, no part of the surface is lost once recovered, so there is no cascade:
+//! each swap reduces the number of facets that one edge meets, and a point halves it. If all else fails,
+//! points at all of these facets leave pieces that meet a single facet each, where a two-three swap of the
+//! adjacent tets is always possible (George, Borouchaki and Saltel 2003, *'Ultimate' robustness in meshing an
+//! arbitrary polyhedron*).
 
 use std::collections::VecDeque;
 
@@ -18,23 +20,27 @@ use super::way::{Way, meets};
 use crate::base::{TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
-/// An edge that meets no more facets may have twice as many swaps that gain nothing before it gets a point: they may make room for one that does.
+/// An edge that meets at most this many facets may have twice that number of swaps without gain before it
+/// gets a point: such swaps may make way for one that gains.
 const SPARE: usize = 12;
 
-/// A share of an edge with room for enough numbers.
+/// The fraction of an edge that has space for enough distinct numbers.
 const ROOM: f64 = 1e-9;
 
-/// A share of an edge with room for an `f64`; where there is, the point gets few digits, since signs cost more with more.
+/// The fraction of an edge that has space for an `f64`; where there is that much, the point gets few digits,
+/// since signs are more expensive with more.
 const ROOM_FOR_ONE: f64 = 1e-13;
 
-/// Where facets cannot be told apart, a point so far beside them leaves a piece on which they are farther apart.
+/// Where facets cannot be distinguished, a point this far beside them leaves a piece on which they are
+/// farther apart.
 const BESIDE: f64 = 1e-9;
 
-/// So many points on edges, beside those that an edge has on average, and it would take too long.
+/// The number of points on edges beyond which recovery is given up, in addition to [`POINTS_A_SEGMENT`] per
+/// segment.
 const SPARE_POINTS: usize = 2_000;
 const POINTS_A_SEGMENT: usize = 4;
 
-/// Tets, and the edges of the surface that they are to have.
+/// The tets, and the edges of the surface that they are to have.
 pub(super) struct Edges<'a> {
     tets: &'a mut Tets,
     sites: &'a mut Sites,
@@ -46,7 +52,7 @@ pub(super) struct Edges<'a> {
     tried: Vec<[VertexId; 2]>,
 }
 
-/// A piece that is to be an edge, among others that must not be lost.
+/// A piece that is to become an edge, among others that must not be lost.
 struct Missing<'a> {
     sites: &'a Sites,
     segments: &'a Segments,
@@ -86,10 +92,11 @@ impl<'a> Edges<'a> {
         }
     }
 
-    /// Makes all of them edges, in pieces where it must be.
+    /// Makes all segments edges, in pieces where necessary.
     ///
     /// # Errors
-    /// Where an edge would have to be divided beyond its digits, or passes through a vertex or another edge.
+    /// When an edge would have to be divided beyond the precision of its coordinates, or passes through a
+    /// vertex or another edge.
     pub(super) fn recover(mut self, order: &Order) -> Result<(), Unmade> {
         let mut missing = self.segments.missing(self.tets);
         missing.sort_by_key(|&edge| order.rank(|part| part == Part::Edge(edge)));
@@ -115,8 +122,9 @@ impl<'a> Edges<'a> {
         Ok(())
     }
 
-    /// Makes swaps after which the piece meets fewer facets; or, where `spare` is 1, one after which it meets as many, the first that can be from the
-    /// facet `from` on.
+    /// Makes swaps after which the piece meets fewer facets; or, where `spare` is 1, the first possible swap
+    /// from the facet `from` on after which it meets no more than before. Returns whether anything was
+    /// swapped.
     fn swap(&mut self, piece: [VertexId; 2], spare: u32, from: usize) -> bool {
         let missing = Missing { sites: self.sites, segments: self.segments, piece };
         self.tried.clear();
@@ -149,7 +157,7 @@ impl<'a> Edges<'a> {
         has_swapped
     }
 
-    /// Puts a point on a piece, where it sees all tets at one of the facets met. Answers the two new pieces.
+    /// Puts a point on a piece, where it sees all tets at one of the facets met; returns the two new pieces.
     fn divide(&mut self, piece: [VertexId; 2]) -> Result<[[VertexId; 2]; 2], Unmade> {
         let segment = self.segments.of_piece(piece);
         if self.sites.n_on_segments() > SPARE_POINTS + POINTS_A_SEGMENT * self.segments.len() {
@@ -189,7 +197,7 @@ impl<'a> Edges<'a> {
         Ok(self.segments.divide(piece, vertex))
     }
 
-    /// The tets at a facet that is met, or all those around the edge of it that is met.
+    /// The two tets at a facet that the segment meets, or all those around the facet's edge that it meets.
     fn around_crossing(&mut self, [a, b]: [VertexId; 2], half: HalfFacet) -> Vec<TetId> {
         let [p, q, r] = self.tets.inward(half);
         let is_met = |&[p, q]: &[VertexId; 2]| self.sites.orient3d([a, b, p, q]) == 0;
@@ -201,8 +209,9 @@ impl<'a> Edges<'a> {
         tets
     }
 
-    /// Where on the way between two vertices all tets at a facet that is met are seen, and those tets: at the facet nearest to the middle where there is room
-    /// for numbers, or where there is most. `length` is that of the way, as a share.
+    /// Finds the part of the way between two vertices from which all tets at a facet met on it are seen, and
+    /// returns it with those tets. The facet is the one nearest to the middle that leaves space for numbers,
+    /// or else the one that leaves most. `length` is that of the way as a fraction of the segment.
     fn room(&mut self, ends: [VertexId; 2], length: f64) -> ([f64; 2], Vec<TetId>) {
         let met = self.met(ends);
         let middle = met.len() / 2;
@@ -231,7 +240,7 @@ impl<'a> Edges<'a> {
         ([beside; 2], best.1)
     }
 
-    /// The facets that are met on the way between two vertices, as they come, and where.
+    /// The facets met on the way between two vertices, in order, each with the fraction of the way.
     fn met(&self, [a, b]: [VertexId; 2]) -> Vec<(f64, HalfFacet)> {
         let mut met: Vec<(f64, HalfFacet)> = Vec::new();
         for &half in &self.way.facets {

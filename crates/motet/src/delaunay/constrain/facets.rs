@@ -1,7 +1,8 @@
-//! Every triangle of the surface becomes facets of tets.
+//! Makes every triangle of the surface a union of facets of tets.
 //!
-//! All edges are there, so of a triangle that is missing whole parts are, between edges that are there. The tets that a part cuts go; the
-//! hollows on its two sides are filled again, each with the tets that see nothing beyond the part.
+//! All edges are present, so what is missing of a triangle consists of whole parts between existing edges.
+//! The tets cut by a part are removed; the hollows on its two sides are refilled, each with tets that see
+//! nothing beyond the part.
 
 use hashbrown::HashSet;
 
@@ -18,8 +19,8 @@ use super::wrap::Wrap;
 use crate::base::{Csr, Error, TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
-/// Makes every flat facet a set of facets of tets. Answers them, turned as the first triangle of each is. Where that does not go, and
-/// `may_swap`, triangles get points inside.
+/// Makes every flat facet a set of facets of tets; returns them, oriented like the first triangle of each
+/// flat facet. Where `may_swap`, swaps are tried first, and triangles get points inside where all else fails.
 pub(super) fn recover(
     tets: &mut Tets,
     sites: &mut Sites,
@@ -70,7 +71,7 @@ fn stuck(sites: &Sites, i: u32, triangle: [VertexId; 3]) -> Unmade {
     Unmade { what: Some(Part::Triangle(i)), error }
 }
 
-/// The edges and facets of the surface that are there.
+/// The edges and facets of the surface that exist so far.
 struct Walls<'a> {
     segments: &'a Segments,
     walls: &'a HashSet<[VertexId; 3]>,
@@ -86,7 +87,7 @@ impl Kept for Walls<'_> {
     }
 }
 
-/// The corners of a triangle and the points on its edges, as it is turned.
+/// The corners of a triangle and the points on its edges, in the order of its orientation.
 fn polygon_of(segments: &Segments, on_segments: &Csr<VertexId>, triangle: [VertexId; 3]) -> Vec<VertexId> {
     let mut polygon = Vec::with_capacity(3);
     for i in 0..3 {
@@ -102,7 +103,7 @@ fn polygon_of(segments: &Segments, on_segments: &Csr<VertexId>, triangle: [Verte
     polygon
 }
 
-/// The triangles of a flat facet, with the points on its outline, as constrained Delaunay triangles.
+/// The constrained Delaunay triangulation of a flat facet of many triangles, with the points on its outline.
 fn parts_of_many(
     sites: &Sites,
     triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
@@ -116,17 +117,17 @@ fn parts_of_many(
     parts
 }
 
-/// A triangle as the Delaunay triangles of its corners and the points on its edges.
+/// The Delaunay triangulation of a triangle's corners and the points on its edges.
 fn parts_of(sites: &Sites, polygon: &[VertexId], triangle: [VertexId; 3]) -> Vec<[VertexId; 3]> {
     if polygon.len() == 3 { vec![triangle] } else { Plane::new(sites, triangle).triangulate(polygon) }
 }
 
-/// Working space.
+/// Buffers reused from one flat facet to the next, and the parts made so far.
 #[derive(Default)]
 struct Work {
     cut: Cut,
     wrap: Wrap,
-    /// All parts so far, vertices rising.
+    /// All parts so far, vertices in ascending order.
     walls: HashSet<[VertexId; 3]>,
     star: Vec<TetId>,
 }
@@ -136,7 +137,8 @@ impl Work {
         parts.iter().copied().filter(|&part| tets.find_facet(part, &mut self.star).is_none()).collect()
     }
 
-    /// Makes a flat facet facets of tets: by swaps, or by filling the hollows on both sides anew, or with points inside.
+    /// Makes a flat facet a set of facets of tets: by swaps, by refilling the hollows on both sides, or with
+    /// points inside.
     fn make(
         &mut self,
         tets: &mut Tets,
@@ -154,7 +156,7 @@ impl Work {
             *own = facets;
             return Ok(());
         }
-        // Swaps may have taken parts away that were there.
+        // Swaps may have destroyed parts that existed.
         let missing = self.missing(tets, own);
         if self.recover(tets, sites, (first, own), missing).is_err() {
             let kept = Walls { segments, walls: &self.walls };
@@ -163,7 +165,8 @@ impl Work {
         Ok(())
     }
 
-    /// Makes the missing parts of a flat facet, with a triangle that tells its plane, facets of tets; those together between which there is no edge.
+    /// Makes the missing parts of a flat facet facets of tets. Parts with no existing edge between them are
+    /// inserted together. `plane` holds a triangle that defines the plane, and the facets in it.
     fn recover(
         &mut self,
         tets: &mut Tets,
@@ -192,7 +195,7 @@ impl Work {
         Ok(())
     }
 
-    /// Makes a group of parts facets.
+    /// Inserts a group of parts as facets; restores the tets where this fails.
     fn insert(
         &mut self,
         tets: &mut Tets,
@@ -210,7 +213,7 @@ impl Work {
         let filled = self.fill(tets, sites, group, &shells);
         if filled.is_err() {
             self.wrap.made().iter().for_each(|&tet| tets.remove(tet));
-            // Not all vertices of the group need be those of old tets.
+            // Not every vertex of the group need belong to an old tet.
             at.into_iter().for_each(|(vertex, tet)| tets.set_at(vertex, tet));
             let outer = shells.iter().flatten().filter(|face| !face.outer.is_none());
             tets.put(&old, outer.map(|face| (rising(face.vertices), face.outer)).collect());

@@ -1,4 +1,4 @@
-//! From what has been made to what the caller gets: tets inside, under the numbers of the caller.
+//! From the internal state to the caller's result: the tets inside, under the caller's ids.
 
 use super::bodies::Bodies;
 use super::plane::Plane;
@@ -9,7 +9,7 @@ use crate::geometry::predicates::spot::Between;
 use crate::geometry::vector::{cross, dot, sub};
 
 impl Filled {
-    /// Leaves out what lies outside, and numbers the rest.
+    /// Drops what lies outside, and numbers the rest.
     pub(super) fn finish(self, points: &[Point], triangles: &[[VertexId; 3]], back: Back) -> Constrained {
         let numbers = Numbers::new(&self, points.len());
         let on_edge = |v: &VertexId| match self.sites.place(*v)? {
@@ -76,7 +76,7 @@ impl Filled {
         triangles.iter().zip(&flat_of).map(side).collect()
     }
 
-    /// The facets of each triangle, turned as it is.
+    /// The facets of each triangle, oriented like it.
     fn facets(&self, triangles: &[[VertexId; 3]], numbers: &Numbers) -> Csr<[VertexId; 3]> {
         let mut pairs: Vec<(usize, [VertexId; 3])> = Vec::with_capacity(triangles.len());
         for (flat, list) in self.flats.triangles.iter().enumerate() {
@@ -96,7 +96,8 @@ impl Filled {
         Csr::from_pairs(triangles.len(), renamed)
     }
 
-    /// Of the triangles of a flat facet the one that a part belongs to: which has its vertices, or holds its middle best.
+    /// The triangle of a flat facet to which a part belongs: the one with the same vertices, or else the one
+    /// in which its centroid lies deepest.
     fn triangle_of(&self, list: &[u32], part: [VertexId; 3], triangles: &[[VertexId; 3]]) -> usize {
         let same = list.iter().find(|&&i| triangles[i as usize].iter().all(|v| part.contains(v)));
         let corners = |t: [VertexId; 3]| t.map(|v| self.sites.near(v));
@@ -114,9 +115,9 @@ impl Filled {
     }
 }
 
-/// New numbers of vertices: those given keep theirs, then come points on edges, in triangles and inside.
+/// New numbers of vertices: given ones keep theirs, followed by points on edges, in triangles and inside.
 struct Numbers {
-    /// Those not given that are used, in their new order.
+    /// The used vertices that were not given, in their new order.
     later: Vec<VertexId>,
     old_to_new: Vec<u32>,
 }

@@ -1,8 +1,8 @@
-//! Tets too flat to have a volume in the digits of their coordinates go.
+//! Removes tets too flat to have a volume in the digits of their coordinates.
 //!
-//! Delaunay tets of four vertices that were in one plane before rounding are positive, by 1e-16 of their size. Such a tet has two edges that cross
-//! but for that; where all tets around one of them are made anew from a point inside, the room that the point has is that of their
-//! other sides.
+//! Delaunay tets of four vertices that were coplanar before rounding are positive, by 1e-16 of their size.
+//! Such a tet has two opposite edges that nearly cross; where all tets around one of them are remade from a
+//! point inside, only the other sides of the flat tets limit where that point may lie.
 
 use super::keep::{Exchange, Keep};
 use super::recone::Side;
@@ -12,14 +12,15 @@ use crate::geometry::tet::{EDGES, volume};
 use crate::geometry::triangle::area;
 use crate::geometry::vector::{add, distance, scale};
 
-/// Six times a volume below this, times the largest coordinate and the square of the longest edge, may be rounding alone.
+/// If six times a volume is below this times the largest coordinate and the square of the longest edge, it
+/// may be rounding alone.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// So often, since tets that come may be flat as well.
+/// The number of rounds; more than one, since new tets may be flat as well.
 const ROUNDS: usize = 4;
 
 impl Keep<'_> {
-    /// Makes tets that have no volume anew, where that can be.
+    /// Remakes tets without volume, where possible.
     pub(super) fn remove_flat(&mut self) {
         for _ in 0..ROUNDS {
             let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
@@ -38,7 +39,7 @@ impl Keep<'_> {
         }
     }
 
-    /// Replaces a Steiner point inside by another, if then no tet at that one is flat.
+    /// Replaces a Steiner point inside by another one, provided that no tet at the new one is flat.
     fn replace(&mut self, vertex: VertexId) -> Option<()> {
         if !self.sites.is_steiner_inside(vertex) {
             return None;
@@ -48,7 +49,7 @@ impl Keep<'_> {
         self.commit(vec![side], self.sites.near(vertex), Exchange { old: &[], base: &[] }, false)
     }
 
-    /// Makes the tets around an edge anew, if then none of them is flat.
+    /// Remakes the tets around an edge, provided that none of the new ones is flat.
     fn remove_at(&mut self, [a, b]: [VertexId; 2]) -> Option<()> {
         let mut star = self.star(a);
         star.retain(|&tet| self.tets.vertices(tet).contains(&b));
@@ -73,13 +74,13 @@ impl Keep<'_> {
     }
 }
 
-/// Whether a tet may have no volume but for rounding.
+/// Whether the volume of a tet may be rounding alone.
 pub(super) fn is_flat(corners: [Point; 4]) -> bool {
     let longest = longest(&corners);
     6.0 * volume(corners) <= rounding(&corners) * longest * longest
 }
 
-/// Whether no tet on a triangle has a volume that can be told from rounding.
+/// Whether a triangle is so thin that no tet on it has a volume distinguishable from rounding.
 pub(super) fn is_needle(corners: [Point; 3]) -> bool {
     2.0 * area(corners) <= rounding(&corners) * longest(&corners)
 }

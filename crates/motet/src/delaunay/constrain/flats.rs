@@ -1,12 +1,15 @@
-//! Flat facets: triangles of the surface that hang together and lie in one plane, exactly or but for the rounding of their coordinates.
+//! Flat facets: connected triangles of the surface that lie in one plane, exactly or up to the rounding of
+//! their coordinates.
 //!
-//! An edge between two of them shapes nothing, so it need not be an edge of tets while facets are made. That matters: of the faces of a box
-//! cut into two triangles each, half have the diagonal that Delaunay tets do not, and points on it would be in the way
-//! of others, and so on. What the triangles were is put right afterwards (`keep`).
+//! An edge between two of them does not affect the shape, so it need not be an edge of tets while facets are
+//! made. This matters: of the faces of a box cut into two triangles each, half have the diagonal that the
+//! Delaunay tets lack; points on it would be in the way of others, and so on. The given triangles are
+//! restored afterwards (`keep`).
 //!
-//! What a program has turned, shifted, or written with few digits is flat no more to the last bit. Such a facet grows from its largest triangle: a vertex
-//! belongs to it if it could have been in one plane with the corners of that triangle before all four were rounded. That decides only
-//! what is tried first: which tets are positive is always asked with exact signs.
+//! A facet that a program has rotated, translated, or written with few digits is no longer exactly flat. Such
+//! a facet grows from its largest triangle: a vertex belongs to it if it could have been coplanar with the
+//! corners of that triangle before all four were rounded. This decides only what is tried first: whether tets
+//! are positive is always decided by exact signs.
 
 use super::levels::Levels;
 use super::plane::Plane;
@@ -16,23 +19,23 @@ use crate::base::{Csr, Point, Sets, VertexId, rising};
 use crate::geometry::triangle::area_vector;
 use crate::geometry::vector::{cross, dot, norm, sub};
 
-/// What a triangle may be joined with.
+/// The neighbours with which a triangle may be joined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Merge {
-    /// With none.
+    /// None.
     None,
-    /// With those in its plane.
+    /// Those exactly in its plane.
     Exact,
-    /// With those that were in one plane before coordinates were rounded.
+    /// Those that may have been in its plane before coordinates were rounded.
     Rounded,
 }
 
 /// The flat facets and the edges around them.
 #[derive(Clone)]
 pub(super) struct Flats {
-    /// The triangles of each; the first one tells the plane.
+    /// The triangles of each flat facet; the first one defines the plane.
     pub(super) triangles: Csr<u32>,
-    /// The edges that are not within one of them, smaller end first; rising.
+    /// The edges that are not inside a flat facet; ascending, with the smaller end first.
     pub(super) creases: Vec<[VertexId; 2]>,
 }
 
@@ -89,10 +92,10 @@ impl Flats {
     }
 }
 
-/// The edge at which two triangles meet and no other, and the two.
+/// An edge shared by exactly two triangles, with these two.
 type Pair = ([VertexId; 2], [u32; 2]);
 
-/// The edges of all triangles, rising, with the triangle of each; in order.
+/// The edges of all triangles, each with its triangle; sorted, with ascending ends.
 fn by_edge(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 2], u32)> {
     let mut edges: Vec<([VertexId; 2], u32)> = Vec::with_capacity(3 * triangles.len());
     for (i, &[a, b, c]) in triangles.iter().enumerate() {
@@ -102,7 +105,7 @@ fn by_edge(triangles: &[[VertexId; 3]]) -> Vec<([VertexId; 2], u32)> {
     edges
 }
 
-/// The two triangles of an edge, where there are two.
+/// The two triangles of an edge, if it has exactly two.
 fn pair(run: &[([VertexId; 2], u32)]) -> Option<Pair> {
     match *run {
         [(edge, i), (_, j)] => Some((edge, [i, j])),
@@ -110,11 +113,12 @@ fn pair(run: &[([VertexId; 2], u32)]) -> Option<Pair> {
     }
 }
 
-/// Facets of triangles in one plane but for rounding. A facet grows from its largest triangle, whose plane its vertices keep to.
+/// Facets of triangles coplanar up to rounding. A facet grows from its largest triangle, and its vertices
+/// keep to the plane of that triangle.
 pub(super) struct Grown {
     /// The facet of each triangle.
     pub(super) number: Vec<u32>,
-    /// The triangle that each facet has grown from.
+    /// The triangle from which each facet has grown.
     pub(super) firsts: Vec<u32>,
 }
 
@@ -154,30 +158,30 @@ impl Grown {
         Self { number, firsts }
     }
 
-    /// Whether two triangles are of one facet.
+    /// Whether two triangles belong to the same facet.
     fn is_one(&self, i: u32, j: u32) -> bool {
         self.number[i as usize] == self.number[j as usize]
     }
 
-    /// The triangle that the facet of another has grown from.
+    /// The triangle from which the facet of `i` has grown.
     fn first(&self, i: u32) -> u32 {
         self.firsts[self.number[i as usize] as usize]
     }
 }
 
-/// A triangle, turned as its neighbour is.
+/// A triangle, reversed if necessary to have the orientation of its neighbour `from`.
 fn turned_alike(from: [VertexId; 3], [a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     let edges = |[a, b, c]: [VertexId; 3]| [[a, b], [b, c], [c, a]];
     let runs_the_same_way = edges([a, b, c]).iter().any(|e| edges(from).contains(e));
     if runs_the_same_way { [a, c, b] } else { [a, b, c] }
 }
 
-/// Points that could have been in the plane of a triangle before coordinates were rounded.
+/// The set of points that could have been in the plane of a triangle before coordinates were rounded.
 struct Band {
     corners: [Point; 3],
-    /// As long as twice the area.
+    /// The normal, of length twice the area.
     normal: Point,
-    /// How far rounding moves a point along the normal.
+    /// The largest displacement by rounding along the normal.
     width: f64,
 }
 
@@ -194,7 +198,8 @@ impl Band {
         triangle.iter().all(|&p| self.has(p))
     }
 
-    /// The plane is off at `p` by as much as its corners are, times their barycentric coordinates there.
+    /// Whether a point lies in the band. The plane is off at `p` by the errors of its corners, weighted with
+    /// their barycentric coordinates there.
     fn has(&self, p: Point) -> bool {
         if self.corners.contains(&p) {
             return true;
@@ -207,7 +212,7 @@ impl Band {
     }
 }
 
-/// Whether two triangles at an edge lie in one plane.
+/// Whether two triangles at an edge are exactly coplanar.
 fn is_flat(sites: &Sites, edge: [VertexId; 2], [s, t]: [[VertexId; 3]; 2]) -> bool {
     let third = |t: [VertexId; 3]| t.into_iter().find(|v| !edge.contains(v));
     match (third(s), third(t)) {

@@ -1,8 +1,10 @@
-//! Cavities at the surface are enlarged where they have no room for a point.
+//! Enlarges cavities at the surface that have no space for a point.
 //!
-//! Vertices inside may lie as near to the surface as digits go; then no point on that side of them sees both the surface and the facets of the cavity.
-//! From a point farther away, the tet behind each facet that the point does not see is added, until the point sees all facets. The
-//! cavity is then star-shaped about the point, so that tets from it to the facets fill it (as do the cavities of Bowyer 1981 and Watson 1981).
+//! Vertices inside may lie as close to the surface as floating-point numbers allow; then no point between
+//! them and the surface sees both the surface and the facets of the cavity. Starting from a point farther
+//! away, the tet behind each facet that the point does not see is added, until the point sees all facets. The
+//! cavity is then star-shaped with respect to the point, so tets from it to the facets fill the cavity (as in
+//! Bowyer 1981 and Watson 1981).
 
 use hashbrown::{HashMap, HashSet};
 
@@ -12,18 +14,20 @@ use super::tets::Tets;
 use crate::base::{Point, VertexId, rising};
 use crate::geometry::vector::{add, scale};
 
-/// The tets of one cavity at most.
+/// The largest number of tets in one cavity.
 const MOST: usize = 1024;
 
-/// How many cavities may be enlarged in vain, each success allowing one more: where walls are as near to each other as digits go, nothing helps.
+/// The number of failed attempts at enlarging cavities that are allowed, each success allowing one more:
+/// where walls are as close to each other as floating-point numbers allow, nothing helps.
 pub(super) const MOST_IN_VAIN: usize = 128;
 
-/// How far from the surface the point may be, as a share of the way to the facets around.
+/// Distances of the point from the surface to try, as fractions of the distance to the facets around.
 const WAYS: [f64; 8] = [0.3, 0.15, 0.6, 0.06, 0.02, 5e-3, 1e-3, 1e-4];
 
 impl Keep<'_> {
-    /// A point near `middle` that sees all facets of the cavity `sides[i]`, which gets more tets where it has no such point. All tets from the point to the facets
-    /// have a volume in the digits of their coordinates; where that cannot be and they `may_be_flat`, they are positive.
+    /// Finds a point near `middle` that sees all facets of the cavity `sides[i]`; a cavity without such a
+    /// point gets more tets. All tets from the point to the facets have a volume in the digits of their
+    /// coordinates; where that is impossible and they `may_be_flat`, they are merely positive.
     pub(super) fn find_apex(
         &mut self,
         sides: &mut [Side],
@@ -49,7 +53,8 @@ impl Keep<'_> {
         place.filter(|_| may_be_flat)
     }
 
-    /// The cavity `sides[i]` with the tets added that make it star-shaped about `p`. `None` where it meets the surface first, or becomes too large.
+    /// The cavity `sides[i]` with the tets added that make it star-shaped with respect to `p`. `None` where
+    /// it reaches the surface first, or becomes too large.
     fn enlarged(&self, sides: &[Side], i: usize, p: Point) -> Option<Side> {
         let is_good = |face| is_seen(self.sites, face, p) && !makes_flat(self.sites, face, p);
         let mut side = sides[i].clone();
@@ -84,7 +89,8 @@ impl Keep<'_> {
         (self.is_closed(&side) && self.is_apart(&side, sides, i)).then_some(side)
     }
 
-    /// Whether the facets of a cavity, with the new ones of the surface, meet in pairs at their edges, and have all its vertices but Steiner points inside.
+    /// Whether the facets of a cavity, with the new ones of the surface, meet in pairs at their edges, and
+    /// contain all its vertices except Steiner points inside.
     fn is_closed(&self, side: &Side) -> bool {
         let mut edges: HashMap<[VertexId; 2], u32> = HashMap::new();
         for [a, b, c] in side.faces() {
@@ -98,7 +104,7 @@ impl Keep<'_> {
             && side.tets.iter().flat_map(|&tet| self.tets.vertices(tet)).all(is_kept_or_spare)
     }
 
-    /// Whether no other cavity of `sides` has a tet of this one, or one behind its facets.
+    /// Whether no other cavity of `sides` has a tet of this one, or a tet behind its facets.
     fn is_apart(&self, side: &Side, sides: &[Side], i: usize) -> bool {
         let others = || sides.iter().enumerate().filter(|&(k, _)| k != i).flat_map(|(_, other)| &other.tets);
         let behind = |tet| side.shell.iter().any(|(half, _)| !half.is_none() && half.tet() == tet);

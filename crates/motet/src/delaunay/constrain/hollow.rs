@@ -1,7 +1,8 @@
 //! The Delaunay triangulation of the vertices around a hollow, as a guide for filling it.
 //!
-//! It knows nothing of what can be seen. But where all faces of the hollow are facets of it, the tets between them are those that are
-//! wanted; and where some are not, most of its tets still are, and only those faces can hide a vertex.
+//! The guide ignores visibility. But where all faces of the hollow are facets of it, the tets between them
+//! are those wanted; and where some are not, most of its tets still are, and only the faces that are not its
+//! facets can hide a vertex.
 
 use hashbrown::HashMap;
 
@@ -11,17 +12,18 @@ use super::tets::Tets;
 use crate::base::VertexId;
 use crate::geometry::tet::FACETS;
 
-/// The triangulation, and its facets by their vertices.
+/// The triangulation, and the apexes of its facets by their vertices.
 #[derive(Default)]
 pub(super) struct Guide {
     tets: Tets,
     insertion: Insertion,
-    /// The apex of the tet on each facet, seen from the side on which its vertices run counter-clockwise, smallest first.
+    /// The apex of the tet on each facet, on the side from which the facet's vertices run counter-clockwise;
+    /// the key has the smallest vertex first.
     apexes: HashMap<[VertexId; 3], VertexId>,
 }
 
 impl Guide {
-    /// Triangulates vertices of `sites`.
+    /// Triangulates the given vertices.
     pub(super) fn build(&mut self, sites: &Sites, vertices: &[VertexId]) {
         let [a, b, c, d] = sites.around_all();
         self.tets.clear();
@@ -38,19 +40,19 @@ impl Guide {
         }
     }
 
-    /// The apex of the tet on a face, on the side from which its vertices run counter-clockwise; `None` where it is no facet. It may
-    /// be a vertex far outside.
+    /// The apex of the tet on a face, on the side from which its vertices run counter-clockwise; `None` where
+    /// the face is not a facet. It may be one of the far vertices around everything.
     pub(super) fn apex(&self, face: [VertexId; 3]) -> Option<VertexId> {
         self.apexes.get(&smallest_first(face)).copied()
     }
 
-    /// Whether a face is a facet.
+    /// Whether a face is a facet of the guide.
     pub(super) fn has(&self, [a, b, c]: [VertexId; 3]) -> bool {
         self.apex([a, b, c]).is_some() || self.apex([a, c, b]).is_some()
     }
 }
 
-/// The same turn, from the smallest vertex on.
+/// The same triangle with the same orientation, starting from its smallest vertex.
 pub(super) fn smallest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     if a < b && a < c {
         [a, b, c]

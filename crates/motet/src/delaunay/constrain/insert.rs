@@ -1,5 +1,6 @@
-//! A point on a segment put into the triangulation: the tets whose sphere holds it go, and tets from it to the facets around come
-//! (Bowyer 1981; Watson 1981). Its rank is the highest, so on a sphere it is outside.
+//! Inserts a point into a Delaunay triangulation: the tets whose sphere contains it are replaced by tets from
+//! it to the facets around (Bowyer 1981; Watson 1981). Its rank is the highest, so it counts as outside a
+//! sphere on which it lies.
 
 use super::sites::Sites;
 use super::tets::Tets;
@@ -7,21 +8,21 @@ use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
-/// Working space, kept from one insertion to the next.
+/// Buffers reused from one insertion to the next.
 #[derive(Default)]
 pub(super) struct Insertion {
-    /// The tets that go.
+    /// The tets to be removed.
     cavity: Vec<TetId>,
-    /// The facets around them, from outside, and their vertices seen from inside.
+    /// The facets around them, as links to the tets outside, and their vertices seen from inside.
     shell: Vec<(HalfFacet, [VertexId; 3])>,
-    /// Edges of the shell with the facets of the new tets on their sides.
+    /// Edges of the shell, each with the facets of the new tets on its two sides.
     seams: Vec<([VertexId; 2], HalfFacet)>,
-    /// Edges of tets that went, each once, in order.
+    /// Edges of the removed tets, each once, sorted.
     touched: Vec<[VertexId; 2]>,
 }
 
 impl Insertion {
-    /// Puts `vertex` in; the walk to it starts at `start`. Answers the edges that are no longer there.
+    /// Inserts `vertex`; the walk to it starts at `start`. Returns the edges that no longer exist.
     pub(super) fn insert(
         &mut self,
         tets: &mut Tets,
@@ -78,7 +79,7 @@ impl Insertion {
     }
 }
 
-/// The tet that holds a vertex yet to be inserted. A visibility walk: it does not go round in circles in a Delaunay
+/// The tet that contains a vertex not yet inserted, found by a visibility walk: it cannot cycle in a Delaunay
 /// triangulation (Edelsbrunner 1989), and the box around all points keeps it inside.
 fn locate(tets: &Tets, sites: &Sites, vertex: VertexId, start: TetId) -> TetId {
     let (mut tet, mut came) = (start, HalfFacet::NONE);

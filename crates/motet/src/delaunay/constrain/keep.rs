@@ -1,8 +1,11 @@
-//! The surface put right: points on its edges and in its triangles move inside, and flat facets get back the triangles that they were.
+//! Repairs the surface: points on its edges and in its triangles move inside, and flat facets get back their
+//! given triangles.
 //!
-//! What it takes is a point inside on each side that has tets (`recone`). A point stays on its edge where a side has no room for one, such as
-//! at the free edge of a membrane. Tets outside go first: nothing can be in their way. Only where triangles have nothing enclosed on either side do they
-//! stay, to keep together what lies around an edge or a vertex; then they are made anew like the others, but nobody asks whether they are positive.
+//! To remove such a point, each side that has tets gets a point inside (`recone`). A point stays on its edge
+//! where a side has no space for one, such as at the free edge of a membrane. Tets outside are removed first:
+//! then nothing there can be in the way. They stay only where some triangles have no body on either side, to
+//! keep together what lies around an edge or a vertex; they are then remade like the others, but need not be
+//! positive.
 
 use hashbrown::HashMap;
 
@@ -17,32 +20,33 @@ use super::tets::Tets;
 use crate::base::{Csr, Point, Result, TetId, VertexId, Watch, rising};
 use crate::kernel::HalfFacet;
 
-/// Tets of this share are good enough for a point to go.
+/// A point inside is removed when the least share of the tets without it exceeds this, or the present one.
+/// The share is six times the volume over the cube of the longest edge.
 const FAIR: f64 = 1e-3;
 
-/// How often points that had no room are tried.
+/// The number of rounds in which points without space are tried again.
 const ROUNDS: usize = 4;
 
-/// The tets and the surface while it is put right.
+/// The tets and the surface during the repair.
 pub(super) struct Keep<'a> {
     pub(super) tets: &'a mut Tets,
     pub(super) sites: &'a mut Sites,
     pub(super) bodies: &'a mut Bodies,
-    /// The triangles given, and the flat facet of each.
+    /// The triangles as given.
     pub(super) triangles: &'a [[VertexId; 3]],
     pub(super) flats: &'a Flats,
-    /// The flat facet of each facet of the surface, vertices rising.
+    /// The flat facet of each facet of the surface; vertices in ascending order.
     pub(super) walls: HashMap<[VertexId; 3], u32>,
-    /// How many cavities may still be enlarged in vain (`grow`).
+    /// The number of further failed attempts at enlarging cavities that are allowed (`grow`).
     pub(super) n_in_vain_left: usize,
-    /// The tets of each vertex, with some that it has no more.
+    /// The tets of each vertex, together with some that no longer have it.
     incident: Vec<Vec<TetId>>,
 }
 
-/// Facets of the surface, and those that replace them, each with its flat facet and turned as the plane of that.
+/// Facets of the surface, and those that replace them, each with its flat facet and oriented like its plane.
 #[derive(Clone, Copy)]
 pub(super) struct Exchange<'a> {
-    /// Vertices rising.
+    /// Vertices in ascending order.
     pub(super) old: &'a [[VertexId; 3]],
     pub(super) base: &'a [(u32, [VertexId; 3])],
 }
@@ -72,7 +76,8 @@ impl<'a> Keep<'a> {
         }
     }
 
-    /// Puts all right that can be; returns the facets of each flat facet, and the flat facets that have other triangles than were given.
+    /// Repairs the surface where possible; returns the facets of each flat facet, and the flat facets whose
+    /// triangles differ from those given.
     pub(super) fn run(
         mut self,
         segments: &Segments,
@@ -87,7 +92,7 @@ impl<'a> Keep<'a> {
             .collect();
         let is_in = |(v, place): (VertexId, Place)| matches!(place, Place::In(..)).then_some(v);
         let mut in_triangles: Vec<VertexId> = self.sites.all_placed().filter_map(is_in).collect();
-        // What has no room at first may have some once its neighbours have moved.
+        // Points without space at first may find some once their neighbours have moved.
         for _ in 0..ROUNDS {
             in_triangles.retain(|&vertex| self.free(vertex, None).is_none());
             let n_chains = chains.len();
@@ -110,8 +115,8 @@ impl<'a> Keep<'a> {
         Ok((csr, unrestored))
     }
 
-    /// Removes the tets outside, where each triangle has a body at it: nobody asks for them any more. Notes the others by vertex, since those of one vertex need
-    /// not hang together then.
+    /// Removes the tets outside where each triangle has a body at it: they are no longer needed. Records the
+    /// remaining tets by vertex, since those of one vertex need not be connected then.
     fn leave_out(&mut self) {
         if self.bodies.sides.iter().all(|sides| *sides != [0; 2]) {
             let is_outside = |tet: &TetId| self.bodies.of_slot[tet.index()] == 0;
@@ -145,7 +150,7 @@ impl<'a> Keep<'a> {
         star.clone()
     }
 
-    /// Moves the points of a segment inside, those that can be; the others are left in the list.
+    /// Moves inside those points of a segment that can be; leaves the others in the list.
     fn free_all(&mut self, [mut before, last]: [VertexId; 2], points: &mut Vec<VertexId>) {
         let mut left = Vec::new();
         for (i, &vertex) in points.iter().enumerate() {
@@ -158,7 +163,7 @@ impl<'a> Keep<'a> {
         *points = left;
     }
 
-    /// The facets of the surface by flat facet, each list turned as its plane and in order.
+    /// The facets of the surface by flat facet, each list sorted and oriented like its plane.
     pub(super) fn lists(&self) -> Vec<Vec<[VertexId; 3]>> {
         let mut lists = vec![Vec::new(); self.flats.triangles.len()];
         self.walls.iter().for_each(|(&face, &flat)| lists[flat as usize].push(face));
@@ -175,7 +180,8 @@ impl<'a> Keep<'a> {
         lists
     }
 
-    /// Moves a point on an edge inside, whose neighbours `ends` on the edge are joined, or one in a triangle. `None` where that cannot be.
+    /// Moves a point inside: one on an edge, whose neighbours `ends` there are joined, or one in a triangle.
+    /// `None` where that is impossible.
     fn free(&mut self, vertex: VertexId, ends: Option<[VertexId; 2]>) -> Option<()> {
         let star = self.star(vertex);
         let fans = self.fans(vertex, &star);
@@ -195,7 +201,7 @@ impl<'a> Keep<'a> {
         self.commit(sides, self.sites.near(vertex), Exchange { old: &old, base: &base }, true)
     }
 
-    /// The facets of the surface at a vertex, each with its flat facet and turned as its plane; in order.
+    /// The facets of the surface at a vertex, each with its flat facet and oriented like its plane; sorted.
     fn fans(&self, vertex: VertexId, star: &[TetId]) -> Vec<(u32, [VertexId; 3])> {
         let mut fans = Vec::new();
         for &tet in star {
@@ -216,7 +222,8 @@ impl<'a> Keep<'a> {
         fans
     }
 
-    /// The flat facet that a facet of a tet is of. Tets outside may overlap, so that others of the same vertices lie between them.
+    /// The flat facet to which a facet of a tet belongs. Tets outside may overlap, so facets with the same
+    /// vertices may lie between other tets; these do not count.
     pub(super) fn wall(&self, half: HalfFacet) -> Option<u32> {
         let flat = *self.walls.get(&rising(self.tets.inward(half)))?;
         let other = self.tets.across(half);
@@ -230,7 +237,7 @@ impl<'a> Keep<'a> {
         Plane::new(self.sites, self.triangles[self.flats.triangles.list(flat as usize)[0] as usize])
     }
 
-    /// The triangles that take the place of those around a vertex in one flat facet.
+    /// The triangles that replace those around a vertex in one flat facet.
     fn joined(
         &self,
         vertex: VertexId,
@@ -239,7 +246,7 @@ impl<'a> Keep<'a> {
     ) -> Option<Vec<(u32, [VertexId; 3])>> {
         let flat = fan[0].0;
         let plane = self.plane(flat);
-        // From each facet (vertex, x, y) the step from x to y around the vertex.
+        // For each facet (vertex, x, y), the step from x to y around the vertex.
         let step = |&(_, [a, b, c]): &(u32, [VertexId; 3])| match vertex {
             v if v == a => (b, c),
             v if v == b => (c, a),
@@ -271,8 +278,9 @@ impl<'a> Keep<'a> {
         (n_steps == fan.len()).then_some(triangles)
     }
 
-    /// The sides of a part of the surface, of facets `old`, that is to have the triangles `base`: the tets in `star` that hang together without crossing
-    /// the surface. `is_around` tells which of their facets stay. `None` where one tet lies on both sides.
+    /// The sides of a part of the surface whose facets `old` are to be replaced by `base`: sets of tets in
+    /// `star` that are connected without crossing the surface. `is_around` selects the facets of the tets
+    /// that stay. `None` where one tet lies on both sides.
     pub(super) fn sides(
         &mut self,
         star: &[TetId],
@@ -321,8 +329,8 @@ impl<'a> Keep<'a> {
         Some(sides)
     }
 
-    /// Fills the cavities `sides` with tets from one new point each, if each has such a point, enlarged if need be. Unless tets `may_be_flat`, all have a volume in
-    /// the digits of their coordinates.
+    /// Fills each cavity of `sides` with tets from a new point, provided that all have such a point, enlarged
+    /// if necessary. Unless tets `may_be_flat`, all have a volume in the digits of their coordinates.
     pub(super) fn commit(
         &mut self,
         mut sides: Vec<Side>,
@@ -362,7 +370,7 @@ impl<'a> Keep<'a> {
         Some(())
     }
 
-    /// Makes a side anew from `apex`: the tets that come are of the body of those that go.
+    /// Remakes a side from `apex`: the new tets are of the body of the removed ones.
     fn make(&mut self, side: &Side, apex: VertexId) -> Vec<TetId> {
         let body = self.bodies.of_slot[side.tets[0].index()];
         let made = side.make(self.tets, apex);
@@ -372,8 +380,8 @@ impl<'a> Keep<'a> {
         made
     }
 
-    /// Does without a point inside, if another vertex can take its place; or else finds it a better place. Otherwise the next points nearby would have
-    /// less and less room.
+    /// Removes a point inside if another vertex can take its place; otherwise moves it to a better place.
+    /// Without this, points nearby would have less and less space.
     fn settle(&mut self, vertex: VertexId) {
         let mut star = Vec::new();
         self.tets.star(vertex, &mut star);

@@ -1,10 +1,11 @@
-//! How triangles are joined to flat facets: where one way has failed, another is tried, there alone.
+//! Ways of joining triangles to flat facets: where one way has failed, another is tried, at that place only.
 
 use super::flats::{Grown, Merge};
 use super::unmade::Part;
 use crate::base::{Csr, VertexId};
 
-/// How each triangle may be joined with its neighbours. Triangles in one plane but for rounding change from one way to the next together.
+/// The way in which each triangle may be joined with its neighbours. Triangles coplanar up to rounding change
+/// together from one way to the next.
 pub(super) struct Levels<'a> {
     triangles: &'a [[VertexId; 3]],
     pub(super) grown: &'a Grown,
@@ -14,25 +15,25 @@ pub(super) struct Levels<'a> {
 }
 
 impl<'a> Levels<'a> {
-    /// Joins triangles in exactly one plane.
+    /// Starts with triangles joined that are exactly coplanar.
     pub(super) fn new(triangles: &'a [[VertexId; 3]], grown: &'a Grown) -> Self {
         let n = grown.firsts.len();
         let facets = || grown.number.iter().enumerate().map(|(i, &of)| (of as usize, i as u32));
         Self { triangles, grown, members: Csr::from_pairs(n, facets), of_facet: vec![Merge::Exact; n] }
     }
 
-    /// How a triangle may be joined.
+    /// The way in which a triangle may be joined.
     pub(super) fn of(&self, triangle: u32) -> Merge {
         self.of_facet[self.grown.number[triangle as usize] as usize]
     }
 
-    /// Whether triangles are joined that are in one plane but for rounding only.
+    /// Whether any triangles are joined that are coplanar only up to rounding.
     pub(super) fn has_rounded(&self) -> bool {
         self.of_facet.contains(&Merge::Rounded)
     }
 
-    /// Changes how the triangles `failed` and those in one plane with them are joined: first exactly, then but for rounding, then not at all. Whether there is a
-    /// way left for one of them.
+    /// Advances the triangles `failed` and those coplanar with them to their next way of joining: exactly,
+    /// then up to rounding, then not at all. Returns whether any of them had a way left.
     pub(super) fn advance(&mut self, failed: &[u32]) -> bool {
         let mut facets: Vec<u32> = failed.iter().map(|&i| self.grown.number[i as usize]).collect();
         facets.sort_unstable();
@@ -46,14 +47,15 @@ impl<'a> Levels<'a> {
         !facets.is_empty()
     }
 
-    /// Joins no triangles any more. Returns whether some were joined.
+    /// Stops joining triangles altogether; returns whether any were joined.
     pub(super) fn separate_all(&mut self) -> bool {
         let has_joined = self.of_facet.iter().any(|of| *of != Merge::None);
         self.of_facet.fill(Merge::None);
         has_joined
     }
 
-    /// The joined triangles that share the most vertices with a part of the surface; all that are joined, where none shares one.
+    /// The joined triangles that share the most vertices with a part of the surface; all joined triangles
+    /// where none shares one.
     pub(super) fn near(&self, part: Part) -> Vec<u32> {
         let ends = match part {
             Part::Edge(ends) => ends.to_vec(),

@@ -3,27 +3,31 @@
 //! | step | file | how |
 //! |---|---|---|
 //! | start | here | the Delaunay triangulation of all vertices, within a large box |
-//! | edges | `edges`, `way`, `swap`, `split` | a missing edge of the surface is made by swaps of tets; where none helps, it gets a point |
-//! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is made by swaps; or the tets that it cuts go, and both hollows are filled again; or it gets points |
-//! | bodies | `bodies` | what the surfaces part |
-//! | surface | `keep`, `restore`, `recone`, `grow` | points on edges and in triangles move inside |
+//! | edges | `edges`, `way`, `swap`, `split` | a missing edge of the surface is recovered by swaps of tets; where no swap helps, a point is put on it |
+//! | facets | `facets`, `pierce`, `cut`, `wrap` | a missing triangle is recovered by swaps; or the tets that it cuts are removed and both hollows are refilled; or points are put in it |
+//! | bodies | `bodies` | the bodies that the surfaces separate |
+//! | surface | `keep`, `restore`, `recone`, `grow` | points on edges and in triangles are moved inside |
 //!
-//! Triangles in one plane are one flat facet at first (`flats`). Where they do not come out of it as they were, or with tets that have no volume in the
-//! digits of their coordinates, all begins anew (`attempts`), there with triangles in one plane but for the rounding of their coordinates
-//! (`geometry::rounding`), of which flat tets belong to the outside (`shed`), and at last with each triangle for itself (`levels`); the best counts. Flat
-//! tets inside are made anew (`flat_tets`).
+//! At first, triangles in one plane form one flat facet (`flats`). Where such a facet does not come out with
+//! its given triangles, or comes out with tets that have no volume in the digits of their coordinates,
+//! everything starts again (`attempts`): next with triangles joined there that are coplanar up to the
+//! rounding of their coordinates (`geometry::rounding`), whose flat tets are assigned to the outside
+//! (`shed`), and finally with each triangle on its own (`levels`). The best attempt is taken. Flat tets
+//! inside are replaced (`flat_tets`).
 //!
-//! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all their pieces are Delaunay.
-//! Once all edges are there the constrained Delaunay triangulation exists (Shewchuk 1998, *A condition guaranteeing the existence of
-//! higher-dimensional constrained Delaunay triangulations*), so no facet needs a point inside it.
+//! Where points stay on edges ([`EdgePoints::Stay`]), nothing is swapped: `segments` divides edges until all
+//! their pieces are Delaunay. Once all edges are present the constrained Delaunay triangulation exists
+//! (Shewchuk 1998, *A condition guaranteeing the existence of higher-dimensional constrained Delaunay
+//! triangulations*), so no facet needs a point inside it.
 //!
-//! *Signs.* A point on an edge has, as a rule, no coordinates in `f64`. It is kept as what it is, a share of the way between two vertices, and signs
-//! are exact for such points (`geometry::predicates::spot`): nothing here has a tolerance, and surfaces may come as near to each other
-//! as coordinates can. Diazzi, Panozzo, Vaxman and Attene (2023, *Constrained Delaunay tetrahedrization: a robust and practical
-//! approach*) were the first to do it so.
+//! *Signs.* A point on an edge generally has no exact coordinates in `f64`. It is stored as a fraction of the
+//! way between two vertices, and signs are exact for such points (`geometry::predicates::spot`): nothing here
+//! has a tolerance, and surfaces may come as close to each other as coordinates allow. Diazzi, Panozzo,
+//! Vaxman and Attene (2023, *Constrained Delaunay tetrahedrization: a robust and practical approach*) were
+//! the first to do this.
 //!
-//! *Ties* are broken as in the triangulation of the points, by infinitesimal lifts, and everywhere by the same: so the result depends on the
-//! input only, and what theory says of points in general position holds for grids.
+//! *Ties* are broken by the same infinitesimal lifts everywhere, those of the triangulation of the points: so
+//! the result depends on the input only, and theorems on points in general position hold for grids too.
 
 mod attempts;
 mod bodies;
@@ -73,13 +77,14 @@ use sites::Sites;
 use tets::Tets;
 use unmade::{Order, Unmade};
 
-/// The box around all points is larger than theirs by this factor: so far away it hardly makes an edge less Delaunay.
+/// The box around all points is larger than their own by this factor: at this distance it hardly makes an
+/// edge less Delaunay.
 const BOX: f64 = 8.0;
 
-/// What is shorter than this along an axis, beside the longest, is stretched.
+/// Axes along which the points are shorter than this fraction of the longest axis are stretched.
 const SHORT: f64 = 1.0 / 32.0;
 
-/// What is far around the box, where a hollow is filled, is larger by this factor than the box.
+/// The tet around everything, needed to fill hollows, is larger than the box by this factor.
 const FAR: f64 = 4096.0;
 
 /// A point that was put on an edge of the surface.
@@ -87,55 +92,62 @@ const FAR: f64 = 4096.0;
 pub struct PointOnEdge {
     /// The ends of the edge.
     pub ends: [VertexId; 2],
-    /// How far from the first end to the second, in (0, 1), rounded. The point is `first + share (second - first)`.
+    /// The fraction of the way from the first end to the second, in (0, 1), rounded. The point is `first +
+    /// share (second - first)`.
     pub share: f64,
 }
 
 /// A point that was put in a triangle of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointInTriangle {
-    /// The triangle, by its number.
+    /// The triangle's number.
     pub triangle: u32,
-    /// Shares of the ways from its first corner to the others; the exact point is `first + s (second - first) + t (third - first)`.
+    /// Fractions `s` and `t` of the ways from the triangle's first corner to the others; the exact point is
+    /// `first + s (second - first) + t (third - first)`.
     pub shares: [f64; 2],
 }
 
-/// Tets that have every triangle of the surfaces among their facets. Where points stay on edges ([`EdgePoints::Stay`]), no vertex that a tet
-/// can see lies inside its sphere.
+/// Tets that have every triangle of the surfaces among their facets. Where points stay on edges
+/// ([`EdgePoints::Stay`]), no vertex visible from a tet lies inside its circumsphere.
 #[derive(Clone, Debug)]
 pub struct Constrained {
-    /// The points as they were given, then points on edges and in triangles, rounded, then points inside.
+    /// The points as given, then points on edges and in triangles, rounded, then points inside.
     pub points: Vec<Point>,
-    /// What the points on edges are.
+    /// The definitions of the points on edges.
     pub on_edges: Vec<PointOnEdge>,
-    /// What the points in triangles are; none where points stay on edges.
+    /// The definitions of the points in triangles; empty where points stay on edges.
     pub in_triangles: Vec<PointInTriangle>,
     /// The tets within the surfaces, positively oriented before points were rounded.
     pub tets: Vec<[VertexId; 4]>,
-    /// The body of each tet, from 0: tets that are joined without crossing the surface.
+    /// The body of each tet, from 0; a body is a set of tets connected without crossing a surface.
     pub bodies: Vec<u32>,
-    /// The facets that each triangle became, turned as it is: itself alone, but where points stay on edges.
+    /// The facets that each triangle became, oriented like it; just the triangle itself, except where points
+    /// stay on its edges.
     pub triangle_to_facets: Csr<[VertexId; 3]>,
-    /// The bodies in front of each triangle and behind it; `None` is the outside. Front is where its vertices run counter-clockwise.
+    /// The bodies in front of each triangle and behind it; `None` is the outside. A triangle is seen
+    /// counter-clockwise from its front.
     pub triangle_to_bodies: Vec<[Option<u32>; 2]>,
 }
 
-/// Where points may stay that had to be put on edges of the surface.
+/// What becomes of points that had to be put on edges of the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EdgePoints {
-    /// They move inside, so that every triangle is a facet as it is. Where there is no room, one stays.
+    /// They move inside, so that every triangle is a facet as given. A point stays where there is no space
+    /// for it inside.
     #[default]
     MoveInside,
     /// They stay: the tets are constrained Delaunay.
     Stay,
 }
 
-/// Fills closed surfaces with tets. Points must be distinct where triangles use them, and triangles must not meet but in vertices
-/// and edges that they share. Surfaces may be nested, share triangles (given once) or have open edges inside others.
+/// Fills closed surfaces with tets. Points used by triangles must be distinct, and triangles may meet only in
+/// vertices and edges that they share. Surfaces may be nested, share triangles (given once) or have open
+/// edges inside others.
 ///
 /// # Errors
-/// When a coordinate is not finite, when points that triangles use coincide or do not exist, when triangles meet in more than they share (where
-/// that comes to light: a check beforehand names all such places), when edges would have to be divided beyond their digits, or too often.
+/// When a coordinate is not finite, when points used by triangles coincide or do not exist, when triangles
+/// meet in more than they share (where this is noticed: a check beforehand lists all such places), or when
+/// edges would have to be divided beyond the precision of their coordinates, or too often.
 pub fn constrain(
     points: &[Point],
     triangles: &[[VertexId; 3]],
@@ -163,8 +175,9 @@ pub fn constrain(
     Ok(filled.finish(points, triangles, back))
 }
 
-/// The flat facet of each triangle: triangles that hang together and lie in one plane, exactly or but for a `rounding` of each coordinate, have the same number.
-/// Points must be finite and triangles name three different ones.
+/// Returns the number of the flat facet of each triangle: connected triangles that lie in one plane, exactly
+/// or up to a `rounding` of each coordinate, have the same number. Points must be finite, and each triangle
+/// must name three different ones.
 pub(crate) fn flat_facets(points: &[Point], triangles: &[[VertexId; 3]], rounding: f64) -> Vec<u32> {
     Grown::find(&Sites::new(points.to_vec(), &[]), triangles, [rounding; 3]).number
 }
@@ -193,7 +206,7 @@ fn check_distinct(triangulation: &Triangulation, triangles: &[[VertexId; 3]]) ->
         .remedy("merge points that coincide"))
 }
 
-/// What gives points their own scale back.
+/// Scales points back to their original scale.
 #[derive(Clone, Copy)]
 struct Back {
     all: [f64; 2],
@@ -201,7 +214,7 @@ struct Back {
 }
 
 impl Back {
-    /// A length along each axis, in the scale that points have been given.
+    /// Converts a length into the scaled coordinates, along each axis.
     fn rounding(&self, length: f64) -> Point {
         std::array::from_fn(|i| length / (self.by_axis[i] * self.all[0] * self.all[1]))
     }
@@ -211,10 +224,11 @@ impl Back {
     }
 }
 
-/// The points, scaled by powers of two, and the corners of a box far around them; and what scales back.
+/// Scales the points by powers of two and adds the corners of a box far around them; also returns how to
+/// scale back.
 ///
-/// Where points need not be Delaunay in the end, axes along which all is far shorter are stretched: what is flat as a whole, or long, would
-/// have tets at first that cross its surface everywhere.
+/// Where points need not be Delaunay in the end, axes along which the whole is far shorter are stretched:
+/// otherwise the first tets of something flat or long would cross its surface everywhere.
 fn in_box(points: &[Point], edge_points: EdgePoints) -> Result<(Vec<Point>, Back)> {
     let Scaled { points: mut given, back, .. } = input::scaled(points.to_vec());
     let extent = |[low, high]: [Point; 2]| -> Point { std::array::from_fn(|i| high[i] - low[i]) };
@@ -239,7 +253,7 @@ fn in_box(points: &[Point], edge_points: EdgePoints) -> Result<(Vec<Point>, Back
         .remedy("give surfaces of another size"))
 }
 
-/// The corners of a positive tet that holds the box of the last eight points, and is far larger.
+/// The corners of a positive tet that contains the box of the last eight points, and is far larger.
 fn far_around(given: &[Point]) -> [Point; 4] {
     let [low, high] = [given[given.len() - 8], given[given.len() - 1]];
     let (middle, size) = (scale(add(low, high), 0.5), FAR * distance(low, high));
@@ -247,7 +261,7 @@ fn far_around(given: &[Point]) -> [Point; 4] {
     corners.map(|corner| add(middle, scale(corner, size)))
 }
 
-/// All that has been made.
+/// The state of one attempt once everything has been made.
 struct Filled {
     tets: Tets,
     sites: Sites,
@@ -255,7 +269,7 @@ struct Filled {
     flats: Flats,
     bodies: Bodies,
     parts: Csr<[VertexId; 3]>,
-    /// Flat facets that have other triangles than were given.
+    /// Flat facets whose triangles differ from those given.
     unrestored: Vec<u32>,
 }
 
@@ -286,20 +300,21 @@ impl Filled {
         Ok(Self { tets, sites, segments, flats, bodies, parts, unrestored })
     }
 
-    /// How many facets more there are than triangles.
+    /// The number of facets in excess of the number of triangles.
     fn n_in_pieces(&self) -> usize {
         let n: usize = self.flats.triangles.iter().map(<[u32]>::len).sum();
         self.parts.items().len().saturating_sub(n)
     }
 
-    /// Tets inside that have no volume in the digits of their coordinates.
+    /// The tets inside that have no volume in the digits of their coordinates.
     fn flat_tets(&self) -> impl Iterator<Item = [VertexId; 4]> {
         let is_inside = |tet: &TetId| self.bodies.of_slot[tet.index()] != 0;
         let near = |v: [VertexId; 4]| v.map(|v| self.sites.near(v));
         self.tets.iter().filter(move |(tet, v)| is_inside(tet) && is_flat(near(*v))).map(|(_, v)| v)
     }
 
-    /// The triangles that are in pieces, in flat facets with other triangles than were given, or at tets without volume.
+    /// The triangles that are in pieces, in flat facets whose triangles differ from those given, or at tets
+    /// without volume.
     fn failed(&self, triangles: &[[VertexId; 3]]) -> Vec<u32> {
         let in_pieces = |flat: usize| self.parts.list(flat).len() != self.flats.triangles.list(flat).len();
         let all = (0..self.flats.triangles.len()).filter(|&flat| in_pieces(flat));

@@ -1,7 +1,8 @@
-//! A triangle that cannot be made facets as it is gets points inside, where edges of tets pierce it.
+//! Gives a triangle that cannot be recovered otherwise points inside, where edges of tets pierce it.
 //!
-//! A point where an edge pierces the triangle sees all tets around that edge. Put in, it takes the edge away and brings none that
-//! pierces. So there are as many steps at most as edges at first; then the triangle is made of facets, whichever they are.
+//! A point where an edge pierces the triangle sees all tets around that edge. Inserting it removes the edge
+//! and adds none that pierces. So there are at most as many steps as there are such edges at first; after
+//! that the triangle is a union of facets, whichever they are.
 
 use hashbrown::HashSet;
 
@@ -14,33 +15,33 @@ use super::tets::Tets;
 use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 
-/// So many points, then it would not end.
+/// The largest number of points put in one flat facet.
 const MOST: usize = 4000;
 
-/// How often a point is put into the middle of where it may be, one way and the other.
+/// The number of times that a point is moved to the middle of its permitted range, in each of two directions.
 const STEPS: usize = 3;
 
-/// A triangle that is missing.
+/// A flat facet that is missing.
 pub(super) struct Pierce {
-    /// The triangles that it came as, with their numbers.
+    /// The triangles given, with their numbers.
     triangles: Vec<(u32, [VertexId; 3])>,
     sides: Sides,
-    /// What it is to be cut into at first: tells where it is.
+    /// The triangles into which it is to be cut at first, which define where it is.
     parts: Vec<[VertexId; 3]>,
-    /// The edges of its outline as it is turned, each with a vertex on the inner side.
+    /// The edges of its outline in the direction of its orientation, each with a vertex on the inner side.
     rim: Vec<([VertexId; 2], VertexId)>,
-    /// The vertices inside.
+    /// The vertices inside it.
     points: Vec<VertexId>,
     n_added: usize,
     split: Split,
     swap: Swap,
     star: Vec<TetId>,
     cut: Vec<TetId>,
-    /// The edges that pierce it.
+    /// The edges that pierce it, each with a tet.
     piercing: Vec<(TetId, [VertexId; 2])>,
 }
 
-/// A triangle that is to be made of facets, among others that must not be lost.
+/// A triangle that is to become a union of facets, among other parts that must not be lost.
 struct Whole<'a, K> {
     sites: &'a Sites,
     sides: &'a Sides,
@@ -69,7 +70,7 @@ impl<K: Kept> Wanted for Whole<'_, K> {
     }
 }
 
-/// Whether the line of an edge passes through a triangle.
+/// Whether the line through an edge passes through a triangle.
 fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
     let turns = [[a, b], [b, c], [c, a]].map(|[p, q]| sites.orient3d([u, v, p, q]));
     turns.iter().all(|&t| t >= 0) || turns.iter().all(|&t| t <= 0)
@@ -77,12 +78,13 @@ fn is_in(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool
 
 /// Whether an edge passes through a triangle, from one side of it to the other.
 fn pierces(sites: &Sites, [u, v]: [VertexId; 2], [a, b, c]: [VertexId; 3]) -> bool {
-    // Of a facet that is flat but for rounding each part has a plane of its own.
+    // Each part of a facet that is flat only up to rounding has a plane of its own.
     is_in(sites, [u, v], [a, b, c]) && sites.orient3d([a, b, c, u]) * sites.orient3d([a, b, c, v]) < 0
 }
 
 impl Pierce {
-    /// One that came as `triangles`, of which there is one at least, and is to be `parts`, turned as the first.
+    /// A missing flat facet given as `triangles`, at least one, that is to consist of `parts`, oriented like
+    /// the first triangle.
     pub(super) fn new(triangles: Vec<(u32, [VertexId; 3])>, parts: &[[VertexId; 3]]) -> Self {
         let around = |&[a, b, c]: &[VertexId; 3]| [([a, b], c), ([b, c], a), ([c, a], b)];
         let edges: HashSet<[VertexId; 2]> = parts.iter().flat_map(around).map(|(edge, _)| edge).collect();
@@ -110,7 +112,7 @@ impl Pierce {
         }
     }
 
-    /// Makes it facets, without points inside. Whether that was possible.
+    /// Makes it a union of facets by swaps, without points inside; returns whether that succeeded.
     pub(super) fn swap_all(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) -> bool {
         loop {
             self.find_piercing(tets, sites, kept);
@@ -122,7 +124,7 @@ impl Pierce {
         }
     }
 
-    /// Makes it facets, with points inside.
+    /// Makes it a union of facets, with points inside; returns the facets, or `None` where that fails.
     pub(super) fn run(
         mut self,
         tets: &mut Tets,
@@ -138,7 +140,8 @@ impl Pierce {
         self.facets(tets, sites)
     }
 
-    /// Puts a point where one of the edges pierces, from the middle one of the list on the first where that can be.
+    /// Inserts a point where one of the edges pierces: the first possible one, starting from the middle of
+    /// the list.
     fn pierce(&mut self, tets: &mut Tets, sites: &mut Sites, kept: &impl Kept) -> Option<()> {
         let n = self.piercing.len();
         for i in 0..n {
@@ -160,7 +163,7 @@ impl Pierce {
         None
     }
 
-    /// Collects the edges that pierce the triangle, each once, with a tet of each.
+    /// Collects the edges that pierce the triangle, each once, with one tet of each.
     fn find_piercing(&mut self, tets: &mut Tets, sites: &Sites, kept: &impl Kept) {
         self.sides.grow(sites);
         let mut cut = std::mem::take(&mut self.cut);
@@ -181,7 +184,7 @@ impl Pierce {
         }
         let wanted = Whole { sites, sides: &self.sides, parts: &self.parts, kept };
         if self.rim.len() > 3 {
-            // What is missing may lie between edges that are there, none of them on the outline.
+            // What is missing may lie between existing edges, none of them on the outline.
             for &([a, _], _) in &self.rim {
                 tets.star(a, &mut self.star);
                 let is_pierced = |tet: &&TetId| {
@@ -219,7 +222,7 @@ impl Pierce {
         self.cut = cut;
     }
 
-    /// An edge of a tet with its ends on both sides of the plane.
+    /// An edge of a tet whose ends lie strictly on different sides of the plane.
     fn across(&self, tets: &Tets, sites: &Sites, tet: TetId) -> Option<[VertexId; 2]> {
         let v = tets.vertices(tet);
         let sides = v.map(|v| self.side(sites, v));
@@ -236,7 +239,8 @@ impl Pierce {
         Plane::new(sites, self.sides.corners).turn(t)
     }
 
-    /// Where an edge pierces a triangle; moved to where a point there sees the tets around the edge, whose star is at hand, from the middle.
+    /// Where an edge pierces a triangle, moved towards the middle of the range from which the tets around the
+    /// edge, in `star`, are all seen.
     fn shares(
         &mut self,
         tets: &mut Tets,
@@ -250,7 +254,7 @@ impl Pierce {
         let faces = faces_around(tets, &self.star);
         let corner =
             |[p, q, r]: [VertexId; 3]| sites.volume_ratios([[p, q, r, a], [p, q, r, b], [p, q, r, c]]);
-        // The height over each face at the corners; and the sides of the triangle.
+        // The height of each corner of the triangle over each face.
         let heights: Vec<[f64; 3]> = faces.into_iter().map(corner).collect();
         for _ in 0..STEPS {
             let along_s = |&[a, b, c]: &[f64; 3]| [a + t * (c - a), b + t * (c - a)];
@@ -263,8 +267,9 @@ impl Pierce {
         [s, t]
     }
 
-    /// The vertex that with an edge, whose tets are at hand, makes a facet in the plane, on the left of it. Where rounding has left flat tets in the plane
-    /// there may be several: that of the facet in front of which there is none.
+    /// The vertex that forms a facet in the plane with an edge, on the left of it; `star` holds the tets of
+    /// the edge. Where rounding has left flat tets in the plane there may be several facets: the one taken
+    /// has none in front of it.
     fn frontmost(&self, tets: &Tets, sites: &Sites, [a, b]: [VertexId; 2]) -> Option<VertexId> {
         let mut any = None;
         for v in self.star.iter().map(|&tet| tets.vertices(tet)) {
@@ -282,7 +287,7 @@ impl Pierce {
         any
     }
 
-    /// The facets that the triangle is made of, from its edges inwards.
+    /// The facets of which the triangle consists, found from its outline inwards.
     pub(super) fn facets(&mut self, tets: &mut Tets, sites: &Sites) -> Option<Vec<[VertexId; 3]>> {
         let mut facets: Vec<[VertexId; 3]> = Vec::new();
         let mut todo: Vec<[VertexId; 2]> = self.rim.iter().map(|r| r.0).collect();

@@ -1,10 +1,11 @@
 //! The constrained Delaunay triangulation of a flat facet whose outline carries points.
 //!
-//! Each triangle is a convex polygon, with vertices in line; then edges between them are flipped until no vertex lies in the circle of a neighbour (Lawson
+//! Each triangle with points on its edges is a convex polygon with collinear vertices, which is triangulated;
+//! then edges between triangles are flipped until no vertex lies in the circumcircle of a neighbour (Lawson
 //! 1977).
 //!
-//! Circles in the plane are spheres through a point beside it, whichever: so signs and ties are those of space, and what comes out are
-//! the facets that the tets would have if they saw no others.
+//! Circles in the plane are sections of spheres through any fixed point beside it: so signs and ties are
+//! those of space, and the result has the facets that the tets would have if they saw no others.
 
 use hashbrown::HashMap;
 
@@ -16,12 +17,12 @@ use crate::geometry::predicates::spot::{Spot, insphere_perturbed_of, orient3d_of
 /// The plane of a triangle.
 pub(super) struct Plane<'a> {
     sites: &'a Sites,
-    /// A point beside it, in front.
+    /// A point off the plane, in front of it.
     beside: Point,
 }
 
 impl<'a> Plane<'a> {
-    /// The plane of three given vertices that are not in line.
+    /// The plane of three given vertices that are not collinear.
     pub(super) fn new(sites: &'a Sites, corners: [VertexId; 3]) -> Self {
         let [a, b, c] = corners.map(|v| sites.near(v));
         let step = |axis: usize, sign: f64| {
@@ -34,26 +35,28 @@ impl<'a> Plane<'a> {
         Self { sites, beside }
     }
 
-    /// 1 where three vertices of the plane turn as the triangle does.
+    /// The orientation of three vertices of the plane: 1 if they turn the same way as the triangle.
     pub(super) fn turn(&self, v: [VertexId; 3]) -> i8 {
         let [a, b, c] = v.map(|v| self.sites.spot(v));
         orient3d_of([a, b, c, Spot::Given(self.beside)])
     }
 
-    /// Whether `query` lies in the circle of three vertices that turn as the triangle does.
+    /// Whether `query` lies in the circumcircle of three vertices oriented like the triangle.
     fn is_in_circle(&self, [a, b, c]: [VertexId; 3], query: VertexId) -> bool {
         let spot = |v: VertexId| self.sites.spot(v);
         let spots = [spot(a), spot(b), spot(c), Spot::Given(self.beside), spot(query)];
         let rank = |v: VertexId| self.sites.rank(v);
-        // The point beside is raised by the least: that moves no circle.
+        // The point beside the plane is lifted least: this does not affect any circle.
         insphere_perturbed_of(spots, [rank(a), rank(b), rank(c), 0, rank(query)]) > 0
     }
 
-    /// Triangles of a convex polygon, turned as it is; its vertices may lie in line. None where all do.
+    /// Triangulates a convex polygon, keeping its orientation. Its vertices may be collinear; the result is
+    /// empty where all are.
     pub(super) fn triangulate(&self, polygon: &[VertexId]) -> Vec<[VertexId; 3]> {
         let mut triangles = Vec::new();
         let mut chains = vec![(0, polygon.len() - 1)];
-        // The vertices of a chain lie to the left of the way from its last vertex to its first, the edge where they are yet to be joined.
+        // A chain is closed by the directed edge from its last vertex to its first; its other vertices lie to
+        // the left of that edge and are yet to be joined.
         while let Some((from, to)) = chains.pop() {
             let [last, first] = [polygon[to], polygon[from]];
             let mut apex: Option<usize> = None;
@@ -71,7 +74,8 @@ impl<'a> Plane<'a> {
         triangles
     }
 
-    /// Triangles of a polygon that may have dents, turned as it is, by cutting off ears. `None` where it has no ear.
+    /// Triangulates a polygon that need not be convex by clipping ears, keeping its orientation; `None` where
+    /// it has no ear.
     pub(super) fn clip(&self, polygon: &[VertexId]) -> Option<Vec<[VertexId; 3]>> {
         let (mut left, mut triangles) = (polygon.to_vec(), Vec::new());
         while left.len() > 2 {
@@ -90,12 +94,13 @@ impl<'a> Plane<'a> {
         Some(triangles)
     }
 
-    /// The same triangle, turned as the plane is.
+    /// The same triangle with the orientation of the plane.
     pub(super) fn turned(&self, [a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
         if self.turn([a, b, c]) > 0 { [a, b, c] } else { [a, c, b] }
     }
 
-    /// Flips edges between triangles, all turned as the plane is, until all are Delaunay but those on the outline.
+    /// Flips edges between triangles, all with the orientation of the plane, until all but those on the
+    /// outline are Delaunay.
     pub(super) fn make_delaunay(&self, triangles: &mut [[VertexId; 3]]) {
         let mut net = Net::new(triangles);
         let mut todo: Vec<[VertexId; 2]> = net.edges();
@@ -109,7 +114,8 @@ impl<'a> Plane<'a> {
         }
     }
 
-    /// Whether the open segment a b crosses the open segment c d; all in the plane, no three in line but where they share an end.
+    /// Whether the open segments a b and c d cross; all vertices lie in the plane, no three are collinear
+    /// unless the segments share an end.
     pub(super) fn cross(&self, [a, b]: [VertexId; 2], [c, d]: [VertexId; 2]) -> bool {
         let shares = [c, d].contains(&a) || [c, d].contains(&b);
         !shares
@@ -117,7 +123,7 @@ impl<'a> Plane<'a> {
             && self.turn([c, d, a]) * self.turn([c, d, b]) < 0
     }
 
-    /// Whether a b, with p on its left and q on its right, can be flipped.
+    /// Whether the edge a b, with p on its left and q on its right, can be flipped.
     pub(super) fn can_flip(&self, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> bool {
         self.turn([p, a, q]) > 0 && self.turn([q, b, p]) > 0
     }
@@ -125,7 +131,7 @@ impl<'a> Plane<'a> {
 
 /// Triangles by their directed edges.
 pub(super) struct Net {
-    /// The triangle on the left of an edge and its third vertex.
+    /// The triangle on the left of each directed edge, and its third vertex.
     left: HashMap<[VertexId; 2], (u32, VertexId)>,
 }
 
@@ -142,12 +148,12 @@ impl Net {
         self.left.insert([c, a], (i, b));
     }
 
-    /// How many directed edges there are: three a triangle, where no two have the same.
+    /// The number of directed edges: three per triangle, where no two triangles have the same one.
     pub(super) fn len(&self) -> usize {
         self.left.len()
     }
 
-    /// The edges with no triangle on their right; rising.
+    /// The edges with no triangle on their right; ascending.
     pub(super) fn outline(&self) -> Vec<[VertexId; 2]> {
         let outer = self.left.keys().filter(|[a, b]| !self.left.contains_key(&[*b, *a]));
         let mut edges: Vec<_> = outer.copied().collect();
@@ -155,7 +161,7 @@ impl Net {
         edges
     }
 
-    /// All edges between two triangles, each once; rising.
+    /// All edges between two triangles, each once; ascending.
     pub(super) fn edges(&self) -> Vec<[VertexId; 2]> {
         let inner = self.left.keys().filter(|[a, b]| a < b && self.left.contains_key(&[*b, *a]));
         let mut edges: Vec<_> = inner.copied().collect();
@@ -168,12 +174,12 @@ impl Net {
         Some([*self.left.get(&[a, b])?, *self.left.get(&[b, a])?])
     }
 
-    /// Whether an edge is there.
+    /// Whether an edge exists.
     pub(super) fn has(&self, [a, b]: [VertexId; 2]) -> bool {
         self.left.contains_key(&[a, b]) || self.left.contains_key(&[b, a])
     }
 
-    /// Replaces the edge a b by that of the vertices p on its left and q on its right.
+    /// Replaces the edge a b by the one between the vertices p on its left and q on its right.
     pub(super) fn flip(
         &mut self,
         triangles: &mut [[VertexId; 3]],

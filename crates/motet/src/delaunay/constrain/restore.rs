@@ -1,4 +1,4 @@
-//! Flat facets get back the triangles that were given.
+//! Gives flat facets back the triangles that were given.
 
 use std::collections::VecDeque;
 
@@ -10,8 +10,8 @@ use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::kernel::HalfFacet;
 
 impl Keep<'_> {
-    /// Gives a flat facet back the triangles that were given, edge by edge; `None` where a flip has no room (Sloan 1993, *A fast algorithm for generating constrained
-    /// Delaunay triangulations*).
+    /// Gives a flat facet back its given triangles, edge by edge, by flips (Sloan 1993, *A fast algorithm for
+    /// generating constrained Delaunay triangulations*); `None` where a flip has no space.
     pub(super) fn restore(&mut self, flat: usize, list: &mut [[VertexId; 3]]) -> Option<()> {
         let plane = |keep: &Self, t: [VertexId; 3]| keep.plane(flat as u32).turned(t);
         let wanted: Vec<_> = self
@@ -82,7 +82,7 @@ impl Keep<'_> {
     }
 }
 
-/// Where on the way from `a` to `b` the line through p and q crosses, all in one plane.
+/// The fraction of the way from `a` to `b` at which the line through p and q crosses; all lie in one plane.
 fn crossing_share([a, b]: [Point; 2], [p, q]: [Point; 2]) -> f64 {
     let (along, across) = (sub(b, a), sub(q, p));
     let normal = cross(along, across);

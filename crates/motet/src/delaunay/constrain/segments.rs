@@ -1,14 +1,18 @@
-//! Every edge of the surface becomes an edge of tets, in pieces where it must be.
+//! Makes every edge of the surface an edge of tets, in pieces where necessary.
 //!
-//! A segment that is no edge of the triangulation gets a point on it, which goes into the triangulation, until all pieces are
-//! edges. As every point on the way lies exactly on its segment, nothing of the surface bends.
+//! A segment that is not an edge of the triangulation gets points, which are inserted into the triangulation,
+//! until all its pieces are edges. As every such point lies exactly on its segment, the shape of the surface
+//! does not change.
 //!
-//! *Where to divide.* If a b is missing, its diametral ball holds a vertex, and then one that is joined to a: shrink the ball towards
-//! a until the last vertex leaves it. Of the neighbours of both ends in the ball, p is the one that sees a b under the largest angle. The foot
-//! of p on a b leaves neither of the two pieces with p in its ball. On the stretched triangles of a coil and of a tube that took two thirds of the points that halving
-//! took, and half of those of a cut at the distance of p from an end. But segments that meet at a sharp angle can divide each other at their feet for ever. So
-//! small pieces are cut at the distance of p from the corner, which is the same on all of them (Si and Gaertner 2005, *Meshing piecewise linear
-//! complexes by constrained Delaunay tetrahedralizations*; shells of Ruppert 1995 before them).
+//! *Where to divide.* If an edge a b is missing, its diametral ball contains a vertex, and even one that is
+//! joined to a: shrink the ball towards a until the last vertex leaves it. Let p be the neighbour of either
+//! end in the ball that sees a b under the largest angle. Division at the foot of p on a b leaves two pieces
+//! neither of which has p in its ball. On the stretched triangles of a coil and of a tube this took two
+//! thirds of the points needed by halving, and half of those needed by cuts at the distance of p from an end.
+//! But segments that meet at a sharp angle can divide each other at their feet forever. Small pieces are
+//! therefore cut at the distance of p from the corner, which is the same on all of them (Si and Gaertner
+//! 2005, *Meshing piecewise linear complexes by constrained Delaunay tetrahedralizations*; before them the
+//! shells of Ruppert 1995).
 
 use std::collections::VecDeque;
 
@@ -23,31 +27,32 @@ use crate::base::{Csr, Error, TetId, VertexId, Watch, rising};
 use crate::geometry::tet::EDGES;
 use crate::geometry::vector::{distance, dot, sub};
 
-/// So many points on segments, beside those that a segment has on average, mean that it would not end.
+/// The number of points on segments beyond which recovery is given up as endless, in addition to
+/// [`POINTS_A_SEGMENT`] per segment.
 const SPARE_POINTS: usize = 8_000;
 const POINTS_A_SEGMENT: usize = 40;
 
-/// Pieces below this share of their segment are small.
+/// Pieces below this fraction of their segment are small.
 const SMALL: f64 = 1.0 / 256.0;
 
-/// A piece is not divided nearer to an end than this.
+/// A piece is not divided nearer to an end than this fraction of its length.
 const LEAST: f64 = 0.005;
 
-/// The edges of the surface and the pieces that they are in.
+/// The edges of the surface and the pieces into which they are divided.
 pub(super) struct Segments {
-    /// The ends of each, smaller one first; rising.
+    /// The ends of each segment, the smaller one first; ascending.
     ends: Vec<[VertexId; 2]>,
     pieces: HashMap<[VertexId; 2], SegmentId>,
 }
 
 impl Segments {
-    /// Edges, each once, smaller end first, rising.
+    /// Starts with the given edges in one piece; each edge once, smaller end first, ascending.
     pub(super) fn new(ends: Vec<[VertexId; 2]>) -> Self {
         let pieces = ends.iter().enumerate().map(|(s, &e)| (e, SegmentId(s as u32))).collect();
         Self { ends, pieces }
     }
 
-    /// How many there are.
+    /// The number of segments.
     pub(super) fn len(&self) -> usize {
         self.ends.len()
     }
@@ -67,18 +72,18 @@ impl Segments {
         self.pieces.contains_key(&edge)
     }
 
-    /// The segment of a piece.
+    /// The segment to which a piece belongs.
     pub(super) fn of_piece(&self, piece: [VertexId; 2]) -> SegmentId {
         self.pieces[&rising(piece)]
     }
 
-    /// Where on a segment one of its vertices lies, in [0, 1].
+    /// The position on a segment of one of its vertices, in [0, 1].
     pub(super) fn share(&self, sites: &Sites, segment: SegmentId, vertex: VertexId) -> Share {
         let of_end = if vertex == self.ends(segment)[0] { Share::START } else { Share::END };
         sites.on_segment(vertex).map_or(of_end, |on| on.share)
     }
 
-    /// The ends of a piece as they come on its segment.
+    /// The ends of a piece in the order in which they lie on its segment.
     pub(super) fn in_order(
         &self,
         sites: &Sites,
@@ -90,7 +95,7 @@ impl Segments {
         piece
     }
 
-    /// Puts a vertex between the ends of a piece. The two new pieces.
+    /// Puts a vertex between the ends of a piece; returns the two new pieces.
     pub(super) fn divide(&mut self, piece: [VertexId; 2], vertex: VertexId) -> [[VertexId; 2]; 2] {
         let segment = self.of_piece(piece);
         self.pieces.remove(&rising(piece));
@@ -157,7 +162,7 @@ impl Segments {
         Unmade { what: Some(Part::Edge([a, b])), error }
     }
 
-    /// The segments that are no edges of tets; rising.
+    /// The segments that are not edges of tets; ascending.
     pub(super) fn missing(&self, tets: &Tets) -> Vec<[VertexId; 2]> {
         let n_rows = self.ends.last().map_or(0, |e| e[0].index() + 1);
         let mut starts = vec![0u32; n_rows + 1];
@@ -177,7 +182,7 @@ impl Segments {
         self.ends.iter().zip(found).filter(|(_, found)| !found).map(|(&e, _)| e).collect()
     }
 
-    /// Where to divide a piece, as a share of its segment. `None` where no number lies between its ends.
+    /// Where to divide a piece, as a fraction of its segment; `None` where no number lies between its ends.
     fn where_to_divide(
         &self,
         tets: &mut Tets,
@@ -197,7 +202,8 @@ impl Segments {
         [share, low + 0.5 * (high - low)].into_iter().find(|&s| low < s && s < high)
     }
 
-    /// The share of a segment that is as far from its corner as `p` is, where `p` lies on another segment of that corner.
+    /// The fraction of a segment that is as far from its corner as `p`, where `p` lies on another segment at
+    /// that corner.
     fn as_far(&self, sites: &Sites, segment: SegmentId, p: VertexId) -> Option<f64> {
         let others = self.ends(sites.on_segment(p)?.segment);
         let [a, b] = self.ends(segment);
@@ -211,7 +217,7 @@ impl Segments {
     }
 }
 
-/// Where to divide a piece from its first end to its second, in (0, 1).
+/// Where to divide a piece, as a fraction of the way from its first end to its second, in (0, 1).
 fn within(sites: &Sites, ends: [VertexId; 2], p: VertexId, is_small: bool) -> f64 {
     let ([a, b], p) = (ends.map(|v| sites.near(v)), sites.near(p));
     let length = distance(a, b);
@@ -228,7 +234,7 @@ fn within(sites: &Sites, ends: [VertexId; 2], p: VertexId, is_small: bool) -> f6
     }
 }
 
-/// Of the neighbours of both ends the one in the diametral ball that sees them under the largest angle.
+/// The neighbour of either end that lies in the diametral ball and sees the ends under the largest angle.
 fn sharpest(
     tets: &mut Tets,
     sites: &Sites,

@@ -1,12 +1,13 @@
-//! How far along a segment a point lies: a number with twice the digits of an `f64`.
+//! The position of a point along a segment, as a number with twice the digits of an `f64`.
 //!
-//! Facets around one edge that comes within 1e-16 of a segment meet it at places that an `f64` cannot tell apart, and a point is needed between them.
+//! Facets around one edge that comes within 1e-16 of a segment meet it at places that an `f64` cannot
+//! distinguish, and a point may be needed between them.
 
 use std::cmp::Ordering;
 
 use crate::geometry::predicates::pair::Pair;
 
-/// A share of the way from the first end of a segment to its second: the nearest `f64`, and what is left of it.
+/// A fraction of the way from the first end of a segment to its second: the nearest `f64`, and the remainder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Share(Pair);
 
@@ -23,22 +24,22 @@ impl Share {
         self.0.high
     }
 
-    /// Two numbers whose sum it is.
+    /// Two numbers whose sum is the fraction.
     pub(super) fn parts(self) -> [f64; 2] {
         [self.0.high, self.0.low]
     }
 
-    /// `self + step`, rounded to twice the digits.
+    /// `self + step`, rounded to twice the digits of an `f64`.
     pub(super) fn plus(self, step: f64) -> Self {
         Self(self.0.plus(Self::of(step).0).normalized())
     }
 
-    /// `self - other`, rounded.
+    /// `self - other`, rounded to an `f64`.
     pub(super) fn minus(self, other: Self) -> f64 {
         self.0.minus(other.0).value()
     }
 
-    /// By size.
+    /// Compares two fractions by value.
     pub(super) fn order(&self, other: &Self) -> Ordering {
         self.0.high.total_cmp(&other.0.high).then(self.0.low.total_cmp(&other.0.low))
     }

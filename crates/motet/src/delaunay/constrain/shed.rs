@@ -1,8 +1,10 @@
-//! Flat tets in a flat facet belong to the outside, where one of its sides is outside.
+//! Assigns flat tets in a flat facet to the outside, where one of the facet's sides is outside.
 //!
-//! Rounding leaves vertices of one facet 1e-16 above and below its plane, and Delaunay tets of four of them between. They are positive, but too flat for
-//! anything to be done with: no number lies between their vertices. Which way the facet passes them is free to choose. Where all of them are outside,
-//! each tet inside on the facet has an apex away from it, and the triangles of the facet can be changed as if it were flat to the last bit (`keep`).
+//! Rounding leaves vertices of one facet 1e-16 above and below its plane, and Delaunay tets of four of them
+//! in between. These are positive, but too flat for anything to be done with them: no number lies between
+//! their vertices. On which side of them the facet passes is free to choose. Where all of them are outside,
+//! each tet inside at the facet has an apex away from it, and the triangles of the facet can be changed as if
+//! it were exactly flat (`keep`).
 
 use hashbrown::HashSet;
 
@@ -13,7 +15,7 @@ use crate::base::{TetId, VertexId, rising};
 use crate::kernel::HalfFacet;
 
 impl Keep<'_> {
-    /// Gives the flat tets in flat facets to the outside, as far as that leaves facets that are as they should be.
+    /// Assigns the flat tets in flat facets to the outside, where that leaves valid facets.
     pub(super) fn shed(&mut self) {
         let mut star = Vec::new();
         for (flat, list) in self.lists().into_iter().enumerate() {
@@ -40,8 +42,9 @@ impl Keep<'_> {
         self.walls.extend(sheet.into_iter().map(|face| (rising(face), flat)));
     }
 
-    /// The tets inside of which all vertices are `own`, that hang together with the facets of `list`; and the facets that are left when they are outside. `None`
-    /// where one of them is at another part of the surface.
+    /// Finds the tets inside whose vertices are all in `own` and that are connected with the facets of
+    /// `list`; also returns the facets that remain once they are outside. `None` where one of them touches
+    /// another part of the surface.
     fn flat_tets(
         &mut self,
         own: &HashSet<VertexId>,
@@ -80,8 +83,9 @@ impl Keep<'_> {
         Some((found, sheet))
     }
 
-    /// Gives the flat tet of `corners` to the body on the other side of the facets `old` that it has in a flat facet, whose other two, `base`, replace them. `None`
-    /// where `star` has no such tet, or both sides are of one body.
+    /// Assigns the flat tet of `corners` to the body across its facets `old`, which lie in a flat facet; its
+    /// other two facets, `base`, replace them. `None` where `star` has no such tet, or both sides are of one
+    /// body.
     pub(super) fn hand_over(
         &mut self,
         star: &[TetId],
@@ -114,7 +118,7 @@ impl Keep<'_> {
     }
 }
 
-/// Whether two lists of triangles, all turned alike, have the same number and the same outline.
+/// Whether two lists of triangles with the same orientation have the same length and the same outline.
 fn covers_the_same(a: &[[VertexId; 3]], b: &[[VertexId; 3]]) -> bool {
     let [of_a, of_b] = [a, b].map(|list| (Net::new(list).outline(), Net::new(list).len()));
     a.len() == b.len() && of_a == of_b && of_a.1 == 3 * a.len()

@@ -1,14 +1,15 @@
-//! The vertices: points as they were given, corners of a box around them, and points on segments, which have no coordinates.
+//! The vertices: the points as given, corners of a box around them, and points on segments, which have no
+//! exact coordinates.
 //!
-//! Ties are broken as in the triangulation of the points: each vertex is lifted by an infinitesimal that grows with its rank, the place
-//! in the order of insertion; points on segments come last.
+//! Ties are broken as in the triangulation of the points: each vertex is lifted by an infinitesimal that
+//! grows with its rank, its place in the order of insertion; points on segments come last.
 
 use super::share::Share;
 use crate::base::{Point, VertexId};
 use crate::geometry::predicates::spot::{Between, Spot, insphere_perturbed_of, orient3d_of, volume_ratios};
 use crate::geometry::predicates::{insphere_perturbed, orient3d};
 
-/// An input edge, by its place in the list.
+/// An input edge, by its index in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct SegmentId(pub(super) u32);
 
@@ -20,20 +21,21 @@ pub(super) struct OnSegment {
     pub(super) share: Share,
 }
 
-/// Where a point lies that has no coordinates.
+/// The place of a point that has no exact coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Place {
     On(OnSegment),
-    /// In a triangle of the surface, by its number, at shares of the ways from its first corner to the others.
+    /// In a triangle of the surface, given by its number, at these fractions of the ways from its first
+    /// corner to the others.
     In(u32, [f64; 2]),
 }
 
 /// All vertices.
 pub(super) struct Sites {
-    /// Coordinates, rounded where they must be.
+    /// Coordinates, rounded where necessary.
     near: Vec<Point>,
     n_given: usize,
-    /// For vertices after those given, their place in `on`, if they lie on a segment or in a triangle.
+    /// For vertices after the given ones, their place in `on` if they lie on a segment or in a triangle.
     later: Vec<Option<u32>>,
     on: Vec<(VertexId, Place, Between)>,
     n_on_segments: usize,
@@ -41,19 +43,19 @@ pub(super) struct Sites {
 }
 
 impl Sites {
-    /// Points, and the order in which they were inserted, from place 1 on.
+    /// Makes sites of the given points and the order in which they were inserted, from place 1 on.
     pub(super) fn new(given: Vec<Point>, order: &[u32]) -> Self {
         let mut ranks = vec![0; given.len()];
         order.iter().enumerate().skip(1).for_each(|(rank, &id)| ranks[id as usize] = rank as u32);
         Self { n_given: given.len(), near: given, later: Vec::new(), on: Vec::new(), n_on_segments: 0, ranks }
     }
 
-    /// How many there are, those on segments included.
+    /// The number of vertices, those on segments included.
     pub(super) fn len(&self) -> usize {
         self.near.len()
     }
 
-    /// Four vertices far around all others, a positive tet: the last ones given.
+    /// The last four given vertices: a positive tet far around all others.
     pub(super) fn around_all(&self) -> [VertexId; 4] {
         let n = self.n_given;
         [n - 4, n - 3, n - 2, n - 1].map(VertexId::new)
@@ -66,7 +68,8 @@ impl Sites {
         self.put(Place::On(place), between)
     }
 
-    /// Adds a point in a triangle of given vertices, at shares of the ways from its first corner to the others.
+    /// Adds a point in a triangle of given vertices, at these fractions of the ways from its first corner to
+    /// the others.
     pub(super) fn add_in(&mut self, triangle: u32, corners: [VertexId; 3], shares: [f64; 2]) -> VertexId {
         let [from, to, third] = corners.map(|v| self.near[v.index()]);
         self.put(Place::In(triangle, shares), Between::within(from, [to, third], shares))
@@ -78,12 +81,12 @@ impl Sites {
         vertex
     }
 
-    /// Adds a point as it is.
+    /// Adds a point with the coordinates given.
     pub(super) fn add_point(&mut self, point: Point) -> VertexId {
         self.push(point, None)
     }
 
-    /// Moves a vertex that was added as it is.
+    /// Moves a vertex that was added by [`Self::add_point`].
     pub(super) fn move_to(&mut self, vertex: VertexId, point: Point) {
         self.near[vertex.index()] = point;
     }
@@ -119,7 +122,7 @@ impl Sites {
         }
     }
 
-    /// How many points on segments there are.
+    /// The number of points on segments.
     pub(super) fn n_on_segments(&self) -> usize {
         self.n_on_segments
     }
@@ -129,7 +132,7 @@ impl Sites {
         self.on.iter().map(|on| (on.0, on.1))
     }
 
-    /// Coordinates, rounded where they must be.
+    /// The coordinates of a vertex, rounded where necessary.
     pub(super) fn near(&self, vertex: VertexId) -> Point {
         self.near[vertex.index()]
     }
@@ -142,7 +145,7 @@ impl Sites {
         self.ranks[vertex.index()]
     }
 
-    /// Sign of the volume of the tet of four vertices.
+    /// The sign of the volume of the tet of four vertices.
     #[inline]
     pub(super) fn orient3d(&self, v: [VertexId; 4]) -> i8 {
         if v.iter().all(|v| v.index() < self.n_given) {
@@ -152,12 +155,13 @@ impl Sites {
         orient3d_of(v.map(|v| self.spot(v)))
     }
 
-    /// Volumes of tets, all divided by one number; right to the last digits.
+    /// The volumes of tets, all divided by one common number; accurate to the last digits.
     pub(super) fn volume_ratios<const N: usize>(&self, tets: [[VertexId; 4]; N]) -> [f64; N] {
         volume_ratios(tets.map(|tet| tet.map(|v| self.spot(v))))
     }
 
-    /// Whether `query` lies inside the sphere through a positive tet; ties are broken, so there is always an answer.
+    /// Whether `query` lies inside the circumsphere of a positive tet; ties are broken, so there is always an
+    /// answer.
     #[inline]
     pub(super) fn is_inside(&self, [a, b, c, d]: [VertexId; 4], query: VertexId) -> bool {
         let v = [a, b, c, d, query];

@@ -1,5 +1,5 @@
-//! A point put among tets that need not be Delaunay: those go that it sees whole and whose sphere holds it, as far as nothing of the
-//! surface is lost; at least those that it lies in.
+//! Inserts a point among tets that need not be Delaunay. The tets removed are those that contain the point,
+//! and those wholly visible from it whose sphere contains it, provided nothing of the surface is lost.
 
 use super::sites::Sites;
 use super::tets::Tets;
@@ -7,13 +7,13 @@ use crate::base::{TetId, VertexId, rising};
 use crate::geometry::tet::EDGES;
 use crate::kernel::HalfFacet;
 
-/// What must not be lost.
+/// The edges and facets that must not be lost.
 pub(super) trait Kept {
     fn has_edge(&self, edge: [VertexId; 2]) -> bool;
     fn has_facet(&self, face: [VertexId; 3]) -> bool;
 }
 
-/// Working space.
+/// Buffers reused from one insertion to the next.
 #[derive(Default)]
 pub(super) struct Split {
     cavity: Vec<TetId>,
@@ -22,7 +22,8 @@ pub(super) struct Split {
 }
 
 impl Split {
-    /// Puts `vertex` in, which lies in `among` or near; with it go the tets of `wanted`, if they can. Whether it was possible.
+    /// Inserts `vertex`, which lies in or near `among`, and also removes the tets of `wanted` if possible.
+    /// Returns whether it succeeded.
     pub(super) fn insert(
         &mut self,
         tets: &mut Tets,
@@ -51,7 +52,7 @@ impl Split {
         false
     }
 
-    /// Finds the tets that go. Whether the vertex sees all facets around them, and nothing is lost.
+    /// Finds the tets to remove. Returns whether the vertex sees all facets around them, and nothing is lost.
     fn dig(
         &mut self,
         tets: &mut Tets,
@@ -124,7 +125,7 @@ impl Split {
     }
 }
 
-/// The facets around tets, seen from inside.
+/// The facets around a set of tets, seen from inside.
 pub(super) fn faces_around(tets: &mut Tets, within: &[TetId]) -> Vec<[VertexId; 3]> {
     tets.begin();
     within.iter().for_each(|&tet| _ = tets.mark(tet));
@@ -136,7 +137,7 @@ pub(super) fn faces_around(tets: &mut Tets, within: &[TetId]) -> Vec<[VertexId; 
     all.map(|half| tets.inward(half)).collect()
 }
 
-/// The part of (0, 1) in which all of the functions are positive that come with their values at 0 and 1.
+/// The part of (0, 1) in which all of the linear functions are positive, given by their values at 0 and 1.
 pub(super) fn positive_part(functions: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
     let [mut low, mut high] = [0.0f64, 1.0f64];
     for [at_0, at_1] in functions {
@@ -150,7 +151,7 @@ pub(super) fn positive_part(functions: impl Iterator<Item = [f64; 2]>) -> Option
     (low < high).then_some([low, high])
 }
 
-/// A number near the middle of two, with few digits: what is computed from it has fewer as well.
+/// A number near the middle of two, with few digits, so that values computed from it have few as well.
 pub(super) fn round_between([low, high]: [f64; 2]) -> f64 {
     let step = 2f64.powi((0.25 * (high - low)).log2().floor() as i32);
     let middle = low + 0.5 * (high - low);
@@ -158,7 +159,7 @@ pub(super) fn round_between([low, high]: [f64; 2]) -> f64 {
     if low < round && round < high { round } else { middle }
 }
 
-/// Adds the tets beyond facets on which the vertex lies.
+/// Adds the tets across facets on which the vertex lies.
 fn reach_all(tets: &Tets, sites: &Sites, vertex: VertexId, core: &mut Vec<TetId>) {
     let mut next = 0;
     while let Some(&tet) = core.get(next) {
@@ -173,7 +174,7 @@ fn reach_all(tets: &Tets, sites: &Sites, vertex: VertexId, core: &mut Vec<TetId>
     }
 }
 
-/// Whether a vertex lies in a tet, or on it.
+/// Whether a vertex lies in a tet or on its boundary.
 fn holds(tets: &Tets, sites: &Sites, tet: TetId, vertex: VertexId) -> bool {
     Tets::facets(tet).into_iter().all(|half| {
         let [a, b, c] = tets.inward(half);

@@ -1,8 +1,10 @@
-//! Tets changed for others with the same outside, so that less is in the way of what is to be there.
+//! Replaces tets by others that fill the same space, so that less is in the way of an edge or a triangle to
+//! be recovered.
 //!
-//! Two tets become three around the edge between their tips, or the tets around an edge become two for each triangle of the polygon
-//! around it (George 1991; Freitag and Ollivier-Gooch 1997). Of all its triangulations the one is taken with the least in the way
-//! (Klincsek 1980, *Minimal triangulations of polygonal domains*, by dynamic programming).
+//! Two tets become three around the edge between their apexes, or the tets around an edge become two for each
+//! triangle of the polygon around it (George 1991; Freitag and Ollivier-Gooch 1997). The triangulation chosen
+//! is the one with the least in the way (Klincsek 1980, *Minimal triangulations of polygonal domains*, by
+//! dynamic programming).
 
 use super::sites::Sites;
 use super::split::Kept;
@@ -10,26 +12,29 @@ use super::tets::Tets;
 use crate::base::{TetId, VertexId};
 use crate::kernel::HalfFacet;
 
-/// Edges with more tets are left alone.
+/// The most tets that an edge may have to be removed.
 const LARGEST_RING: usize = 10;
 
-/// What is to be there: counts what would be in its way. What must not be lost is not swapped away.
+/// Counts what would be in the way of the part to be recovered; edges and facets that must not be lost are
+/// never swapped away.
 pub(super) trait Wanted: Kept {
     fn meets_facet(&self, face: [VertexId; 3]) -> u32;
     fn meets_edge(&self, edge: [VertexId; 2]) -> u32;
 }
 
-/// Working space.
+/// Buffers reused from one swap to the next.
 #[derive(Default)]
 pub(super) struct Swap {
     ring: Vec<TetId>,
     around: Vec<VertexId>,
-    /// For each part of the polygon how much is in the way, and the corner between that makes it so.
+    /// For each part of the polygon, how much is in the way at best, and the corner at which the part is
+    /// split for that.
     best: Vec<Option<(u32, usize)>>,
 }
 
 impl Swap {
-    /// Replaces the two tets at a facet in the way by three, if they are positive and what they share is not in the way.
+    /// Replaces the two tets at a facet that is in the way by three, if these are positive and the facets and
+    /// the edge that they share are not in the way. Returns whether it did.
     pub(super) fn open(tets: &mut Tets, sites: &Sites, half: HalfFacet, wanted: &impl Wanted) -> bool {
         let ([p, q, r], other) = (tets.inward(half), tets.across(half));
         let [c, d] = [half, other].map(|half| tets.vertices(half.tet())[half.facet()]);
@@ -44,7 +49,8 @@ impl Swap {
         is_better
     }
 
-    /// Replaces the tets around an edge, one of which is `first`, if then there is less in the way, or no more than `spare` beyond that.
+    /// Replaces the tets around an edge, one of which is `first`, if afterwards there is less in the way than
+    /// now plus `spare`. Returns whether it did.
     pub(super) fn remove(
         &mut self,
         tets: &mut Tets,
@@ -81,7 +87,8 @@ impl Swap {
         true
     }
 
-    /// The best way to cut the polygon around `edge` into triangles, of those with less than `limit` in the way.
+    /// Finds the best triangulation of the polygon around `edge` among those with less than `limit` in the
+    /// way.
     fn plan(&mut self, sites: &Sites, [u, v]: [VertexId; 2], limit: u32, wanted: &impl Wanted) {
         let (n, w) = (self.around.len(), &self.around);
         self.best.clear();
@@ -90,7 +97,7 @@ impl Swap {
         for width in 2..n {
             for i in 0..n - width {
                 let k = i + width;
-                // Only asked for where it matters: it is what costs most.
+                // Evaluated only where it matters: it is the most expensive part.
                 let mut diagonal = if width == n - 1 { Some(0) } else { None };
                 for j in i + 1..k {
                     let (Some(left), Some(right)) = (self.best[i * n + j], self.best[j * n + k]) else {
@@ -121,12 +128,13 @@ impl Swap {
         }
     }
 
-    /// Collects the tets around an edge and the polygon around it, counter-clockwise seen from its second end. `None` where there are too many.
+    /// Collects the tets around an edge and the polygon around it, counter-clockwise seen from the edge's
+    /// second end. `None` where there are too many, or the tets do not close around the edge.
     fn go_round(&mut self, tets: &Tets, [u, v]: [VertexId; 2], first: TetId) -> Option<()> {
         self.ring.clear();
         self.around.clear();
         let of_edge = |half: &HalfFacet| ![u, v].contains(&tets.vertices(first)[half.facet()]);
-        // The facet from which the edge runs from u to v.
+        // Whether the edge runs from u to v in the facet, seen from inside.
         let runs = |half: &HalfFacet| {
             let [a, b, c] = tets.inward(*half);
             [[a, b], [b, c], [c, a]].contains(&[u, v])

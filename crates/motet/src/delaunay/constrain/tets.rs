@@ -1,4 +1,5 @@
-//! Tets that come and go: flat arrays, a slot a tet, each facet linked to the one on its other side.
+//! A changeable set of tets: flat arrays with one slot per tet, each facet linked to the one on its other
+//! side.
 
 use super::super::Triangulation;
 use crate::base::{TetId, VertexId, rising};
@@ -6,15 +7,15 @@ use crate::geometry::tet::FACETS;
 use crate::kernel::HalfFacet;
 use crate::spatial::OUTSIDE;
 
-/// The vertices of a slot without a tet.
+/// The vertices recorded for a slot without a tet.
 const FREE: [VertexId; 4] = [VertexId(u32::MAX); 4];
 
-/// The tets and how they hang together.
+/// The tets and their adjacency.
 #[derive(Default)]
 pub(super) struct Tets {
     vertices: Vec<[VertexId; 4]>,
     links: Vec<[HalfFacet; 4]>,
-    /// A tet of each vertex.
+    /// One tet of each vertex.
     at: Vec<TetId>,
     free: Vec<TetId>,
     marks: Vec<u32>,
@@ -22,7 +23,7 @@ pub(super) struct Tets {
 }
 
 impl Tets {
-    /// Those of a triangulation.
+    /// Copies the tets of a triangulation.
     pub(super) fn new(triangulation: &Triangulation) -> Self {
         let (vertices, neighbors) = (triangulation.tets(), triangulation.neighbors());
         let back = |tet: usize, other: TetId| {
@@ -45,7 +46,7 @@ impl Tets {
         tets
     }
 
-    /// Removes all tets; those of vertices are old ones until they get new ones.
+    /// Removes all tets. The entries of [`Self::at`] are stale until their vertices get new tets.
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
         self.links.clear();
@@ -54,12 +55,12 @@ impl Tets {
         self.round = 0;
     }
 
-    /// How many slots there are, free ones included.
+    /// The number of slots, free ones included.
     pub(super) fn n_slots(&self) -> usize {
         self.vertices.len()
     }
 
-    /// The tets that are there.
+    /// The existing tets.
     pub(super) fn iter(&self) -> impl Iterator<Item = (TetId, [VertexId; 4])> + '_ {
         let all = self.vertices.iter().enumerate().map(|(t, &v)| (TetId::new(t), v));
         all.filter(|(_, v)| *v != FREE)
@@ -70,7 +71,7 @@ impl Tets {
         self.vertices[tet.index()]
     }
 
-    /// What lies behind a facet.
+    /// The facet on the other side of a facet.
     #[inline]
     pub(super) fn across(&self, half: HalfFacet) -> HalfFacet {
         self.links[half.tet().index()][half.facet()]
@@ -81,19 +82,19 @@ impl Tets {
         [0, 1, 2, 3].map(|i| HalfFacet::new(tet, i))
     }
 
-    /// The vertices of a facet, so that with the vertex opposite they make a positive tet.
+    /// The vertices of a facet, ordered so that followed by the vertex opposite they make a positive tet.
     #[inline]
     pub(super) fn inward(&self, half: HalfFacet) -> [VertexId; 3] {
         let ([a, b, c], v) = (FACETS[half.facet()], self.vertices[half.tet().index()]);
         [v[a], v[c], v[b]]
     }
 
-    /// A tet of a vertex; `OUTSIDE` where it has none.
+    /// One tet of a vertex; `OUTSIDE` where it has none.
     pub(super) fn at(&self, vertex: VertexId) -> TetId {
         self.at.get(vertex.index()).copied().unwrap_or(OUTSIDE)
     }
 
-    /// Says which tet a vertex has, where those that came last are gone again.
+    /// Sets the tet of a vertex, where the tets added last have been removed again.
     pub(super) fn set_at(&mut self, vertex: VertexId, tet: TetId) {
         self.at[vertex.index()] = tet;
     }
@@ -118,15 +119,16 @@ impl Tets {
         tet
     }
 
-    /// Frees a slot. Whoever does so sees to its neighbours, and that its vertices get new tets.
+    /// Frees a slot. The caller must relink its neighbours and give its vertices new tets.
     pub(super) fn remove(&mut self, tet: TetId) {
         self.vertices[tet.index()] = FREE;
         self.free.push(tet);
     }
 
-    /// Puts a tet from `apex` on each face that it is not itself a vertex of, and links them all. A face comes as seen from the apex, with what lies
-    /// behind it, which the tet gets across its facet 3; all faces together are closed. `seams` is working space: afterwards the edges of the faces, each
-    /// with the facets on its two sides, in order.
+    /// Adds a tet from `apex` on each face of which it is not a vertex, and links them all. A face is given
+    /// as seen from the apex, with the facet behind it, to which facet 3 of the tet is linked; all faces
+    /// together form a closed surface. `seams` is a buffer that holds the edges of the faces afterwards,
+    /// sorted, each with the facets on its two sides.
     pub(super) fn cone(
         &mut self,
         apex: VertexId,
@@ -151,7 +153,7 @@ impl Tets {
         made
     }
 
-    /// Puts positive tets in the place of others that fill the same room.
+    /// Replaces tets by positive ones that fill the same space.
     pub(super) fn replace(&mut self, old: &[TetId], new: &[[VertexId; 4]]) {
         self.begin();
         old.iter().for_each(|&tet| _ = self.mark(tet));
@@ -166,7 +168,7 @@ impl Tets {
         self.put(new, faces);
     }
 
-    /// Adds positive tets and links them with each other and with what lies behind `faces`.
+    /// Adds positive tets and links them with each other and with the facets behind `faces`.
     pub(super) fn put(&mut self, new: &[[VertexId; 4]], mut faces: Vec<([VertexId; 3], HalfFacet)>) {
         for &vertices in new {
             let tet = self.add(vertices);
@@ -180,7 +182,7 @@ impl Tets {
         }
     }
 
-    /// Makes two facets each other's other side.
+    /// Links two facets with each other.
     pub(super) fn join(&mut self, a: HalfFacet, b: HalfFacet) {
         for (from, to) in [(a, b), (b, a)] {
             if !from.is_none() {
@@ -189,7 +191,7 @@ impl Tets {
         }
     }
 
-    /// Begins a round of marking: no tet is marked.
+    /// Starts a new round of marking, in which no tet is marked.
     pub(super) fn begin(&mut self) {
         if self.round == u32::MAX {
             self.marks.fill(0);
@@ -202,12 +204,12 @@ impl Tets {
         self.marks[tet.index()] == self.round
     }
 
-    /// Marks a tet; whether it was not before.
+    /// Marks a tet; returns whether it was unmarked before.
     pub(super) fn mark(&mut self, tet: TetId) -> bool {
         std::mem::replace(&mut self.marks[tet.index()], self.round) != self.round
     }
 
-    /// All tets of a vertex, marked; a round begins.
+    /// Collects all tets of a vertex; they are marked in a new round.
     pub(super) fn star(&mut self, vertex: VertexId, star: &mut Vec<TetId>) {
         star.clear();
         let first = self.at(vertex);
@@ -216,7 +218,8 @@ impl Tets {
         }
     }
 
-    /// The tets from `first` on that are reached through facets whose vertices opposite `passes` lets through, marked; a round begins.
+    /// Collects the tets reached from `first` through facets whose opposite vertices satisfy `passes`; they
+    /// are marked in a new round.
     fn flood(&mut self, first: TetId, reached: &mut Vec<TetId>, passes: impl Fn(VertexId) -> bool) {
         self.begin();
         self.mark(first);
@@ -234,13 +237,13 @@ impl Tets {
         }
     }
 
-    /// A tet of an edge; `star` is working space.
+    /// Finds a tet of an edge; `star` is a buffer.
     pub(super) fn find_edge(&mut self, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) -> Option<TetId> {
         self.star(a, star);
         star.iter().copied().find(|&tet| self.vertices(tet).contains(&b))
     }
 
-    /// One side of a facet; `star` is working space.
+    /// Finds one side of a facet; `star` is a buffer.
     pub(super) fn find_facet(
         &mut self,
         [a, b, c]: [VertexId; 3],
@@ -256,12 +259,12 @@ impl Tets {
         Some(HalfFacet::new(tet, i))
     }
 
-    /// The tets around an edge, from one of them on.
+    /// Collects the tets around an edge, starting from one of them.
     pub(super) fn around_from(&mut self, edge: [VertexId; 2], first: TetId, ring: &mut Vec<TetId>) {
         self.flood(first, ring, |opposite| !edge.contains(&opposite));
     }
 
-    /// The tets around an edge that is there.
+    /// Collects the tets around an existing edge.
     pub(super) fn around(&mut self, [a, b]: [VertexId; 2], star: &mut Vec<TetId>) {
         self.star(a, star);
         star.retain(|&tet| self.vertices[tet.index()].contains(&b));

@@ -1,12 +1,12 @@
-//! What could not be made is made first the next time, or last: what stands in its way may do so only because it came before, or does not
-//! stand there yet.
+//! Order of recovery: a part that could not be made is made first the next time, or last. What blocks it may
+//! exist only because it was made earlier, or may not exist yet.
 
 use crate::base::{Error, VertexId, Watch};
 
 /// An edge or a triangle of the surface that could not be made, and why.
 #[derive(Debug)]
 pub(super) struct Unmade {
-    /// `None` where nothing stands in the way but the word of who watches.
+    /// The part; `None` where the work was merely stopped by the watch or by another error.
     pub(super) what: Option<Part>,
     pub(super) error: Error,
 }
@@ -26,19 +26,20 @@ pub(super) enum Part {
     Triangle(u32),
 }
 
-/// What is made out of line, and who watches.
+/// Parts that are made out of turn, and the watch.
 #[derive(Debug, Default)]
 pub(super) struct Order {
-    /// Before all else, latest failure first.
+    /// Parts made before all others, latest failure first.
     first: Vec<Part>,
-    /// After all else.
+    /// Parts made after all others.
     last: Vec<Part>,
     pub(super) watch: Watch,
 }
 
 impl Order {
-    /// Repeats `work`, each time with what could not be made in another place in line, until nothing is left unmade. Gives up after `most` repetitions, or where a
-    /// part could be made neither first nor last.
+    /// Repeats `work`, moving each part that could not be made to the front of the line, then to its end,
+    /// until all are made. Gives up after `most` repetitions, or when a part could be made neither first nor
+    /// last.
     ///
     /// # Errors
     /// The last failure.
@@ -67,7 +68,7 @@ impl Order {
         }
     }
 
-    /// Where in line a part is; all that are not named are in one place.
+    /// The position of a part in line; all parts without a special place share one.
     pub(super) fn rank(&self, is_it: impl Fn(Part) -> bool) -> usize {
         let place = |list: &[Part]| list.iter().position(|&part| is_it(part));
         let n = self.first.len();

@@ -1,24 +1,26 @@
-//! What a segment meets on its way through the tets.
+//! The tets and facets that a segment meets on its way.
 
 use super::sites::Sites;
 use super::tets::Tets;
 use crate::base::{TetId, VertexId};
 use crate::kernel::HalfFacet;
 
-/// So many steps around a vertex, then all its tets are looked at: among tets that are not Delaunay a walk may go round in circles.
+/// After this many steps around a vertex all its tets are examined: a walk may cycle among tets that are not
+/// Delaunay.
 const STEPS: usize = 100;
 
 /// The tets that a segment touches, from one of its ends to the other.
 #[derive(Default)]
 pub(super) struct Way {
     pub(super) tets: Vec<TetId>,
-    /// The facets between them that it meets, those included that it touches in an edge; each once.
+    /// The facets between them that it meets, including those that it touches in an edge; each once.
     pub(super) facets: Vec<HalfFacet>,
     star: Vec<TetId>,
 }
 
 impl Way {
-    /// Follows the segment between two vertices. Whether there is a way to follow, and it is no edge of tets.
+    /// Follows the segment between two vertices; false where it is an edge of tets already, or no tet to
+    /// start from is found.
     pub(super) fn find(&mut self, tets: &mut Tets, sites: &Sites, ends: [VertexId; 2]) -> bool {
         self.tets.clear();
         self.facets.clear();
@@ -46,9 +48,9 @@ impl Way {
         true
     }
 
-    /// The tet of the first end in which the segment starts. `None` where it is an edge.
+    /// The tet at the first end into which the segment leads; `None` where it is an edge.
     fn first(&mut self, tets: &mut Tets, sites: &Sites, [a, b]: [VertexId; 2]) -> Option<TetId> {
-        // Through a facet to the side on which b lies; none for a tet whose cone from a holds b.
+        // A facet of the cone from a whose other side has b; `None` for the tet whose cone from a contains b.
         let step = |tets: &Tets, tet: TetId, came: HalfFacet, turn: usize| {
             let v = tets.vertices(tet);
             let leads = |half: &HalfFacet| {
@@ -77,7 +79,7 @@ impl Way {
     }
 }
 
-/// Whether the segment between two vertices meets a facet, in more than its ends.
+/// Whether the segment between two vertices meets a facet, other than in the segment's ends.
 pub(super) fn meets(sites: &Sites, [a, b]: [VertexId; 2], face: [VertexId; 3]) -> bool {
     let [x, y, z] = face;
     let edges = [[x, y], [y, z], [z, x]];
@@ -89,7 +91,7 @@ pub(super) fn meets(sites: &Sites, [a, b]: [VertexId; 2], face: [VertexId; 3]) -
                 let turns = edges.map(|[p, q]| sites.orient3d([a, b, p, q]));
                 turns.iter().all(|&t| t >= 0) || turns.iter().all(|&t| t <= 0)
             }
-            // An end in the plane of a facet is not on it.
+            // An end in the plane of a facet does not lie on the facet.
             _ => false,
         },
         _ => edges.into_iter().any(|[p, q]| {
@@ -99,7 +101,7 @@ pub(super) fn meets(sites: &Sites, [a, b]: [VertexId; 2], face: [VertexId; 3]) -
     }
 }
 
-/// Whether the open segment a b meets the segment p q, all in one plane and not in one line.
+/// Whether the open segment a b meets the segment p q; all lie in one plane but not on one line.
 fn meet_in_plane(sites: &Sites, [a, b]: [VertexId; 2], [p, q]: [VertexId; 2]) -> bool {
     let sides = |beside: VertexId| [p, q].map(|v| sites.orient3d([a, b, v, beside]));
     let Some(beside) = sites.around_all().into_iter().find(|&v| sides(v) != [0, 0]) else { return false };

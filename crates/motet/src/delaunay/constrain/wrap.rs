@@ -1,12 +1,12 @@
-//! A hollow filled with constrained Delaunay tets, one facet after the other: gift wrapping.
+//! Fills a hollow with constrained Delaunay tets, one facet at a time, by gift wrapping.
 //!
-//! The tet on a facet has for its apex the vertex whose sphere with the facet holds no other vertex that can be seen from within the tet
-//! (Shewchuk 2008, *General-dimensional constrained Delaunay and constrained regular triangulations*: it exists, and is the only one where no
-//! ties are left, if all edges of the facets are edges of the triangulation). Seen means: the tet crosses no face
-//! of what is still hollow.
+//! The apex of the tet on a facet is the vertex whose sphere through the facet contains no other vertex
+//! visible from within the tet. It exists, and is unique once ties are broken, if all edges of the facets are
+//! edges of the triangulation (Shewchuk 2008, *General-dimensional constrained Delaunay and constrained
+//! regular triangulations*). Visible means that the tet crosses no face of what is still hollow.
 //!
-//! In a large hollow the Delaunay triangulation of its vertices tells the apex of nearly all faces. A tet of it is cut only by faces that
-//! are no facets of it, and those are few.
+//! In a large hollow the Delaunay triangulation of its vertices supplies the apex of nearly all faces. A tet
+//! of that triangulation can be cut only by faces that are not facets of it, and those are few.
 
 use hashbrown::{HashMap, HashSet};
 
@@ -18,21 +18,22 @@ use crate::base::{TetId, VertexId};
 use crate::geometry::tet::{EDGES, FACETS};
 use crate::kernel::HalfFacet;
 
-/// Hollows of so many faces are filled without a guide.
+/// Hollows of at most this many faces are filled without a guide.
 const UNGUIDED: usize = 32;
 
-/// Working space.
+/// Buffers reused from one hollow to the next, and the tets made.
 #[derive(Default)]
 pub(super) struct Wrap {
-    /// The faces around what is hollow, by their vertices as seen from there: a wall in it has two sides.
+    /// The faces around what is still hollow, by their vertices as seen from there: a wall inside has two
+    /// sides.
     open: HashMap<[VertexId; 3], Face>,
-    /// Faces in the order in which they came; those no longer open are passed over.
+    /// Faces in the order in which they were added; those no longer open are skipped.
     queue: Vec<[VertexId; 3]>,
     vertices: Vec<VertexId>,
     candidates: Vec<VertexId>,
     guide: Guide,
     is_guided: bool,
-    /// Open faces that the guide does not have.
+    /// Open faces that are not facets of the guide.
     strange: HashSet<[VertexId; 3]>,
     /// The facets of new tets on faces with nothing behind them.
     bare: HashMap<[VertexId; 3], HalfFacet>,
@@ -59,12 +60,12 @@ impl Wrap {
         if self.open.is_empty() { Ok(()) } else { Err(Stuck) }
     }
 
-    /// Forgets which tets it made.
+    /// Clears the list of tets made.
     pub(super) fn begin(&mut self) {
         self.made.clear();
     }
 
-    /// The tets made since it began.
+    /// The tets made since [`Self::begin`].
     pub(super) fn made(&self) -> &[TetId] {
         &self.made
     }
@@ -94,14 +95,14 @@ impl Wrap {
         }
     }
 
-    /// Takes an open face out.
+    /// Removes an open face.
     fn close(&mut self, vertices: [VertexId; 3]) -> Option<Face> {
         let key = smallest_first(vertices);
         self.strange.remove(&key);
         self.open.remove(&key)
     }
 
-    /// The tet on a face: its other three faces close what is open there, or are open from now on.
+    /// Adds the tet on a face: each of its other three faces closes an open one, or becomes open.
     fn place(&mut self, tets: &mut Tets, face: Face, apex: VertexId) {
         let [a, b, c] = face.vertices;
         let tet = tets.add([a, b, c, apex]);
@@ -110,7 +111,7 @@ impl Wrap {
         self.join(tets, HalfFacet::new(tet, 3), face);
         for (i, facet) in FACETS.into_iter().enumerate().take(3) {
             let half = HalfFacet::new(tet, i);
-            // Seen from what is hollow behind it.
+            // As seen from the hollow behind it.
             let [p, q, r] = facet.map(|k| [a, b, c, apex][k]);
             match self.close([p, r, q]) {
                 Some(other) => self.join(tets, half, other),
@@ -144,7 +145,7 @@ impl Wrap {
         self.find_apex(sites, face)
     }
 
-    /// The apex of the tet on a face, by trying all vertices.
+    /// Finds the apex of the tet on a face by trying all vertices.
     fn find_apex(&mut self, sites: &Sites, face: [VertexId; 3]) -> Option<VertexId> {
         let [a, b, c] = face;
         let is_in_front = |&v: &VertexId| !face.contains(&v) && sites.orient3d([a, b, c, v]) > 0;
@@ -175,10 +176,11 @@ impl Wrap {
     }
 }
 
-/// Whether a triangle has points in common with the inside of a positive tet.
+/// Whether a triangle has points in common with the interior of a positive tet.
 ///
-/// Two convex bodies have none exactly when a plane has them on different sides. If there is such a plane, there is one through three
-/// of their vertices: turn it until nothing gives any more. The tet is never in the plane, so planes that are none give themselves away.
+/// Two convex bodies have none exactly when a plane separates them. If there is such a plane, there is one
+/// through three of their vertices: it can be turned until it touches that many. The tet never lies in a
+/// plane, so degenerate triples, which have all four vertices on side 0, are rejected.
 fn cuts(sites: &Sites, face: [VertexId; 3], tet: [VertexId; 4]) -> bool {
     if face.iter().all(|v| tet.contains(v)) {
         return false;
@@ -199,7 +201,7 @@ fn cuts(sites: &Sites, face: [VertexId; 3], tet: [VertexId; 4]) -> bool {
     !planes.any(parts)
 }
 
-/// The planes through two vertices of the one and one of the other.
+/// The planes through two vertices of one body and one vertex of the other.
 fn planes_between(face: [VertexId; 3], tet: [VertexId; 4]) -> impl Iterator<Item = [VertexId; 3]> {
     let pairs_of_tet = EDGES.into_iter().map(move |[i, j]| [tet[i], tet[j]]);
     let through_face = move |[p, q]: [VertexId; 2]| face.into_iter().map(move |v| [p, q, v]);
