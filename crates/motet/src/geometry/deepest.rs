@@ -1,21 +1,22 @@
-//! The point deepest inside half-spaces: farthest from the nearest of their planes.
+//! The point deepest inside half-spaces: the one farthest from the nearest of their planes.
 //!
-//! It is a linear program in three coordinates and the depth, solved constraint by constraint: one that the optimum so far breaks goes through the
-//! optimum of those before it, and that is the same problem with one unknown less (Seidel 1991, *Small-dimensional linear programming and convex hulls made
-//! easy*). The time is linear in the number of half-spaces as a rule.
+//! This is a linear program in three coordinates and the depth, solved one constraint at a time: where the
+//! optimum so far violates a constraint, the new optimum lies on it, which leaves the same problem with one
+//! unknown fewer (Seidel 1991, *Small-dimensional linear programming and convex hulls made easy*). The
+//! expected time is linear in the number of half-spaces.
 
 use crate::base::{Point, mixed};
 
-/// Unknowns of the program: coordinates, then the depth.
+/// The number of unknowns of the program: three coordinates, then the depth.
 const N: usize = 4;
 
-/// Coordinates and depth stay below this.
+/// The bound on the magnitude of coordinates and depth.
 const REACH: f64 = 1.0;
 
-/// An unknown that nothing has bound yet.
+/// The starting value of an unknown that no constraint has bounded yet.
 const FAR: f64 = 16.0;
 
-/// What is left of coefficients, and what breaks a constraint, below this is rounding.
+/// Coefficients, and violations of constraints, below this are rounding.
 const ROUNDING: f64 = 1e-15;
 
 /// `a . x <= b`
@@ -35,13 +36,13 @@ impl Constraint {
         self.a.iter().zip(x).map(|(a, x)| a * x).sum::<f64>() - self.b
     }
 
-    /// The unknown with the largest coefficient, if any is left.
+    /// The unknown with the largest coefficient, unless all coefficients are zero up to rounding.
     fn largest(&self) -> Option<usize> {
         let largest = (0..N).max_by(|&i, &j| self.a[i].abs().total_cmp(&self.a[j].abs()))?;
         (self.a[largest].abs() > ROUNDING).then_some(largest)
     }
 
-    /// The same constraint where `x[gone]` is such that `other` is met with equality.
+    /// This constraint with `x[gone]` eliminated by requiring equality in `other`.
     fn on(&self, other: &Self, gone: usize) -> Self {
         let share = self.a[gone] / other.a[gone];
         let mut a: [f64; N] = std::array::from_fn(|i| self.a[i] - share * other.a[i]);
@@ -50,8 +51,9 @@ impl Constraint {
     }
 }
 
-/// The point of the cube from -1 to 1 that is deepest inside half-spaces `normal . p >= offset`, and how deep: below 0 where no point is inside all. Normals are of unit
-/// length. Right to some roundings.
+/// The point of the cube from -1 to 1 that is deepest inside the half-spaces `normal . p >= offset`, and its
+/// depth: negative where no point is inside all of them. Normals must be unit vectors. Accurate to a few
+/// roundings.
 pub(crate) fn deepest(half_spaces: impl Iterator<Item = (Point, f64)>) -> (Point, f64) {
     let mut constraints: Vec<Constraint> =
         half_spaces.map(|([x, y, z], offset)| Constraint { a: [-x, -y, -z, 1.0], b: -offset }).collect();
@@ -68,14 +70,15 @@ pub(crate) fn deepest(half_spaces: impl Iterator<Item = (Point, f64)>) -> (Point
     ([x, y, z], depth)
 }
 
-/// An order that has nothing to do with the one that they come in, the same every time.
+/// Shuffles the constraints, in the same way every time, so that their order does not depend on that of the
+/// input.
 fn shuffle(constraints: &mut [Constraint]) {
     for i in (1..constraints.len()).rev() {
         constraints.swap(i, mixed(i as u64) as usize % (i + 1));
     }
 }
 
-/// Where `of . x` is largest, in some of the unknowns; the others are 0.
+/// The point that maximises `of . x` over the given unknowns; the others are 0.
 fn maximum(constraints: &[Constraint], of: Constraint, unknowns: &[usize]) -> [f64; N] {
     if let [last] = *unknowns {
         let mut x = [0.0; N];
@@ -97,7 +100,7 @@ fn maximum(constraints: &[Constraint], of: Constraint, unknowns: &[usize]) -> [f
     x
 }
 
-/// How far the only unknown may go to where `slope` leads.
+/// The extreme permitted value of the only unknown in the direction of `slope`.
 fn farthest(constraints: &[Constraint], slope: f64, unknown: usize) -> f64 {
     let [mut low, mut high] = [-FAR, FAR];
     for constraint in constraints {
@@ -108,7 +111,7 @@ fn farthest(constraints: &[Constraint], slope: f64, unknown: usize) -> f64 {
             low = low.max(constraint.b / a);
         }
     }
-    // By rounding only can they have passed each other.
+    // Only by rounding can they have passed each other.
     match slope {
         _ if low > high => 0.5 * (low + high),
         s if s > 0.0 => high,
@@ -126,7 +129,7 @@ mod tests {
     use crate::geometry::vector::{dot, norm, scale, sub};
     use proptest::prelude::*;
 
-    /// The half-spaces on whose planes faces lie, seen from inside.
+    /// The half-spaces bounded by the planes of these faces, seen from inside.
     fn inside(faces: impl Iterator<Item = [Point; 3]>) -> Vec<(Point, f64)> {
         let half_space = |face: [Point; 3]| {
             let outwards = area_vector(face);
@@ -179,7 +182,7 @@ mod tests {
             prop_assert!((height(&half_spaces, p).min(1.0) - depth).abs() < 1e-12);
             for other in others {
                 prop_assert!(height(&half_spaces, other).min(1.0) <= depth + 1e-12);
-                // Nor one nearby.
+                // No point nearby is deeper either.
                 let near = sub(p, scale(sub(p, other), 1e-3));
                 prop_assert!(height(&half_spaces, near).min(1.0) <= depth + 1e-12);
             }

@@ -1,8 +1,9 @@
 //! Vector operations with the machine's fused multiply-add where `S` has one: half the instructions, and one
-//! rounding where there were two. Results depend on the machine by a rounding, so they serve for estimates
-//! with an error bound alone; a bound that holds for separate operations holds for these.
+//! rounding instead of two. Results depend on the machine by a rounding, so they serve only for estimates
+//! with an error bound; a bound that holds for separate operations holds for these.
 //!
-//! To be called from code dispatched for `S` ([`pulp::WithSimd`]): elsewhere a fused multiply-add is a function call.
+//! Call these only from code dispatched for `S` ([`pulp::WithSimd`]): elsewhere a fused multiply-add is a
+//! function call.
 
 use crate::base::Point;
 use pulp::Simd;

@@ -1,4 +1,4 @@
-//! Floor 1: pure functions on points; nothing here knows a mesh.
+//! Floor 1: pure functions on points, without any knowledge of meshes.
 
 pub mod bernstein;
 pub(crate) mod deepest;

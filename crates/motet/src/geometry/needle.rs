@@ -1,19 +1,21 @@
-//! The point closest to another of a triangle that is long and thin, or has no area, or a size whose powers leave the range of `f64`.
+//! The closest point of a triangle that is long and thin, has no area, or has a size whose powers leave the
+//! range of `f64`.
 //!
-//! **Why needles do no harm.** The foot of the perpendicular is found by projecting on an edge and on what is at right angles to
-//! it, projected twice (the Gram-Schmidt process; Giraud, Langou and Rozloznik 2005). Rounding may then shift the weights by
-//! much, but only along directions in which the points hardly move: the *place* in the plane is right to
-//! some roundings of the extent. If the weights fall outside although the true ones do not, then on the way from the true place to the
-//! computed one an edge is crossed; so there is a point of the edge that close to the true place, and the edges are always looked
-//! at as well.
+//! **Why needles do no harm.** The foot of the perpendicular is found by projecting on an edge and on a
+//! direction at right angles to it, which is made orthogonal twice (the Gram-Schmidt process; Giraud, Langou
+//! and Rozloznik 2005). Rounding may then change the weights considerably, but only along directions in which
+//! the points hardly move: the *place* in the plane is accurate to a few roundings of the extent. If the
+//! computed weights fall outside although the true ones do not, the way from the true place to the computed
+//! one crosses an edge; so a point of that edge is just as close to the true place, and the edges are always
+//! examined as well.
 
 use crate::base::Point;
 use crate::geometry::unit::unit_of;
 use crate::geometry::vector::{across, add, dot, scale, sub};
 use crate::geometry::{segment, triangle};
 
-/// Weights of the vertices that give the point of the triangle closest to `p`: the nearest of the closest points of the edges and of the
-/// foot of the perpendicular, where it lies inside.
+/// Returns the weights of the vertices that give the point of the triangle closest to `p`: the nearest among
+/// the closest points of the edges and, where it lies inside, the foot of the perpendicular.
 #[inline(never)]
 pub(super) fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
     let from_p = triangle.map(|x| sub(x, p));
@@ -40,8 +42,8 @@ pub(super) fn closest(triangle: [Point; 3], p: Point) -> [f64; 3] {
     best
 }
 
-/// Weights of the foot of the perpendicular from the origin, its place right to the last digits; `None` when it lies outside, on
-/// an edge, or nowhere.
+/// Weights of the foot of the perpendicular from the origin, whose place is accurate to the last digits;
+/// `None` when it lies outside or on an edge, or is undefined.
 fn foot([a, b, c]: [Point; 3]) -> Option<[f64; 3]> {
     let (ab, ac) = (sub(b, a), sub(c, a));
     let height = across(ac, ab);

@@ -1,9 +1,10 @@
-//! The volume that two tets share, right to the last digits of the smaller one, slivers and shared facets included.
+//! The volume shared by two tets, accurate to the last digits of the smaller one, including slivers and
+//! shared facets.
 //!
-//! The smaller tet is cut by the four planes of the larger one. No coordinates are cut: of each vertex only the four
-//! *values* are kept, the determinants that say how far inside each plane it lies. They are linear in space, so a cut
-//! interpolates them; the volumes of the pieces follow from where the edges are cut, as products of positive
-//! numbers. So nothing cancels, and nothing becomes negative or NaN.
+//! The smaller tet is cut by the four planes of the larger one. No coordinates are computed: each vertex is
+//! represented by four *values*, the determinants that give its distance inside each plane. They are linear
+//! in space, so a cut interpolates them; the volumes of the pieces follow from where the edges are cut, as
+//! products of positive numbers. So nothing cancels, and nothing becomes negative or NaN.
 //!
 //! ```text
 //!   1 inside: a tet       2 inside: a prism        3 inside: a prism, (a b c) below (a' b' c')
@@ -12,21 +13,21 @@
 //!    x x x                two cuts of its edges    p0 p1 p2 q0, p1 p2 q0 q1 and p2 q0 q1 q2.
 //! ```
 //!
-//! How good it is: the values are right to some roundings of the largest of the four at a plane (computed again
-//! in pairs, or without rounding, where `f64` cannot say). A value that is off by a part `e` of the
-//! largest moves at most a part `3 e` of the tet's volume across the plane, however thin either tet is.
+//! Accuracy: the values are accurate to a few roundings of the largest of the four at a plane (recomputed in
+//! pairs, or without rounding, where `f64` cannot decide). A value that is off by a fraction `e` of the
+//! largest moves at most a fraction `3 e` of the tet's volume across the plane, however thin either tet is.
 
 use crate::base::Point;
 use crate::geometry::predicates::{exact, orient, orient3d};
 use crate::geometry::tet::FACETS;
 use crate::geometry::vector::is_finite;
 
-/// Determinants are good enough when the bound of their error is below this part of the largest; the error itself is
-/// some tenth of the bound. Between two Delaunay meshes of random points 99 planes in 100 pass in
-/// `f64`; at 1e-15 hardly any did, which took three times as long.
+/// Determinants are accurate enough when their error bound is below this fraction of the largest; the error
+/// itself is about a tenth of the bound. Between two Delaunay meshes of random points 99 planes in 100 pass
+/// in `f64`; at 1e-15 hardly any did, which took three times as long.
 const GOOD: f64 = 1e-14;
 
-/// A tet whose overlaps with others are asked for: its corners, and its volume right to the last digits.
+/// A tet prepared for computing overlaps: its corners, and its volume, accurate to the last digits.
 #[derive(Clone, Copy, Debug)]
 pub struct Solid {
     corners: [Point; 4],
@@ -34,7 +35,8 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// The tet with these corners, in either orientation. One with a corner that is not finite counts as empty.
+    /// Makes a solid of the tet with these corners, in either orientation. A tet with a corner that is not
+    /// finite counts as empty.
     pub fn new(corners: [Point; 4]) -> Self {
         let finite = corners.iter().all(|p| is_finite(*p));
         Self { corners, volume_6: if finite { accurate_volume_6(corners) } else { 0.0 } }
@@ -45,18 +47,18 @@ impl Solid {
         self.corners
     }
 
-    /// The volume, never negative; 0 exactly where the corners lie in one plane.
+    /// The volume, never negative; 0 exactly where the corners are coplanar.
     pub fn volume(&self) -> f64 {
         self.volume_6.abs() / 6.0
     }
 
-    /// Whether the orientation is positive; exact.
+    /// Whether the orientation is positive. The answer is exact.
     pub fn is_positive(&self) -> bool {
         self.volume_6 > 0.0
     }
 
-    /// The volume that both have in common, in `[0, smaller volume]`. The error stays below `1e-14` of the smaller
-    /// volume (typically a tenth of that), for sizes from 1e-80 to 1e60.
+    /// The volume that both solids have in common, in `[0, smaller volume]`. The error stays below `1e-14` of
+    /// the smaller volume (typically a tenth of that), for sizes from 1e-80 to 1e60.
     pub fn overlap(&self, other: &Self) -> f64 {
         let (small, large) = if self.volume() <= other.volume() { (self, other) } else { (other, self) };
         if small.volume_6 == 0.0 {
@@ -69,14 +71,14 @@ impl Solid {
         }
     }
 
-    /// The same; `None` where it is no more than rounding, as of tets that touch.
+    /// Returns [`Self::overlap`]; `None` where it is no more than rounding, as for tets that touch.
     pub fn real_overlap(&self, other: &Self) -> Option<f64> {
         let overlap = self.overlap(other);
         (overlap > TOUCH * self.volume().min(other.volume())).then_some(overlap)
     }
 }
 
-/// An overlap below this part of the smaller tet is rounding: they touch.
+/// An overlap below this fraction of the smaller tet is rounding: the tets only touch.
 const TOUCH: f64 = 1e-14;
 
 /// The volume that two tets have in common; see [`Solid::overlap`].
@@ -84,7 +86,8 @@ pub fn overlap(a: [Point; 4], b: [Point; 4]) -> f64 {
     Solid::new(a).overlap(&Solid::new(b))
 }
 
-/// Six times the signed volume, right to the last digits where it is more than 1e-30 of the tet's box; the sign is exact.
+/// Six times the signed volume, accurate to the last digits where it is more than 1e-30 of the tet's box; the
+/// sign is exact.
 fn accurate_volume_6(tet: [Point; 4]) -> f64 {
     let (value, error) = orient::with_bound(tet);
     if error <= GOOD * value.abs() {
@@ -99,8 +102,9 @@ fn accurate_volume_6(tet: [Point; 4]) -> f64 {
     f64::from(orient3d(a, b, c, d)) * size
 }
 
-/// For each plane of `large` that leaves out some of the points, how far inside it each of them lies; put into `values`,
-/// their number returned. `None` when all points lie on or beyond one of the planes.
+/// Computes, for each plane of `large` that leaves out some of the points, how far inside it each point lies;
+/// these are written to `values`, and their number is returned. `None` when all points lie on or beyond one
+/// of the planes.
 fn cutting_planes(points: [Point; 4], large: &Solid, values: &mut [[f64; 4]; 4]) -> Option<usize> {
     let inward = -large.volume_6.signum();
     let mut n = 0;
@@ -118,15 +122,15 @@ fn cutting_planes(points: [Point; 4], large: &Solid, values: &mut [[f64; 4]; 4])
     Some(n)
 }
 
-/// On which side of a facet's plane each of the points lies, and how far, up to a common factor: right to [`GOOD`] of the
-/// farthest. What may be 0 is 0.
+/// The signed distance of each point from a facet's plane, up to a common factor: accurate to [`GOOD`] of the
+/// largest. What may be 0 is 0.
 fn determinants(facet: [Point; 3], [a, b, c, d]: [Point; 4]) -> [f64; 4] {
     let plane = orient::Plane::new(facet);
     let found = [plane.with_bound(a), plane.with_bound(b), plane.with_bound(c), plane.with_bound(d)];
     good(found).unwrap_or_else(|| accurate_determinants(facet, [a, b, c, d]))
 }
 
-/// The same where `f64` cannot say.
+/// [`determinants`] where `f64` cannot decide.
 #[cold]
 #[inline(never)]
 fn accurate_determinants([a, b, c]: [Point; 3], points: [Point; 4]) -> [f64; 4] {
@@ -134,7 +138,7 @@ fn accurate_determinants([a, b, c]: [Point; 3], points: [Point; 4]) -> [f64; 4] 
     good(tets.map(orient::in_pairs_with_bound)).unwrap_or_else(|| exact::orient3d_ratios(tets))
 }
 
-/// The determinants, if their bounds of error say that they will do.
+/// The determinants, if their error bounds show that they are accurate enough.
 #[inline(always)]
 fn good(found: [(f64, f64); 4]) -> Option<[f64; 4]> {
     let (mut largest, mut bound) = (0.0, 0.0);
@@ -147,25 +151,26 @@ fn good(found: [(f64, f64); 4]) -> Option<[f64; 4]> {
     (bound <= GOOD * largest && largest < f64::INFINITY).then_some(values)
 }
 
-/// A corner of a piece within a tet: the point with `weights` on the edge `ends`.
+/// A corner of a piece of a tet: the point with `weights` on the edge `ends`.
 #[derive(Clone, Copy)]
 struct Corner {
     ends: [usize; 2],
     weights: [f64; 2],
 }
 
-/// A corner that stays.
+/// Corner `i` of the tet itself.
 fn whole(i: usize) -> Corner {
     Corner { ends: [i, i], weights: [1.0, 0.0] }
 }
 
-/// How much of a tet lies inside all planes, if the tet counts as `part`; for each plane how far inside each corner lies.
+/// The volume inside all planes, if the whole tet counts as `part`; `planes` holds for each plane how far
+/// inside it each corner lies.
 fn part_inside(part: f64, planes: &[[f64; 4]]) -> f64 {
     let Some((values, others)) = planes.split_first() else { return part };
     let (mut inside, mut outside) = ([0; 4], [0; 4]);
     let (mut n_inside, mut n_outside) = (0, 0);
     for (i, &value) in values.iter().enumerate() {
-        // Written, then counted or not: which it is, is a coin toss.
+        // Written to both, counted in one: which one is unpredictable.
         (inside[n_inside], outside[n_outside]) = (i, i);
         n_inside += usize::from(value > 0.0);
         n_outside += usize::from(value <= 0.0);
@@ -212,7 +217,7 @@ fn piece(part: f64, corners: [Corner; 4], planes: &[[f64; 4]]) -> f64 {
         let mut n_inside = 0;
         for (new, corner) in new.iter_mut().zip(&corners) {
             let ([i, j], weights) = (corner.ends, corner.weights);
-            // Places below 4, also for the compiler.
+            // Indices are below 4; the mask makes this known to the compiler.
             *new = old[i & 3] * weights[0] + old[j & 3] * weights[1];
             n_inside += usize::from(*new > 0.0);
         }

@@ -1,23 +1,24 @@
-//! Rigid motions: the one that fits best how points move.
+//! Rigid motions, and the one that best fits the motion of points.
 
 use crate::base::Point;
 use crate::geometry::symmetric::largest_eigenvector;
 use crate::geometry::vector::{add, cross, norm, scale, sub};
 
-/// A rotation about a centre, followed by a shift of that centre.
+/// A rotation about a centre, followed by a translation of that centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rigid {
-    /// The centre, before and after.
+    /// The centre before and after the motion.
     pub centres: [Point; 2],
-    /// The axis of rotation, of length 1.
+    /// The axis of rotation, a unit vector.
     pub axis: Point,
-    /// Half the angle of rotation, from 0 to pi / 2.
+    /// Half the angle of rotation in radians, from 0 to pi / 2.
     pub half_angle: f64,
 }
 
 impl Rigid {
-    /// The motion for which the squared distances to the second points are smallest in sum (Horn 1987: the rotation is the quaternion that is the eigenvector
-    /// to the largest eigenvalue of a symmetric matrix). Where all points stay, there is no rotation, to the bit.
+    /// The motion that minimises the sum of squared distances from the moved first points to the second
+    /// points (Horn 1987: the rotation is the quaternion that is the eigenvector to the largest eigenvalue of
+    /// a symmetric matrix). Where no point moves there is exactly no rotation.
     pub fn fit(pairs: &[(Point, Point)]) -> Self {
         let share = 1.0 / pairs.len().max(1) as f64;
         let mean = |of: fn(&(Point, Point)) -> Point| scale(pairs.iter().map(of).fold([0.0; 3], add), share);
@@ -40,13 +41,13 @@ impl Rigid {
         Self { centres, axis, half_angle: sine.atan2(w) }
     }
 
-    /// Where a point is after the whole motion.
+    /// The position of a point after the whole motion.
     pub fn apply(&self, p: Point) -> Point {
         add(self.centres[1], rotated(sub(p, self.centres[0]), scale(self.axis, 2.0 * self.half_angle)))
     }
 }
 
-/// A vector after a rotation by its axis times its angle (Rodrigues 1840).
+/// Rotates a vector; the rotation is given as its axis times its angle in radians (Rodrigues 1840).
 fn rotated(v: Point, turn: Point) -> Point {
     let angle = norm(turn);
     let half = 0.5 * angle;

@@ -1,23 +1,27 @@
-//! How far rounding may have moved points: told by the digits of their coordinates.
+//! Estimates how far rounding may have moved points, from the digits of their coordinates.
 
 use crate::base::Point;
 
-/// So many roundings of `f64` may have come one upon the other: a turn is five, and bodies are turned and shifted more than once.
+/// The number of `f64` roundings that may have accumulated: a rotation has five, and bodies are rotated and
+/// translated more than once.
 const ROUNDINGS: f64 = 64.0;
 
-/// A body is written with fewer digits once, and each coordinate is off by half the last one; so is the plane that it is held against.
+/// The number of half units of the last digit by which coordinates written with fewer digits may be off: one
+/// for the coordinate itself, one for the plane with which it is compared.
 const WRITTEN: f64 = 2.0;
 
-/// More digits behind the point than this are as many as an `f64` has.
+/// Points with more decimals than this count as having all the digits of an `f64`.
 const MOST_DECIMALS: i32 = 12;
 
-/// More digits than this are as many as an `f32` has.
+/// Points with more significant digits than this count as having all the digits of an `f32`.
 const MOST_DIGITS: i32 = 9;
 
-/// Last digits larger than this, beside the largest coordinate, are those of numbers that are meant so.
+/// A unit of the last digit coarser than this, relative to the largest coordinate, is not a sign of rounding:
+/// such numbers are exact as written.
 const COARSEST: f64 = 1e-5;
 
-/// A bound on how far rounding has moved each coordinate. The digits of all coordinates tell what they were written with: `f64`, `f32`, a number of decimals or of digits.
+/// Returns a bound on how far rounding has moved each coordinate. The digits of all coordinates show how they
+/// were written: as `f64`, as `f32`, or with a fixed number of decimals or of significant digits.
 pub(crate) fn of(points: &[Point]) -> f64 {
     let all = || points.as_flattened().iter().copied();
     let largest = all().fold(0.0f64, |largest, x| largest.max(x.abs()));
@@ -47,12 +51,12 @@ mod tests {
         assert!((5e-8..2e-7).contains(&single), "{single}");
         let decimals = of(&[[0.333333, 0.666667, 0.9]]);
         assert!((0.9e-6..1.1e-6).contains(&decimals), "{decimals}");
-        // Six digits of a number that is not below one are five decimals.
+        // With one number not below one, six significant digits are five decimals.
         let decimals = of(&[[0.333333, 0.666667, 1.0]]);
         assert!((0.9e-5..1.1e-5).contains(&decimals), "{decimals}");
         let digits = of(&[[0.00123456, 0.654321, 0.5]]);
         assert!((0.9e-6..1.1e-6).contains(&digits), "{digits}");
-        // Few digits are meant so.
+        // Numbers with few digits are exact as written.
         assert!(of(&[[0.0, 0.25, 1.0], [100.0, 33.0, 0.0]]) < 2e-5);
     }
 }

@@ -1,10 +1,10 @@
-//! The segment: the point of it closest to another.
+//! The segment, and the point on it closest to a given point.
 
 use crate::base::Point;
 use crate::geometry::vector::{dot, sub};
 
-/// How far along from `a` (0) to `b` (1) the point of the segment lies that is
-/// closest to `p`; 0 when the segment has no length.
+/// The point of the segment closest to `p`, as the fraction of the way from `a` (0) to `b` (1); 0 when the
+/// segment has no length.
 #[inline]
 pub fn closest([a, b]: [Point; 2], p: Point) -> f64 {
     let along = sub(b, a);

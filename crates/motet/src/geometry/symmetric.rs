@@ -1,13 +1,16 @@
-//! Symmetric matrices of 3 x 3, such as second derivatives: their eigenvalues.
+//! Symmetric 3 x 3 matrices, such as second derivatives, and their eigenvalues; the largest eigenvector of a
+//! 4 x 4 one.
 
-/// A symmetric matrix: its entries xx, yy, zz, xy, yz, xz, in the order of VTK's symmetric tensors.
+/// A symmetric 3 x 3 matrix: its entries xx, yy, zz, xy, yz, xz, in the order of VTK's symmetric tensors.
 pub type Symmetric = [f64; 6];
 
-/// Sweeps over the three pairs of axes. Each about squares what is left beside the diagonal; random matrices need four or five.
+/// The number of sweeps over all pairs of axes. Each sweep roughly squares what is left off the diagonal;
+/// random matrices need four or five.
 const SWEEPS: usize = 12;
 
-/// The eigenvalues, rising, by rotations that make one entry beside the diagonal 0 after the other (Jacobi 1846; Golub and Van Loan 2013, *Matrix
-/// computations*, 8.5). Each is right to some roundings of the largest. All NaN where an entry is not finite.
+/// The eigenvalues in ascending order, by rotations each of which makes one off-diagonal entry 0 (Jacobi
+/// 1846; Golub and Van Loan 2013, *Matrix computations*, 8.5). Each is accurate to a few roundings of the
+/// largest. All are NaN where an entry is not finite.
 pub fn eigenvalues(matrix: Symmetric) -> [f64; 3] {
     let largest = matrix.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     if largest == 0.0 || !matrix.iter().all(|x| x.is_finite()) {
@@ -29,9 +32,7 @@ pub fn eigenvalues(matrix: Symmetric) -> [f64; 3] {
     values
 }
 
-/// Turns the axes `p` and `q` so that the entry of both becomes 0.
-///
-/// Sine and cosine of the angle.
+/// Rotates the axes `p` and `q` so that their common entry becomes 0; returns sine and cosine of the angle.
 fn rotate<const N: usize>(a: &mut [[f64; N]; N], [p, q]: [usize; 2]) -> [f64; 2] {
     let off = a[p][q];
     if off == 0.0 {
@@ -54,7 +55,8 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], [p, q]: [usize; 2]) -> [f64; 2]
     [sine, cosine]
 }
 
-/// The eigenvector, of length 1, to the largest eigenvalue, by the same rotations; of equal ones the first. NaN where an entry is not finite.
+/// The unit eigenvector to the largest eigenvalue, by Jacobi rotations; among equal eigenvalues, the first.
+/// NaN where an entry is not finite.
 pub fn largest_eigenvector(matrix: [[f64; 4]; 4]) -> [f64; 4] {
     let largest = matrix.as_flattened().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
     let mut vectors = [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| f64::from(u8::from(i == j))));
@@ -90,7 +92,7 @@ mod tests {
         assert_eq!(eigenvalues([3.0, -1.0, 2.0, 0.0, 0.0, 0.0]), [-1.0, 2.0, 3.0]);
         // All ones: one direction of 3, two of 0.
         assert!(is_near(eigenvalues([1.0; 6]), [0.0, 0.0, 3.0]));
-        // Second differences: 2 - sqrt 2, 2, 2 + sqrt 2.
+        // Second differences, with eigenvalues 2 - sqrt 2, 2, 2 + sqrt 2.
         let root = 2f64.sqrt();
         assert!(is_near(eigenvalues([2.0, 2.0, 2.0, -1.0, -1.0, 0.0]), [2.0 - root, 2.0, 2.0 + root]));
         assert!(is_near(eigenvalues([0.0, 0.0, 5.0, 1.0, 0.0, 0.0]), [-1.0, 1.0, 5.0]));
@@ -98,7 +100,7 @@ mod tests {
 
     #[test]
     fn turned_diagonals_keep_theirs_at_every_scale() {
-        // Q diag Q^T, with Q of two turns.
+        // Q diag Q^T, with Q composed of two rotations.
         for (scale, angle) in [(1.0, 0.3), (1e-160, 1.1), (1e150, 2.0), (1.0, 1e-9)] {
             let (s, c) = f64::sin_cos(angle);
             let q = [[c, -s * c, s * s], [s, c * c, -c * s], [0.0, s, c]];

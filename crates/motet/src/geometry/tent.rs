@@ -1,22 +1,24 @@
 //! The tent over a triangle: the tet on it with the same dihedral angle at its three edges.
 //!
-//! A tet on the triangle whose dihedral angles there are all larger than that of a tent holds the tent in it. So where something stands in the tent
-//! that no tet may hold, no tet on the triangle has its smallest angle above that of the tent.
+//! A tet on the triangle whose dihedral angles there are all larger than that of a tent contains the tent. So
+//! where the tent contains something that no tet may contain, no tet on the triangle has a smallest dihedral
+//! angle above that of the tent.
 
 use crate::base::Point;
 use crate::geometry::vector::{cross, dot, norm, scale, sub};
 
-/// A triangle, ready to be asked how steep a tent on it stays clear of something.
+/// A triangle prepared for finding the steepest tent over it that stays clear of something.
 #[derive(Clone, Copy, Debug)]
 pub struct Tent {
     corner: [Point; 3],
-    /// Unit normal, to the side of the tent.
+    /// The unit normal on the side of the tent.
     up: Point,
-    /// For each edge, opposite of the corner with its number, the unit normal in the plane, inwards.
+    /// For each edge, numbered like the opposite corner, the unit normal within the plane, pointing inward.
     inward: [Point; 3],
 }
 
-/// Height above the triangle's plane, and distances in it from the lines through the edges, inwards.
+/// A point by its height above the triangle's plane, and its inward distances, parallel to the plane, from
+/// the edges' lines.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     height: f64,
@@ -33,7 +35,7 @@ impl Place {
         }
     }
 
-    /// The tangent of the angle of the tent on which it lies; `None` where it lies on none.
+    /// The tangent of the angle of the tent on which the point lies; `None` where it lies on none.
     fn slope(self) -> Option<f64> {
         let least = self.inside.into_iter().fold(f64::INFINITY, f64::min);
         (self.height > 0.0 && least > 0.0).then(|| self.height / least)
@@ -41,7 +43,7 @@ impl Place {
 }
 
 impl Tent {
-    /// Over a triangle that is counter-clockwise seen from the side of the tent; `None` where it has no area.
+    /// The tents over a triangle that is counter-clockwise seen from their side; `None` where it has no area.
     pub fn over(corner: [Point; 3]) -> Option<Self> {
         let [a, b, c] = corner;
         let normal = cross(sub(b, a), sub(c, a));
@@ -52,11 +54,12 @@ impl Tent {
         Some(Self { corner, up, inward: [u, v, w] })
     }
 
-    /// The angle, in radians, of the steepest tent that has nothing of a triangle inside; `None` where any has not. Corners that are corners of the tent's own triangle
-    /// have to be so to the bit.
+    /// The angle, in radians, of the steepest tent that has nothing of `triangle` inside; `None` where no
+    /// tent has. Corners that coincide with corners of the tent's own triangle must be equal to the bit.
     ///
-    /// A point lies on the tent whose tangent is the largest of `height / inside`. All four are linear, so the least of that largest is at a corner, where an
-    /// edge has two of them alike, or where all three are.
+    /// A point lies on the tent whose tangent is the largest of `height / inside`. Height and distances are
+    /// linear, so the least value of that maximum over the triangle is at a corner, at a point of an edge
+    /// where two distances are equal, or where all three are.
     pub fn angle_below(&self, triangle: [Point; 3]) -> Option<f64> {
         let places = triangle.map(|p| self.place(p));
         let slopes = places.into_iter().filter_map(Place::slope);
@@ -82,7 +85,8 @@ impl Tent {
     }
 }
 
-/// The slope where the line over the incentre, which is as far from each edge, meets a triangle.
+/// The slope at which the line through the incentre, whose points are equally far from all edges, meets a
+/// triangle.
 fn above_incentre([p, q, r]: [Place; 3]) -> Option<f64> {
     let differences = [p, q, r].map(|x| [x.inside[0] - x.inside[1], x.inside[1] - x.inside[2]]);
     let det = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
@@ -113,7 +117,7 @@ mod tests {
         Tent::over(BASE).expect("an area")
     }
 
-    /// Numbers in [0, 1), always the same.
+    /// A fixed sequence of pseudorandom numbers in [0, 1).
     fn chance() -> impl FnMut() -> f64 {
         let mut state = 1u64;
         move || {
@@ -126,7 +130,7 @@ mod tests {
     fn the_tent_of_a_point_is_the_least_angle_of_a_tet_that_has_it_as_its_top() {
         let [[a, b, c], top] = [BASE, [[0.7, 0.5, 0.2]; 3]];
         let angle = tent().angle_below(top).expect("above the base");
-        // Edges of a tet: those of its first three vertices.
+        // The dihedral angles at the edges of the first three vertices.
         let angles = dihedral::angles([a, b, c, top[0]]);
         let at_base = crate::geometry::tet::EDGES.iter().zip(angles).filter(|(e, _)| !e.contains(&3));
         let largest = at_base.map(|(_, angle)| angle).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! The tetrahedron: its local numbering, volume, centre, barycentric coordinates.
+//! The tetrahedron: local numbering, volume, centroid, barycentric coordinates.
 //!
 //! ```text
 //!        d          (a, b, c, d) is positive when (b - a) x (c - a) . (d - a) > 0:
@@ -15,8 +15,7 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::vector::{add, cross, dot, scale, sub};
 use crate::geometry::{triangle, weights};
 
-/// Vertices of facet `i`, the one opposite vertex `i`, counter-clockwise seen
-/// from outside a positive tet.
+/// Vertices of facet `i`, the one opposite vertex `i`, counter-clockwise seen from outside a positive tet.
 pub const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// The two vertices of each edge; edges `e` and `5 - e` are opposite.
@@ -34,13 +33,12 @@ pub fn volume(tet: [Point; 4]) -> f64 {
     volume_6(tet) / 6.0
 }
 
-/// The centre of gravity.
+/// The centroid.
 pub fn centroid([a, b, c, d]: [Point; 4]) -> Point {
     scale(add(add(a, b), add(c, d)), 0.25)
 }
 
-/// Weights of the vertices that give `p`; they sum to 1 up to rounding. Not
-/// finite where the volume is zero.
+/// Barycentric coordinates of `p`; they sum to 1 up to rounding. Not finite where the volume is zero.
 pub fn barycentric(tet: [Point; 4], p: Point) -> [f64; 4] {
     let total = volume_6(tet);
     [0, 1, 2, 3].map(|i| {
@@ -50,7 +48,8 @@ pub fn barycentric(tet: [Point; 4], p: Point) -> [f64; 4] {
     })
 }
 
-/// Whether `p` lies in the tet or on its surface; exact, for either orientation. False where the volume is zero.
+/// Whether `p` lies in the tet or on its surface, for either orientation. The answer is exact; false where
+/// the volume is zero.
 pub fn holds(tet: [Point; 4], p: Point) -> bool {
     let side = |[a, b, c, d]: [Point; 4]| orient3d(a, b, c, d);
     let orientation = side(tet);
@@ -62,9 +61,9 @@ pub fn holds(tet: [Point; 4], p: Point) -> bool {
         })
 }
 
-/// Weights of the vertices, each in [0, 1] and 1 in sum, that give the point of the tet closest to `p`: `p` itself
-/// where the tet [`holds`] it, else the nearest of the closest points of the four facets. For either
-/// orientation; a tet without volume is its facets.
+/// Weights of the vertices, each in [0, 1] with sum 1, that give the point of the tet closest to `p`: `p`
+/// itself where the tet [`holds`] it, else the nearest of the closest points of the four facets. Works for
+/// either orientation; a tet without volume is treated as its facets.
 pub fn closest(tet: [Point; 4], p: Point) -> [f64; 4] {
     if holds(tet, p) {
         let [a, b, c, d] = tet;

@@ -1,4 +1,4 @@
-//! The few vector operations that everything uses, on plain `[f64; 3]`.
+//! The basic vector operations, on plain `[f64; 3]`.
 
 use crate::base::Point;
 
@@ -32,16 +32,17 @@ pub fn cross(a: Point, b: Point) -> Point {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Whether no coordinate is NaN or infinite: a sum of anything with one of these is neither. No branch for each.
+/// Whether no coordinate is NaN or infinite. Tested without branches: multiplied by 0, such a coordinate
+/// makes the sum NaN.
 #[inline(always)]
 pub fn is_finite(a: Point) -> bool {
     (a[0] * 0.0 + a[1] * 0.0 + a[2] * 0.0) == 0.0
 }
 
-/// The largest coordinate that is reckoned with: volumes, their products and sums of those stay numbers.
+/// The largest coordinate supported: volumes, their products and the sums of those stay finite.
 pub const LARGEST: f64 = 1e60;
 
-/// Whether the coordinates are numbers to reckon with: finite, and none beyond [`LARGEST`].
+/// Whether all coordinates are finite and none exceeds [`LARGEST`] in magnitude.
 #[inline(always)]
 pub fn in_range(a: Point) -> bool {
     (a[0].abs() <= LARGEST) & (a[1].abs() <= LARGEST) & (a[2].abs() <= LARGEST)
@@ -58,7 +59,7 @@ pub fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The same way, of length 1; `None` where it has no length, or one beyond numbers.
+/// The unit vector in the direction of `v`; `None` where its length is 0 or not finite.
 pub fn unit(v: Point) -> Option<Point> {
     let length = norm(v);
     (length > 0.0 && length.is_finite()).then(|| scale(v, 1.0 / length))
@@ -77,8 +78,9 @@ pub fn distance_squared(a: Point, b: Point) -> f64 {
     dot(d, d)
 }
 
-/// The part of `v` at right angles to `along`, projected twice: once leaves errors of the size of `v`, which may be more than
-/// the part itself ("twice is enough", Kahan in Parlett 1980, *The symmetric eigenvalue problem*, 6-9). NaN where `along` has no length.
+/// The component of `v` orthogonal to `along`, projected twice: one projection leaves errors of the size of
+/// `v`, which may exceed the component itself ("twice is enough", Kahan in Parlett 1980, *The symmetric
+/// eigenvalue problem*, 6-9). NaN where `along` has no length.
 #[inline(always)]
 pub fn across(v: Point, along: Point) -> Point {
     let per_length = 1.0 / dot(along, along);

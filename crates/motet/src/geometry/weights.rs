@@ -1,19 +1,19 @@
-//! Weights of a tet's vertices that reproduce a point inside, right to the last digits in any sliver.
+//! Weights of a tet's vertices that reproduce a point inside, accurate to the last digits in any sliver.
 //!
-//! A weight is a ratio of two volumes. In a sliver the volumes cancel to nothing, and so do the digits of
-//! a ratio computed in floating point: at an aspect of 1e-12 four digits are left. Here the determinants
-//! come with a bound of their error, and where that is not small against their sum they are computed
-//! again without rounding.
+//! A weight is a ratio of two volumes. In a sliver the terms of the volumes cancel, and so do the digits of a
+//! ratio computed in floating point: at an aspect of 1e-12 four digits are left. Here the determinants come
+//! with an error bound, and where that is not small compared with their sum they are recomputed without
+//! rounding.
 
 use crate::base::Point;
 use crate::geometry::predicates::{exact, orient};
 
-/// Determinants are good enough when their error is below this part of their sum.
+/// Determinants are accurate enough when their error is below this fraction of their sum.
 const GOOD: f64 = 1e-15;
 
-/// Weights of the vertices of `tet` for the point `q`: each in `[0, 1]`, their sum 1 up to rounding, and
-/// `sum w_i p_i = q` up to a few roundings of the size of the tet, when `q` lies in the closed tet (exactly, as a
-/// locator finds it). Weights of a point outside are cut off at 0, which gives a point of the tet.
+/// Weights of the vertices of `tet` for the point `q`: each in `[0, 1]`, their sum 1 up to rounding. When `q`
+/// lies in the closed tet (exactly, as found by a locator), `sum w_i p_i = q` up to a few roundings of the
+/// size of the tet. For a point outside, negative weights are set to 0, which gives a point of the tet.
 /// `None` when the tet has no volume or is negative.
 pub fn weights(tet: [Point; 4], q: Point) -> Option<[f64; 4]> {
     let sub_tets: [[Point; 4]; 4] = std::array::from_fn(|i| {
@@ -34,7 +34,7 @@ fn estimate(sub_tets: &[[Point; 4]; 4], determinant: impl Fn([Point; 4]) -> (f64
     (parts.map(|p| p.0), parts.iter().map(|p| p.1).sum())
 }
 
-/// Volumes to weights, if their error matters nowhere.
+/// Converts volumes to weights, if their error is negligible.
 fn normalized(volumes: [f64; 4], error: f64) -> Option<[f64; 4]> {
     let cut = volumes.map(|v| v.max(0.0));
     let sum: f64 = cut.iter().sum();

@@ -1,6 +1,6 @@
 //! Inserts a point into a Delaunay triangulation: the tets whose sphere contains it are replaced by tets from
-//! it to the facets around (Bowyer 1981; Watson 1981). Its rank is the highest, so it counts as outside a
-//! sphere on which it lies.
+//! it to the facets around (Bowyer 1981; Watson 1981). Points on segments have the highest rank, so they
+//! count as outside a sphere on which they lie.
 
 use super::sites::Sites;
 use super::tets::Tets;

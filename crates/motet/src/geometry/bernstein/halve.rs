@@ -1,20 +1,20 @@
-//! A domain cut in two through the middle of an edge.
+//! Cuts a domain in two through the middle of an edge.
 
 use crate::base::Csr;
 use crate::geometry::bernstein::Basis;
 
-/// Everything about the cuts along one edge of the domain.
+/// The cut through the middle of one edge of the domain.
 #[derive(Clone, Debug)]
 pub(super) struct Cut {
-    /// The two ends of the edge, by their barycentric coordinates.
+    /// The indices of the barycentric coordinates that belong to the two ends of the edge.
     pub(super) ends: [usize; 2],
-    /// Coefficients whose exponents differ in these two coordinates alone, from all at the first end to all at the second: each
-    /// list is a polynomial in one variable.
+    /// Rows of coefficients whose exponents differ in these two coordinates only, from the first end to the
+    /// second: each row is a polynomial in one variable.
     rows: Csr<u16>,
 }
 
 impl Cut {
-    /// One for each edge of each factor.
+    /// All cuts of a domain: one for each edge of each factor.
     pub(super) fn all(basis: &Basis) -> Vec<Self> {
         let mut cuts = Vec::new();
         let mut first = 0;
@@ -48,7 +48,8 @@ impl Cut {
         bends.map(|w| (at(w[0]) - 2.0 * at(w[1]) + at(w[2])).abs()).fold(0.0, f64::max)
     }
 
-    /// The coefficients of the half at the first end and of that at the second (de Casteljau's algorithm, row by row).
+    /// The coefficients of the half at the first end and of the half at the second (de Casteljau's algorithm,
+    /// row by row).
     pub(super) fn halves(&self, coefficients: &[f64]) -> [Vec<f64>; 2] {
         let (mut near, mut far) = (coefficients.to_vec(), coefficients.to_vec());
         let mut row = Vec::new();

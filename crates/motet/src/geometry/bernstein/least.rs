@@ -1,4 +1,4 @@
-//! The least value of a polynomial: found between bounds that close in.
+//! The least value of a polynomial, found between bounds that converge.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -6,30 +6,31 @@ use std::collections::BinaryHeap;
 use crate::geometry::bernstein::halve::Cut;
 use crate::geometry::bernstein::{Basis, MOST_COORDINATES, Place};
 
-/// Where polynomials of one basis are looked at, and how the domain is cut.
+/// The corners of the domain of one basis, and the ways to cut the domain.
 #[derive(Clone, Debug)]
 pub struct Domain {
     cuts: Vec<Cut>,
-    /// The corners of the domain: the number of the coefficient that is the value there, and the coordinate that is 1 in each factor.
+    /// The corners of the domain: the number of the coefficient that is the value there, and for each factor
+    /// the index of the coordinate that is 1.
     corners: Vec<(usize, Vec<usize>)>,
 }
 
-/// The least value of a polynomial, as far as it was looked for.
+/// Bounds on the least value of a polynomial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Least {
-    /// No value is less.
+    /// A lower bound on all values.
     pub bound: f64,
-    /// The least of the values that were met.
+    /// The least value found, an upper bound on the minimum.
     pub value: f64,
-    /// Where that is.
+    /// The place of that value.
     pub at: Place,
 }
 
-/// Parts of the domain that are looked at before a search is given up.
+/// The number of parts of the domain after which a search is given up.
 const MOST_PARTS: usize = 1 << 10;
 
 impl Domain {
-    /// For polynomials of this basis.
+    /// Prepares the domain for polynomials of this basis.
     pub fn of(basis: &Basis) -> Self {
         let mut corners = vec![Vec::new()];
         let mut first = 0;
@@ -47,14 +48,16 @@ impl Domain {
     }
 }
 
-/// A part of the domain: a product of simplices again.
+/// A part of the domain, which is a product of simplices as well.
 struct Part {
     coefficients: Vec<f64>,
-    /// No value in it is less.
+    /// A lower bound on the values in this part.
     bound: f64,
-    /// The corner of its factor that each coordinate stands for, in barycentric coordinates of the whole.
+    /// For each coordinate, the corner of its factor for which it stands, in barycentric coordinates of the
+    /// whole domain.
     corners: [Place; MOST_COORDINATES],
-    /// In the order in which they were made: of two with equal bounds the first goes first.
+    /// Parts are numbered in the order in which they were made: of two with equal bounds the earlier one is
+    /// examined first.
     number: usize,
 }
 
@@ -64,7 +67,7 @@ impl Part {
         Self { coefficients, bound, corners, number }
     }
 
-    /// The least value at its corners, and which.
+    /// The least value at the corners of the part, and its place.
     fn least_corner(&self, domain: &Domain) -> (f64, Place) {
         let mut least = (f64::INFINITY, Place::default());
         for (number, coordinates) in &domain.corners {
@@ -77,7 +80,7 @@ impl Part {
         least
     }
 
-    /// The two halves of a part, cut where the coefficients are farthest from straight lines.
+    /// The two halves of a part, cut along the edge where the coefficients deviate most from straight lines.
     fn halves(&self, domain: &Domain, n_made: usize) -> [Self; 2] {
         let mut most = (-1.0, &domain.cuts[0]);
         for cut in &domain.cuts {
@@ -98,7 +101,7 @@ impl Part {
     }
 }
 
-/// A heap gives the largest first: that is the part with the least bound.
+/// A binary heap returns the largest element first: here the part with the least bound.
 impl Ord for Part {
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound).then(other.number.cmp(&self.number))
@@ -119,8 +122,8 @@ impl PartialEq for Part {
 
 impl Eq for Part {}
 
-/// The least value of the polynomial with these coefficients over the whole domain: bounds close in until they
-/// `is_enough(bound, value)`, meet, or a thousand parts have been looked at.
+/// The least value of the polynomial with these coefficients over the whole domain. The search stops when
+/// `is_enough(bound, value)`, when both bounds meet, or when a thousand parts have been made.
 pub fn least(domain: &Domain, coefficients: &[f64], is_enough: impl Fn(f64, f64) -> bool) -> Least {
     let whole: [Place; MOST_COORDINATES] =
         std::array::from_fn(|c| std::array::from_fn(|k| f64::from(u8::from(c == k))));
@@ -172,7 +175,7 @@ mod tests {
             let coefficients: Vec<f64> = (0..basis.len()).map(|i| ((i * 29) % 31) as f64 - 15.0).collect();
             let value =
                 |c: &[f64], at: &Place| -> f64 { (0..c.len()).map(|i| c[i] * basis.value(i, at)).sum() };
-            // A place in each factor: all its coordinates alike, but for the first two.
+            // A place in each factor with all coordinates equal, except the first two.
             let mut at = Place::default();
             let mut first = 0;
             for &n in factors {

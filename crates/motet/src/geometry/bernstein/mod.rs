@@ -1,37 +1,39 @@
 //! Polynomials in Bernstein form over a product of simplices: a tetrahedron, a prism, a cube.
 //!
-//! A point of the domain has barycentric coordinates in each factor: four in a tetrahedron, three and two in a
-//! prism, two, two and two in a cube. A polynomial of degree `d` in a factor is
-//! `sum over e of c_e d! / (e_0! e_1! ...) x_0^e_0 x_1^e_1 ...` over all exponents with the sum `d`. It lies between
-//! its least and its largest coefficient `c_e`, and has the values `c_e` at the corners of the domain (Farin 1986,
-//! *Triangular Bernstein-Bezier patches*). Both halves of a domain that is cut through the middle of an edge have
-//! coefficients of their own, nearer to the polynomial: [`least()`] finds bounds of any sharpness that way.
+//! A point of the domain has barycentric coordinates in each factor: four in a tetrahedron, three and two in
+//! a prism, and two in each of three factors in a cube. A polynomial of degree `d` in a factor is `sum over e
+//! of c_e d! / (e_0! e_1! ...) x_0^e_0 x_1^e_1 ...` over all exponents with the sum `d`. Its values lie
+//! between its least and its largest coefficient `c_e`; at the corners of the domain they are coefficients
+//! `c_e` (Farin 1986, *Triangular Bernstein-Bezier patches*). Both halves of a domain that is cut through the
+//! middle of an edge have coefficients of their own, nearer to the polynomial: in this way [`least()`] finds
+//! bounds as sharp as needed.
 
 mod halve;
 mod least;
 
 pub use least::{Domain, Least, least};
 
-/// Barycentric coordinates of all factors together: six in a cube, fewer elsewhere.
+/// The largest number of barycentric coordinates of all factors together: six in a cube, fewer elsewhere.
 pub const MOST_COORDINATES: usize = 6;
 
 /// The exponent of each barycentric coordinate.
 pub type Exponents = [u8; MOST_COORDINATES];
 
-/// A point of the domain: its barycentric coordinates, those of each factor with the sum 1.
+/// A point of the domain by its barycentric coordinates; those of each factor sum to 1.
 pub type Place = [f64; MOST_COORDINATES];
 
 /// The Bernstein polynomials of one degree in each factor of a domain.
 #[derive(Clone, Debug)]
 pub struct Basis {
     factors: &'static [usize],
-    /// Rising.
+    /// The exponents of each polynomial, in ascending order.
     exponents: Vec<Exponents>,
     multinomials: Vec<f64>,
 }
 
 impl Basis {
-    /// `factors`: how many barycentric coordinates each factor has; `degrees`: the degree in each.
+    /// Makes the basis: `factors` holds the number of barycentric coordinates of each factor, `degrees` the
+    /// degree in each.
     pub fn new(factors: &'static [usize], degrees: &[u8]) -> Self {
         let mut exponents = vec![[0; MOST_COORDINATES]];
         let mut first = 0;
@@ -57,22 +59,22 @@ impl Basis {
         Self { factors, multinomials: exponents.iter().map(multinomial).collect(), exponents }
     }
 
-    /// How many there are.
+    /// The number of polynomials.
     pub fn len(&self) -> usize {
         self.exponents.len()
     }
 
-    /// Whether there is none; there always is one.
+    /// Whether there are no polynomials; always false.
     pub fn is_empty(&self) -> bool {
         self.exponents.is_empty()
     }
 
-    /// The exponents of each.
+    /// The exponents of each polynomial.
     pub fn exponents(&self) -> &[Exponents] {
         &self.exponents
     }
 
-    /// How many barycentric coordinates each factor has.
+    /// The number of barycentric coordinates of each factor.
     pub fn factors(&self) -> &'static [usize] {
         self.factors
     }
@@ -80,12 +82,12 @@ impl Basis {
     /// The number of the polynomial with these exponents.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no such polynomial.
     pub fn number(&self, exponents: &Exponents) -> usize {
         self.exponents.binary_search(exponents).expect("exponents of this degree")
     }
 
-    /// `d! / (e_0! e_1! ...)` of polynomial `i`, over all factors.
+    /// The multinomial coefficient `d! / (e_0! e_1! ...)` of polynomial `i`, over all factors.
     pub fn multinomial(&self, i: usize) -> f64 {
         self.multinomials[i]
     }
@@ -101,19 +103,19 @@ fn factorial(n: u8) -> f64 {
     (1..=n).map(f64::from).product()
 }
 
-/// How polynomials are multiplied: which coefficients of two bases go where in a third.
+/// The multiplication of polynomials: which coefficients of two bases contribute to which one of a third.
 ///
-/// Coefficients are those of the plain monomials here, `c_e` times the multinomial: products of monomials are
-/// monomials.
+/// Here coefficients are those of the plain monomials, `c_e` times the multinomial coefficient, since
+/// products of monomials are monomials.
 #[derive(Clone, Debug)]
 pub struct Product {
-    /// Numbers in the two bases and in that of the product.
+    /// The numbers of the coefficients in the two bases and in that of the product.
     terms: Vec<[u16; 3]>,
     n: usize,
 }
 
 impl Product {
-    /// From two bases over one domain into a third, which has the sums of their degrees.
+    /// Prepares products from two bases over one domain into a third, whose degrees are the sums of theirs.
     pub fn new(a: &Basis, b: &Basis, product: &Basis) -> Self {
         let mut terms = Vec::with_capacity(a.len() * b.len());
         for (i, x) in (0..).zip(a.exponents()) {
@@ -125,7 +127,7 @@ impl Product {
         Self { terms, n: product.len() }
     }
 
-    /// Multiplies coefficient by coefficient with `times`, and sums with `add` from `zero` on.
+    /// Multiplies coefficients with `times`, and sums the products with `add`, starting from `zero`.
     pub fn of<A: Copy, B: Copy, C: Copy>(
         &self,
         (a, b): (&[A], &[B]),

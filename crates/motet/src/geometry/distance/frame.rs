@@ -1,19 +1,20 @@
-//! Points seen from one of them, in units of a power of two near the size of all together.
+//! Local coordinates: points relative to one of them, in units of a power of two near the size of all
+//! together.
 
 use super::Closest;
 use crate::base::Point;
 use crate::geometry::unit::unit_of;
 use crate::geometry::vector::{dot, scale, sub};
 
-/// Where local coordinates are measured from, and in which unit. The farthest local coordinate lies in [1, 2), unless all
-/// points are one.
+/// The unit of local coordinates. The largest local coordinate lies in [1, 2), unless all points coincide.
 pub(super) struct Frame {
     pub(super) unit: f64,
 }
 
 impl Frame {
-    /// The points of both primitives relative to the first of `a`. A difference is rounded to within half a unit in its last place, so
-    /// equal points stay equal, and none is off by more than 1.2e-16 of the extent an axis.
+    /// Takes the points of both primitives relative to the first of `a`. A difference is rounded to within
+    /// half a unit in its last place, so equal points stay equal, and none is off by more than 1.2e-16 of the
+    /// extent along any axis.
     #[inline(always)]
     pub(super) fn around<const A: usize, const B: usize>(
         a: [Point; A],
@@ -25,7 +26,7 @@ impl Frame {
         (Self { unit }, from_a.map(|p| scale(p, per_unit)), from_b.map(|p| scale(p, per_unit)))
     }
 
-    /// Back in the units of the caller.
+    /// Converts a result back to the caller's units.
     #[inline(always)]
     pub(super) fn closest<const A: usize, const B: usize>(
         &self,
@@ -50,7 +51,7 @@ pub(super) fn at<const N: usize>(points: &[Point; N], weights: &[f64; N]) -> Poi
     sum
 }
 
-/// From the point with weights of `a` to the one with weights of `b`.
+/// The vector from the point with weights `on_a` of `a` to the one with weights `on_b` of `b`.
 #[inline(always)]
 pub(super) fn offset<const A: usize, const B: usize>(
     (a, on_a): (&[Point; A], &[f64; A]),

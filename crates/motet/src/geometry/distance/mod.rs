@@ -1,22 +1,25 @@
-//! How far points, segments and triangles are apart: the distance, the closest points, the feature each lies on, the derivative.
+//! Distances between points, segments and triangles: the distance, the closest points, the feature on which
+//! each lies, the derivative.
 //!
-//! One pair of primitives a file; every one has `closest`, which gives a [`Closest`].
+//! Each pair of primitives has a file with a function `closest`, which returns a [`Closest`].
 //!
-//! **How good it is.** The closest points are points of the primitives, given by weights in [0, 1]; the distance is that of these
-//! points, so it is never too small by more than rounding. It is too large by at most some 1e-15 of the *extent*, the size of
-//! both primitives together, whatever their shape: needles, parallel edges, segments and triangles that are points. (Of 20,000 hard
-//! pairs of each kind the worst was off by 3.4e-16 of it; `tests/distance.rs` prints it.)
-//! There is no tolerance in units of length. Coordinates are taken relative to one of the points and in units of
-//! a power of two near the extent, so nothing depends on the unit of length, nor on where the origin lies; sizes from 1e-150 to
-//! 1e150 will do. Coordinates must be finite.
+//! **Accuracy.** The closest points are points of the primitives, given by weights in [0, 1]; the distance is
+//! that of these points, so it is too small by no more than rounding. It is too large by at most about 1e-15
+//! of the *extent*, the size of both primitives together, whatever their shape: needles, parallel edges,
+//! segments and triangles that are points. (Of 20,000 hard pairs of each kind the worst was off by 3.4e-16 of
+//! it; `tests/distance.rs` prints it.)
+//! There is no tolerance in units of length. Coordinates are taken relative to one of the points and in units
+//! of a power of two near the extent, so results do not depend on the unit of length or on the origin; sizes
+//! from 1e-150 to 1e150 are supported. Coordinates must be finite.
 //!
-//! **Why needles and parallel edges do no harm.** The point within a face is found as [`triangle::closest`](super::triangle::closest)
-//! finds it, and the pair of points within two edges in the same way: by projecting on one direction and on what is at right
-//! angles to it, projected twice (the Gram-Schmidt process; Giraud,
-//! Langou and Rozloznik 2005). Rounding may then shift the weights by much, but only along directions in which the
-//! points hardly move: the *place* in the plane of both directions is right to some roundings of the extent. If the weights
-//! fall outside although the true ones do not, then on the way from the true place to the computed one a border is crossed; so
-//! there is a point of the border that close to the true place, and the borders are always looked at as well.
+//! **Why needles and parallel edges do no harm.** The point within a face is found as in
+//! [`triangle::closest`](super::triangle::closest), and the pair of points within two edges in the same way:
+//! by projecting on one direction and on another at right angles to it, which is made orthogonal twice (the
+//! Gram-Schmidt process; Giraud, Langou and Rozloznik 2005). Rounding may then change the weights
+//! considerably, but only along directions in which the points hardly move: the *place* in the plane of both
+//! directions is accurate to a few roundings of the extent. If the computed weights fall outside although the
+//! true ones do not, the way from the true place to the computed one crosses a border; so a point of that
+//! border is just as close to the true place, and the borders are always examined as well.
 
 mod frame;
 pub mod point_segment;
@@ -31,33 +34,34 @@ use crate::geometry::vector::{dot, scale, sub};
 /// The closest points of two primitives with `A` and `B` vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest<const A: usize, const B: usize> {
-    /// The distance, squared.
+    /// The squared distance.
     pub distance_squared: f64,
     /// Weights of the vertices of the first primitive that give its closest point: each in [0, 1], their sum 1 up to rounding.
     pub on_a: [f64; A],
-    /// The same for the second.
+    /// Weights of the vertices of the second primitive that give its closest point: each in [0, 1], their sum
+    /// 1 up to rounding.
     pub on_b: [f64; B],
-    /// From the closest point of the first to that of the second.
+    /// The vector from the closest point of the first primitive to that of the second.
     pub offset: Point,
 }
 
-/// The least part of a primitive that holds a point.
+/// The smallest part of a primitive that contains a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
     /// The vertex with this local number.
     Vertex(u8),
-    /// The inside of an edge: of a triangle the one opposite this vertex, of a segment edge 0.
+    /// The interior of an edge: for a triangle the edge opposite this vertex, for a segment edge 0.
     Edge(u8),
-    /// The inside of the triangle.
+    /// The interior of the triangle.
     Face,
 }
 
-/// What the distance gains by the motion of each vertex: its derivatives.
+/// The derivative of the distance with respect to the position of each vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gradient<const A: usize, const B: usize> {
-    /// By the vertices of the first primitive.
+    /// The derivatives with respect to the vertices of the first primitive.
     pub by_a: [Point; A],
-    /// By the vertices of the second.
+    /// The derivatives with respect to the vertices of the second primitive.
     pub by_b: [Point; B],
 }
 
@@ -67,36 +71,38 @@ impl<const A: usize, const B: usize> Closest<A, B> {
         self.distance_squared.sqrt()
     }
 
-    /// Which features of the first and of the second primitive hold the closest points: those whose vertices have weights
-    /// other than 0.
+    /// The features of the first and of the second primitive that contain the closest points: those whose
+    /// vertices have nonzero weights.
     pub fn features(&self) -> [Feature; 2] {
         [Feature::of(&self.on_a), Feature::of(&self.on_b)]
     }
 
     /// The unit vector from the first closest point to the second; `None` at distance 0.
     ///
-    /// It is as good as the distance: where that is within rounding of 0, the direction is rounding too.
+    /// It is as accurate as the distance: where that is within rounding of 0, the direction is meaningless.
     pub fn direction(&self) -> Option<Point> {
         let largest = self.offset.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        // Divided, not multiplied by the inverse: that of the smallest numbers is infinite.
+        // Divided, not multiplied by the inverse: the inverse of the smallest numbers is infinite.
         let offset = self.offset.map(|x| x / largest);
         (self.distance_squared > 0.0 && largest > 0.0)
             .then(|| scale(offset, 1.0 / dot(offset, offset).sqrt()))
     }
 
-    /// The derivative of the distance by every vertex: with the unit vector `n` from the first closest point to the
-    /// second, `-w n` for a vertex of the first with weight `w`, and `w n` for one of the second. (The weights change
-    /// too when a vertex moves, but at a smallest distance that is of second order.)
+    /// The derivative of the distance with respect to every vertex: with the unit vector `n` from the first
+    /// closest point to the second, `-w n` for a vertex of the first primitive with weight `w`, and `w n` for
+    /// one of the second. (The weights change too when a vertex moves, but at a minimum of the distance that
+    /// effect is of second order.)
     ///
-    /// `None` at distance 0, where the distance has no derivative: it grows in whichever way touching primitives part, and stays 0 while crossing
-    /// ones move. Where several pairs of points are equally close (parallel edges), this is the derivative for
-    /// the pair that was found; the distance then grows no faster than it says, to first order.
+    /// `None` at distance 0, where the distance has no derivative: it grows however touching primitives
+    /// separate, and stays 0 while crossing ones move. Where several pairs of points are equally close
+    /// (parallel edges), this is the derivative for the pair that was found; to first order, the distance
+    /// then grows no faster than this.
     pub fn gradient(&self) -> Option<Gradient<A, B>> {
         let n = self.direction()?;
         Some(Gradient { by_a: self.on_a.map(|w| scale(n, -w)), by_b: self.on_b.map(|w| scale(n, w)) })
     }
 
-    /// The same with first and second exchanged.
+    /// Exchanges the first and the second primitive.
     pub fn swapped(&self) -> Closest<B, A> {
         Closest {
             distance_squared: self.distance_squared,
@@ -108,7 +114,8 @@ impl<const A: usize, const B: usize> Closest<A, B> {
 }
 
 impl Feature {
-    /// The feature of a segment or triangle that holds the inside point with these weights: a vertex, an edge or the face.
+    /// The feature of a segment or triangle whose interior contains the point with these weights: a vertex,
+    /// an edge or the face.
     pub fn of(weights: &[f64]) -> Self {
         let held = |i: &usize| weights[*i] != 0.0;
         let n_held = (0..weights.len()).filter(held).count();

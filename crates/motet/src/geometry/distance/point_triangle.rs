@@ -1,11 +1,11 @@
-//! A point and a triangle.
+//! The closest points of a point and a triangle.
 
 use super::Closest;
 use super::frame::{Frame, offset};
 use crate::base::Point;
 use crate::geometry::triangle;
 
-/// The closest points of a point and a triangle. A triangle without area is its edges.
+/// The closest points of a point and a triangle. A triangle without area is treated as its edges.
 pub fn closest(p: Point, triangle: [Point; 3]) -> Closest<1, 3> {
     let (frame, p, triangle) = Frame::around([p], triangle);
     let on_b = triangle::closest(triangle, p[0]);

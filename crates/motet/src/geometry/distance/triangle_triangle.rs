@@ -1,4 +1,5 @@
-//! Two triangles: how near they come, whether they meet, exactly, and a search that stops where they are not near enough.
+//! Two triangles: their closest points, the exact test whether they meet, and a search that stops early where
+//! they are not near enough.
 
 use super::frame::{Frame, offset};
 use super::{Closest, segment_segment, segment_triangle};
@@ -7,15 +8,17 @@ use crate::geometry::predicates::orient3d;
 use crate::geometry::triangle;
 use crate::geometry::vector::{add, dot, is_finite, sub};
 
-/// Edge `i` runs from the first to the second vertex, opposite vertex `i`.
+/// Edge `i`, opposite vertex `i`, from its first to its second vertex.
 const EDGES: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// How far rounding may shift how wide a slab is, with local coordinates below 2: two sums of three products, some 2e-15 at the worst.
+/// The largest error by rounding of the width of a slab, for local coordinates below 2: two sums of three
+/// products, at worst about 2e-15.
 const ROUNDING: f64 = 2e-15;
 
-/// The closest points of two triangles: the nearest of six pairs of a vertex with its closest point of the other triangle and of
-/// nine pairs of points within edges (an edge's ends are vertices, and done with). Where the triangles meet, which exact
-/// predicates decide, the distance is 0 and the points are one, up to rounding. 0.33 us for triangles half an edge apart.
+/// The closest points of two triangles: the nearest among six pairs of a vertex with its closest point of the
+/// other triangle and nine pairs of points within edges (the ends of edges are vertices, which are covered).
+/// Where the triangles meet, as decided by exact predicates, the distance is 0 and the two points coincide up
+/// to rounding. Takes 0.33 us for triangles half an edge apart.
 pub fn closest(a: [Point; 3], b: [Point; 3]) -> Closest<3, 3> {
     let (frame, local_a, local_b) = Frame::around(a, b);
     let mut search = Search::new(local_a, local_b);
@@ -23,9 +26,9 @@ pub fn closest(a: [Point; 3], b: [Point; 3]) -> Closest<3, 3> {
     search.finish(&frame, a, b)
 }
 
-/// [`closest`] if the distance squared is below the bound, else `None`; that is often known early, because a slab between the
-/// triangles, at right angles to the best pair so far, is as wide as the bound. `None` is never said of
-/// triangles that are nearer than the bound by more than rounding.
+/// Returns [`closest`] if the squared distance is below the bound, else `None`. That is often known early,
+/// because a slab between the triangles, at right angles to the best pair so far, is as wide as the bound.
+/// `None` is never returned for triangles that are nearer than the bound by more than rounding.
 ///
 /// For triangles half an edge apart, where [`closest`] takes 330 ns: 60 ns if the bound is a tenth of the distance, 75 ns at a
 /// quarter, 115 ns at half, 250 ns at nine tenths, and 350 ns if they are below it.
@@ -41,7 +44,8 @@ pub fn closest_below(a: [Point; 3], b: [Point; 3], bound_squared: f64) -> Option
     (found.distance_squared < bound_squared).then_some(found)
 }
 
-/// Whether two triangles have a point in common, borders included; exact. A triangle without area is its edges.
+/// Whether two triangles have a point in common, borders included. The answer is exact. A triangle without
+/// area is treated as its edges.
 pub fn meet(a: [Point; 3], b: [Point; 3]) -> bool {
     !is_beside(a, b)
         && !is_beside(b, a)
@@ -54,7 +58,7 @@ fn is_beside([p, q, r]: [Point; 3], b: [Point; 3]) -> bool {
     first != 0 && b[1..].iter().all(|&x| orient3d(p, q, r, x) == first)
 }
 
-/// Each edge with the triangle that it may go through; and which edge it is, those of `a` first.
+/// Each edge with the triangle that it may cross and its number; the edges of `a` come first.
 fn edge_pairs(a: [Point; 3], b: [Point; 3]) -> impl Iterator<Item = ([Point; 2], [Point; 3], usize)> {
     (0..6).map(move |k| {
         let (own, other) = if k < 3 { (a, b) } else { (b, a) };
@@ -66,7 +70,7 @@ fn sum([p, q, r]: [Point; 3]) -> Point {
     add(add(p, q), r)
 }
 
-/// The best pair so far; all in local coordinates.
+/// The best pair so far, in local coordinates.
 struct Search {
     a: [Point; 3],
     b: [Point; 3],
@@ -74,20 +78,20 @@ struct Search {
     on_b: [f64; 3],
     offset: Point,
     distance_squared: f64,
-    /// A slab at least this wide lies between the triangles; 0 if none is known.
+    /// The width of the widest slab known to lie between the triangles; 0 if none is known.
     apart: f64,
 }
 
 impl Search {
     fn new(a: [Point; 3], b: [Point; 3]) -> Self {
         let vertex = [1.0, 0.0, 0.0];
-        // What stays if coordinates are not finite, so that nothing is better.
+        // Kept where coordinates are not finite, so that no pair is better.
         let (offset, distance_squared) = ([f64::NAN; 3], f64::INFINITY);
         Self { a, b, on_a: vertex, on_b: vertex, offset, distance_squared, apart: 0.0 }
     }
 
-    /// Looks at one pair after the other. False as soon as the triangles are known to be no nearer than the bound; stops also when
-    /// a slab shows that no pair is nearer than the best one.
+    /// Examines one pair after the other. Returns false as soon as the triangles are known to be no nearer
+    /// than the bound; also stops when a slab shows that no pair is nearer than the best one.
     fn run(&mut self, bound: f64) -> bool {
         let vertex = |i: usize| [0, 1, 2].map(|k| if k == i { 1.0 } else { 0.0 });
         for i in 0..3 {
@@ -125,7 +129,8 @@ impl Search {
         }
     }
 
-    /// Whether the slab along the best pair says enough: as wide as the bound, or as the pair is far apart.
+    /// Whether the slab along the best pair decides: it is wider than the bound, or as wide as the pair is
+    /// far apart.
     #[inline(always)]
     fn is_over(&mut self, bound: f64) -> bool {
         self.apart = self.slab(self.offset).max(self.apart);
@@ -133,7 +138,8 @@ impl Search {
             || self.apart > self.distance_squared.sqrt() - ROUNDING && self.apart > ROUNDING
     }
 
-    /// How wide the slab at right angles to `direction` is that has `a` below and `b` above; negative where they overlap, NaN without a direction.
+    /// The width of the slab perpendicular to `direction` that has `a` below and `b` above; negative where
+    /// they overlap, NaN where `direction` is zero.
     #[inline(always)]
     fn slab(&self, direction: Point) -> f64 {
         let [a, b] = [self.a, self.b].map(|t| t.map(|p| dot(p, direction)));
@@ -142,7 +148,8 @@ impl Search {
         (above - below) / dot(direction, direction).sqrt()
     }
 
-    /// Where no slab lies between the triangles, exact predicates say whether they meet.
+    /// Returns the result. Where no slab lies between the triangles, exact predicates decide whether they
+    /// meet.
     fn finish(mut self, frame: &Frame, a: [Point; 3], b: [Point; 3]) -> Closest<3, 3> {
         if self.apart <= ROUNDING && is_finite(self.offset) && meet(a, b) {
             self.take_common_point(a, b);
@@ -151,8 +158,8 @@ impl Search {
         frame.closest(self.on_a, self.on_b, self.offset)
     }
 
-    /// Where an edge goes through the other triangle. Triangles in one plane, and those that touch only, have common points among
-    /// the pairs of before.
+    /// Takes the point where an edge crosses the other triangle. Coplanar triangles, and those that only
+    /// touch, have common points among the pairs examined before.
     #[cold]
     fn take_common_point(&mut self, a: [Point; 3], b: [Point; 3]) {
         for (edge, other, k) in

@@ -1,10 +1,9 @@
 //! The last stage: determinants of coordinates without any rounding, for every finite `f64`.
 //!
-//! Coordinates become whole multiples of the largest common power of two. Where all
-//! differences stay below 2^61 (points of a grid, also one of step 0.1), numbers of fixed
-//! width do: about 0.1 us for a tie of five grid points, where floating-point expansions
-//! (Shewchuk 1997) took 0.9 us. Anything else goes to numbers of any width, up to some
-//! 10,000 bits for points that span the whole range of `f64`.
+//! Coordinates become integer multiples of the largest common power of two. Where all differences stay below
+//! 2^61 (as for points of a grid, even one of step 0.1), integers of fixed width suffice: about 0.1 us for a
+//! tie of five grid points, where floating-point expansions (Shewchuk 1997) took 0.9 us. All else uses
+//! integers of any width, up to some 10,000 bits for points that span the whole range of `f64`.
 
 use super::integer::{Big, Fixed};
 use crate::base::Point;
@@ -37,8 +36,8 @@ pub(crate) fn insphere(a: Point, others: [Point; 4]) -> i8 {
     }
 }
 
-/// Determinants `(b-a) x (c-a) . (d-a)` of several tets as floats, each right to the last
-/// digits and all divided by one power of two, so that their ratios are right too.
+/// Determinants `(b-a) x (c-a) . (d-a)` of several tets as floats, each accurate to the last digits and all
+/// divided by one power of two, so that their ratios are accurate too.
 #[cold]
 #[inline(never)]
 pub(crate) fn orient3d_ratios<const N: usize>(tets: [[Point; 4]; N]) -> [f64; N] {
@@ -52,7 +51,7 @@ pub(crate) fn orient3d_ratios<const N: usize>(tets: [[Point; 4]; N]) -> [f64; N]
     determinants.map(|x| x.ratio_to_power(bits))
 }
 
-/// `x = mantissa * 2^exponent` with an odd mantissa; zero has the exponent `i32::MAX`.
+/// Decodes `x = mantissa * 2^exponent` with an odd mantissa; zero has the exponent `i32::MAX`.
 #[inline]
 fn decode(x: f64) -> (i64, i32) {
     let bits = x.to_bits();
@@ -68,7 +67,7 @@ fn decode(x: f64) -> (i64, i32) {
     (if x < 0.0 { -odd } else { odd }, exponent + zeros as i32)
 }
 
-/// The largest power of two of which all coordinates are whole multiples.
+/// The exponent of the largest power of two of which all coordinates are integer multiples.
 fn common_exponent(points: &[Point]) -> i32 {
     points.iter().flatten().map(|&x| decode(x).1).min().unwrap_or(0)
 }
@@ -80,7 +79,7 @@ fn in_units((mantissa, exponent): (i64, i32), unit: i32) -> Option<i128> {
     (shift <= 66).then(|| i128::from(mantissa) << shift)
 }
 
-/// The differences to `a`, if all stay below 2^61.
+/// The differences from `a` in common units, if all stay below 2^61.
 #[inline]
 fn small_rows<const N: usize>(a: Point, others: [Point; N]) -> Option<[Row; N]> {
     let origin = a.map(decode);
@@ -116,7 +115,7 @@ fn det3_of_minors(a: i64, x: i128, b: i64, y: i128, c: i64, z: i128) -> Fixed<3>
     product(a, x).plus(product(b, y)).plus(product(c, z))
 }
 
-/// |b|^2 [c,d,x] - |c|^2 [b,d,x] + |d|^2 [b,c,x] - |x|^2 [b,c,d]: below 2^313.
+/// The sign of |b|^2 [c,d,x] - |c|^2 [b,d,x] + |d|^2 [b,c,x] - |x|^2 [b,c,d], which stays below 2^313.
 fn insphere_small([b, c, d, x]: [Row; 4]) -> i8 {
     let squared = |p: Row| p.iter().map(|&v| i128::from(v) * i128::from(v)).sum::<i128>();
     let lifted = |p: Row, det: Fixed<3>| Fixed::<2>::from(squared(p)).resized::<5>().times(det.resized());
@@ -148,24 +147,25 @@ fn insphere_big([b, c, d, x]: &[BigRow; 4]) -> i8 {
     plus.minus(&minus).sign()
 }
 
-/// Coordinates of any length: whole multiples of a power of two.
+/// A point with exact coordinates of any length: integer multiples of a power of two.
 pub(crate) struct Exact {
     units: BigRow,
     exponent: i32,
 }
 
 impl Exact {
-    /// A point as it is.
+    /// A point with the given coordinates.
     pub(crate) fn given(p: Point) -> Self {
         let exponent = common_exponent(&[p]);
         Self { units: p.map(|x| in_big_units(x, exponent)), exponent }
     }
 
-    /// `from + s (to - from) + t (third - from)`
+    /// The point `from + s (to - from) + t (third - from)`.
     pub(crate) fn between(from: Point, to: [Point; 2], shares: [f64; 2]) -> Self {
         let unit = common_exponent(&[from, to[0], to[1]]);
         let shares = shares.map(decode);
-        // Shares below 1 have exponents below 0, so a unit of the corners is a whole number of the result's.
+        // Shares below 1 have exponents below 0, so a unit of the corners is an integer multiple of the
+        // result's.
         let down = shares[0].1.min(shares[1].1).min(0);
         let shares = shares.map(|(mantissa, exponent)| {
             Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(down) })
@@ -195,12 +195,12 @@ fn in_big_units(x: f64, unit: i32) -> Big {
     Big::shifted(mantissa, if mantissa == 0 { 0 } else { exponent.abs_diff(unit) })
 }
 
-/// The largest power of two of which all coordinates of points are known to be multiples.
+/// The exponent of the largest power of two of which all coordinates of the points are known to be multiples.
 fn unit_of(points: &[Exact]) -> i32 {
     points.iter().filter(|p| !p.is_origin()).map(|p| p.exponent).min().unwrap_or(0)
 }
 
-/// Differences to the first point, in one unit.
+/// Differences from the first point, in one common unit.
 fn rows_of<const N: usize, const M: usize>(points: &[Exact; N], unit: i32) -> [BigRow; M] {
     let units = |p: &Exact| if p.is_origin() { Default::default() } else { p.in_units(unit) };
     let origin = units(&points[0]);
@@ -210,14 +210,14 @@ fn rows_of<const N: usize, const M: usize>(points: &[Exact; N], unit: i32) -> [B
     })
 }
 
-/// [`orient3d`] of points of any length.
+/// [`orient3d`] for points with coordinates of any length.
 #[cold]
 pub(crate) fn orient3d_of(points: [Exact; 4]) -> i8 {
     let [b, c, d] = rows_of(&points, unit_of(&points));
     det3(&b, &c, &d).sign()
 }
 
-/// [`orient3d_ratios`] for points of any length.
+/// [`orient3d_ratios`] for points with coordinates of any length.
 #[cold]
 pub(crate) fn orient3d_ratios_of<const N: usize>(tets: [[Exact; 4]; N]) -> [f64; N] {
     let unit = tets.iter().map(|points| unit_of(points)).min().unwrap_or(0);
@@ -229,7 +229,7 @@ pub(crate) fn orient3d_ratios_of<const N: usize>(tets: [[Exact; 4]; N]) -> [f64;
     determinants.map(|x| x.ratio_to_power(bits))
 }
 
-/// [`insphere`] of points of any length.
+/// [`insphere`] for points with coordinates of any length.
 #[cold]
 pub(crate) fn insphere_of(points: [Exact; 5]) -> i8 {
     insphere_big(&rows_of(&points, unit_of(&points)))

@@ -1,10 +1,10 @@
-//! Whether a point lies inside the sphere through four others: exact, in three stages.
+//! The exact in-sphere test, in three stages: whether a point lies inside the sphere through four others.
 //!
-//! Relative to the first point `a`, with `x = e - a`, the determinant is `N . x - V |x|^2`,
-//! where `V = b x c . d` is six times the volume and
-//! `N = |b|^2 c x d + |c|^2 d x b + |d|^2 b x c` points at the centre (length 12 times volume times
-//! distance); it is computed as `(|b|^2 c - |c|^2 b) x d + |d|^2 b x c`, which saves a cross product. The Delaunay
-//! builder stores `N`, `V` and a bound for each tet.
+//! Relative to the first point `a`, with `x = e - a`, the determinant is `N . x - V |x|^2`, where `V = b x c
+//! . d` is six times the volume and `N = |b|^2 c x d + |c|^2 d x b + |d|^2 b x c` points towards the centre
+//! (its length is 12 times the volume times the distance to the centre). `N` is computed as `(|b|^2 c - |c|^2
+//! b) x d + |d|^2 b x c`, which saves a cross product. The Delaunay builder stores `N`, `V` and a bound for
+//! each tet.
 //!
 //! Error bounds, with `P = |b||c||d|`, `S = |b|+|c|+|d|`, `r = |x|`, `m = |x|_1 >= r`, `u = 2^-53`:
 //! - `f64`: a component of N costs 5u (|b|^2: difference twice, square, two sums), 1u (c: difference), product,
@@ -19,18 +19,18 @@ use crate::base::Point;
 use crate::geometry::{fused, vector};
 use pulp::{Scalar, Simd};
 
-/// Error of `N . x - V |x|^2` in `f64` over `P (S m + r^2)`.
+/// Error of `N . x - V |x|^2` in `f64`, relative to `P (S m + r^2)`.
 pub(crate) const FILTER: f64 = 20.0 * U;
-/// Error in pairs over the error in `f64`.
+/// Ratio of the error bound in pairs to that in `f64`.
 pub(crate) const PAIR_OVER_FILTER: f64 = 32.0 * U;
-/// Beyond this difference the stages before the exact one could overflow.
+/// Beyond this coordinate difference the stages before the exact one could overflow.
 const LARGEST: f64 = 1.2e30; // 2^100
-/// More than all underflow together can amount to: 2^-1074 times 2^300 and small factors.
+/// More than all underflow together can contribute: 2^-1074 times 2^300 and small factors.
 pub(crate) const UNDERFLOW: f64 = 1e-225; // 2^-747
 
-/// Sign of the in-sphere determinant: 1 when `e` lies inside the sphere through the positively
-/// oriented tet a, b, c, d, -1 when outside, 0 exactly when on it; the other way round
-/// for a negatively oriented tet. Exact for all finite coordinates.
+/// Sign of the in-sphere determinant: 1 when `e` lies inside the sphere through the positively oriented tet
+/// a, b, c, d, -1 when outside, 0 exactly when on it; reversed for a negatively oriented tet. Exact for all
+/// finite coordinates.
 pub fn insphere(a: Point, b: Point, c: Point, d: Point, e: Point) -> i8 {
     let (determinant, bound, largest) = filtered::<Scalar>(a, b, c, d, e);
     if largest < LARGEST {
@@ -42,7 +42,7 @@ pub fn insphere(a: Point, b: Point, c: Point, d: Point, e: Point) -> i8 {
     exact::insphere(a, [b, c, d, e])
 }
 
-/// Determinant, bound of its error, largest difference to `a`.
+/// The determinant, a bound on its error, and the largest difference from `a`.
 #[inline(always)]
 fn filtered<S: Simd>(a: Point, b: Point, c: Point, d: Point, e: Point) -> (f64, f64, f64) {
     let [b, c, d, x] = [b, c, d, e].map(|p| vector::sub(p, a));
@@ -64,8 +64,8 @@ pub(crate) fn minors<S: Simd>([b, c, d]: [Point; 3], [b2, c2, d2]: [f64; 3]) -> 
     (fused::scale_add::<S>(bc, d2, fused::cross::<S>(w, d)), fused::dot::<S>(bc, d))
 }
 
-/// Stages two and three, given the error bound of the first (infinite or NaN: straight to the
-/// third). Differences must stay below 2^100 unless `bound` is infinite.
+/// Stages two and three, given the error bound of the first (infinite or NaN goes straight to the third).
+/// Differences must stay below 2^100 unless `bound` is infinite.
 #[inline(always)]
 pub(crate) fn beyond_filter<S: Simd>(a: Point, b: Point, c: Point, d: Point, e: Point, bound: f64) -> i8 {
     let determinant = in_pairs::<S>(a, b, c, d, e).value();
@@ -75,8 +75,8 @@ pub(crate) fn beyond_filter<S: Simd>(a: Point, b: Point, c: Point, d: Point, e: 
     exact::insphere(a, [b, c, d, e])
 }
 
-/// Written out: a closure given to `map` would be compiled without the instructions of `S`, and call a function
-/// for each fused multiply-add (a sixth of all time on boundary points).
+/// The determinant in pairs. Written out: a closure given to `map` would be compiled without the instructions
+/// of `S`, and call a function for each fused multiply-add (a sixth of all time on boundary points).
 #[inline(always)]
 fn in_pairs<S: Simd>(a: Point, b: Point, c: Point, d: Point, e: Point) -> Pair {
     let (b, c, d, x) = (difference(b, a), difference(c, a), difference(d, a), difference(e, a));
@@ -96,7 +96,7 @@ fn in_pairs<S: Simd>(a: Point, b: Point, c: Point, d: Point, e: Point) -> Pair {
     dot::<S>(normal, x).minus(dot::<S>(bc, d).times::<S>(x2))
 }
 
-/// The parts that tests hold against rationals: value (as a pair) and bound of each stage.
+/// The parts that tests compare with rational arithmetic: the value (as a pair) and the bound of each stage.
 #[cfg(test)]
 pub(crate) fn stages<S: Simd>(points: [Point; 5]) -> [(Pair, f64); 2] {
     let [a, b, c, d, e] = points;

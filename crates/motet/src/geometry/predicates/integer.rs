@@ -1,18 +1,17 @@
-//! Whole numbers wide enough for the last word: of fixed width, and of any width.
+//! Integers wide enough for the exact stage: of fixed width, and of any width.
 //!
-//! An `f64` is a whole number times a power of two, so a determinant of coordinates is a
-//! determinant of whole numbers times a power of two, and its sign needs no rounding at
-//! all. [`Fixed`] serves where the numbers fit (every grid does), [`Big`] always.
+//! An `f64` is an integer times a power of two, so a determinant of coordinates is a determinant of integers
+//! times a power of two, and its sign needs no rounding at all. [`Fixed`] serves where the numbers fit (as on
+//! every grid), [`Big`] always.
 
 use std::cmp::Ordering;
 
-/// A signed whole number of `64 N` bits (two's complement). The caller sees to it that
-/// results fit.
+/// A signed integer of `64 N` bits (two's complement). The caller must ensure that results fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Fixed<const N: usize>([u64; N]);
 
 impl<const N: usize> Fixed<N> {
-    /// The same number, wider (or narrower, if it fits).
+    /// The same number with `M` limbs: wider, or narrower if it fits.
     #[inline]
     pub(crate) fn resized<const M: usize>(self) -> Fixed<M> {
         let fill = if self.0[N - 1] >> 63 == 1 { u64::MAX } else { 0 };
@@ -41,7 +40,7 @@ impl<const N: usize> Fixed<N> {
         }))
     }
 
-    /// The product, to `64 N` bits: in two's complement the signs need no care.
+    /// The product modulo `2^(64 N)`: in two's complement the signs need no special treatment.
     #[inline]
     pub(crate) fn times(self, other: Self) -> Self {
         let mut product = [0u64; N];
@@ -72,7 +71,7 @@ impl From<i128> for Fixed<2> {
     }
 }
 
-/// A signed whole number of any size: sign and magnitude, least limb first, no leading zeros.
+/// A signed integer of any size: sign and magnitude, least limb first, without leading zero limbs.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub(crate) struct Big {
     negative: bool,
@@ -137,13 +136,13 @@ impl Big {
         if self.limbs.is_empty() { 0 } else { 1 - 2 * i8::from(self.negative) }
     }
 
-    /// How many bits the magnitude has.
+    /// The number of bits of the magnitude.
     pub(crate) fn bits(&self) -> u32 {
         self.limbs.last().map_or(0, |top| self.limbs.len() as u32 * 64 - top.leading_zeros())
     }
 
-    /// `self / 2^bits`, to the precision of an `f64` (the last digit cut, not rounded);
-    /// meant for `bits` of about [`Self::bits`].
+    /// Returns `self / 2^bits` to the precision of an `f64` (the last digit truncated, not rounded); meant
+    /// for `bits` of about [`Self::bits`].
     pub(crate) fn ratio_to_power(&self, bits: u32) -> f64 {
         let magnitude: f64 = self.limbs.iter().enumerate().rev().take(3).fold(0.0, |sum, (i, &limb)| {
             let exponent = (i as i32 * 64 - bits as i32).max(-1100);

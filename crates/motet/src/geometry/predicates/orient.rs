@@ -1,19 +1,19 @@
-//! On which side of a plane a point lies: exact, in three stages.
+//! The exact orientation test, in three stages: on which side of a plane a point lies.
 
 use super::exact;
 use super::pair::{Pair, U, cross, difference, dot};
 use crate::base::Point;
 use pulp::{Scalar, Simd};
 
-/// Error of the `f64` determinant over its permanent: each of the six terms suffers three
-/// differences, two products, one subtraction and two sums, 8u; the rest covers the
-/// rounding of the permanent.
+/// Error of the `f64` determinant relative to its permanent: each of the six terms has three differences, two
+/// products, one subtraction and two sums, 8u; the rest covers the rounding of the permanent.
 const FILTER: f64 = 9.0 * U;
-/// The same in pairs, where differences are exact: 53 u^2 by the rules in `pair`.
+/// Error of the determinant in pairs, where differences are exact, relative to its permanent: 53 u^2 by the
+/// rules in `pair`.
 const PAIR_FILTER: f64 = 100.0 * U * U;
-/// Beyond this difference the stages before the exact one could overflow.
+/// Beyond this coordinate difference the stages before the exact one could overflow.
 const LARGEST: f64 = 1.6e60; // 2^200
-/// More than all underflow together can amount to: 2^-1074 times 2^200 and small factors.
+/// More than all underflow together can contribute: 2^-1074 times 2^200 and small factors.
 const UNDERFLOW: f64 = 1e-255; // 2^-847
 
 /// Sign of `(b - a) x (c - a) . (d - a)`: 1 when the tet a, b, c, d is positively oriented, -1 when
@@ -29,7 +29,7 @@ pub fn orient3d(a: Point, b: Point, c: Point, d: Point) -> i8 {
     beyond_filter(a, b, c, d)
 }
 
-/// Determinant and permanent of the differences to `a`, and the largest difference.
+/// The determinant and the permanent of the differences from `a`, and the largest difference.
 #[inline(always)]
 fn filtered(a: Point, b: Point, c: Point, d: Point) -> (f64, f64, f64) {
     let [bx, by, bz] = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
@@ -46,7 +46,7 @@ fn filtered(a: Point, b: Point, c: Point, d: Point) -> (f64, f64, f64) {
     (determinant, permanent, largest)
 }
 
-/// Stages two and three.
+/// Stages two and three of [`orient3d`].
 #[cold]
 #[inline(never)]
 pub(crate) fn beyond_filter(a: Point, b: Point, c: Point, d: Point) -> i8 {
@@ -69,8 +69,8 @@ fn in_pairs<S: Simd>(a: Point, b: Point, c: Point, d: Point) -> Pair {
     dot::<S>(cross::<S>(b, c), d)
 }
 
-/// Whether each of the six terms has a factor that is exactly zero: so it is for four points
-/// of an axis-parallel wall, 99 of 100 calls that get here from the boundary of a box.
+/// Whether each of the six terms has a factor that is exactly zero: this holds for four points of an
+/// axis-parallel wall, 99 of 100 calls that get here from the boundary of a box.
 #[inline(always)]
 fn vanishes_by_pattern(a: Point, b: Point, c: Point, d: Point) -> bool {
     let [b, c, d] = [b, c, d].map(|p| [p[0] != a[0], p[1] != a[1], p[2] != a[2]]);
@@ -78,10 +78,10 @@ fn vanishes_by_pattern(a: Point, b: Point, c: Point, d: Point) -> bool {
     !((minor(1, 2) & d[0]) | (minor(2, 0) & d[1]) | (minor(0, 1) & d[2]))
 }
 
-/// Whether three points lie on one line; exact for all finite coordinates.
+/// Whether three points are collinear. Exact for all finite coordinates.
 pub fn collinear(a: Point, b: Point, c: Point) -> bool {
-    // On one line exactly when no point off the plane makes a tet with them; of the three
-    // axis directions at least one leads out of any plane.
+    // They are collinear exactly when every point makes a flat tet with them; of the three axis directions at
+    // least one leads out of any plane.
     let beside = |axis: usize| {
         let mut p = a;
         let lowered = p[axis] / 2.0 - 1.0;
@@ -91,17 +91,17 @@ pub fn collinear(a: Point, b: Point, c: Point) -> bool {
     (0..3).all(|axis| orient3d(a, b, c, beside(axis)) == 0)
 }
 
-/// Determinant in `f64` and a bound of its error (infinite where the filter does not hold).
+/// The determinant in `f64` and a bound on its error (infinite where the filter is not valid).
 pub(crate) fn with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
     let (determinant, permanent, largest) = filtered(a, b, c, d);
     (determinant, if largest < LARGEST { FILTER * permanent + UNDERFLOW } else { f64::INFINITY })
 }
 
-/// The plane through three points, made ready for many fourth ones.
+/// The plane through three points, prepared for tests of many other points.
 pub(crate) struct Plane {
     a: Point,
     normal: Point,
-    /// What the permanent has where the determinant has the normal.
+    /// The factors of the permanent that correspond to the normal in the determinant.
     magnitude: Point,
 }
 
@@ -120,7 +120,8 @@ impl Plane {
         }
     }
 
-    /// [`with_bound`] for these three points and `d`, by the same operations; the bound is infinite or NaN where they overflow.
+    /// [`with_bound`] for the three points of the plane and `d`, by the same operations; the bound is
+    /// infinite or NaN where they overflow.
     #[inline]
     pub(crate) fn with_bound(&self, d: Point) -> (f64, f64) {
         let [dx, dy, dz] = [d[0] - self.a[0], d[1] - self.a[1], d[2] - self.a[2]];
@@ -131,7 +132,7 @@ impl Plane {
     }
 }
 
-/// Determinant in pairs and a bound of its error, that of its last rounding included.
+/// The determinant in pairs and a bound on its error, including that of its last rounding.
 pub(crate) fn in_pairs_with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
     let (_, permanent, largest) = filtered(a, b, c, d);
     let determinant = in_pairs::<Scalar>(a, b, c, d).value();
@@ -139,7 +140,7 @@ pub(crate) fn in_pairs_with_bound([a, b, c, d]: [Point; 4]) -> (f64, f64) {
     (determinant, if largest < LARGEST { bound } else { f64::INFINITY })
 }
 
-/// The parts that tests hold against rationals: value (as a pair) and bound of each stage.
+/// The parts that tests compare with rational arithmetic: the value (as a pair) and the bound of each stage.
 #[cfg(test)]
 pub(crate) fn stages(a: Point, b: Point, c: Point, d: Point) -> [(Pair, f64); 2] {
     let (determinant, permanent, _) = filtered(a, b, c, d);

@@ -1,13 +1,12 @@
-//! Twice the digits of an `f64`: an unevaluated sum of two, without renormalising.
+//! Arithmetic with twice the digits of an `f64`: unevaluated sums of two, without renormalising.
 //!
-//! A [`Pair`] `(h, l)` stands for `h + l`. Sums and differences of plain numbers and
-//! products of plain numbers are exact pairs (Knuth 1969; Dekker 1971); further operations
-//! drop the smallest terms and, other than double-double arithmetic, leave `h` and `l`
-//! overlapping (Lange and Rump 2020, *Faithfully rounded floating-point computations*).
-//! That saves a third of the additions.
+//! A [`Pair`] `(h, l)` stands for `h + l`. Sums and differences of plain numbers and products of plain
+//! numbers are exact pairs (Knuth 1969; Dekker 1971); further operations drop the smallest terms and, unlike
+//! double-double arithmetic, let `h` and `l` overlap (Lange and Rump 2020, *Faithfully rounded floating-point
+//! computations*). That saves a third of the additions.
 //!
-//! Error bounds, with `u = 2^-53`, `A` a bound of the same expression with all terms taken
-//! absolute, `|l| <= k u A` and an error of at most `e u^2 A`:
+//! Error bounds, with `u = 2^-53`, `A` a bound on the same expression with all terms replaced by their
+//! absolute values, `|l| <= k u A` and an error of at most `e u^2 A`:
 //!
 //! | operation | k | e |
 //! |---|---|---|
@@ -38,13 +37,13 @@ impl Pair {
         Self { high, low: (a - (high - back)) - (b + back) }
     }
 
-    /// Both parts together, rounded.
+    /// The sum of both parts, rounded.
     #[inline(always)]
     pub(crate) fn value(self) -> f64 {
         self.high + self.low
     }
 
-    /// The same sum with a correction below the last place of what it corrects.
+    /// The same number with a correction below the last place of the leading part.
     #[inline(always)]
     pub(crate) fn normalized(self) -> Self {
         let high = self.high + self.low;
@@ -67,7 +66,7 @@ impl Pair {
         self.plus(Self { high: -other.high, low: -other.low })
     }
 
-    /// `self * other`; the machine's fused multiply-add where `S` has one.
+    /// `self * other`, with the machine's fused multiply-add where `S` has one.
     #[inline(always)]
     pub(crate) fn times<S: Simd>(self, other: Self) -> Self {
         let high = self.high * other.high;

@@ -1,19 +1,18 @@
-//! Ties broken by a thought: every point is lifted by an infinitesimal of its own.
+//! Ties broken symbolically: every point is lifted by an infinitesimal of its own.
 //!
-//! The in-sphere test asks on which side of a plane a point lies after lifting all points
-//! onto a paraboloid in four dimensions. If the point of rank k is lifted by a further e^(1/k)-like
-//! infinitesimal, the greatest rank by the most, no five points are cospherical any more, and
-//! the answer stays consistent from call to call (Devillers and Teillaud 2011,
-//! *Perturbations for Delaunay and weighted Delaunay 3D triangulations*). No orientation
-//! changes, so no flat tet becomes solid, and none arises.
+//! With all points lifted onto a paraboloid in four dimensions, the in-sphere test determines on which side
+//! of a hyperplane a point lies. If the point of rank k is lifted further by an infinitesimal like e^(1/k),
+//! the one of highest rank by the most, no five points are cospherical any more, and answers stay consistent
+//! from call to call (Devillers and Teillaud 2011, *Perturbations for Delaunay and weighted Delaunay 3D
+//! triangulations*). No orientation changes, so no flat tet becomes solid, and none arises.
 
 use super::{insphere, orient3d};
 use crate::base::Point;
 
-/// [`insphere`] that never answers 0: whether point 4 lies inside (1) or outside (-1) the
-/// sphere through the *positively oriented* tet of points 0 to 3, ties broken by `ranks`.
+/// [`insphere`] with ties broken by `ranks`, so that the result is never 0: whether point 4 lies inside (1)
+/// or outside (-1) the sphere through the *positively oriented* tet of points 0 to 3.
 ///
-/// Points must be distinct and ranks too; the answer depends on the order of the ranks only.
+/// Both points and ranks must be distinct; the result depends only on the order of the ranks.
 pub fn insphere_perturbed(points: [Point; 5], ranks: [u32; 5]) -> i8 {
     let [a, b, c, d, e] = points;
     match insphere(a, b, c, d, e) {
@@ -22,13 +21,13 @@ pub fn insphere_perturbed(points: [Point; 5], ranks: [u32; 5]) -> i8 {
     }
 }
 
-/// The answer for five points known to be cospherical.
+/// The result for five points known to be cospherical.
 pub(crate) fn break_tie(points: [Point; 5], ranks: [u32; 5]) -> i8 {
     break_tie_of(points, ranks, |[a, b, c, d]| orient3d(a, b, c, d))
 }
 
-/// [`break_tie`] of points of any kind: raising the query puts it outside; raising vertex v puts the query inside when it lies on
-/// the same side of v's facet as v.
+/// [`break_tie`] for points of any kind. Raising the query puts it outside; raising vertex v puts the query
+/// inside when it lies on the same side of v's facet as v.
 pub(crate) fn break_tie_of<P: Copy>(points: [P; 5], ranks: [u32; 5], orient3d: impl Fn([P; 4]) -> i8) -> i8 {
     let mut by_rank = [0, 1, 2, 3, 4];
     by_rank.sort_unstable_by_key(|&i| std::cmp::Reverse(ranks[i]));

@@ -1,14 +1,19 @@
-//! Signs for points that need not be representable: a vertex may lie anywhere on the segment between two given points, or in the triangle of three.
+//! Signs for points that need not be representable: a vertex may lie anywhere on the segment between two
+//! given points, or in the triangle of three.
 //!
-//! A point that divides a segment has, as a rule, no coordinates in `f64`: rounded, it leaves its segment and every plane through
-//! it. Here it stays what it is, `from + share (to - from)`, in a triangle with a second share of the way to its third corner (Attene 2020, *Indirect predicates for geometric constructions*, calls such
-//! points implicit). As the share is an `f64` as well, the coordinates are whole multiples of a power of two, so the exact stage
-//! needs no divisions: it is the one of given points with longer numbers.
+//! A point that divides a segment generally has no exact coordinates in `f64`: rounded, it leaves its segment
+//! and every plane through it. Here it is kept as `from + share (to - from)`, in a triangle with a second
+//! share of the way to its third corner (such points are called implicit by Attene 2020, *Indirect predicates
+//! for geometric constructions*). As a share is an `f64` as well, the coordinates are integer multiples of a
+//! power of two, so the exact stage needs no divisions: it is that of given points with longer numbers.
 //!
-//! Three stages again. The first two take the coordinates as they come out, in `f64` and in pairs, and add to their bounds what the
-//! error of the coordinates amounts to. With all differences at most `L` long and wrong by at most `e` in each component,
-//! - a 3 x 3 determinant is wrong by at most `3 sqrt(3) e (L + sqrt(3) e)^2`; with 2 e a difference (two points) `11 e (L + 4 e)^2` is enough;
-//! - the in-sphere determinant, four terms of degree five, by at most `4 * 5 * sqrt(3) * 2 e (L + 4 e)^4`; `70 e (L + 4 e)^4` is used.
+//! There are three stages again. The first two use the coordinates as computed, in `f64` and in pairs, and
+//! add the effect of their errors to the bounds. With all differences at most `L` long and wrong by at most
+//! `e` in each component,
+//! - a 3 x 3 determinant is wrong by at most `3 sqrt(3) e (L + sqrt(3) e)^2`; with an error of 2 e per
+//!   difference (two points) `11 e (L + 4 e)^2` is enough;
+//! - the in-sphere determinant, four terms of degree five, by at most `4 * 5 * sqrt(3) * 2 e (L + 4 e)^4`;
+//!   `70 e (L + 4 e)^4` is used.
 
 use super::exact::{self, Exact};
 use super::insphere::minors;
@@ -19,28 +24,30 @@ use crate::base::Point;
 use crate::geometry::vector;
 use pulp::Scalar;
 
-/// A place on a segment, or in a triangle.
+/// A point on a segment or in a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Between {
     from: Point,
     to: [Point; 2],
-    /// Of the ways to both, which are one way on a segment.
+    /// The shares of the ways to both points of `to`, which coincide on a segment.
     shares: [f64; 2],
     /// The coordinates, rounded.
     near: Point,
-    /// What the rounding left out, rounded.
+    /// The remainder of the rounding, itself rounded.
     rest: Point,
-    /// The largest coordinate that went into it.
+    /// The largest coordinate of the points that define it, in absolute value.
     size: f64,
 }
 
 impl Between {
-    /// The point `from + share (to - from)`, where the share is the sum of two: what an `f64` holds of it, and what is left. All finite, the share in (0, 1).
+    /// The point `from + share (to - from)`, where the share is the sum of two numbers: the nearest `f64` and
+    /// the remainder. All must be finite, the share in (0, 1).
     pub(crate) fn new(from: Point, to: Point, share: [f64; 2]) -> Self {
         Self::within(from, [to, to], share)
     }
 
-    /// The point `from + s (to - from) + t (third - from)`; all finite, both shares in [-1, 1] and their sum in [0, 1].
+    /// The point `from + s (to - from) + t (third - from)`. All must be finite, both shares in [-1, 1] and
+    /// their sum in [0, 1].
     pub(crate) fn within(from: Point, to: [Point; 2], shares: [f64; 2]) -> Self {
         let value = |i: usize| {
             let along = |k: usize| {
@@ -53,7 +60,7 @@ impl Between {
         Self { from, to, shares, near: value.map(|p| p.high), rest: value.map(|p| p.low), size }
     }
 
-    /// The nearest point with coordinates in `f64`, or one beside it.
+    /// The nearest point with coordinates in `f64`, or a neighbour of it.
     pub(crate) fn rounded(&self) -> Point {
         self.near
     }
@@ -65,7 +72,7 @@ impl Between {
     }
 }
 
-/// A point that is given, or one on a segment or in a triangle.
+/// A given point, or one on a segment or in a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spot<'a> {
     Given(Point),
@@ -95,7 +102,7 @@ impl Spot<'_> {
         }
     }
 
-    /// The largest coordinate that went into it.
+    /// The largest coordinate of the points that define it, in absolute value.
     fn size(&self) -> f64 {
         match self {
             Self::Given(p) => p.iter().fold(0.0, |m: f64, x| m.max(x.abs())),
@@ -111,20 +118,20 @@ impl Spot<'_> {
     }
 }
 
-/// The points themselves, where all are given.
+/// The points themselves, if all are given.
 fn all_given<const N: usize>(spots: &[Spot; N]) -> Option<[Point; N]> {
     let points = spots.map(|s| s.given().unwrap_or([f64::NAN; 3]));
     spots.iter().all(|s| matches!(s, Spot::Given(_))).then_some(points)
 }
 
-/// Sizes between which no stage before the exact one can over- or underflow.
+/// Range of sizes in which no stage before the exact one can over- or underflow.
 const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 
-/// What the differences between spots are known to.
+/// Bounds on the differences between spots and on their coordinates.
 struct Reach {
-    /// No difference is longer.
+    /// An upper bound on the length of the differences.
     length: f64,
-    /// Largest coordinate, those included from which points on segments come: what cancels leaves its error behind.
+    /// The largest coordinate, including those of the ends of segments: errors remain where coordinates cancel.
     coordinate: f64,
 }
 
@@ -140,13 +147,14 @@ impl Reach {
         SIZES.contains(&self.length) && self.coordinate < SIZES.end
     }
 
-    /// Error of a coordinate that has been rounded: a half in the last place, twice for good measure.
+    /// Error of a rounded coordinate: half a unit in the last place, doubled for safety.
     fn rounded(&self) -> f64 {
         2.0 * U * self.coordinate
     }
 
-    /// Error of a coordinate as a pair: 15 u^2 (|from| + s |to - from| + t |third - from|) by the rules in `pair`, at most 45 u^2 times the
-    /// largest coordinate; then normalised once, and once more as a difference.
+    /// Error of a coordinate as a pair: 15 u^2 (|from| + s |to - from| + t |third - from|) by the rules in
+    /// `pair`, at most 45 u^2 times the largest coordinate; normalised once for the coordinate, and once more
+    /// as a difference.
     fn in_pairs(&self) -> f64 {
         128.0 * U * U * self.coordinate
     }
@@ -177,7 +185,8 @@ pub(crate) fn orient3d_of(spots: [Spot; 4]) -> i8 {
     exact::orient3d_of(spots.map(|s| s.exact()))
 }
 
-/// Volumes of several tets as floats, each right to the last digits and all divided by one number, so that their ratios are right too.
+/// Volumes of several tets, each accurate to the last digits and all divided by one common number, so that
+/// their ratios are accurate too.
 pub(crate) fn volume_ratios<const N: usize>(tets: [[Spot; 4]; N]) -> [f64; N] {
     exact::orient3d_ratios_of(tets.map(|spots| spots.map(|s| s.exact())))
 }
@@ -216,7 +225,8 @@ pub(crate) fn insphere_perturbed_of(spots: [Spot; 5], ranks: [u32; 5]) -> i8 {
     }
 }
 
-/// Differences to the first spot, each pair normalised: the rules in `pair` want corrections small against what they correct.
+/// Differences from the first spot, each pair normalised: the rules in `pair` require corrections that are
+/// small compared with what they correct.
 fn differences<const N: usize, const M: usize>(spots: &[Spot; N]) -> [PairVector; M] {
     let origin = spots[0].in_pairs();
     std::array::from_fn(|k| {

@@ -1,4 +1,4 @@
-//! Signs and error bounds of every stage, held against rational arithmetic.
+//! Signs and error bounds of every stage, compared with rational arithmetic.
 
 use super::{collinear, exact, insphere, insphere_perturbed, orient, orient3d};
 use crate::base::Point;
@@ -44,8 +44,8 @@ fn sign(x: &Rational) -> i8 {
     }
 }
 
-/// Points as they occur: anywhere, on a grid (also one of a step that is no binary fraction), on a sphere, in a
-/// plane, turned, nearly equal, and of sizes from one end of `f64` to the other.
+/// Points of the kinds that occur: anywhere, on a grid (also one whose step is not a binary fraction), on a
+/// sphere, in a plane, rotated, nearly equal, and of sizes from one end of `f64` to the other.
 fn points(n: usize) -> impl Strategy<Value = Vec<Point>> {
     let raw = prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), n);
     let kind = 0..7u8;
@@ -129,8 +129,8 @@ proptest! {
 
     #[test]
     fn a_tie_is_broken_the_same_way_from_every_side(p in points(5), ranks in Just([0u32, 1, 2, 3, 4]).prop_shuffle()) {
-        // Lifted into four dimensions, five points make a simplex: whether e lies below the plane of a, b, c, d
-        // does not depend on which of them is called e, up to the parity of the exchange.
+        // Lifted into four dimensions, five points make a simplex: whether e lies below the plane of a, b, c,
+        // d does not depend on which of them is called e, up to the parity of the exchange.
         let mut p = five(&p);
         for i in 0..4 {
             prop_assume!((i + 1..5).all(|j| p[i] != p[j]));
@@ -185,7 +185,7 @@ fn the_whole_range_of_floats_has_exact_signs() {
 }
 
 mod spots {
-    //! Points on segments and in triangles: signs against rational arithmetic.
+    //! Signs for points on segments and in triangles, compared with rational arithmetic.
 
     use super::{Rational, det3, points, rational, sign};
     use crate::base::Point;
@@ -228,7 +228,7 @@ mod spots {
         )
     }
 
-    /// Which of five are on segments or in triangles, between which of the points, and where.
+    /// Which of five points lie on segments or in triangles, between which of the points, and where.
     fn kinds() -> impl Strategy<Value = Vec<(bool, [usize; 3], f64, f64)>> {
         let share = prop_oneof![Just(0.5), Just(0.25), 0.01..0.99f64, Just(1e-9), Just(1.0 - 1e-12)];
         let second =

@@ -1,5 +1,5 @@
-//! Cotangents of the angles of a tet: in [0, pi] they fall as the angle rises, so
-//! the extreme angles are found among them before any arc is taken.
+//! Cotangents of the angles of a tet: in [0, pi] they fall as the angle rises, so the extreme angles are
+//! found among them before any arctangent is taken.
 
 use crate::base::Point;
 use crate::geometry::quality::scaled::Scaled;
@@ -22,7 +22,7 @@ pub(super) struct Extremes {
 impl Extremes {
     const NONE: Self = Self { low: f64::INFINITY, high: f64::NEG_INFINITY };
 
-    /// `x` is a number: comparisons spare the care that `f64::min` takes of others.
+    /// Includes `x`, which must be a number: plain comparisons save the handling of NaN in `f64::min`.
     #[inline(always)]
     fn add(&mut self, x: f64) {
         self.low = if x < self.low { x } else { self.low };
@@ -30,15 +30,15 @@ impl Extremes {
     }
 }
 
-/// Cosine by sine, both up to one positive factor. 0/0, an angle between things
-/// without extent, counts as angle 0.
+/// Cotangent from cosine and sine, both up to one positive factor. 0/0, an angle at something without extent,
+/// counts as angle 0.
 #[inline(always)]
 fn ratio(cosine: f64, sine: f64) -> f64 {
     let cotangent = cosine / sine;
     if cotangent.is_nan() { f64::INFINITY } else { cotangent }
 }
 
-/// `x |x|`: sorts as x does, and spares roots until the extremes are known.
+/// `x |x|`: has the order of x, and saves square roots until the extremes are known.
 #[inline(always)]
 fn signed_square(x: f64) -> f64 {
     x * x.abs()
@@ -49,13 +49,12 @@ fn signed_root(x: f64) -> f64 {
     x.abs().sqrt().copysign(x)
 }
 
-/// The measured parts of a tet: the lengths of its edges, twice the area vector of each facet
-/// (outward for a positive tet), and six volumes without their sign.
+/// The measured parts of a tet: the squared lengths of its edges, twice the area vector of each facet
+/// (outward for a positive tet), and six times the absolute volume.
 ///
-/// Loops rather than closures over arrays, and always inlined: half the
-/// instructions of the plainer form.
+/// Loops instead of closures over arrays, always inlined: this halves the number of instructions.
 pub(super) struct Parts {
-    /// Of the edges in the order of [`EDGES`].
+    /// Squared lengths of the edges, in the order of [`EDGES`].
     lengths_squared: [f64; 6],
     normals: [Point; 4],
     volume_6: f64,
@@ -80,24 +79,23 @@ impl Parts {
         Self { lengths_squared, normals, volume_6: tet.volume_6().abs() }
     }
 
-    /// At the edge e between facets with normals m and n, `-m.n`, to which the
-    /// cosine of the dihedral angle is proportional. The sine is so to
-    /// `|m x n|`, and `m x n` is e times six volumes: accurate where m and n are
-    /// nearly parallel and the cosine says nothing.
+    /// Returns `-m.n` at the edge e between facets with normals m and n, to which the cosine of the dihedral
+    /// angle is proportional. The sine is proportional to `|m x n|`, and `m x n` is e times six volumes: this
+    /// is accurate where m and n are nearly parallel and the cosine carries no information.
     #[inline(always)]
     fn dihedral_cosine(&self, e: usize) -> f64 {
         let [i, j] = EDGES[5 - e];
         -dot(self.normals[i], self.normals[j])
     }
 
-    /// Cotangents of the dihedral angles at the six edges. An inverted tet has
+    /// Cotangents of the dihedral angles at the six edges, in the order of [`EDGES`]. An inverted tet has
     /// those of its mirror image.
     pub(super) fn dihedral(&self) -> [f64; 6] {
         [0, 1, 2, 3, 4, 5]
             .map(|e| ratio(self.dihedral_cosine(e), self.volume_6 * self.lengths_squared[e].sqrt()))
     }
 
-    /// The extremes of [`Self::dihedral`].
+    /// The smallest and the largest of [`Self::dihedral`].
     #[inline(always)]
     pub(super) fn dihedral_extremes(&self) -> Extremes {
         let mut extremes = Extremes::NONE;

@@ -1,4 +1,4 @@
-//! EAS, the equi-angle quality: the measure that motet judges by.
+//! EAS, the equi-angle quality: the measure by which motet judges tets.
 
 use crate::base::Point;
 use crate::geometry::quality::equiangle_skew::skew;

@@ -1,13 +1,13 @@
-//! The longest edge by the shortest.
+//! The ratio of the longest edge to the shortest.
 
 use crate::base::Point;
 use crate::geometry::quality::scaled::Scaled;
 
-/// What stands for "infinite", as in Verdict (`VERDICT_DBL_MAX`).
+/// The value for "infinite", as in Verdict (`VERDICT_DBL_MAX`).
 const LARGEST: f64 = 1e30;
 
-/// The longest edge by the shortest: 1 regular, `1e30` at most, which also
-/// stands for a tet with an edge of no length.
+/// The ratio of the longest edge to the shortest: 1 for the regular tet, at most `1e30`, which also stands
+/// for a tet with an edge of no length.
 pub fn edge_ratio(tet: [Point; 4]) -> f64 {
     let squares = Scaled::new(tet).lengths_squared();
     let longest = squares.iter().copied().fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Equi-angle skew: how far the worst angle is from that of the regular tet.
 //!
-//! Four angles are worked on at a time, which took little more than half the time of one after the other.
+//! Four angles are computed at a time, which takes little more than half the time of one by one.
 //!
 //! ```text
 //!   lane   facet    one side   another   the third
@@ -22,8 +22,8 @@ use crate::geometry::quality::cotangents::angle;
 use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::quality::scaled::Scaled;
 
-/// 0 for the regular tet, 1 for a degenerate one, whichever way it is turned:
-/// Verdict's `tet_equiangle_skew`, over the 6 dihedral and the 12 face angles.
+/// Verdict's `tet_equiangle_skew`, over the 6 dihedral and the 12 face angles: 0 for the regular tet, 1 for a
+/// degenerate one, in either orientation.
 ///
 /// `max of (Dmax - T)/(pi - T), (T - Dmin)/T, (Fmax - pi/3)/(2 pi/3), (pi/3 - Fmin)/(pi/3)`
 /// with `T = acos(1/3)`.
@@ -32,10 +32,10 @@ pub fn equiangle_skew(tet: [Point; 4]) -> f64 {
     skew(&tet, tet.volume_6())
 }
 
-/// Of a tet of this volume.
+/// The skew of a tet with this volume.
 #[inline]
 pub(super) fn skew(tet: &Scaled, volume_6: f64) -> f64 {
-    // Then dihedral angles are 0 and pi.
+    // Then all dihedral angles are 0 or pi.
     if volume_6 == 0.0 {
         return 1.0;
     }
@@ -62,7 +62,7 @@ impl<F: Four> NullaryFnOnce for Skew<F> {
     }
 }
 
-/// That of four lanes; see the top of the file.
+/// The skew, computed in four lanes; see the top of the file.
 #[inline(always)]
 fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64) -> f64 {
     let from = vectors::<F>(machine, [b, a, a, a]);
@@ -71,7 +71,7 @@ fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64
     let third = sub(vectors::<F>(machine, [d, d, d, c]), vectors::<F>(machine, [c, c, b, b]));
     let normals = cross(one, another);
 
-    // Of the angles of a facet, and then of all four, the cotangents that are extreme.
+    // The extreme cotangents of the angles of each facet, and then of all four facets.
     let p = dot(one, third) * F::load(machine, &[-1.0, 1.0, -1.0, 1.0]);
     let q = dot(another, third) * F::load(machine, &[1.0, -1.0, 1.0, -1.0]);
     let r = dot(one, another);
@@ -79,7 +79,7 @@ fn by_four<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4], volume_6: f64
     let low = ratio::<F>(machine, signed_square(p.min(q).min(r)), sine).least();
     let high = ratio::<F>(machine, signed_square(p.max(q).max(r)), sine).most();
 
-    // The dihedral angles at one side of each facet, then those at the third ones.
+    // The dihedral angles at one side of each facet, then those at the third sides.
     let stored = [normals[0].stored(), normals[1].stored(), normals[2].stored()];
     let at_one = cosine::<F>(machine, &stored, [0, 1, 2, 1], [3, 2, 3, 3]);
     let at_one = ratio::<F>(machine, signed_square(at_one), dot(one, one));
@@ -98,7 +98,7 @@ fn vectors<F: Four>(machine: F::Machine, [a, b, c, d]: [Point; 4]) -> Vectors<F>
     ]
 }
 
-/// Some of four vectors.
+/// Gathers four vectors by their indices.
 #[inline(always)]
 fn picked<F: Four>(machine: F::Machine, [x, y, z]: &[[f64; 4]; 3], [i, j, k, l]: [usize; 4]) -> Vectors<F> {
     [
@@ -108,20 +108,21 @@ fn picked<F: Four>(machine: F::Machine, [x, y, z]: &[[f64; 4]; 3], [i, j, k, l]:
     ]
 }
 
-/// Of the dihedral angles between facets, with these normals.
+/// Cosines, up to a positive factor, of the dihedral angles between facets with these normals.
 #[inline(always)]
 fn cosine<F: Four>(machine: F::Machine, normals: &[[f64; 4]; 3], left: [usize; 4], right: [usize; 4]) -> F {
     F::all(machine, 0.0) - dot(picked::<F>(machine, normals, left), picked::<F>(machine, normals, right))
 }
 
-/// Cosine by sine, both up to one positive factor. 0/0, an angle between things
-/// without extent, counts as angle 0.
+/// Cotangent from cosine and sine, both up to one positive factor. 0/0, an angle at something without extent,
+/// counts as angle 0.
 #[inline(always)]
 fn ratio<F: Four>(machine: F::Machine, cosine: F, sine: F) -> F {
     (cosine / sine).or(F::all(machine, f64::INFINITY))
 }
 
-/// The largest skew, of the extreme `cot |cot|` of dihedral and of face angles, the lower ones first; those of dihedral angles times the square of the volume.
+/// The largest skew, from the extreme values of `cot |cot|`: the least and largest of the dihedral angles
+/// (times the square of `size`, six times the volume), then those of the face angles.
 #[inline(always)]
 fn worst<F: Four>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
     const REGULARS: [f64; 4] = [REGULAR, REGULAR, FRAC_PI_3, FRAC_PI_3];
@@ -132,7 +133,7 @@ fn worst<F: Four>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
     let nearly =
         (rough_angle::<F>(machine, cotangents) - F::load(machine, &REGULARS)) * F::load(machine, &PER_REACH);
     let (nearly, cotangents) = (nearly.stored(), cotangents.stored());
-    // Exact angles take most of the time, and one of the four decides.
+    // Exact angles take most of the time, and only one of the four decides.
     let mut largest = 0.0;
     for term in nearly {
         largest = if term > largest { term } else { largest };
@@ -146,7 +147,7 @@ fn worst<F: Four>(machine: F::Machine, squares: [f64; 4], size: f64) -> f64 {
     skew
 }
 
-/// `x |x|`: sorts as x does, and spares roots until the extremes are known.
+/// `x |x|`: has the order of x, and saves square roots until the extremes are known.
 #[inline(always)]
 fn signed_square<F: Four>(x: F) -> F {
     x * x.abs()
@@ -158,11 +159,11 @@ fn signed_root<F: Four>(machine: F::Machine, x: F) -> F {
     x.if_positive(root, F::all(machine, 0.0) - root)
 }
 
-/// More than the error of [`rough_angle`], 0.004, makes in a skew.
+/// More than the effect on a skew of the error of [`rough_angle`], 0.004.
 const ROUGHNESS: f64 = 0.005;
 
-/// The angles with these cotangents to 0.004: `atan x` is about
-/// `x (pi / 4 + 0.273 (1 - |x|))` in [-1, 1] (Rajan, Wang, Inkol, Joyal 2006).
+/// The angles with these cotangents, accurate to 0.004: `atan x` is about `x (pi / 4 + 0.273 (1 - |x|))` in
+/// [-1, 1] (Rajan, Wang, Inkol, Joyal 2006).
 #[inline(always)]
 fn rough_angle<F: Four>(machine: F::Machine, cotangent: F) -> F {
     let (zero, one) = (F::all(machine, 0.0), F::all(machine, 1.0));
@@ -194,7 +195,7 @@ mod tests {
         assert_eq!(rough_angle::<Plain>((), limits).stored(), [0.0, PI, 0.0, FRAC_PI_2]);
     }
 
-    /// The skew by its definition: of all angles, one by one.
+    /// The skew by its definition, from all angles, one by one.
     fn by_definition(tet: [Point; 4]) -> f64 {
         use crate::geometry::tet::FACETS;
         use crate::geometry::vector::{cross, dot, norm, sub};
@@ -220,7 +221,7 @@ mod tests {
     }
 
     proptest! {
-        /// Random, flat and inverted ones, thin and tiny ones.
+        /// Tets of all kinds: random, flat, inverted, thin and tiny.
         #[test]
         fn skew_is_what_it_is_by_definition(tet in prop::array::uniform4(point())) {
             let volume_6 = Scaled::new(tet).volume_6();

@@ -1,4 +1,4 @@
-//! The mean ratio in the form that theory and most remeshers use.
+//! The mean ratio in the form used in theory and by most remeshers.
 
 use crate::base::Point;
 use crate::geometry::quality::scaled::Scaled;

@@ -3,10 +3,10 @@
 //! | measure | regular | flat | inverted |
 //! |---|---|---|---|
 //! | [`eas`] | 1 | 0 | negative |
-//! | [`equiangle_skew`] | 0 | 1 | as if turned the right way |
+//! | [`equiangle_skew`] | 0 | 1 | that of its mirror image |
 //! | [`mean_ratio`], [`cubit_mean_ratio`] | 1 | 0 | negative |
-//! | [`edge_ratio`] | 1 | no matter | no matter |
-//! | [`dihedral::min`], [`dihedral::max`] | acos(1/3) | 0, pi | as if turned the right way |
+//! | [`edge_ratio`] | 1 | any | any |
+//! | [`dihedral::min`], [`dihedral::max`] | acos(1/3) | 0, pi | those of its mirror image |
 //! | [`volume`] | edge^3 / sqrt(72) | 0 | negative |
 //!
 //! Every measure is finite for every tet of finite points.

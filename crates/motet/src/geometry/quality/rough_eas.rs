@@ -1,7 +1,7 @@
-//! EAS of many tets, nearly: to find the few that are worth an exact look.
+//! Approximate EAS of many tets, to find the few that are worth an exact evaluation.
 //!
-//! Four tets at a time and no arc: a fifth of the time of [`eas`](super::eas). What it leaves out is the second, exact
-//! look at the extreme angle.
+//! Four tets at a time and without arctangents: a fifth of the time of [`eas`](super::eas). What is left out
+//! is the second, exact evaluation of the extreme angle.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -13,7 +13,8 @@ use crate::geometry::quality::dihedral::REGULAR;
 use crate::geometry::quality::eas;
 use crate::geometry::tet::EDGES;
 
-/// [`rough_eas`] is at most so far from [`eas`](super::eas()): 0.004 in an angle of [`FRAC_PI_3`], and some for rounding.
+/// The largest difference between [`rough_eas`] and [`eas`](super::eas()): 0.004 in an angle of
+/// [`FRAC_PI_3`], and some for rounding.
 pub const ROUGH_EAS_ERROR: f64 = 0.005;
 
 /// EAS of each tet to within [`ROUGH_EAS_ERROR`], with the sign of the volume.
@@ -29,7 +30,7 @@ struct All<'a> {
     out: &'a mut [f32],
 }
 
-/// The most tets that any machine takes at a time.
+/// The largest number of tets processed at a time on any machine.
 const MOST_LANES: usize = 8;
 
 impl WithSimd for All<'_> {
@@ -44,7 +45,7 @@ impl WithSimd for All<'_> {
                 false => [f64::NAN; MOST_LANES],
             };
             for l in 0..tets.len() {
-                // What over- or underflows ends here, and flat tets.
+                // Over- and underflow end up here, and flat tets.
                 let is_sound = rough[l].is_finite() && rough[l] != 0.0;
                 out[l] = if is_sound { rough[l] as f32 } else { slowly(points, tets[l]) };
             }
@@ -57,7 +58,7 @@ fn slowly(points: &[Point], [a, b, c, d]: [VertexId; 4]) -> f32 {
     eas([points[a.index()], points[b.index()], points[c.index()], points[d.index()]]) as f32
 }
 
-/// As many tets as the machine has lanes.
+/// The rough EAS of as many tets as the machine has lanes.
 #[inline(always)]
 fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOST_LANES] {
     let mut gathered = [[[0.0; MOST_LANES]; 3]; 4];
@@ -78,16 +79,17 @@ fn some<S: Simd>(simd: S, points: &[Point], tets: &[[VertexId; 4]]) -> [f64; MOS
     rough(simd, corners).stored()
 }
 
-/// Tets that share a vertex, to be judged with the vertex elsewhere again and again: EAS of each to within [`ROUGH_EAS_ERROR`].
+/// A star of tets to be judged repeatedly with its vertex at different places: EAS of each to within
+/// [`ROUGH_EAS_ERROR`].
 #[derive(Clone, Debug, Default)]
 pub struct RoughStar {
-    /// By groups of tets: the coordinates of the other three vertices.
+    /// For each group of tets, the coordinates of the other three vertices.
     others: Vec<[[[f64; MOST_LANES]; 3]; 3]>,
     n_tets: usize,
 }
 
 impl RoughStar {
-    /// Takes the tets of a star: the corners of each, and which of them is the vertex.
+    /// Sets the tets of the star, each by its corners and the number of the corner that is the vertex.
     pub fn set(&mut self, tets: impl Iterator<Item = ([Point; 4], usize)>) {
         /// Even permutations that begin with each corner.
         const FROM: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [3, 0, 1], [2, 1, 0]];
@@ -96,7 +98,7 @@ impl RoughStar {
         for (corners, vertex) in tets {
             let lane = self.n_tets % MOST_LANES;
             if lane == 0 {
-                // Lanes that stay so hold no tet.
+                // Lanes that remain zero hold no tet.
                 self.others.push([[[0.0; MOST_LANES]; 3]; 3]);
             }
             let group = self.others.len() - 1;
@@ -109,7 +111,7 @@ impl RoughStar {
         }
     }
 
-    /// EAS of each tet with the vertex at a place.
+    /// Computes the EAS of each tet with the vertex at `place`; `out` is cleared first.
     pub fn judge(&self, place: Point, out: &mut Vec<f64>) {
         out.clear();
         Arch::new().dispatch(At { star: self, place, out });
@@ -156,7 +158,7 @@ fn exactly(others: &[[[f64; MOST_LANES]; 3]; 3], place: Point, lane: usize) -> f
     eas([place, other(0), other(1), other(2)])
 }
 
-/// Squared lengths outside are not trusted.
+/// Squared lengths outside these limits are not trusted.
 const LOW: f64 = 1e-60;
 const HIGH: f64 = 1e60;
 
@@ -173,7 +175,7 @@ fn rough<S: Simd>(simd: S, [a, b, c, d]: [Vector<S>; 4]) -> Lanes<S> {
         cross(edges[0], edges[2]),
         cross(edges[1], edges[0]),
     ];
-    // The triple product as `volume_6` has it, so that the sign is the same.
+    // The triple product in the form of `volume_6`, so that the sign is the same.
     let volume = dot(cross(edges[0], edges[1]), edges[2]);
     let mut low = Lanes::splat(simd, f64::INFINITY);
     let mut high = Lanes::splat(simd, f64::NEG_INFINITY);
@@ -210,7 +212,8 @@ fn facet_extremes<S: Simd>(
 ) -> (Lanes<S>, Lanes<S>) {
     let mut low = Lanes::splat(simd, f64::INFINITY);
     let mut high = Lanes::splat(simd, f64::NEG_INFINITY);
-    // Of each facet the edges x = pq, y = pr, z = qr: the angles at p, q, r are those of (x, y), (-x, z), (y, z).
+    // For each facet, the edges x = pq, y = pr, z = qr: the angles at p, q, r are those of (x, y), (-x, z),
+    // (y, z).
     const SIDES: [[usize; 3]; 4] = [[3, 4, 5], [1, 2, 5], [0, 2, 4], [0, 1, 3]];
     for f in 0..4 {
         let [x, y, z] = SIDES[f];
@@ -234,7 +237,7 @@ fn skew<S: Simd>(low: Lanes<S>, high: Lanes<S>, regular: f64) -> Lanes<S> {
     above.max(below)
 }
 
-/// As in [`equiangle_skew`](super::equiangle_skew()).
+/// Approximate angles, as in [`equiangle_skew`](super::equiangle_skew()).
 #[inline(always)]
 fn rough_angle<S: Simd>(cotangent: Lanes<S>) -> Lanes<S> {
     let simd = cotangent.0;
@@ -252,7 +255,7 @@ fn signed_square<S: Simd>(x: Lanes<S>) -> Lanes<S> {
     x * x.abs()
 }
 
-/// A number for each of some tets.
+/// One number for each of several tets.
 #[derive(Clone, Copy)]
 struct Lanes<S: Simd>(S, S::f64s);
 
@@ -309,14 +312,14 @@ impl<S: Simd> Lanes<S> {
         Self(self.0, self.0.max_f64s(self.1, other.1))
     }
 
-    /// Where this is below `limit`: `yes`, elsewhere `no`.
+    /// Selects `yes` where this is below `limit`, `no` elsewhere.
     #[inline(always)]
     fn if_below(self, limit: Self, yes: Self, no: Self) -> Self {
         let mask = self.0.less_than_f64s(self.1, limit.1);
         Self(self.0, self.0.select_f64s(mask, yes.1, no.1))
     }
 
-    /// The root of the size, with the sign.
+    /// The square root of the absolute value, with the sign.
     #[inline(always)]
     fn signed_root(self) -> Self {
         let root = Self(self.0, self.0.sqrt_f64s(self.abs().1));
@@ -350,13 +353,13 @@ mod tests {
     }
 
     proptest! {
-        /// A vertex that is another corner of each tet, elsewhere than it was.
+        /// A star in which the vertex is a different corner of each tet, moved to another place.
         #[test]
         fn a_rough_star_is_near(tets in prop::collection::vec((prop::array::uniform4(point()), 0..4usize), 1..21), place in point()) {
             let mut star = RoughStar::default();
             let mut found = vec![0.0; 3];
             for _ in 0..2 {
-                // Room is used again.
+                // Buffers are reused.
                 star.set(tets.iter().copied());
                 star.judge(place, &mut found);
             }
@@ -368,7 +371,7 @@ mod tests {
             }
         }
 
-        /// Random, flat, inverted, tiny and huge ones.
+        /// Tets of all kinds: random, flat, inverted, tiny and huge.
         #[test]
         fn rough_is_near(tets in prop::collection::vec(prop::array::uniform4(point()), 1..13), size in prop_oneof![Just(1.0), Just(1e-40), Just(1e80)]) {
             let points: Vec<Point> = tets.as_flattened().iter().map(|p| p.map(|x| x * size)).collect();

@@ -1,19 +1,19 @@
-//! A tet brought near unit size by a power of two, so that no product over- or underflows.
+//! Scales a tet to near unit size by a power of two, so that no product over- or underflows.
 
 use crate::base::Point;
 use crate::geometry::tet::{EDGES, volume_6};
 use crate::geometry::vector::{dot, scale, sub};
 
-/// Above and below these coordinate differences a tet is scaled. The eighth power of
-/// either, the largest power that a measure takes, is well within `f64`.
+/// Range of the largest coordinate difference in which a tet is left unscaled. The eighth power of either
+/// limit, the largest power that any measure takes, is well within `f64`.
 const SIZES: std::ops::Range<f64> = 1e-30..1e30;
 
 /// A tet whose size is within [`SIZES`], or zero.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scaled {
-    /// The points times `2^exponent`, moved where that needs it.
+    /// The points times `2^exponent`, translated if they were scaled.
     pub(super) points: [Point; 4],
-    /// See `points`.
+    /// The exponent of the scaling; 0 where the points are unchanged.
     pub(super) exponent: i32,
 }
 
@@ -29,7 +29,7 @@ impl Scaled {
 
     #[cold]
     fn resized(points: [Point; 4], size: f64) -> Self {
-        // Two steps, since the difference of huge coordinates need not be a number.
+        // Two steps, since the difference of huge coordinates may overflow.
         let coarse = if size > 1.0 { -2 } else { 0 };
         let points = points.map(|p| scale(p, power_of_two(coarse)));
         let points = points.map(|p| sub(p, points[0]));
@@ -55,7 +55,7 @@ impl Scaled {
     }
 }
 
-/// The largest coordinate difference to the first point.
+/// The largest coordinate difference from the first point.
 #[inline(always)]
 fn size([a, others @ ..]: [Point; 4]) -> f64 {
     let mut size = 0.0f64;
@@ -72,7 +72,7 @@ fn size_exponent(points: [Point; 4]) -> i32 {
     size(points).log2().clamp(-1022.0, 1022.0) as i32
 }
 
-/// `2^e`, for exponents that a normal `f64` has.
+/// Returns `2^e`, with `e` clamped to the exponents of normal numbers.
 pub(super) fn power_of_two(e: i32) -> f64 {
     f64::from_bits((i64::from(e.clamp(-1022, 1023)) + 1023) as u64 * (1u64 << 52))
 }
