@@ -109,7 +109,7 @@ impl Doubtful<'_> {
     }
 }
 
-/// Does the same as [`in_conflict`] for a tet that is not a ghost; without it the two functions would be
+/// Stands in for [`in_conflict`] for a tet that is not a ghost; without it the two functions would be
 /// mutually recursive to the compiler.
 #[inline(always)]
 fn in_conflict_flat<S: Simd>(_: S, store: &Store, points: &[Point], tet: u32, new: Newcomer) -> bool {

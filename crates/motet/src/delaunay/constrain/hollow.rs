@@ -52,7 +52,7 @@ impl Guide {
     }
 }
 
-/// The same triangle with the same orientation, starting from its smallest vertex.
+/// Rotates a triangle to start from its smallest vertex; its orientation stays.
 pub(super) fn smallest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     if a < b && a < c {
         [a, b, c]

@@ -94,7 +94,7 @@ impl<'a> Plane<'a> {
         Some(triangles)
     }
 
-    /// The same triangle with the orientation of the plane.
+    /// Gives a triangle the orientation of the plane.
     pub(super) fn turned(&self, [a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
         if self.turn([a, b, c]) > 0 { [a, b, c] } else { [a, c, b] }
     }

@@ -11,7 +11,7 @@ use std::cmp::Ordering;
 pub(crate) struct Fixed<const N: usize>([u64; N]);
 
 impl<const N: usize> Fixed<N> {
-    /// The same number with `M` limbs: wider, or narrower if it fits.
+    /// Widens the number to `M` limbs, or narrows it if it fits.
     #[inline]
     pub(crate) fn resized<const M: usize>(self) -> Fixed<M> {
         let fill = if self.0[N - 1] >> 63 == 1 { u64::MAX } else { 0 };

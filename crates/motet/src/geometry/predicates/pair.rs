@@ -43,7 +43,7 @@ impl Pair {
         self.high + self.low
     }
 
-    /// The same number with a correction below the last place of the leading part.
+    /// Moves the correction below the last place of the leading part; the sum stays.
     #[inline(always)]
     pub(crate) fn normalized(self) -> Self {
         let high = self.high + self.low;
