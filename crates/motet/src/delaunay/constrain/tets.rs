@@ -46,7 +46,7 @@ impl Tets {
         tets
     }
 
-    /// Removes all tets. The entries of [`Self::at`] are stale until their vertices get new tets.
+    /// Removes all tets. The entries of `at` are stale until their vertices get new tets.
     pub(super) fn clear(&mut self) {
         self.vertices.clear();
         self.links.clear();
