@@ -1,40 +1,41 @@
-//! What a sparse matrix is made of.
+//! The entries of sparse matrices.
 
 use crate::algebra::Vector3;
 
-/// An entry of a matrix, which turns one vector of three into another.
+/// An entry of a sparse matrix: a linear map of 3-vectors.
 pub trait Block: Copy + Send + Sync + 'static {
-    /// Nothing.
+    /// The zero entry.
     const ZERO: Self;
 
-    /// Rows and columns of numbers: 1 or 3.
+    /// Number of scalar rows and columns: 1 or 3.
     const WIDTH: usize;
 
-    /// How a body of such rows can move without a strain, as blocks beside each other.
+    /// The motions of a body without strain, restricted to one row: a block of translations and, for 3 x 3
+    /// blocks, one of rotations.
     type Rigid: AsRef<[Self]>;
 
-    /// What a row of a body at this place, seen from its centre, does when the body moves.
+    /// The rigid-body motions of a row at `place`, relative to the centre of the body.
     fn rigid(place: Vector3) -> Self::Rigid;
 
     /// The number in row `i` and column `j`, both below the width.
     fn entry(&self, i: usize, j: usize) -> f64;
 
-    /// The sum.
+    /// The sum of `self` and `other`.
     fn plus(self, other: Self) -> Self;
 
     /// Adds `self x` to `sum`.
     fn add_times(self, x: Vector3, sum: &mut Vector3);
 
-    /// The product.
+    /// The product `self other`.
     fn times_block(self, other: Self) -> Self;
 
-    /// Rows as columns.
+    /// The transpose.
     fn transposed(self) -> Self;
 
-    /// Each number times `factor`.
+    /// `self` with each number multiplied by `factor`.
     fn scaled(self, factor: f64) -> Self;
 
-    /// The block that undoes this one, which is symmetric and positive definite; `None` where it is not.
+    /// The inverse of a symmetric block; `None` where the block is not positive definite.
     fn inverse(self) -> Option<Self>;
 
     /// `self x`.
@@ -46,12 +47,12 @@ pub trait Block: Copy + Send + Sync + 'static {
     }
 }
 
-/// The same number for each of the three.
+/// A multiple of the identity: the same number for each of the three components.
 impl Block for f64 {
     const ZERO: Self = 0.0;
     const WIDTH: usize = 1;
 
-    /// All by the same.
+    /// Translations only.
     type Rigid = [Self; 1];
 
     fn rigid(_: Vector3) -> [Self; 1] {
@@ -89,14 +90,14 @@ impl Block for f64 {
     }
 }
 
-/// Three rows of three.
+/// A 3 x 3 matrix, row by row.
 pub type Block3 = [[f64; 3]; 3];
 
 impl Block for Block3 {
     const ZERO: Self = [[0.0; 3]; 3];
     const WIDTH: usize = 3;
 
-    /// A shift, and a turn by a small vector.
+    /// Translations, and rotations by a small vector.
     type Rigid = [Self; 2];
 
     fn rigid([x, y, z]: Vector3) -> [Self; 2] {
@@ -135,7 +136,7 @@ impl Block for Block3 {
         self.map(|row| row.map(|x| x * factor))
     }
 
-    /// By the cofactors, of the matrix as it is: 3 x 3 blocks of an elastic matrix are far from singular.
+    /// By cofactors, without scaling: 3 x 3 blocks of an elastic matrix are far from singular.
     fn inverse(self) -> Option<Self> {
         let [[a, b, c], [d, e, f], [g, h, i]] = self;
         let cofactors = [

@@ -1,4 +1,5 @@
-//! Cholesky's factorisation of a sparse matrix, kept for many right sides; the work is done by the crate `faer`.
+//! Cholesky factorisation of a sparse matrix, kept for many right-hand sides; it is computed by the crate
+//! `faer`.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
@@ -12,20 +13,22 @@ use crate::algebra::dissection::nested_dissection;
 use crate::algebra::{Block, SparseMatrix, Vector3};
 use crate::base::{Error, Result};
 
-/// A lower triangular factor of a symmetric positive definite matrix, its rows in the order of a nested dissection.
+/// A lower triangular factor of a symmetric positive definite matrix, its rows ordered by nested dissection.
 #[derive(Debug)]
 pub struct Cholesky {
     symbolic: SymbolicCholesky<usize>,
     values: Vec<f64>,
-    /// Numbers to a row of blocks: 1 where a block is a number, and the three of a vector are three right sides; else 3.
+    /// Scalars per row of blocks: 1 where a block is a number (the three components are then three right-hand
+    /// sides), else 3.
     width: usize,
 }
 
 impl Cholesky {
-    /// Factorises `matrix`, whose rows have these places; `None` when the factor would take more than `most` bytes, which is known before it is made.
+    /// Factorises `matrix`, whose rows lie at `places`; `None` when the factor would take more than `most`
+    /// bytes, which is known before it is computed.
     ///
     /// # Errors
-    /// When the matrix is not positive definite, and when there is no memory for the factor.
+    /// When the matrix is not positive definite, or there is not enough memory for the factor.
     pub fn new<B: Block>(matrix: &SparseMatrix<B>, places: &[Vector3], most: u64) -> Result<Option<Self>> {
         let width = B::WIDTH;
         let (starts, rows, values) = upper(matrix);
@@ -68,18 +71,18 @@ impl Cholesky {
         Ok(Some(Self { symbolic, values: factor, width }))
     }
 
-    /// Bytes that the factor takes.
+    /// Memory taken by the factor, in bytes.
     pub fn n_bytes(&self) -> u64 {
         size_of_val(&self.values[..]) as u64
     }
 
-    /// The `x` for which the matrix times `x` is `right`.
+    /// Solves `matrix x = right` and returns `x`.
     ///
-    /// Panics when there are not as many as the matrix has rows.
+    /// Panics when `right` does not have one vector for each row of the matrix.
     pub fn solve(&self, right: &[Vector3]) -> Vec<Vector3> {
         let (n, columns) = (right.len() * self.width, 3 / self.width);
         assert_eq!(n, self.symbolic.nrows(), "a right side for each row");
-        // Where a row is a number, one coordinate of all after the other.
+        // Where a block is a number, the three components are columns, one after the other.
         let mut x: Vec<f64> = match columns {
             1 => right.as_flattened().to_vec(),
             _ => (0..3).flat_map(|k| right.iter().map(move |r| r[k])).collect(),
@@ -98,7 +101,8 @@ impl Cholesky {
     }
 }
 
-/// The part of a symmetric matrix on and above its diagonal, number by number, in compressed columns: starts, rows, values. Taken from below the diagonal, whose rows are these columns.
+/// The upper triangle of a symmetric matrix with its diagonal, scalar by scalar, in compressed columns:
+/// starts, rows, values. It is read from the lower triangle, whose rows are these columns.
 fn upper<B: Block>(matrix: &SparseMatrix<B>) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
     let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
     for row in 0..matrix.n_rows() {
@@ -123,7 +127,7 @@ mod tests {
     use super::*;
     use crate::algebra::Block3;
 
-    /// A grid of springs, held at its sides: what comes out, times the matrix, is what went in.
+    /// A grid of springs, held at its sides: the matrix times the solution gives back the right-hand side.
     fn check<B: Block>(spring: B, twice: B) {
         let side = 12;
         let place = |i: usize| [i % side, i / side % side, i / side / side];

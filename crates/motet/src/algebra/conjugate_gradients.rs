@@ -1,37 +1,39 @@
-//! Conjugate gradients (Hestenes and Stiefel 1952), and to precondition them a symmetric sweep of Gauss and Seidel over blocks.
+//! Conjugate gradients (Hestenes and Stiefel 1952), preconditioned by a symmetric Gauss-Seidel sweep over
+//! blocks.
 
 use serde::Serialize;
 
 use crate::algebra::{Block, SparseMatrix, Vector3};
 use crate::base::{Error, Result, Threads};
 
-/// When an iteration is done.
+/// When an iteration stops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Tolerance {
-    /// The residual, in the norm of the preconditioner, as a part of that of the right side.
+    /// Residual in the norm of the preconditioner, relative to that of the right-hand side.
     pub residual: f64,
-    /// No more iterations than this.
+    /// Maximum number of iterations.
     pub iterations: usize,
 }
 
-/// What an iteration came to.
+/// How a solution was reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Solved {
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: usize,
-    /// The residual that is left, measured as in [`Tolerance::residual`].
+    /// Final residual, measured as in [`Tolerance::residual`].
     pub residual: f64,
 }
 
-/// A forward and a backward sweep of Gauss and Seidel: `(D + L) D^-1 (D + U)` in place of the matrix `L + D + U`. Of
-/// elastic matrices of 8,000 to 166,000 vertices it took a third of the iterations that the diagonal blocks alone take, at twice the price of each.
+/// Symmetric Gauss-Seidel, a forward and a backward sweep: `(D + L) D^-1 (D + U)` in place of the matrix `L +
+/// D + U`. For elastic matrices of 8,000 to 166,000 vertices it needed a third of the iterations of the
+/// diagonal blocks alone, each at twice the cost.
 #[derive(Clone, Debug)]
 pub struct Sgs<B> {
     inverses: Vec<B>,
 }
 
 impl<B> Default for Sgs<B> {
-    /// Of a matrix without rows.
+    /// The preconditioner of a matrix without rows.
     fn default() -> Self {
         Self { inverses: Vec::new() }
     }
@@ -55,7 +57,7 @@ impl<B: Block> Sgs<B> {
         &self.inverses
     }
 
-    /// The forward sweep from zero; what comes out for `residual`.
+    /// A forward sweep from zero for `residual`; the result goes to `out`.
     pub(super) fn forward(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3]) {
         for i in 0..residual.len() {
             let (columns, blocks) = matrix.row(i);
@@ -69,7 +71,7 @@ impl<B: Block> Sgs<B> {
         }
     }
 
-    /// What a forward sweep has left of its residual: `-U x`.
+    /// The residual that remains after a forward sweep: `-U x`.
     pub(super) fn left(&self, matrix: &SparseMatrix<B>, x: &[Vector3], threads: &Threads) -> Vec<Vector3> {
         threads.map(x.len(), |i| {
             let mut sum = [0.0; 3];
@@ -78,7 +80,7 @@ impl<B: Block> Sgs<B> {
         })
     }
 
-    /// A backward sweep from `x`.
+    /// A backward sweep that starts from `x`, in place.
     pub(super) fn backward(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], x: &mut [Vector3]) {
         for i in (0..x.len()).rev() {
             let (columns, blocks) = matrix.row(i);
@@ -91,7 +93,7 @@ impl<B: Block> Sgs<B> {
     }
 }
 
-/// The blocks of row `i` right of the diagonal.
+/// Calls `each` with the column and the block of every entry of row `i` right of the diagonal, last first.
 #[inline(always)]
 fn later<B: Block>(matrix: &SparseMatrix<B>, i: usize, mut each: impl FnMut(usize, B)) {
     let (columns, blocks) = matrix.row(i);
@@ -101,9 +103,11 @@ fn later<B: Block>(matrix: &SparseMatrix<B>, i: usize, mut each: impl FnMut(usiz
     }
 }
 
-/// What makes conjugate gradients converge faster: a symmetric positive definite map near the inverse of the matrix.
+/// A preconditioner of conjugate gradients: a symmetric positive definite map close to the inverse of the
+/// matrix.
 pub trait Preconditioner<B> {
-    /// What comes out for `residual`. The same bits with any number of threads.
+    /// Applies the map to `residual`; the result, in `out`, is the same to the bit with any number of
+    /// threads.
     fn apply(&self, matrix: &SparseMatrix<B>, residual: &[Vector3], out: &mut [Vector3], threads: &Threads);
 }
 
@@ -118,11 +122,13 @@ impl<B: Block> Preconditioner<B> for Sgs<B> {
     }
 }
 
-/// Solves `matrix x = right`; `x` holds a guess before, zeros where there is none, and the solution after. The best multiple of the guess is where it begins.
-/// The same bits with any number of threads.
+/// Solves `matrix x = right` for a symmetric positive definite matrix. On entry `x` holds a guess, zeros
+/// where there is none; on return it holds the solution. The iteration starts from the best multiple of the
+/// guess. The result is the same to the bit with any number of threads.
 ///
 /// # Errors
-/// When the tolerance is not reached within the iterations, or who watches ends it; `x` holds what was.
+/// When the tolerance is not reached within the allowed iterations, or the watch stops the call; `x` then
+/// holds the last iterate.
 pub fn conjugate_gradients<B: Block>(
     matrix: &SparseMatrix<B>,
     before: &impl Preconditioner<B>,

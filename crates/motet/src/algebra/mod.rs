@@ -1,12 +1,12 @@
-//! Floor 1: sparse matrices whose unknowns are vectors of three, and solving with them.
+//! Floor 1: sparse matrices whose unknowns are 3-vectors, and solvers for them.
 //!
 //! | | |
 //! |---|---|
-//! | [`Block`] | what a matrix is made of: a number, or 3 x 3 numbers |
+//! | [`Block`] | an entry of a matrix: a number, or 3 x 3 numbers |
 //! | [`SparseMatrix`] | blocks in compressed rows |
-//! | [`conjugate_gradients`] | solves where the matrix is symmetric and positive definite |
-//! | [`Sgs`], [`TwoLevel`] | what makes that converge: sweeps over all rows, and with them a correction by some thousand unknowns |
-//! | [`Cholesky`] | a factor of such a matrix, kept for many right sides |
+//! | [`conjugate_gradients`] | solves symmetric positive definite systems |
+//! | [`Sgs`], [`TwoLevel`] | its preconditioners: sweeps over all rows, and these with a coarse correction of some thousand unknowns |
+//! | [`Cholesky`] | a factor of such a matrix, kept for many right-hand sides |
 
 mod block;
 mod cholesky;
@@ -21,5 +21,5 @@ pub use conjugate_gradients::{Preconditioner, Sgs, Solved, Tolerance, conjugate_
 pub use sparse::SparseMatrix;
 pub use two_level::TwoLevel;
 
-/// An unknown, or what it has to be equal to: three numbers.
+/// An unknown, or its right-hand side: three numbers.
 pub type Vector3 = [f64; 3];

@@ -3,7 +3,7 @@
 use crate::algebra::{Block, Vector3};
 use crate::base::Threads;
 
-/// A matrix of blocks, row after row, in each row those that are not zero by rising column.
+/// A sparse matrix of blocks in compressed rows; the entries of a row are in order of rising column.
 #[derive(Clone, Debug, Default)]
 pub struct SparseMatrix<B> {
     starts: Vec<usize>,
@@ -12,7 +12,7 @@ pub struct SparseMatrix<B> {
 }
 
 impl<B: Block> SparseMatrix<B> {
-    /// All zero, with room for these entries: for each row its columns, in any order, also more than once.
+    /// A zero matrix with the given pattern: for each row its columns, in any order, repeats allowed.
     pub fn with_pattern(rows: impl Iterator<Item = Vec<u32>>) -> Self {
         let (mut starts, mut columns) = (vec![0], Vec::new());
         for mut row in rows {
@@ -34,29 +34,29 @@ impl<B: Block> SparseMatrix<B> {
         self.starts.len() - 1
     }
 
-    /// How many blocks are kept.
+    /// How many blocks are stored.
     pub fn n_blocks(&self) -> usize {
         self.blocks.len()
     }
 
-    /// Adds to an entry that the pattern has.
+    /// Adds `block` to an entry of the pattern.
     ///
     /// # Panics
-    /// When it has not.
+    /// When the pattern does not have the entry.
     pub fn add(&mut self, row: usize, column: u32, block: B) {
         self.add_at(self.place(row, column), block);
     }
 
-    /// Where an entry is that the pattern has: for [`Self::add_at`].
+    /// The index of an entry of the pattern, for [`Self::add_at`].
     ///
     /// # Panics
-    /// When it has not.
+    /// When the pattern does not have the entry.
     pub fn place(&self, row: usize, column: u32) -> usize {
         let range = self.starts[row]..self.starts[row + 1];
         range.start + self.columns[range].binary_search(&column).expect("the pattern has the entry")
     }
 
-    /// Adds to the entry at a [`Self::place`].
+    /// Adds `block` to the entry at an index from [`Self::place`].
     #[inline(always)]
     pub fn add_at(&mut self, place: usize, block: B) {
         self.blocks[place] = self.blocks[place].plus(block);
@@ -86,7 +86,7 @@ impl<B: Block> SparseMatrix<B> {
         sum
     }
 
-    /// The product with another matrix, row by row (Gustavson 1978).
+    /// The product `self other`, row by row (Gustavson 1978).
     pub fn product(&self, other: &Self) -> Self {
         const NONE: usize = usize::MAX;
         let width = other.columns.iter().map(|&c| c as usize + 1).max().unwrap_or(0);
@@ -119,7 +119,7 @@ impl<B: Block> SparseMatrix<B> {
         Self { starts, columns, blocks }
     }
 
-    /// Its columns as rows; `n_columns` is one more than the last column at least.
+    /// The transpose; `n_columns`, its number of rows, is greater than every column index.
     pub fn transposed(&self, n_columns: usize) -> Self {
         let mut starts = vec![0; n_columns + 1];
         self.columns.iter().for_each(|&c| starts[c as usize + 1] += 1);
@@ -138,7 +138,7 @@ impl<B: Block> SparseMatrix<B> {
         Self { starts, columns, blocks }
     }
 
-    /// Puts something else for each block of each row.
+    /// Replaces each block by `change(row, block)`.
     pub fn change_rows(&mut self, change: impl Fn(usize, B) -> B) {
         for row in 0..self.n_rows() {
             let range = self.starts[row]..self.starts[row + 1];
@@ -146,7 +146,7 @@ impl<B: Block> SparseMatrix<B> {
         }
     }
 
-    /// The product with `x`. The same bits with any number of threads.
+    /// The product with `x`, the same to the bit with any number of threads.
     pub fn times(&self, x: &[Vector3], threads: &Threads) -> Vec<Vector3> {
         threads.map(self.n_rows(), |row| self.row_times(row, x))
     }

@@ -1,35 +1,39 @@
-//! Two levels: a sweep of Gauss and Seidel, a correction by some thousand unknowns that span what the sweep does not see, a sweep back.
+//! A two-level preconditioner: a Gauss-Seidel sweep, a correction by some thousand unknowns that span what
+//! the sweep cannot reduce, and a sweep back.
 //!
-//! Smoothed aggregation (Vanek, Mandel, Brezina 1996): neighbours are taken together, each lot moves as a rigid body (or by one number), and these motions
-//! are smoothed by a step of Jacobi's. The matrix of the lots is factorised.
+//! Smoothed aggregation (Vanek, Mandel, Brezina 1996): neighbouring rows form aggregates, each aggregate
+//! moves as a rigid body (or by one number), and these motions are smoothed by one Jacobi step. The matrix of
+//! the aggregates is factorised.
 
 use std::collections::VecDeque;
 
 use crate::algebra::{Block, Cholesky, Preconditioner, Sgs, SparseMatrix, Vector3};
 use crate::base::{Result, Threads};
 
-/// Rows in a lot, about. Elastic matrices of meshes of 32,000 and 73,000 vertices were solved in 0.50 and 1.57 s with 40 rows, 0.35 and 1.41 s with 80, 0.30 and 1.38 s with 160, 0.30 and 1.58 s with
-/// 320; in 0.47 and 2.87 s by sweeps alone.
+/// Rows per aggregate, approximately. Elastic matrices of meshes of 32,000 and 73,000 vertices were solved in
+/// 0.50 and 1.57 s with 40 rows, 0.35 and 1.41 s with 80, 0.30 and 1.38 s with 160, 0.30 and 1.58 s with 320;
+/// in 0.47 and 2.87 s by sweeps alone.
 const ROWS: usize = 160;
-/// There are no more lots than about so many: their factor would take longer than what it saves.
+/// Approximate limit on the number of aggregates: a factor of more would take longer than it saves.
 const LOTS: usize = 2000;
-/// What the diagonal of the lots' matrix is made larger by, as a part of its largest number.
+/// Shift of the diagonal of the matrix of the aggregates, relative to its largest diagonal entry.
 const LIFT: f64 = 1e-10;
-/// A factor of this many bytes at most.
+/// Maximum size of the factor, in bytes.
 const MOST_BYTES: u64 = 1 << 31;
 
-/// A preconditioner of two levels.
+/// A two-level preconditioner.
 #[derive(Debug)]
 pub struct TwoLevel<B> {
     sweeps: Sgs<B>,
-    /// From lots to rows.
+    /// Maps unknowns of the aggregates to rows.
     prolong: SparseMatrix<B>,
     restrict: SparseMatrix<B>,
     factor: Cholesky,
 }
 
 impl<B: Block> TwoLevel<B> {
-    /// Of a symmetric positive definite matrix whose rows have these places. `None` when its lots have no factor, or too large a one.
+    /// The preconditioner of a symmetric positive definite matrix whose rows lie at `places`; `None` when the
+    /// matrix of the aggregates has no factor, or one that is too large.
     ///
     /// # Errors
     /// When a block on the diagonal is not positive definite.
@@ -48,7 +52,7 @@ impl<B: Block> TwoLevel<B> {
         }
         let restrict = prolong.transposed(centres.len());
         let mut coarse = restrict.product(&matrix.product(&prolong));
-        // A lot whose rows are in a line does not see a turn about it.
+        // An aggregate whose rows are collinear does not respond to a rotation about their line.
         let largest = (0..coarse.n_rows()).map(|row| coarse.diagonal(row).entry(0, 0)).fold(0.0, f64::max);
         (0..coarse.n_rows()).for_each(|row| {
             coarse.add(row, row as u32, B::rigid([0.0; 3]).as_ref()[0].scaled(LIFT * largest))
@@ -69,14 +73,14 @@ impl<B: Block> Preconditioner<B> for TwoLevel<B> {
     }
 }
 
-/// Rows taken together.
+/// Rows grouped into aggregates.
 struct Lots {
     of_row: Vec<u32>,
     n: usize,
 }
 
 impl Lots {
-    /// Rows near each other, by the entries of the matrix.
+    /// Groups rows that the entries of the matrix connect.
     fn new<B: Block>(matrix: &SparseMatrix<B>, places: &[Vector3]) -> Self {
         const NONE: u32 = u32::MAX;
         let n_rows = places.len();
@@ -99,7 +103,7 @@ impl Lots {
                     }
                 }
             }
-            // What is left over between others goes to one of them.
+            // A small remainder between others joins one of them.
             let neighbour = || {
                 let near = rows.iter().flat_map(|&row| matrix.row(row).0);
                 near.map(|&c| of_row[c as usize]).find(|&lot| lot != NONE && lot != n)
@@ -112,7 +116,8 @@ impl Lots {
         Self { of_row, n: n as usize }
     }
 
-    /// What rows do when lots move, and the place of each unknown of the lots.
+    /// The rigid motions of the aggregates, as a matrix from their unknowns to rows, and the position of each
+    /// of these unknowns.
     fn motions<B: Block>(&self, places: &[Vector3]) -> (SparseMatrix<B>, Vec<Vector3>) {
         let (mut centres, mut counts) = (vec![[0.0; 3]; self.n], vec![0.0; self.n]);
         for (&lot, place) in self.of_row.iter().zip(places) {
@@ -124,7 +129,7 @@ impl Lots {
             let (p, c) = (places[row], centres[self.of_row[row] as usize]);
             std::array::from_fn(|k| p[k] - c[k])
         };
-        // Turns are measured so that they are as large as shifts.
+        // Rotations are scaled to be as large as translations.
         let mut radii = vec![0.0; self.n];
         for (row, &lot) in self.of_row.iter().enumerate() {
             radii[lot as usize] += from(row).iter().map(|x| x * x).sum::<f64>() / counts[lot as usize];
@@ -143,11 +148,11 @@ impl Lots {
     }
 }
 
-/// Of `D^-1 A`, from below, by the power method.
+/// A lower estimate of the largest eigenvalue of `D^-1 A`, by the power method.
 fn largest_eigenvalue<B: Block>(matrix: &SparseMatrix<B>, inverses: &[B], threads: &Threads) -> f64 {
     const ROUNDS: usize = 12;
     let n = matrix.n_rows();
-    // A start that has a part of everything, the same in each run.
+    // A start vector with components in all directions, the same in each run.
     let mut x: Vec<Vector3> = (0..n as u32)
         .map(|i| {
             [1, 2, 3]
@@ -170,7 +175,7 @@ mod tests {
     use super::*;
     use crate::algebra::{Block3, Tolerance, conjugate_gradients};
 
-    /// A long rod of springs, held at one end: what sweeps need many rounds for.
+    /// A long rod of springs, held at one end, for which sweeps alone need many iterations.
     fn rod<B: Block>(spring: B) -> (SparseMatrix<B>, Vec<Vector3>) {
         let (length, side) = (600, 3);
         let place = |i: usize| [i / side / side, i / side % side, i % side];

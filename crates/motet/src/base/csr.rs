@@ -8,7 +8,7 @@ pub struct Csr<T> {
     items: Vec<T>,
 }
 
-/// What a stored [`Csr`] brings, before it is known to fit together.
+/// The stored form of a [`Csr`], before validation.
 #[derive(serde::Deserialize)]
 struct Parts<T> {
     offsets: Vec<u32>,
@@ -30,8 +30,8 @@ impl<T> Default for Csr<T> {
 }
 
 impl<T> Csr<T> {
-    /// `offsets` has one entry more than there are lists, starts at 0, never
-    /// falls and ends at `items.len()`; `None` when it does not.
+    /// Lists from `offsets`, which has one entry more than there are lists, starts at 0, never decreases and
+    /// ends at `items.len()`; `None` when it does not.
     pub fn new(offsets: Vec<u32>, items: Vec<T>) -> Option<Self> {
         let rises = offsets.windows(2).all(|w| w[0] <= w[1]);
         let spans = offsets.first() == Some(&0) && offsets.last().map(|&o| o as usize) == Some(items.len());
@@ -43,7 +43,7 @@ impl<T> Csr<T> {
         self.offsets.len() - 1
     }
 
-    /// Whether there is no list at all.
+    /// Whether there are no lists.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -54,7 +54,7 @@ impl<T> Csr<T> {
         &self.items[self.offsets[i] as usize..self.offsets[i + 1] as usize]
     }
 
-    /// List `i`, to be changed in place.
+    /// List `i`, mutable.
     #[inline]
     pub fn list_mut(&mut self, i: usize) -> &mut [T] {
         &mut self.items[self.offsets[i] as usize..self.offsets[i + 1] as usize]
@@ -90,8 +90,8 @@ impl<T> Csr<T> {
 }
 
 impl<T: Copy + Default> Csr<T> {
-    /// Sorts `(list, item)` pairs into `n_lists` lists; items keep the order in
-    /// which `pairs` yields them. `pairs` is run through twice.
+    /// Groups `(list, item)` pairs into `n_lists` lists; items keep the order in which `pairs` yields them.
+    /// `pairs` is called twice.
     pub fn from_pairs<I>(n_lists: usize, pairs: impl Fn() -> I) -> Self
     where
         I: Iterator<Item = (usize, T)>,

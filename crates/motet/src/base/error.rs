@@ -1,4 +1,4 @@
-//! The one error of the library: what went wrong, in which file, where, and what to do.
+//! The error type of the library: what went wrong, in which file, where, and what to do.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,24 +7,24 @@ use std::path::{Path, PathBuf};
 /// `Result` with this library's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What kind of failure an [`Error`] is. The command line turns it into its
-/// exit status, the other doors into their own exceptions.
+/// What kind of failure an [`Error`] is. The command line maps it to its exit status, the other interfaces to
+/// their exceptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// The data cannot be read, or is not what the operation needs.
     Input,
-    /// The operating system refused a file that is read, or a place for one that is written.
+    /// The operating system refused access to an input file, or to the place of an output file.
     Io,
-    /// The operating system refused what was to be written.
+    /// The operating system refused to write the output.
     Output,
-    /// A combination of options that means nothing.
+    /// A combination of options that has no meaning.
     Options,
-    /// Whoever [watched](crate::base::Watch) the call ended it.
+    /// The call was stopped through its [watch](crate::base::Watch).
     Stopped,
 }
 
-/// A failure, told in up to four parts.
+/// A failure, described in up to four parts: file, place, what went wrong, remedy.
 ///
 /// ```
 /// use motet::{Error, ErrorKind};
@@ -53,17 +53,17 @@ struct Parts {
 }
 
 impl Error {
-    /// An error of the given kind; `what` says what was expected and what came.
+    /// An error of the given kind; `what` says what was expected and what was found.
     pub fn new(kind: ErrorKind, what: impl Into<String>) -> Self {
         Self(Box::new(Parts { kind, file: None, place: None, what: what.into(), remedy: None, source: None }))
     }
 
-    /// Data that cannot be read, or are not what the operation needs.
+    /// An error of kind [`ErrorKind::Input`]: data that cannot be read, or that the operation cannot use.
     pub fn input(what: impl Into<String>) -> Self {
         Self::new(ErrorKind::Input, what)
     }
 
-    /// Options that mean nothing together.
+    /// An error of kind [`ErrorKind::Options`]: options that have no meaning together.
     pub fn options(what: impl Into<String>) -> Self {
         Self::new(ErrorKind::Options, what)
     }
@@ -99,21 +99,21 @@ impl Error {
         self
     }
 
-    /// Adds the place within the file or the mesh: a line, an element, a cell. The innermost place stays.
+    /// Adds the place within the file or the mesh: a line, an element, a cell. The innermost place is kept.
     #[must_use]
     pub fn at(mut self, place: impl Into<String>) -> Self {
         self.0.place.get_or_insert_with(|| place.into());
         self
     }
 
-    /// Adds what the user can do about it. The innermost remedy stays.
+    /// Adds what the user can do about it. The innermost remedy is kept.
     #[must_use]
     pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
         self.0.remedy.get_or_insert_with(|| remedy.into());
         self
     }
 
-    /// Adds the file. The innermost file stays.
+    /// Adds the file. The innermost file is kept.
     #[must_use]
     pub fn in_file(mut self, file: impl AsRef<Path>) -> Self {
         self.0.file.get_or_insert_with(|| file.as_ref().to_owned());
@@ -125,7 +125,7 @@ impl Error {
         self.0.kind
     }
 
-    /// The file it happened in, if any.
+    /// The file that the error is about, if any.
     pub fn file(&self) -> Option<&Path> {
         self.0.file.as_deref()
     }
@@ -135,7 +135,7 @@ impl Error {
         self.0.place.as_deref()
     }
 
-    /// What was expected and what came.
+    /// What was expected and what was found.
     pub fn what(&self) -> &str {
         &self.0.what
     }
@@ -168,8 +168,8 @@ impl std::error::Error for Error {
     }
 }
 
-/// Text that a terminal shows as it is: control characters, which could move its cursor or change its colours, are
-/// written as escapes, `\u{1b}` for the one that begins such sequences.
+/// Text that is safe on a terminal: control characters, which could move its cursor or change its colours,
+/// are written as escapes, such as `\u{1b}` for the one that begins such sequences.
 ///
 /// ```
 /// assert_eq!(motet::base::printable("a\u{1b}[2Jb"), r"a\u{1b}[2Jb");

@@ -1,4 +1,4 @@
-//! Four numbers that are worked on at once, by the machine's wide instructions or without: the bits are the same.
+//! Four numbers processed at once, with SIMD instructions or without; the results are the same to the bit.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -6,19 +6,19 @@ use std::ops::{Add, Div, Mul, Sub};
 pub(crate) trait Four:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// What says that the machine can do it.
+    /// A token that proves that the machine has the instructions.
     type Machine: Copy;
 
     fn load(machine: Self::Machine, numbers: &[f64; 4]) -> Self;
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
-    /// The smaller ones; this where either is no number. Of 0 and -0 either.
+    /// The smaller of each pair; that of `self` where either is not a number. Of 0 and -0 either.
     fn min(self, other: Self) -> Self;
-    /// The larger ones, likewise.
+    /// The larger of each pair, with the same rules as [`Self::min`].
     fn max(self, other: Self) -> Self;
     /// `yes` where this is positive, else `no`.
     fn if_positive(self, yes: Self, no: Self) -> Self;
-    /// This, `other` where it is no number.
+    /// `self`, or `other` where `self` is not a number.
     fn or(self, other: Self) -> Self;
     fn stored(self) -> [f64; 4];
 
@@ -46,7 +46,7 @@ pub(crate) trait Four:
     }
 }
 
-/// One comparison: `f64::min` takes care of what is no number with two more.
+/// One comparison; `f64::min` needs two more to handle what is not a number.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
@@ -57,10 +57,10 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Four points, or vectors.
+/// Four points or vectors, coordinate by coordinate.
 pub(crate) type Vectors<F> = [F; 3];
 
-/// One by one.
+/// Four numbers processed one by one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Plain([f64; 4]);
 
@@ -68,7 +68,7 @@ pub(crate) struct Plain([f64; 4]);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wide(pulp::x86::V3, pulp::f64x4);
 
-/// What [`Wide`] needs, where the machine has it: asked for once.
+/// The token for [`Wide`], where the machine has the instructions; detected once.
 #[cfg(target_arch = "x86_64")]
 #[inline]
 pub(crate) fn wide() -> Option<pulp::x86::V3> {

@@ -2,29 +2,29 @@
 
 use std::fmt;
 
-/// The same ids in rising order: the same key for an edge or a facet, from whichever side it is seen.
+/// The ids in rising order: a key for an edge or a facet that is the same from either side.
 #[inline]
 pub(crate) fn rising<T: Ord, const N: usize>(mut ids: [T; N]) -> [T; N] {
     ids.sort_unstable();
     ids
 }
 
-/// The same ids in rising order: the key of a facet that may have any number of corners.
+/// The ids in rising order: a key for a facet with any number of corners.
 pub fn rising_list<T: Ord + Clone>(ids: &[T]) -> Vec<T> {
     let mut ids = ids.to_vec();
     ids.sort_unstable();
     ids
 }
 
-/// Whether two triangles of the same vertices run the same way round.
+/// Whether two triangles with the same vertices have the same orientation.
 pub(crate) fn runs_alike<T: PartialEq + Copy>(first: [T; 3], second: [T; 3]) -> bool {
     let [a, b, c] = first;
     [[a, b, c], [b, c, a], [c, a, b]].contains(&second)
 }
 
-/// What all ids have in common: for lists that serve any of them.
+/// What all ids have in common, for code that is generic over them.
 pub trait Id: Copy + Ord + fmt::Display + fmt::Debug + Default {
-    /// What stands in an array for no id.
+    /// The value that stands for no id.
     const NONE: Self;
 
     /// The id of place `index` in an array.

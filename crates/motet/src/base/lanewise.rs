@@ -1,6 +1,6 @@
-//! Arithmetic for numbers that are worked on some at a time.
+//! Operators for several numbers processed at once.
 
-/// Operators of a type `Lanes<S>(S, S::...)`, each by a method of `pulp::Simd`.
+/// Implements operators for a type `Lanes<S>(S, S::...)`, each by a method of `pulp::Simd`.
 macro_rules! lanewise {
     ($($trait:ident $method:ident $simd:ident;)*) => {
         $(impl<S: Simd> $trait for Lanes<S> {

@@ -1,7 +1,8 @@
-//! Numbers that look random and are the same every time.
+//! Numbers that look random and are the same on every run.
 
-/// A number of which every bit depends on every bit of `x`: what splitmix64 makes of the state `x` (Steele, Lea and Flood 2014, *Fast splittable
-/// pseudorandom number generators*). No two `x` have the same.
+/// A number of which every bit depends on every bit of `x`: the output of splitmix64 for the state `x`
+/// (Steele, Lea and Flood 2014, *Fast splittable pseudorandom number generators*). Different `x` give
+/// different numbers.
 #[inline]
 pub(crate) fn mixed(x: u64) -> u64 {
     let z = x.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -1,4 +1,4 @@
-//! Floor 0: what every other module stands on.
+//! Floor 0: what every other module builds on.
 
 mod csr;
 mod error;

@@ -1,9 +1,8 @@
-//! Which numbers hang together: disjoint sets.
+//! Disjoint sets of numbers.
 
 use crate::base::VertexId;
 
-/// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each
-/// known by its smallest.
+/// Disjoint sets of the numbers below `n` (union-find, Tarjan 1975), each represented by its smallest member.
 pub(crate) struct Sets {
     parents: Vec<u32>,
 }
@@ -27,7 +26,7 @@ impl Sets {
         (0..self.parents.len() as u32).map(|i| self.root(i)).collect()
     }
 
-    /// Joins the vertices of each list, such as a facet, with each other.
+    /// Joins the vertices of each list, such as those of a facet, into one set.
     pub(crate) fn join_all<'a>(&mut self, lists: impl IntoIterator<Item = &'a [VertexId]>) {
         for list in lists {
             list.windows(2).for_each(|pair| self.join(pair[0].0, pair[1].0));

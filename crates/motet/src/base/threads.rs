@@ -1,4 +1,5 @@
-//! How many threads a call may use: always the caller's choice, never a global pool; and who watches it.
+//! How many threads a call may use, always the caller's choice and never a global pool; and the watch on the
+//! call.
 
 use std::ops::Range;
 
@@ -6,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::base::{Error, Result, Watch};
 
-/// What a thread takes at least in one go: less is done sooner than shared out.
+/// The least number of items per thread: fewer are done sooner than they are distributed.
 const SMALLEST_PART: usize = 4096;
 
 /// A pool of threads that belongs to the caller. Results do not depend on its size.
@@ -22,10 +23,10 @@ impl Threads {
         Self::default()
     }
 
-    /// `n` threads, but no more than the machine offers cores; 0 means one for each.
+    /// A pool of `n` threads, but no more than the machine has cores; 0 means one per core.
     ///
     /// # Errors
-    /// When the operating system will not start them.
+    /// When the operating system cannot start them.
     pub fn new(n: usize) -> Result<Self> {
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let n = if n == 0 { cores } else { n.min(cores) };
@@ -38,23 +39,23 @@ impl Threads {
         })
     }
 
-    /// The same, watched: what runs on them says how far it is, and ends when the other side asks for it.
+    /// Attaches a watch: work on these threads reports its progress, and stops on request.
     #[must_use]
     pub fn watched(self, watch: &Watch) -> Self {
         Self { watch: watch.clone(), ..self }
     }
 
-    /// Who watches.
+    /// The watch on the work of these threads.
     pub fn watch(&self) -> &Watch {
         &self.watch
     }
 
-    /// How many threads work.
+    /// The number of threads.
     pub fn count(&self) -> usize {
         self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
     }
 
-    /// `of` each number below `n`, in their order.
+    /// `of(i)` for each `i` below `n`, in order.
     pub fn map<T: Send>(&self, n: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
         match &self.pool {
             None => (0..n).map(of).collect(),
@@ -64,7 +65,8 @@ impl Threads {
         }
     }
 
-    /// What `of` says of each run of so many of the numbers below `n`, joined in their order. It works on a state that is kept for the next run.
+    /// Applies `of` to runs of up to `length` of the numbers below `n` and joins the results in order. One
+    /// thread takes all numbers as a single run. `of` also gets a state, which is reused from run to run.
     pub fn in_runs<S: Default, T: Send>(
         &self,
         n: usize,
@@ -82,7 +84,7 @@ impl Threads {
         }
     }
 
-    /// `of` each of a few things that take long, in their order.
+    /// Applies `of` to each of a few expensive things; the results are in order.
     pub fn each<T: Send, U: Send>(&self, things: Vec<T>, of: impl Fn(T) -> U + Sync + Send) -> Vec<U> {
         match &self.pool {
             None => things.into_iter().map(of).collect(),
@@ -90,8 +92,8 @@ impl Threads {
         }
     }
 
-    /// The pool, where there is more than one thread. `None`: use a plain loop,
-    /// since a parallel iterator outside a pool would start the global one.
+    /// The pool, where there is more than one thread. Where it is `None`, use a plain loop, since a parallel
+    /// iterator outside a pool would start the global one.
     pub fn pool(&self) -> Option<&rayon::ThreadPool> {
         self.pool.as_ref()
     }

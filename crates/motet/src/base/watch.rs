@@ -1,23 +1,25 @@
-//! How far a call has come, for another thread to see; and the word of that thread that it is to end.
+//! The progress of a call, for another thread to read; and a way to stop the call.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::base::{Error, ErrorKind, Result};
 
-/// How far a call has come.
+/// The progress of a call.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done; empty before anything is.
+    /// What is being done; empty at first.
     pub stage: &'static str,
     /// How much of it is done.
     pub done: usize,
-    /// How much there is to do, as far as that is known by now; 0 where it is not. Stages may come again.
+    /// How much there is to do, as far as is known by now; 0 where it is unknown. A stage may occur more than
+    /// once.
     pub of: usize,
 }
 
-/// Two ends of one line: the work says now and then how far it is and asks whether it is to go on, whoever started it looks and may end it. Clones
-/// are the same line. The default one has nobody at its other end, and costs nothing.
+/// A line between a call and whoever started it: the call reports its progress and checks from time to time
+/// whether to stop; the other side reads the progress and may stop the call. Clones share one line. The
+/// default watch is connected to nobody and costs nothing.
 ///
 /// ```
 /// use motet::base::{Threads, Watch};
@@ -39,33 +41,35 @@ struct Line {
 }
 
 impl Watch {
-    /// A line to look at.
+    /// A watch that records progress and can stop a call.
     pub fn new() -> Self {
         Self(Some(Arc::default()))
     }
 
-    /// Ends what is being done, soon: it fails with [`ErrorKind::Stopped`], and leaves what it was given as it was, where the call does not say otherwise.
+    /// Stops the running call soon: it fails with [`ErrorKind::Stopped`] and leaves its input unchanged,
+    /// unless the call is documented otherwise.
     pub fn stop(&self) {
         if let Some(line) = &self.0 {
             line.is_stopped.store(true, Ordering::Relaxed);
         }
     }
 
-    /// How far it is.
+    /// The progress last reported.
     pub fn progress(&self) -> Progress {
         self.0.as_ref().map_or_else(Progress::default, |line| {
             *line.progress.lock().unwrap_or_else(PoisonError::into_inner)
         })
     }
 
-    /// Says how far the work is; see [`Progress`]. It takes some 20 ns where somebody looks. Who calls the library says so of what it does itself, such as reading files.
+    /// Reports progress; see [`Progress`]. It takes some 20 ns where somebody watches. Programs that call the
+    /// library report their own work, such as reading files, in the same way.
     pub fn tell(&self, stage: &'static str, done: usize, of: usize) {
         if let Some(line) = &self.0 {
             *line.progress.lock().unwrap_or_else(PoisonError::into_inner) = Progress { stage, done, of };
         }
     }
 
-    /// Says how far the work is, and fails where it is to end.
+    /// Reports progress, and fails where a stop was requested.
     pub(crate) fn go_on(&self, stage: &'static str, done: usize, of: usize) -> Result<()> {
         self.tell(stage, done, of);
         if self.0.as_ref().is_some_and(|line| line.is_stopped.load(Ordering::Relaxed)) {
