@@ -1,11 +1,11 @@
-//! Sub-stepping: on to where the caller wants the mesh, as far as its cells stay upright.
+//! Sub-stepping: moving the mesh towards the requested displacement, as far as no cell is inverted.
 //!
-//! A motion that one step from the reference can do is done in one step, and depends on
-//! nothing else. Where that would turn a cell over, the mesh goes on from where the last
-//! call left it: as far as is admissible, found by halving; there the graph is built
-//! anew, every vertex hung into it where it is now (those of sliding patches into that of their plane), and so on, until the boundary is
-//! where it should be or a sub-step gets nowhere. What the boundary does in between is
-//! the straight way; a wall that turns should come in steps of its own.
+//! A motion that one step from the reference can do is done in one step, and depends on nothing else. Where
+//! that would invert a cell, the mesh goes on from where the last call left it: as far as is admissible,
+//! found by bisection. There the graph is rebuilt and every vertex is located in it anew (those of sliding
+//! patches in the graph of their plane), and so on, until the boundary is where it should be or a sub-step
+//! makes no progress. In between, the boundary moves along straight lines; the caller should therefore divide
+//! the motion of a wall that rotates into steps.
 
 use std::time::Instant;
 
@@ -22,24 +22,25 @@ use crate::motion::update::{Displacements, Padded};
 #[derive(Clone, Debug)]
 pub(crate) struct State {
     points: Vec<Point>,
-    /// Displacements of the driven vertices there.
+    /// Displacements of the driven vertices in this state.
     driven: Vec<Point>,
 }
 
-/// Halvings of the part of the way that is still admissible: 1/4096 of it.
+/// Bisections in the search for the admissible part of the way, which is found to 1/4096.
 const HALVINGS: usize = 12;
 
 impl Mover {
-    /// Moves the mesh to where `displacement`, counted from the first place, takes the
-    /// vertices of [`Self::boundary`], in sub-steps if need be, and certifies what it
-    /// reached; `out` gets the place of every vertex.
+    /// Moves the mesh by `displacement`, in sub-steps where necessary, and certifies the result.
     ///
-    /// No cell that was upright at first is inverted or flat in `out`, except where a
-    /// call could not move at all from a start that has such cells.
+    /// `displacement` holds one vector, counted from the reference, for each vertex of [`Self::boundary`];
+    /// `out` receives the position of every vertex.
+    ///
+    /// No cell that was upright in the reference is inverted or flat in `out`, except where a call could not
+    /// move at all from a start that has such cells.
     ///
     /// # Errors
-    /// As [`Self::step`], and the next call begins where this one began. A motion that does not
-    /// get all the way is no error: see [`Certificate::complete`].
+    /// Those of [`Self::step`]; the next call then begins where this one began. A motion that cannot be
+    /// completed is no error: see [`Certificate::complete`].
     pub fn advance(
         &mut self,
         displacement: &[Point],
@@ -79,12 +80,12 @@ impl Mover {
         Ok(certificate)
     }
 
-    /// Forgets where [`Self::advance`] left the mesh: the next call begins in the first place.
+    /// Forgets where [`Self::advance`] left the mesh: the next call begins at the reference.
     pub fn restart(&mut self) {
         self.state = None;
     }
 
-    /// How good the mesh is with its vertices at `points`.
+    /// The certificate of the mesh with its vertices at `points`.
     ///
     /// # Panics
     /// When there are fewer points than the mesh has.
@@ -114,7 +115,7 @@ impl Mover {
             tets.filter(|t| crate::geometry::tet::volume_6(t.map(place)) <= 0.0).count();
     }
 
-    /// The largest part of the displacement that a step from the reference can do.
+    /// The largest fraction of the displacement that a step from the reference can do.
     fn admissible_in_one_step(
         &self,
         target: &[Point],
@@ -189,7 +190,7 @@ impl Mover {
         Ok(())
     }
 
-    /// Goes the admissible part of the displacement in one step from the reference.
+    /// Moves by the admissible fraction of the displacement, in one step from the reference.
     fn go_in_one_step(
         &mut self,
         target: &[Point],
@@ -204,7 +205,7 @@ impl Mover {
     }
 }
 
-/// The way from one state to the target, by the method set up at that state.
+/// The way from one state to the target, with the map built at that state.
 struct Leg<'a> {
     mover: &'a Mover,
     state: &'a State,
@@ -221,7 +222,7 @@ impl<'a> Leg<'a> {
         Ok(Self { mover, state, target, map, start, iterations: 0 })
     }
 
-    /// Displacements of the driven vertices when a part of the way is gone.
+    /// Displacements of the driven vertices after `part` of the way.
     fn driven(&self, part: f64) -> Vec<Point> {
         if part == 1.0 {
             return self.target.to_vec();
@@ -242,8 +243,8 @@ impl<'a> Leg<'a> {
         Ok(self.mover.finish(out, threads))
     }
 
-    /// The largest part of the way on which every cell stays upright; all of it where
-    /// that is so, else no further than to where each has kept `share` of its volume.
+    /// The largest part of the way on which every cell stays upright: the whole way where possible, otherwise
+    /// no farther than where each cell keeps `share` of its volume.
     fn longest(
         &mut self,
         share: f64,
@@ -260,8 +261,8 @@ impl<'a> Leg<'a> {
     }
 }
 
-/// The largest part of 1 for which `holds` is true, to within 2^-[`HALVINGS`], if it
-/// holds up to some part and not beyond; 0 where it never does.
+/// The largest part of 1 for which `holds` is true, to within 2^-[`HALVINGS`], provided that it holds up to
+/// some part and not beyond; 0 where it never does.
 ///
 /// # Errors
 /// Those of `holds`.
@@ -281,7 +282,7 @@ fn largest(mut holds: impl FnMut(f64) -> Result<bool>) -> Result<f64> {
     Ok(good)
 }
 
-/// Adds to `seconds` what `work` takes.
+/// Runs `work` and adds the time that it takes to `seconds`.
 fn timed<T>(seconds: &mut f64, work: impl FnOnce() -> T) -> T {
     let begin = Instant::now();
     let result = work();

@@ -1,20 +1,20 @@
-//! What every boundary vertex is told to do: stay, follow a motion, or go where a file says.
+//! What each boundary vertex does: stay, follow a motion, or move by a displacement of its own.
 
 use crate::base::{Error, Point, Result, VertexId};
 use crate::geometry::vector::{norm, sub};
 use crate::motion::Prescribed;
 
-/// Two displacements are one where they differ by less than this part of their size and that of the coordinates.
+/// Two displacements are equal where they differ by less than this fraction of their size and that of the
+/// coordinates.
 const ROUNDING: f64 = 1e-12;
 
-/// The asked motion of the boundary of a mesh, at any fraction of it. Vertices
-/// inside that are moved, too, such as those of an interface, count as boundary.
+/// The requested motion of the boundary of a mesh, at any fraction of it.
 ///
-/// A vertex obeys the first that is told about it; vertices that nothing is told
-/// about stay where they are.
+/// Interior vertices that are moved too, such as those of an interface, count as boundary. A vertex obeys the
+/// first order given for it; vertices without an order stay where they are.
 #[derive(Clone, Debug)]
 pub struct BoundaryMotion {
-    /// Every boundary vertex, rising.
+    /// All boundary vertices, in rising order.
     vertices: Vec<VertexId>,
     orders: Vec<Order>,
     motions: Vec<Prescribed>,
@@ -28,34 +28,35 @@ enum Order {
     Follow(usize),
 }
 
-/// How an order was taken up.
+/// How many vertices an order reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
     /// Vertices that now obey it.
     pub obeying: usize,
-    /// Vertices that obey an order given before.
+    /// Vertices that obey an earlier order.
     pub refused: usize,
-    /// Vertices that this is not about: they follow the others.
+    /// Vertices that do not belong to this motion: they follow the others.
     pub unknown: usize,
 }
 
 impl BoundaryMotion {
-    /// Nothing moves: `boundary` holds each boundary vertex once, rising.
+    /// A motion without orders: nothing moves. `boundary` holds each boundary vertex once, in rising order.
     pub fn still(boundary: &[VertexId]) -> Self {
         debug_assert!(boundary.is_sorted());
         Self { vertices: boundary.to_vec(), orders: vec![Order::None; boundary.len()], motions: Vec::new() }
     }
 
-    /// `vertices` stay, whatever is told about them later.
+    /// Makes `vertices` stay, unless they have an earlier order; later orders for them are refused.
     pub fn hold(&mut self, vertices: &[VertexId]) -> Taken {
         self.give(vertices.iter().map(|&v| (v, Order::Stay)))
     }
 
-    /// Refuses a motion of a patch some vertices of which obey an order given before, other than to stay, that takes them elsewhere.
+    /// Refuses a motion of a patch if some of its vertices obey an earlier order, other than to stay, that
+    /// takes them elsewhere.
     /// `points` are those of the undeformed mesh.
     ///
     /// # Errors
-    /// With how many vertices that are, and where the first is.
+    /// Reports how many such vertices there are, and where the first is.
     pub fn check_alike(
         &self,
         points: &[Point],
@@ -77,8 +78,8 @@ impl BoundaryMotion {
         ))
     }
 
-    /// Those of `vertices` that obey an order given before, other than to stay, which takes them elsewhere than `motion`
-    /// would, half of the way or all of it: by more than rounding.
+    /// Those of `vertices` that obey an earlier order, other than to stay, that takes them elsewhere than
+    /// `motion` would, half-way or at the end, by more than rounding.
     fn contradicted(&self, points: &[Point], vertices: &[VertexId], motion: &Prescribed) -> Vec<VertexId> {
         let differs = |i: usize, v: VertexId| {
             let place = points[v.index()];
@@ -93,10 +94,10 @@ impl BoundaryMotion {
         vertices.iter().copied().filter(contradicted).collect()
     }
 
-    /// `vertices` follow `motion`.
+    /// Makes `vertices` follow `motion`, unless they have an earlier order.
     ///
     /// # Errors
-    /// As [`Prescribed::check`].
+    /// Those of [`Prescribed::check`].
     pub fn follow(&mut self, vertices: &[VertexId], motion: Prescribed) -> Result<Taken> {
         motion.check()?;
         self.motions.push(motion);
@@ -104,23 +105,23 @@ impl BoundaryMotion {
         Ok(self.give(vertices.iter().map(|&v| (v, Order::Follow(number)))))
     }
 
-    /// Each of these vertices goes by its own displacement.
+    /// Gives each of these vertices its own displacement, unless it has an earlier order.
     pub fn go(&mut self, displacements: &[(VertexId, Point)]) -> Taken {
         self.give(displacements.iter().map(|&(v, d)| (v, Order::Go(d))))
     }
 
-    /// Every vertex that this is about, rising.
+    /// All vertices of this motion, in rising order.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
 
-    /// The vertices that something is told about, other than to stay; rising.
+    /// The vertices with an order other than to stay, in rising order.
     pub fn told(&self) -> Vec<VertexId> {
         let all = self.vertices.iter().zip(&self.orders);
         all.filter(|(_, o)| matches!(o, Order::Go(_) | Order::Follow(_))).map(|(&v, _)| v).collect()
     }
 
-    /// The vertices that the whole motion leaves elsewhere, or that a turn goes through; rising.
+    /// The vertices that are displaced half-way or at the end of the motion, in rising order.
     pub fn moving(&self, points: &[Point]) -> Vec<VertexId> {
         let half = self.displacements(points, 0.5);
         let whole = self.displacements(points, 1.0);
@@ -128,8 +129,8 @@ impl BoundaryMotion {
         all.filter(|(_, (half, whole))| **half != [0.0; 3] || **whole != [0.0; 3]).map(|(&v, _)| v).collect()
     }
 
-    /// The displacement of each boundary vertex, in their order, at `fraction` of the motion;
-    /// `points` are those of the undeformed mesh.
+    /// The displacement of each of [`Self::vertices`], in their order, at `fraction` of the motion; `points`
+    /// are those of the undeformed mesh.
     pub fn displacements(&self, points: &[Point], fraction: f64) -> Vec<Point> {
         let one = |(i, vertex): (usize, &VertexId)| self.displacement(i, points[vertex.index()], fraction);
         self.vertices.iter().enumerate().map(one).collect()
@@ -176,7 +177,7 @@ mod tests {
         assert_eq!(half, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0]]);
         assert_eq!(motion.told(), [4, 7].map(VertexId));
         let all = [1, 3, 4, 7].map(VertexId);
-        // Vertex 3 stays, which is no contradiction; 4 is shifted likewise.
+        // Vertex 3 stays, which is no contradiction; vertex 4 is shifted in the same way.
         let likewise = Prescribed::Shift([2.0, 1e-15, 0.0]);
         assert_eq!(motion.contradicted(&[[0.0; 3]; 8], &all, &likewise), [VertexId(7)]);
         assert_eq!(

@@ -1,11 +1,14 @@
-//! Values of one surface at places of another: what a wall is told in triangles of its own.
+//! Values of one surface at places of another: for walls whose displacements are given on triangles of their
+//! own.
 
 use crate::base::{Error, Point, Result, Threads, VertexId};
 use crate::geometry::vector::{add, scale};
 use crate::spatial::NearestTriangle;
 
-/// Carries vectors from the vertices of a surface to places on or near it: each place takes the value, linear in the triangle, of the nearest
-/// place of the surface. A place that is a vertex, to the bit, takes the vertex's value, to the bit.
+/// Carries vectors from the vertices of a surface to places on or near it.
+///
+/// Each place takes the value at the nearest point of the surface, which is linear in each triangle. A place
+/// that equals a vertex to the bit takes the vertex's value to the bit.
 #[derive(Clone, Debug)]
 pub struct SurfaceCarrier {
     n_points: usize,
@@ -13,7 +16,7 @@ pub struct SurfaceCarrier {
     farthest: f64,
 }
 
-/// What one place takes its value from.
+/// The triangle and the weights that one place takes its value from.
 #[derive(Clone, Copy, Debug)]
 struct Link {
     vertices: [VertexId; 3],
@@ -21,10 +24,10 @@ struct Link {
 }
 
 impl SurfaceCarrier {
-    /// From the surface of `triangles` over `points` to `places`.
+    /// Carries from the surface of `triangles` over `points` to `places`.
     ///
     /// # Errors
-    /// When there is no triangle, or a place has none near it: a coordinate that is no number.
+    /// When there is no triangle, or a place has none near it because a coordinate is not a number.
     pub fn new(
         points: &[Point],
         triangles: &[[VertexId; 3]],
@@ -50,7 +53,7 @@ impl SurfaceCarrier {
         Ok(Self { n_points: points.len(), links, farthest })
     }
 
-    /// How far a place is from the surface at most.
+    /// The largest distance of a place from the surface.
     pub fn farthest(&self) -> f64 {
         self.farthest
     }
@@ -58,7 +61,7 @@ impl SurfaceCarrier {
     /// The value at each place; `values` has one for each point of the surface.
     ///
     /// # Panics
-    /// When there are not as many values as points.
+    /// When the numbers of values and points differ.
     pub fn carry(&self, values: &[Point]) -> Vec<Point> {
         assert_eq!(values.len(), self.n_points, "a value for each point of the surface");
         let at = |v: VertexId| values[v.index()];

@@ -1,4 +1,4 @@
-//! The certificate: how good the mesh is that a motion returned, and what it took.
+//! The certificate: the quality of the mesh that a motion returned, and what it took.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,49 +17,52 @@ pub const BAD_EAS: f64 = 0.2;
 /// What a motion reached, and how good the mesh is there.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Certificate {
-    /// Whether the mesh is where it was asked to be.
+    /// Whether the mesh is where it was requested to be.
     pub complete: bool,
-    /// The part of the asked motion that was reached, from where the mesh was before: 1 when complete.
+    /// The fraction of the requested motion that was reached, from where the mesh was before: 1 when
+    /// complete.
     pub fraction: f64,
-    /// The largest part of it that one step from the reference could go, 1 when that was enough.
+    /// The largest fraction of it that one step from the reference can do; 1 when one step was enough.
     pub admissible_fraction: f64,
-    /// How often the motion went part of the way and the graph was built anew.
+    /// Number of sub-steps, each with a new graph; 0 when one step was enough.
     pub substeps: usize,
-    /// Iterations of a linear system, all in all; 0 for the graph, which has none.
+    /// Iterations of linear solvers in total; 0 for the graph, which solves none.
     pub iterations: usize,
-    /// Vertices of bad tets that smoothing has moved.
+    /// Vertices of bad tets that were moved by smoothing.
     pub smoothed: usize,
-    /// Volume cells that are inverted or flat: quadratic ones where the determinant of their Jacobian is not positive everywhere.
+    /// Volume cells that are inverted or flat; quadratic ones where the determinant of their Jacobian is not
+    /// positive everywhere.
     pub inverted: usize,
-    /// Of the reference: volume cells that were inverted or flat before anything moved.
+    /// Volume cells of the reference that were inverted or flat before anything moved.
     pub inverted_before: usize,
-    /// Cells that one step would have turned over, the first ten.
+    /// Cells that one step would have inverted, at most ten.
     pub blocked_by: Vec<CellId>,
-    /// Tets of the graph that hold vertices and have turned over. Flat ones do at once;
-    /// it means nothing where no cell is inverted.
+    /// Tets of the graph that contain vertices and are inverted. Flat ones invert at once; where no cell is
+    /// inverted, this has no significance.
     pub graph_tets_inverted: usize,
-    /// Where the rim of a sliding patch is moved out of its plane the farthest.
+    /// Where the rim of a sliding patch is moved farthest out of its plane.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub leaves_plane: Option<LeavesPlane>,
-    /// How good the cells are.
+    /// The quality of the cells.
     #[serde(flatten)]
     pub quality: Quality,
     /// Where the time went.
     pub seconds: Seconds,
 }
 
-/// How good cells are.
+/// The quality of cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quality {
-    /// Tets that are bad: with an EAS below [`BAD_EAS`], and not of a boundary layer (see [`crate::mesh::OrientedTets`]).
+    /// Number of bad tets: with an EAS below [`BAD_EAS`], and not of a boundary layer (see
+    /// [`crate::mesh::OrientedTets`]).
     pub bad: usize,
-    /// Tets with an EAS below [`BAD_EAS`] that belong to a boundary layer.
+    /// Number of tets with an EAS below [`BAD_EAS`] that belong to a boundary layer.
     pub layers: usize,
     /// The worst equi-angle quality of a tet.
     pub worst_eas: Option<Worst>,
     /// The worst mean ratio of a tet.
     pub worst_mean_ratio: Option<Worst>,
-    /// How good all tets are together; `None` where there is no tet.
+    /// The distribution of quality over all tets; `None` where there is no tet.
     #[serde(rename = "quality", skip_serializing_if = "Option::is_none")]
     pub distribution: Option<Qualities>,
     /// For cells of other kinds: the worst scaled Jacobian at a corner, the volume that
@@ -78,7 +81,8 @@ pub struct Worst {
     pub value: f64,
     /// The cell.
     pub cell: CellId,
-    /// The mean of the corners that were measured; for the Jacobian of a quadratic cell where it is that.
+    /// The mean of the corners that were measured; for the Jacobian of a quadratic cell, the place where it
+    /// is least.
     pub place: Point,
 }
 
@@ -87,18 +91,18 @@ pub struct Worst {
 pub struct Seconds {
     /// Placing vertices, and smoothing.
     pub update: f64,
-    /// Looking for inverted cells.
+    /// Checking for inverted cells.
     pub check: f64,
-    /// Building graphs anew.
+    /// Rebuilding graphs.
     pub graph: f64,
     /// Measuring quality.
     pub quality: f64,
-    /// All of it.
+    /// The whole call.
     pub total: f64,
 }
 
 impl Certificate {
-    /// Why the mesh is not where it was requested to be; `None` where it is.
+    /// Why the motion is incomplete; `None` where it is complete.
     pub fn not_reached(&self) -> Option<String> {
         let cells: Vec<String> = self.blocked_by.iter().map(ToString::to_string).collect();
         (!self.complete).then(|| {
@@ -143,10 +147,10 @@ pub(crate) fn measure(check: &Check, points: &[Point], threads: &Threads) -> Qua
     Quality { bad: judged.bad.len(), layers: judged.layers.len(), distribution, worst_curved_jacobian, ..all }
 }
 
-/// What some corners came to.
+/// What was measured at some corners.
 #[derive(Default)]
 struct Measured {
-    /// But for counts and distribution.
+    /// Without counts and distribution.
     quality: Quality,
     /// The tets below [`BAD_EAS`].
     low: Vec<CellId>,
@@ -156,7 +160,8 @@ struct Measured {
     ratios: f64,
 }
 
-/// The worst quadratic cell. Chunks are the same for any number of threads, and so is what each passes over.
+/// The worst quadratic cell. Chunks are the same for any number of threads, and so is what is skipped in
+/// each.
 fn worst_curved(check: &Check, points: &[Point], threads: &Threads) -> Option<Worst> {
     let n = check.curved.len();
     let runs: Vec<_> = (0..n).step_by(CHUNK).map(|start| start..(start + CHUNK).min(n)).collect();
@@ -193,7 +198,7 @@ fn measure_some(check: &Check, points: &[Point], corners: std::ops::Range<usize>
     measured
 }
 
-/// The one with the smaller value; of equal ones the first.
+/// The one with the smaller value; the first of equal ones.
 fn worse(a: Option<Worst>, b: Option<Worst>) -> Option<Worst> {
     match (a, b) {
         (Some(a), Some(b)) if b.value < a.value => Some(b),

@@ -1,5 +1,5 @@
-//! Which cells a motion has turned over, against how the mesh began: linear ones by exact signs at their corners, quadratic
-//! ones by bounds of the determinant of their Jacobian.
+//! Which cells a motion has inverted, relative to the reference: linear ones by exact signs at their corners,
+//! quadratic ones by bounds of the determinant of their Jacobian.
 
 use rayon::prelude::*;
 
@@ -10,30 +10,30 @@ use crate::mesh::curved::CurvedCells;
 use crate::mesh::{Mesh, OrientedTets};
 use crate::motion::corners::Corners;
 
-/// The corners of the cells, the quadratic cells, and what of both was inverted or flat from the start.
+/// The corners of the cells, the quadratic cells, and which of both were inverted or flat from the start.
 ///
-/// A mesh may come with inverted cells. They are counted and told, but do not stop a
-/// motion: what it has to keep upright is what was upright.
+/// A mesh may have inverted cells from the start. They are counted and reported, but do not stop a motion,
+/// which has to keep upright only what was upright.
 #[derive(Debug, Default)]
 pub(crate) struct Check {
     pub(crate) corners: Corners,
-    /// The linear tets, which tell the layers among those of low quality.
+    /// The linear tets, which identify layers among those of low quality.
     pub(crate) tets: OrientedTets,
     pub(crate) curved: CurvedCells,
-    /// What was not upright in the reference.
+    /// What was inverted or flat in the reference.
     before: Fallen,
 }
 
-/// What is not upright, in rising order.
+/// Inverted or flat corners and cells, in rising order.
 #[derive(Debug, Default)]
 struct Fallen {
     /// Corners of linear cells.
     corners: Vec<u32>,
-    /// Quadratic cells, by their places in the list of those.
+    /// Quadratic cells, as indices into the list of those.
     curved: Vec<u32>,
 }
 
-/// Corners that one thread looks at in one go.
+/// Corners per chunk.
 const CHUNK: usize = 1 << 14;
 
 impl Check {
@@ -50,7 +50,7 @@ impl Check {
         check
     }
 
-    /// What is inverted or flat.
+    /// All that is inverted or flat.
     fn not_upright(&self, points: &[Point], threads: &Threads) -> Fallen {
         let is_curved = &self.corners.is_curved;
         Fallen {
@@ -64,7 +64,7 @@ impl Check {
         (0..).zip(is_upright).filter(|(_, is_upright)| !is_upright).map(|(i, _)| i).collect()
     }
 
-    /// Cells, in rising order, that are inverted or flat and of which that part was not so in the reference.
+    /// Cells, in rising order, that have an inverted or flat part which was upright in the reference.
     pub(crate) fn turned_over(&self, points: &[Point], threads: &Threads) -> Vec<CellId> {
         let mut turned = self.not_upright(points, threads);
         turned.corners.retain(|i| self.before.corners.binary_search(i).is_err());
@@ -72,8 +72,8 @@ impl Check {
         self.cells_of(&turned)
     }
 
-    /// Whether all that was upright in the reference still is, and has kept `share` of its volume in `start` if it was upright there; of a quadratic cell: of the
-    /// least determinant of its Jacobian.
+    /// Whether all that was upright in the reference still is, and what was upright in `start` has kept
+    /// `share` of its volume there (of a quadratic cell: of the least determinant of its Jacobian).
     pub(crate) fn holds(&self, points: &[Point], start: &[Point], share: f64, threads: &Threads) -> bool {
         let has_lost = |i: u32, tet: [VertexId; 4]| {
             if self.corners.is_curved[i as usize] {
@@ -104,13 +104,13 @@ impl Check {
         }
     }
 
-    /// Cells of which something is not upright: all of them, and those that were from the start.
+    /// The number of cells with an inverted or flat part, now and in the reference.
     pub(crate) fn count(&self, points: &[Point], threads: &Threads) -> [usize; 2] {
         let now = self.not_upright(points, threads);
         [self.cells_of(&now).len(), self.cells_of(&self.before).len()]
     }
 
-    /// The cells of what is not upright, each once, in rising order.
+    /// The cells with inverted or flat parts, each once, in rising order.
     fn cells_of(&self, fallen: &Fallen) -> Vec<CellId> {
         let of_corners = fallen.corners.iter().map(|&i| self.corners.cells[i as usize]);
         let curved = fallen.curved.iter().map(|&i| self.curved.cells[i as usize]);

@@ -1,4 +1,4 @@
-//! Which method to take: the cheapest that keeps the mesh good.
+//! Choosing a method: the cheapest that keeps the mesh good.
 
 use std::time::Instant;
 
@@ -13,41 +13,48 @@ use crate::motion::options::{Elastic, Method, Options};
 /// What was chosen, and why.
 #[derive(Clone, Debug)]
 pub struct Choice {
-    /// The method to take.
+    /// The method chosen.
     pub method: Method,
-    /// The bound: no cell was to be worse.
+    /// The bound on quality that cells had to keep.
     pub least: f64,
-    /// What was tried, the cheapest first; the last one is not always the one that was chosen.
+    /// The methods tried, the cheapest first; the last is not always the one chosen.
     pub tried: Vec<Tried>,
 }
 
-/// What a method came to.
+/// The result of trying one method.
 #[derive(Clone, Debug, Serialize)]
 pub struct Tried {
-    /// Its name, as [`Method::name`] has it.
+    /// The name of the method, from [`Method::name`].
     pub method: &'static str,
-    /// Whether it reached every frame, and no cell was worse than the bound.
+    /// Whether it reached every frame, with no cell worse than the bound.
     pub kept: bool,
-    /// Frames that it reached.
+    /// Number of frames that it reached.
     pub frames: usize,
-    /// The worst cell of all of these: EAS of tets, scaled Jacobian of others.
+    /// The worst cell of all these frames: EAS of tets, scaled Jacobian of others. At most 0 where a frame
+    /// was not completed.
     pub worst: Option<f64>,
-    /// Why it could not be tried.
+    /// Why it could not be used.
     pub refused: Option<String>,
-    /// Set-up and all frames.
+    /// Seconds for set-up and all frames.
     pub seconds: f64,
 }
 
-/// A mesh is allowed to get twice as bad as it came, and no worse than this is asked for.
+/// Default bound: the worst cell may lose half of its quality, and no more than this is required.
 const LEAST: f64 = 0.1;
 
-/// Tries the graph, bodies (those of `options`, where it names some), the graph whose nodes turn, and elasticity, in this order, which is that of their price, on all frames of a motion;
-/// takes the first that keeps every cell at an EAS (or scaled Jacobian) of `least`. Where none does: the one whose worst cell is the best.
+/// Chooses the cheapest method that keeps every cell of all frames of a motion at an EAS (or scaled Jacobian)
+/// of `least`.
 ///
-/// `frames` begins anew with each call and gives displacements as [`Mover::advance`] takes them. `least`: half of the worst cell as the mesh came, at most 0.1, when `None`.
+/// In order of cost, it tries the graph, bodies (those of `options`, where it names some), the graph whose
+/// nodes rotate, and elasticity, and takes the first that meets the bound. Where none does, it takes the one
+/// whose worst cell is best.
+///
+/// `frames` restarts the motion with each call and yields displacements as [`Mover::advance`] takes them.
+/// When `least` is `None`, it is half of the worst cell of the mesh as given, at most 0.1.
 ///
 /// # Errors
-/// Those of the frames; as [`Mover::new`] or [`Mover::advance`], where all methods refuse.
+/// When `least` is not in [0, 1]; those of the frames; where all methods refuse, those of [`Mover::new`] or
+/// [`Mover::advance`].
 pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
     mesh: &Mesh,
     options: &Options,
@@ -106,7 +113,7 @@ pub fn choose<I: Iterator<Item = Result<Vec<Point>>>>(
 }
 
 impl Tried {
-    /// All frames, or as many as can be reached.
+    /// Runs all frames, or as many as can be reached.
     fn go(
         &mut self,
         mover: &mut Mover,
@@ -130,7 +137,7 @@ impl Tried {
             }
             self.kept &= certificate.complete && worst(&certificate).is_none_or(|now| now >= least);
             if !certificate.complete {
-                // As bad as can be: it does not get there.
+                // An incomplete frame counts as a flat cell.
                 self.worst = Some(self.worst.map_or(0.0, |worst| worst.min(0.0)));
                 break;
             }

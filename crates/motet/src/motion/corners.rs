@@ -1,10 +1,10 @@
-//! The corners of every cell as tets: a cell is upright where all of them are.
+//! The corners of every cell as tets: a cell is upright where all of these are.
 //!
-//! A tet is its own corner. In a cell of another kind each corner at which three
-//! facets meet spans a tet with its three neighbours, and the sign of its volume is
-//! that of the cell's Jacobian there. Corners where more facets meet, such as a pyramid's tip,
-//! have no such tet; they are left to the corners around them. Corners of a quadratic cell are those of the linear cell between
-//! them: they say nothing of how it stands, which [`mesh::curved`](crate::mesh::curved) does.
+//! A tet is its own corner. In a cell of another kind, each corner at which three facets meet spans a tet
+//! with its three neighbours, and the sign of its volume is that of the cell's Jacobian there. Corners where
+//! more facets meet, such as a pyramid's tip, have no such tet; the corners around them cover for them.
+//! Corners of a quadratic cell are those of the linear cell with the same corners: they do not decide whether
+//! it is upright, which [`mesh::curved`](crate::mesh::curved) does.
 
 use crate::base::{CellId, VertexId};
 use crate::mesh::adjacency::{FacetUse, Facets};
@@ -14,18 +14,19 @@ use crate::mesh::{CellKind, Cells, OrientedTets};
 /// The corner tets of all volume cells, in the order of the cells.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Corners {
-    /// Positive where the cell stands upright.
+    /// Positive where the cell is upright.
     pub(crate) tets: Vec<[VertexId; 4]>,
-    /// The cell of each.
+    /// The cell of each corner.
     pub(crate) cells: Vec<CellId>,
-    /// Whether the cell itself is that tet.
+    /// Whether the corner tet is the cell itself.
     pub(crate) is_cell: Vec<bool>,
     /// Whether the cell is quadratic.
     pub(crate) is_curved: Vec<bool>,
 }
 
 impl Corners {
-    /// The corners of the volume cells of `cells`: of linear `tets` as they are oriented, of others as they are numbered. [`Self::stand_up`] comes next.
+    /// The corners of the volume cells of `cells`: linear tets as oriented in `tets`, others as they are
+    /// numbered. [`Self::stand_up`] has to follow.
     pub(crate) fn of(cells: &Cells, tets: &OrientedTets) -> Self {
         let mut oriented = tets.tets.iter();
         let mut corners = Self::with_capacity(cells.len());
@@ -43,11 +44,12 @@ impl Corners {
         corners
     }
 
-    /// Turns corners so that positive means upright, given the sign of the volume of each; answers those
-    /// that are not upright, in rising order.
+    /// Turns corners so that positive means upright, given the sign of the volume of each; returns the
+    /// indices of those that are not upright, in rising order.
     ///
-    /// Tets are oriented. Files do not agree on how to number a wedge: whatever most cells of another kind do counts as upright. Faces of a
-    /// polyhedron may run either way round: there each corner is for itself.
+    /// Tets are already oriented. Files do not agree on how to number a wedge: among cells of another kind,
+    /// the orientation of the majority counts as upright. Faces of a polyhedron may run either way around:
+    /// there each corner is judged by itself.
     pub(crate) fn stand_up(&mut self, cells: &Cells, signs: &[i8]) -> Vec<u32> {
         let mut n_upright = [0i64; 256];
         for (cell, &sign) in self.cells.iter().zip(signs) {

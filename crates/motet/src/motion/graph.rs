@@ -1,27 +1,26 @@
-//! The graph: the Delaunay triangulation of the nodes, and where each other vertex hangs in it.
+//! The graph: the Delaunay triangulation of the nodes, and where every other vertex lies in it.
 
 use crate::base::{Point, Result, Threads, VertexId};
 use crate::delaunay::Triangulation;
 use crate::motion::weights::weights;
 
-/// Where points hang in the triangulation of some nodes.
+/// Where points lie in the triangulation of some nodes.
 #[derive(Debug, Default)]
 pub(crate) struct Hanging {
-    /// Corners, as places among the nodes, of those tets that hold a point.
+    /// Corners, as indices of nodes, of the tets that contain a point.
     pub(crate) tets: Vec<[u32; 4]>,
-    /// For each point its place among [`Self::tets`].
+    /// For each point, the index of its tet in [`Self::tets`].
     pub(crate) tet: Vec<u32>,
-    /// For each point the weights of the four corners.
+    /// For each point, the weights of the four corners.
     pub(crate) weights: Vec<[f64; 4]>,
-    /// Points that no tet holds, in rising order: they have the weights of a near
-    /// place on the hull.
+    /// Points in no tet, in rising order: they have the weights of a nearby place on the hull.
     pub(crate) outside: Vec<u32>,
-    /// How many tets the triangulation has in all.
+    /// The number of tets of the whole triangulation.
     pub(crate) n_tets: usize,
 }
 
 impl Hanging {
-    /// Takes out some points, given in rising order.
+    /// Removes some points, given in rising order.
     pub(crate) fn remove(&mut self, some: &[u32]) {
         let is_kept = |i: u32| some.binary_search(&i).is_err();
         let mut i = 0u32..;
@@ -32,10 +31,10 @@ impl Hanging {
     }
 }
 
-/// The tets of some nodes.
+/// The tets of a triangulation of nodes.
 #[derive(Debug)]
 pub(crate) struct Graph {
-    /// Where its nodes are: those that were given, then what it needed beside.
+    /// Positions of the nodes: the given ones, then those that the triangulation needed in addition.
     pub(crate) places: Vec<Point>,
     pub(crate) tets: Vec<[u32; 4]>,
 }
@@ -43,14 +42,14 @@ pub(crate) struct Graph {
 /// Triangulates `nodes`.
 ///
 /// # Errors
-/// When they do not span space: fewer than four, all in a line, all in a plane.
+/// When the nodes do not span space: fewer than four, all on a line, or all in a plane.
 pub(crate) fn triangulate(nodes: &[Point], threads: &Threads) -> Result<Triangulation> {
     Triangulation::new(nodes, threads).map_err(|e| {
         e.remedy("mesh motion needs boundary vertices that span space: check that the mesh is not flat")
     })
 }
 
-/// Finds the tet of each of `points`, and its weights there. The points are finite.
+/// Finds the tet of each of `points`, and its weights there. The points must be finite.
 pub(crate) fn hang(triangulation: &Triangulation, points: &[Point], threads: &Threads) -> Hanging {
     let located = triangulation.locator().locate_all(points, threads);
     let nodes = triangulation.points();
@@ -59,7 +58,7 @@ pub(crate) fn hang(triangulation: &Triangulation, points: &[Point], threads: &Th
 }
 
 impl Hanging {
-    /// From the tet of each point, and whether it lies inside.
+    /// Built from `found`: the tet of each point, and whether the point lies inside it.
     pub(crate) fn new(
         nodes: &[Point],
         tets: &[[VertexId; 4]],

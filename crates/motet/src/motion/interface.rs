@@ -1,4 +1,5 @@
-//! Interfaces inside a volume that a displacement of all points moves: where regions meet, and sheets of labelled facets.
+//! Interfaces inside a volume that a displacement of all points moves: where regions meet, and sheets of
+//! labelled facets.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -9,28 +10,30 @@ use crate::mesh::{Boundary, Mesh};
 use crate::motion::options::FacetSet;
 use crate::motion::slide::key;
 
-/// Facets inside the volume between two regions, or those of one patch.
+/// Interior facets between two regions, or those of one patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interface {
     /// The names of the two regions, or that of the patch.
     pub name: String,
-    /// The vertices on its facets, rising; those on its rim may lie on the boundary.
+    /// The vertices on its facets, in rising order; those on its rim may lie on the boundary.
     pub vertices: Vec<VertexId>,
 }
 
 impl Interface {
-    /// All interfaces of a mesh: a set for each pair of regions that share a facet, then one for each patch with facets inside.
+    /// All interfaces of a mesh: one for each pair of regions that share a facet, then one for each patch
+    /// with interior facets.
     pub fn all(mesh: &Mesh, boundary: &Boundary) -> Vec<Self> {
         let mut all = between_regions(mesh);
         all.extend(patches_inside(mesh, boundary));
         all
     }
 
-    /// The interfaces that a displacement of all points moves: those with a vertex inside whose displacement is not zero. On others
-    /// nothing is asked, and they follow as all that is inside.
+    /// The interfaces that a displacement of all points moves: those with an interior vertex whose
+    /// displacement is not zero. The others are not prescribed, and follow like the rest of the interior.
     ///
     /// # Errors
-    /// When such an interface has a vertex whose displacement is not finite. When there are not as many displacements as points.
+    /// When such an interface has a vertex whose displacement is not finite, or when the numbers of
+    /// displacements and points differ.
     pub fn moved(mesh: &Mesh, boundary: &Boundary, displacement: &[Point]) -> Result<Vec<Self>> {
         if displacement.len() != mesh.points.len() {
             let what = format!("{} displacements for {} points", displacement.len(), mesh.points.len());
@@ -58,14 +61,14 @@ impl Interface {
     }
 }
 
-/// Labelled facets, those on the boundary too, and facets between two regions.
+/// Calls `see` with every labelled facet, on the boundary too, and with every facet between two regions.
 pub(crate) fn for_each_wall_facet(mesh: &Mesh, mut see: impl FnMut(&[VertexId])) {
     let of_patches = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(2));
     of_patches.for_each(|(.., vertices)| see(vertices));
     for_each_between(mesh, |_, vertices| see(vertices));
 }
 
-/// Facets between two regions, with their labels, the lower first.
+/// Calls `see` with every facet between two regions and their labels, the lower first.
 fn for_each_between(mesh: &Mesh, mut see: impl FnMut([i32; 2], &[VertexId])) {
     let Some(regions) = mesh.regions() else { return };
     let volumes = mesh.cells.iter().filter(|(_, kind, _)| kind.dim() == Some(3));
@@ -98,7 +101,7 @@ fn between_regions(mesh: &Mesh) -> Vec<Interface> {
     vertices.into_iter().map(of).collect()
 }
 
-/// The facets of patches that are not on the boundary.
+/// The facets of each patch that are not on the boundary, where there are any.
 fn patches_inside(mesh: &Mesh, boundary: &Boundary) -> Vec<Interface> {
     let Some(patches) = mesh.patches() else { return Vec::new() };
     let outer: HashSet<_> = FacetSet::of_boundary(boundary, "", |_| true).rings.iter().map(key).collect();

@@ -1,10 +1,14 @@
-//! The band that takes the strain: what touches a body goes along, what is farther away stays to the bit, and about one edge between them is sheared.
+//! The band that takes the strain: what touches a body moves with it, what is farther away is unchanged to
+//! the bit, and a band about one edge wide between the two is sheared.
 //!
-//! For bodies that go on (Behr and Tezduyar 1999, *The shear-slip mesh update method*, make such a band by hand). A share is a ramp of the distance from the body: 1 up to
-//! [`CLEAR`] edges, 0 from [`WIDTH`] edges farther on, nearer to the body where another wall is near. Distances are found through the mesh, from vertex to vertex with the facets nearest to the
-//! last: what is behind a wall is as far away as the way round it.
+//! For bodies that keep moving (Behr and Tezduyar 1999, *The shear-slip mesh update method*, make such a band
+//! by hand). A share is a ramp of the distance from the body: 1 up to [`CLEAR`] edges, 0 from [`WIDTH`] edges
+//! farther on, both nearer to the body where another wall is near. Distances are found through the mesh, from
+//! vertex to vertex, to the facets near those found for the previous vertex: what lies behind a wall is as
+//! far away as the way around it.
 //!
-//! Of a paddle that turns once in its box in 72 steps, repaired and improved, before changes had a cost for the tets that they touch (16,342 tets, mean EAS 0.715 at first):
+//! For a paddle that rotates once in its box in 72 steps, repaired and improved (16,342 tets, mean EAS 0.715
+//! at first; before changes had a cost for the tets that they touch):
 //!
 //! | clear, width | mean EAS | tets changed a step |
 //! |---|---|---|
@@ -28,22 +32,24 @@ use crate::mesh::mean_edge_lengths;
 const CLEAR: f64 = 0.3;
 /// How many edges wide it is.
 const WIDTH: f64 = 1.0;
-/// Where another wall is near the band begins, and ends, no farther than these parts of the way there.
+/// Where another wall is near, the band begins and ends no farther away than these fractions of the gap.
 const OF_GAP: [f64; 2] = [0.25, 0.85];
 
 /// Walls, and the edges that lead away from them.
 struct Walls<'a> {
     points: &'a [Point],
-    /// The vertices that share an edge with each.
+    /// The vertices that share an edge with each vertex.
     beside: Csr<u32>,
-    /// Whose wall each vertex is on.
+    /// The owner of the wall that each vertex is on.
     owner: Vec<u32>,
-    /// Facets of tets with all corners on walls of one owner.
+    /// Facets of tets whose corners are all on walls of one owner.
     facets: Vec<[VertexId; 3]>,
     facets_of: Csr<u32>,
 }
 
-/// The share of each vertex in the motion of each body: those of the first vertex, then those of the next. `bodies`: the vertices of each; `held`: those of all walls that do not slide.
+/// The share of each vertex in the motion of each body, vertex by vertex.
+///
+/// `bodies` holds the vertices of each body; `held`, the vertices of all walls that do not slide.
 pub(super) fn shares(
     bodies: &[Vec<VertexId>],
     held: &[VertexId],
@@ -58,7 +64,7 @@ pub(super) fn shares(
         let is_body = |owner| owner == BODIES + b as u32;
         let is_other = |owner| owner != NOBODY && owner != BODIES + b as u32;
         let of_body = walls.distances(is_body, (CLEAR + WIDTH) * longest);
-        // A wall in a gap so wide changes no ramp.
+        // A wall across a gap this wide does not change the ramp.
         let of_others =
             walls.distances(is_other, ((CLEAR + WIDTH) / OF_GAP[1]).max(CLEAR / OF_GAP[0]) * longest);
         let (along_body, along_others) = (walls.reached(is_body), walls.reached(is_other));
@@ -66,7 +72,7 @@ pub(super) fn shares(
             let foot = of_body[v].foot.map_or(v, |facet| walls.facets[facet as usize][0].index());
             let gap = of_body[v].distance + of_others[v].distance;
             match (along_body[v], along_others[v]) {
-                // What only the body encloses goes along with it.
+                // A vertex that only the body encloses moves with it.
                 (true, false) => 1.0,
                 (true, true) => ramp(of_body[v].distance, gap, 0.5 * (lengths[v] + lengths[foot])),
                 (false, _) => 0.0,
@@ -79,7 +85,8 @@ pub(super) fn shares(
     shares
 }
 
-/// The share at a distance from the body, given how wide the gap to the next wall is and how long edges are.
+/// The share at a distance from the body, given the width of the gap to the next wall and the length of
+/// edges.
 fn ramp(distance: f64, gap: f64, edge: f64) -> f64 {
     let begin = (CLEAR * edge).min(OF_GAP[0] * gap);
     let end = ((CLEAR + WIDTH) * edge).min(OF_GAP[1] * gap);
@@ -91,7 +98,7 @@ const NOBODY: u32 = 0;
 const A_WALL: u32 = 1;
 const BODIES: u32 = 2;
 
-/// How far a vertex is from some walls, and the facet of theirs that is nearest.
+/// The distance of a vertex from some walls, and the nearest of their facets.
 #[derive(Clone, Copy, Debug)]
 struct Far {
     distance: f64,
@@ -128,8 +135,9 @@ impl<'a> Walls<'a> {
         }
     }
 
-    /// How far each vertex that lies on no wall is from the walls of some owners (Dijkstra 1959, with the distance from the nearest facet in place of the length of the way); infinite where no way
-    /// leads there that crosses no wall, and where it is more than `enough` and a step.
+    /// The distance of each vertex that lies on no wall from the walls of some owners (Dijkstra 1959, with
+    /// the distance from the nearest facet in place of the length of the way); infinite where every way there
+    /// crosses a wall, and where it is more than `enough` and a step.
     fn distances(&self, is_source: impl Fn(u32) -> bool, enough: f64) -> Vec<Far> {
         let mut known = vec![Far { distance: f64::INFINITY, foot: None }; self.points.len()];
         let mut front = BinaryHeap::new();
@@ -153,7 +161,7 @@ impl<'a> Walls<'a> {
         known
     }
 
-    /// Which vertices a way leads to from the walls of some owners that crosses no wall.
+    /// Whether each vertex can be reached from the walls of some owners without crossing a wall.
     fn reached(&self, is_source: impl Fn(u32) -> bool) -> Vec<bool> {
         let mut is_reached: Vec<bool> = self.owner.iter().map(|&owner| is_source(owner)).collect();
         let mut front: Vec<usize> = (0..self.points.len()).filter(|&v| is_reached[v]).collect();
@@ -167,7 +175,8 @@ impl<'a> Walls<'a> {
         is_reached
     }
 
-    /// How far vertex `u` is from the facets at the foot of its neighbour `v`; of one on the wall that is the vertex itself.
+    /// The distance of vertex `u` from the facets at the foot of its neighbour `v`; a vertex on the wall is
+    /// its own foot.
     fn near_foot(&self, u: usize, v: usize, foot: Option<u32>) -> Far {
         let p = self.points[u];
         let itself = [VertexId::new(v)];
@@ -177,7 +186,7 @@ impl<'a> Walls<'a> {
             let corners = self.facets[facet as usize].map(|v| self.points[v.index()]);
             Far { distance: point_triangle::closest(p, corners).distance(), foot: Some(facet) }
         };
-        // Walls without facets, such as the edge of a sheet, are their vertices.
+        // Walls without facets, such as the edge of a sheet, consist of their vertices alone.
         let vertex = Far { distance: distance(p, self.points[v]), foot: None };
         facets.map(far).reduce(|a, b| if b.distance < a.distance { b } else { a }).unwrap_or(vertex)
     }

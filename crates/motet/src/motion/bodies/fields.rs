@@ -1,13 +1,16 @@
-//! How much of a body's shift, and of its turn, reaches a vertex.
+//! The shares of each vertex in a body's translation and in its rotation.
 //!
-//! Both are harmonic, 1 on the body and 0 on the rest of what is given, so that they rise and fall smoothly and never beyond. What spoils cells is the slope of the share,
-//! for the turn times the distance from the body's centre: where conductivities follow a power of that slope, it is spread evenly. That is the equation of the p-Laplacian, `p = 8`,
-//! solved by conductivities of the solution before. They also fall with the length of edges, for a shift by its square: small cells are the
-//! stiffer ones.
+//! Both are harmonic, 1 on the body and 0 at all other prescribed vertices, so that they vary smoothly and
+//! never leave this range. What degrades cells is the slope of the share, for a rotation times the distance
+//! from the body's centre; conductivities that follow a power of that slope spread it evenly. That is the
+//! equation of the p-Laplacian, `p = 8`, solved with conductivities from the previous solution.
+//! Conductivities also fall with the length of edges, for a translation with its square, so that small cells
+//! are stiffer.
 //!
-//! What it bought: bad tets, [inverted ones], after two sweeps of smoothing, of a sphere in a box; and the seconds that it takes to set up the second one.
+//! Results for a sphere in a box: bad tets, [inverted ones], after two sweeps of smoothing; and the seconds
+//! that the set-up of the second mesh takes.
 //!
-//! | p | rounds | one size of cells, 18,502 vertices, 1, 2, 3 radii | 90 degrees | growing cells, 31,736 vertices, 1, 2, 3 radii | 90 degrees | seconds |
+//! | p | rounds | uniform cells, 18,502 vertices: 1, 2, 3 radii | 90 degrees | growing cells, 31,736 vertices: 1, 2, 3 radii | 90 degrees | seconds |
 //! |---|---|---|---|---|---|---|
 //! | 4 | 6, by half | 1, 9, 431 [17] | 25 | 0, 0, 493 | 102 | 0.71 |
 //! | 6 | 12, by a third | 1, 2, 202 | 25 | 0, 0, 425 | 94 | 1.04 |
@@ -23,35 +26,35 @@ use crate::motion::bodies::band;
 use crate::motion::nodes::Nodes;
 use crate::motion::solve::{Numbering, System, gradients, laplacian};
 
-/// Shares of shift and turn, for each vertex those of all bodies.
+/// Shares of translation and rotation: for each vertex, those of all bodies.
 #[derive(Debug)]
 pub(super) struct Fields {
     n_bodies: usize,
     shares: Vec<[f64; 2]>,
 }
 
-/// Conductivities go with the squared slope to this power: `(p - 2) / 2`.
+/// Conductivities are proportional to the squared slope to this power: `(p - 2) / 2`.
 const POWER: f64 = 3.0;
-/// Solutions that lead to the last one.
+/// Number of solutions before the final one.
 const ROUNDS: usize = 16;
-/// How much of the way to the next of them is gone: the whole way goes to and fro.
+/// Relaxation factor between these solutions: a full step oscillates.
 const PART: f64 = 0.25;
-/// The least of a slope that counts, as a part of the mean.
+/// The smallest slope that counts, relative to the mean.
 const LEAST: f64 = 1e-2;
 const ROUGH: Tolerance = Tolerance { residual: 1e-3, iterations: 10_000 };
 const FINE: Tolerance = Tolerance { residual: 1e-8, iterations: 10_000 };
 
-/// What both fields are solved on.
+/// The domain that both fields are solved on.
 struct Domain<'a> {
     tets: Vec<[VertexId; 4]>,
     numbers: Vec<[u32; 4]>,
-    /// For each tet its mean edge length at its corners.
+    /// For each tet, the mean edge length at its corners.
     lengths: Vec<f64>,
     points: &'a [Point],
     numbering: Numbering,
     /// Shares of three bodies at a time on what is given.
     given: Vec<Vec<Point>>,
-    /// The middle of each body.
+    /// The centre of each body.
     centres: Vec<Point>,
     threads: &'a Threads,
 }
@@ -64,7 +67,7 @@ impl Fields {
         (free, nodes): (&[VertexId], &Nodes),
         threads: &Threads,
     ) -> Result<Self> {
-        // A vertex that slides is at nobody's wall.
+        // A sliding vertex belongs to no wall.
         let sliding = nodes.sliding();
         let vertex = |n: &u32| nodes.vertices[*n as usize];
         let free: Vec<VertexId> = free.iter().copied().chain(sliding.iter().map(vertex)).collect();
@@ -111,7 +114,8 @@ impl Fields {
         Ok(Self { n_bodies: bodies.len(), shares })
     }
 
-    /// Shares that fall from 1 to 0 in a band beside each body, those of shift and turn alike: see [`band`].
+    /// Shares that fall from 1 to 0 in a band around each body, equal for translation and rotation: see
+    /// [`band`].
     pub(super) fn of_band(
         bodies: &[Vec<u32>],
         tets: &[[VertexId; 4]],
@@ -128,7 +132,7 @@ impl Fields {
         Self { n_bodies: bodies.len(), shares: shares.into_iter().map(|share| [share; 2]).collect() }
     }
 
-    /// Shares of a vertex in the bodies' shifts and turns.
+    /// Shares of a vertex in the translations and rotations of the bodies.
     #[inline]
     pub(super) fn of(&self, v: usize) -> &[[f64; 2]] {
         &self.shares[v * self.n_bodies..(v + 1) * self.n_bodies]
@@ -136,7 +140,7 @@ impl Fields {
 }
 
 impl Domain<'_> {
-    /// Shares of three bodies at a time, for each free vertex.
+    /// Shares of each free vertex, for three bodies at a time.
     fn solve(&self, turn: bool) -> Result<Vec<Vec<Point>>> {
         let mut system = System::<f64>::with_pattern(&self.numbering, &self.numbers);
         let stiffness: Vec<f64> =
@@ -186,7 +190,8 @@ impl Domain<'_> {
         laplacian(&g, conductivity * volume)
     }
 
-    /// The squared slopes of all shares in a tet; those of turns times the squared distance from the body's middle.
+    /// The sum of the squared slopes of all shares in a tet; those of rotations are multiplied by the squared
+    /// distance from the body's centre.
     fn slope_squared(&self, t: usize, shares: &[Vec<Point>], turn: bool) -> f64 {
         let corners = self.corners(t);
         let Some((g, _)) = gradients(corners) else { return 0.0 };
@@ -210,7 +215,8 @@ impl Domain<'_> {
     }
 }
 
-/// The mean over the corners of each tet of the mean length of the edges there. An edge counts once for each tet that it is of.
+/// The mean over the corners of each tet of the mean length of the edges there. An edge counts once for each
+/// tet that contains it.
 fn lengths(tets: &[[VertexId; 4]], points: &[Point]) -> Vec<f64> {
     let mut sums = vec![(0.0, 0.0); points.len()];
     for tet in tets {

@@ -1,13 +1,16 @@
-//! Rigid bodies: what turns and shifts as a whole carries the volume round it along, by two numbers a vertex.
+//! Rigid bodies: a body that rotates and translates as a whole carries the volume around it along, by two
+//! numbers per vertex.
 //!
 //! ```text
 //!   x' = x + sum over bodies of ( (R(e_r angle) - 1)(x - c) + e_t d ) + what the graph says of the rest
 //! ```
 //!
-//! A body's motion is the rigid one that fits that of its vertices best: a shift `d` of its centre `c` and a turn. Each of the two reaches a vertex by its share, 1 on the
-//! body, 0 on all else that is given (see `fields`, and `band` for bodies that go on): so a vertex near a body that turns goes along an arc, where a weighted sum would cut across it and flatten
-//! cells. What the boundary does beside is left to the graph, and the boundary is where it should be. The shares belong to the first place of the mesh: a step
-//! depends on the displacement alone.
+//! A body's motion is the rigid one that best fits that of its vertices: a translation `d` of its centre `c`
+//! and a rotation. Each of the two reaches a vertex by its share, 1 on the body and 0 at all other prescribed
+//! vertices (see `fields`, and `band` for bodies that keep moving): a vertex near a rotating body moves along
+//! an arc, where a weighted sum of displacements would cut across it and flatten cells. Any other motion of
+//! the boundary is left to the graph, so that the boundary arrives where it should. The shares belong to the
+//! reference mesh: a step depends on the displacement alone.
 
 mod band;
 mod fields;
@@ -29,7 +32,7 @@ use crate::motion::options::{FacetSet, Strain};
 use crate::motion::spread::Spread;
 use crate::motion::update::{Displacements, Padded, Update};
 
-/// Shares of bodies for every vertex, and the graph for the rest.
+/// Shares of all bodies at every vertex, and the graph for the rest of the motion.
 #[derive(Debug)]
 pub(crate) struct Bodies {
     /// The nodes of each body.
@@ -40,17 +43,19 @@ pub(crate) struct Bodies {
     graph: Spread,
 }
 
-/// A body moves rigidly when its vertices are no farther from where that takes them than this part of the largest displacement: then the graph has nothing to do.
+/// A body moves rigidly when its vertices end within this fraction of the largest displacement of where the
+/// rigid motion takes them: then the graph has nothing to do.
 const ROUNDING: f64 = 1e-13;
 
-/// Vertices that are moved in one go.
+/// Vertices per chunk.
 const CHUNK: usize = 1 << 12;
 
 impl Bodies {
-    /// Sets up the shares on a mesh whose cells have these corners, with its vertices at `points`. `free` are the vertices that follow.
+    /// Computes the shares on a mesh whose cells have the corners `tets`, with its vertices at `points`.
+    /// `free` are the vertices that follow.
     ///
     /// # Errors
-    /// When a free vertex is at no corner, or when all cells at one are flat.
+    /// When a free vertex is a corner of no cell, or when all cells at one are flat.
     pub(crate) fn new(
         (sets, strain): (&[Vec<VertexId>], Strain),
         tets: &[[VertexId; 4]],
@@ -68,12 +73,12 @@ impl Bodies {
         Ok(Self { nodes: nodes_of, vertices: nodes.vertices.clone(), fields, graph })
     }
 
-    /// The graph for what no body carries.
+    /// The graph for the motion that no body carries.
     pub(crate) fn graph(&self) -> &Update {
         &self.graph.update
     }
 
-    /// Moves the vertices of `out`, of which this is the first, along with the bodies.
+    /// Moves the vertices of `out`, which begin with vertex `first`, along with the bodies.
     fn carry(&self, motions: &[Rigid], from: &[Point], first: usize, out: &mut [Point]) {
         let fields = &self.fields;
         #[cfg(target_arch = "x86_64")]
@@ -83,10 +88,10 @@ impl Bodies {
         Carry::<Plain> { machine: (), motions, fields, from, first, out }.call();
     }
 
-    /// Moves all vertices from where they are; iterations that the graph took.
+    /// Moves all vertices from their positions `from`; returns the number of iterations for the graph.
     ///
     /// # Errors
-    /// As [`Spread::apply`].
+    /// Those of [`Spread::apply`].
     pub(crate) fn apply(
         &self,
         from: &[Point],
@@ -123,7 +128,7 @@ impl Bodies {
     }
 }
 
-/// What moves vertices, from a first one on, along with bodies.
+/// Moves consecutive vertices, beginning with `first`, along with the bodies.
 struct Carry<'a, F: Four> {
     machine: F::Machine,
     motions: &'a [Rigid],
@@ -136,7 +141,8 @@ struct Carry<'a, F: Four> {
 impl<F: Four> NullaryFnOnce for Carry<'_, F> {
     type Output = ();
 
-    /// Four vertices at a time, at the end some of them more than once: 0.35 of the time that one by one takes.
+    /// Four vertices at a time, the last group filled up by repeating a vertex: this takes 0.35 of the time
+    /// of one by one.
     #[inline(always)]
     fn call(self) {
         let Self { machine, motions, fields, from, first, out } = self;
@@ -166,11 +172,15 @@ impl<F: Four> NullaryFnOnce for Carry<'_, F> {
     }
 }
 
-/// The vertices of each body: those of the sets, or where there is none, of each part of the walls that hangs together, but for the part of the largest extent. Walls are the boundary, and
-/// facets inside whose vertices the caller moves (`also_moved`): such as those between fluid and solid.
+/// The vertices of each body: those of `sets`, or without any, those of each connected part of the walls
+/// except the part with the largest extent.
+///
+/// Walls are the boundary, and interior facets whose vertices the caller moves (`also_moved`), such as those
+/// between fluid and solid.
 ///
 /// # Errors
-/// When a set has fewer than three vertices, one that nobody moves, or shares one with another; when the walls are all in one piece.
+/// When a set has fewer than three vertices, has one that is not driven, or shares one with another set; when
+/// the walls are all in one piece.
 pub(crate) fn vertices(
     sets: &[FacetSet],
     mesh: &Mesh,
@@ -209,7 +219,7 @@ pub(crate) fn vertices(
 fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Vec<Vec<VertexId>>> {
     let mut sets = Sets::new(is_moved.len());
     sets.join_all(boundary.facets.iter());
-    // Where the boundary alone is moved, no facet inside is a wall.
+    // Where only the boundary is moved, no interior facet is a wall.
     let n_moved = is_moved.iter().filter(|moved| **moved).count();
     if n_moved > boundary.vertices.len() {
         for_each_wall_facet(mesh, |facet| {
@@ -227,7 +237,7 @@ fn inner_parts(mesh: &Mesh, boundary: &Boundary, is_moved: &[bool]) -> Result<Ve
         });
         parts[at].push(v);
     }
-    // Vertices that the caller moves one by one are no body.
+    // Vertices that the caller moves one by one are not bodies.
     parts.retain(|part| part.len() >= 3);
     let extent = |part: &Vec<VertexId>| {
         let places: Vec<Point> = part.iter().map(|v| mesh.points[v.index()]).collect();

@@ -1,28 +1,31 @@
-//! The rigid motion that fits how vertices move best.
+//! The rigid motion that best fits the motion of some vertices.
 
 use crate::base::Point;
 use crate::base::four::{Four, Vectors, cross, sub as sub4};
 use crate::geometry;
 use crate::geometry::vector::sub;
 
-/// A turn about a centre and a shift.
+/// A rotation about a centre and a translation.
 #[derive(Clone, Debug)]
 pub(super) struct Rigid {
     centre: Point,
     shift: Point,
-    /// Of length 1.
+    /// Unit vector.
     axis: Point,
-    /// Of a turn, from 0 to pi.
+    /// Half the angle of rotation, which is from 0 to pi.
     half_angle: f64,
-    /// Sine and cosine of its parts, each of [`PARTS`] larger than the one before; none where nothing turns.
+    /// Sine and cosine of `k / PARTS` of the half angle, for each `k` up to [`PARTS`]; empty where nothing
+    /// rotates.
     parts: Vec<[f64; 2]>,
 }
 
-/// With a table of so many angles a step of 32,000 vertices takes 0.5 of the time that it takes with a sine and a cosine for each.
+/// Size of the table of angles. With it, a step of 32,000 vertices takes 0.5 of the time that it takes with a
+/// sine and a cosine for each vertex.
 const PARTS: usize = 512;
 
 impl Rigid {
-    /// The motion that [fits best](geometry::rigid::Rigid::fit). Where all points stay, it is none, to the bit.
+    /// The motion that [fits best](geometry::rigid::Rigid::fit); the identity, to the bit, where all points
+    /// stay.
     pub(super) fn fit(pairs: &[(Point, Point)]) -> Self {
         let geometry::rigid::Rigid { centres, axis, half_angle } = geometry::rigid::Rigid::fit(pairs);
         let part = |k: usize| {
@@ -33,7 +36,7 @@ impl Rigid {
         Self { centre: centres[0], shift: sub(centres[1], centres[0]), axis, half_angle, parts }
     }
 
-    /// By how much four points move that get these shares of shift and turn.
+    /// The displacements of four points with these shares of translation and rotation.
     #[inline(always)]
     pub(super) fn change<F: Four>(
         &self,
@@ -55,7 +58,7 @@ impl Rigid {
             rests[i] = at - k as f64;
         }
         let (sine, cosine) = (F::load(machine, &sines), F::load(machine, &cosines));
-        // The rest of the angle is below pi / 1024: what the series leave out is below 1e-17.
+        // The rest of the angle is below pi / 1024: the truncation error of the series is below 1e-17.
         let rest = F::load(machine, &rests) * all(self.half_angle / PARTS as f64);
         let square = rest * rest;
         let small_sine = rest * (all(1.0) - square * all(1.0 / 6.0) * (all(1.0) - square * all(0.05)));
@@ -102,7 +105,7 @@ mod tests {
             let rigid = fitted(&turn(1.0), shift);
             for part in [0.0, 0.001, 0.37, 0.5, 0.9999, 1.0] {
                 for p in points() {
-                    // About the middle of the points, whatever the centre was.
+                    // About the mean of the points, whatever the centre was.
                     let middle = rigid.centre;
                     let own =
                         Prescribed::Turn { axis, angle: part * f64::to_radians(degrees), centre: middle };

@@ -1,7 +1,9 @@
 //! Inverse-distance weighting with rotations (Luke, Collins, Blades 2012, *A fast mesh deformation method using explicit interpolation*).
 //!
-//! Each boundary vertex moves all of space rigidly, by its displacement and its rotation; a vertex inside gets the mean of these motions, weighted by
-//! `area ((L / r)^3 + (L / (4 r))^5)`, `r` its distance, `L` the extent of the mesh. Every vertex asks every node; programs that live from it sum over trees.
+//! Each boundary vertex moves all of space rigidly, by its displacement and its rotation. An interior vertex
+//! gets the mean of these motions, weighted by `area ((L / r)^3 + (L / (4 r))^5)`, where `r` is its distance
+//! and `L` the extent of the mesh. Every vertex sums over all nodes; programs that rely on this method sum
+//! over trees.
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::triangle::area_vector;
@@ -11,13 +13,13 @@ use crate::motion::options::FacetSet;
 use crate::motion::rotation::{Wall, change};
 use crate::motion::update::Displacements;
 
-/// The corners of the boundary, set up at one place of the mesh.
+/// The corners of the boundary, set up for one position of the mesh.
 #[derive(Debug)]
 pub(crate) struct Inverse {
     wall: Wall,
-    /// For each corner its vertex, its node, its place, and a third of the area of its facets.
+    /// The node and the position of each corner, and a third of the area of its facets.
     corners: Vec<Corner>,
-    /// All nodes, which are where they are told to be.
+    /// All nodes; they move exactly by their displacements.
     nodes: Vec<VertexId>,
     free: Vec<VertexId>,
     extent: f64,
@@ -30,7 +32,7 @@ struct Corner {
     area: f64,
 }
 
-/// The near part of the weight begins at this part of the extent.
+/// The near part of the weight begins at this fraction of the extent.
 const NEAR: f64 = 0.25;
 
 impl Inverse {
@@ -63,7 +65,7 @@ impl Inverse {
         }
     }
 
-    /// Moves all vertices from where they are.
+    /// Moves all vertices from their positions `from`.
     pub(crate) fn apply(
         &self,
         from: &[Point],

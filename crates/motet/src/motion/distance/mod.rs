@@ -1,4 +1,4 @@
-//! Two more ways for the volume to follow, by distances from the boundary alone: to compare with. Neither knows walls or cells.
+//! Two more methods, by distances from the boundary alone, for comparison. Neither knows of walls or cells.
 
 mod inverse;
 mod radial;

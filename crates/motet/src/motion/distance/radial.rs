@@ -1,14 +1,16 @@
-//! Radial basis functions (de Boer, van der Schoot, Bijl 2007) of compact support, on centres that are chosen step by step where the boundary is off most (Rendall, Allen 2009).
+//! Radial basis functions of compact support (de Boer, van der Schoot, Bijl 2007), with centres added in each
+//! step where the error on the boundary is largest (Rendall, Allen 2009).
 //!
-//! `d(x) = sum a_c phi(|x - c| / R)`, `phi(r) = (1 - r)^4 (4 r + 1)` below 1 and 0 beyond (Wendland 1995, C2); `R` is half of the extent of the mesh. Boundary vertices go where they are
-//! told to be all the same; those near them are as far off as the basis is.
+//! `d(x) = sum a_c phi(|x - c| / R)`, `phi(r) = (1 - r)^4 (4 r + 1)` below 1 and 0 beyond (Wendland 1995,
+//! C2); `R` is half of the extent of the mesh. Boundary vertices move exactly by their displacements all the
+//! same; those near them are off by as much as the basis is.
 
 use crate::base::{Point, Threads, VertexId};
 use crate::geometry::vector::{add, distance, norm, scale, sub};
 use crate::mesh::bounds;
 use crate::motion::update::Displacements;
 
-/// All nodes, of which each step chooses centres.
+/// All nodes, from which each step chooses centres.
 #[derive(Debug)]
 pub(crate) struct Radial {
     nodes: Vec<VertexId>,
@@ -16,19 +18,20 @@ pub(crate) struct Radial {
     radius: f64,
 }
 
-/// Centres that come at once.
+/// Centres added at once.
 const BATCH: usize = 8;
-/// No more centres than this: the work grows with its square, and their equations with what they have in common.
+/// Maximum number of centres: the work grows with its square, and overlapping supports couple their
+/// equations.
 const MOST: usize = 1000;
-/// The boundary may be off by this part of the largest displacement.
+/// Error allowed on the boundary, relative to the largest displacement.
 const OFF: f64 = 1e-3;
 
-/// Centres, and the triangle of Cholesky's factorisation of their matrix, a row for each.
+/// Centres, and the Cholesky factor of their matrix, row by row.
 #[derive(Default)]
 struct Centres {
     nodes: Vec<usize>,
     rows: Vec<Vec<f64>>,
-    /// The displacements, after the forward half of solving.
+    /// The displacements after forward substitution.
     halves: Vec<Point>,
 }
 
@@ -45,7 +48,7 @@ impl Radial {
         rest * rest * rest * rest * (4.0 * r + 1.0)
     }
 
-    /// Moves all vertices from where they are; how many centres that took.
+    /// Moves all vertices from their positions `from`; returns the number of centres that this took.
     pub(crate) fn apply(
         &self,
         from: &[Point],
@@ -95,7 +98,7 @@ impl Radial {
 }
 
 impl Centres {
-    /// Adds a row to the triangle; none where the centre has nothing of its own.
+    /// Adds a row to the factor, unless the centre depends on those before it.
     fn add(&mut self, node: usize, wanted: Point, phi: impl Fn(usize) -> f64) {
         let mut row: Vec<f64> = Vec::with_capacity(self.nodes.len() + 1);
         for (other, &c) in self.rows.iter().zip(&self.nodes) {
@@ -114,7 +117,7 @@ impl Centres {
         self.nodes.push(node);
     }
 
-    /// The backward half.
+    /// Backward substitution: the weights of the centres.
     fn solved(&self) -> Vec<Point> {
         let mut solved = self.halves.clone();
         for i in (0..solved.len()).rev() {

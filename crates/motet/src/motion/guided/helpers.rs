@@ -1,9 +1,10 @@
-//! Nodes inside: some vertices of the mesh, far apart where cells are large and near each other where they are small.
+//! Interior nodes: some vertices of the mesh, far apart where cells are large and close together where they
+//! are small.
 
 use crate::base::{Csr, Point, VertexId};
 use crate::geometry::vector::{norm, sub};
 
-/// Nodes of the graph that nobody moves.
+/// Nodes of the graph whose motion is not given.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Helpers {
     /// In rising order.
@@ -12,7 +13,8 @@ pub(crate) struct Helpers {
     pub(crate) lengths: Vec<f64>,
 }
 
-/// Takes vertices of `free`, in an order without order, none of which is within `rings` edges of another or next to a vertex that is not free.
+/// Chooses vertices of `free`, in a pseudorandom order, none of which is within `rings` edges of another or
+/// next to a vertex that is not free.
 pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId], rings: usize) -> Helpers {
     let edges = || {
         tets.iter().flat_map(|tet| {
@@ -34,7 +36,7 @@ pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId]
     };
     let mut order: Vec<u32> = free.iter().map(|v| v.0).filter(|&v| is_inner(v as usize)).collect();
     order.sort_by_key(|&v| (scattered(v), v));
-    // Which vertices are near a helper, and the last search that saw a vertex.
+    // Which vertices are near a helper, and the last search that reached each vertex.
     let (mut is_near, mut seen) = (vec![false; points.len()], vec![u32::MAX; points.len()]);
     let mut vertices = Vec::new();
     for v in order {
@@ -62,7 +64,8 @@ pub(crate) fn choose(tets: &[[VertexId; 4]], points: &[Point], free: &[VertexId]
     Helpers { vertices, lengths }
 }
 
-/// A number that has nothing to do with its neighbours' (the finaliser of MurmurHash3, Appleby 2011).
+/// A pseudorandom number for a vertex, unrelated to those of its neighbours (the finaliser of MurmurHash3,
+/// Appleby 2011).
 fn scattered(v: u32) -> u32 {
     let v = (v ^ (v >> 16)).wrapping_mul(0x85eb_ca6b);
     let v = (v ^ (v >> 13)).wrapping_mul(0xc2b2_ae35);

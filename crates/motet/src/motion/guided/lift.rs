@@ -10,18 +10,19 @@ use crate::geometry::vector::{add, scale, sub};
 use crate::motion::guided::GraphTet;
 use crate::motion::update::Update;
 
-/// How the displacement near a node depends on the place: three columns, and what is left at the origin. The fourth number of each is 0.
+/// The displacement near a node as a function of position: three columns, and the value at the origin. The
+/// fourth number of each is 0.
 pub(super) type Affine = [[f64; 4]; 4];
 
-/// On what vertices hang.
+/// How vertices depend on nodes.
 #[derive(Debug)]
 pub(super) struct Lift {
     update: Update,
-    /// 1 over the sum of the weights of a node's tets.
+    /// For each node, 1 over the sum of the weights of its tets.
     shares: Vec<f64>,
 }
 
-/// Vertices that are moved in one go.
+/// Vertices per chunk.
 const CHUNK: usize = 1 << 12;
 
 impl Lift {
@@ -33,11 +34,13 @@ impl Lift {
         Self { update, shares: sums.into_iter().map(|s| if s > 0.0 { 1.0 / s } else { 0.0 }).collect() }
     }
 
-    /// From displacements and the weighted sums of their gradients, as columns. The last map is that of a node that never moves.
+    /// The affine map of every node, from displacements and the weighted sums of their gradients, as columns.
+    /// The last map is that of a node that never moves.
     pub(super) fn affine(&self, places: &[Point], moved: &[Point], sums: &[[Point; 3]]) -> Vec<Affine> {
         let origin = places.first().copied().unwrap_or_default();
         let one = |i: usize| {
-            // Half of it: a whole one is as much off for motions of second order, the other way.
+            // Half of the gradient: for motions of second order, all of it is off by as much as none, the
+            // other way.
             let columns = sums[i].map(|column| scale(column, 0.5 * self.shares[i]));
             let from = sub(places[i], origin);
             let at_origin = (0..3).fold(moved[i], |d, j| sub(d, scale(columns[j], from[j])));
@@ -76,7 +79,7 @@ impl Lift {
     }
 }
 
-/// Vertices from a first one on.
+/// Moves consecutive vertices, beginning with `first`.
 struct Vertices<'a, F: Four> {
     machine: F::Machine,
     update: &'a Update,

@@ -1,16 +1,20 @@
-//! Guided motion: walls that bend and turn take the volume round them along, turned.
+//! Guided motion: walls that bend and rotate carry the volume around them along, rotation included.
 //!
-//! A weighted sum of displacements cannot turn cells: where a flap bends by 60 degrees it shears them until they invert. So each node of the graph gets a
-//! rotation beside its displacement, and the graph some nodes inside:
+//! A weighted sum of displacements cannot rotate cells: where a flap bends by 60 degrees, it shears them
+//! until they invert. So each node of the graph gets a rotation in addition to its displacement, and the
+//! graph gets some interior nodes:
 //!
-//! 1. The rotation of a boundary vertex is that of the facets at it. Inside, rotation vectors are harmonic (harmonic guidance: Zayer, Roessl, Karni, Seidel 2005).
-//! 2. Nodes inside go to where the gradient of the motion is nearest to those rotations, `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson
-//!    editing: Yu, Zhou, Xu, Shi, Bao, Guo, Shum 2004). Sparse systems of some hundred unknowns.
-//!    Then once more, to the rotations nearest to the gradients that came of it (as rigid as possible: Sorkine, Alexa 2007), what is squeezed the stiffer.
-//! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted mean of those of its four nodes: exact for
-//!    motions of second order, and without the kinks that linear weights have where tets of the graph meet.
+//! 1. The rotation of a boundary vertex is that of its facets. Inside, rotation vectors are harmonic
+//!    (harmonic guidance: Zayer, Roessl, Karni, Seidel 2005).
+//! 2. Interior nodes move to where the gradient of the motion is nearest to those rotations,
+//!    `min sum k_T |grad x' - R_T|^2` over the tets of the graph (Poisson editing: Yu, Zhou, Xu, Shi, Bao, Guo, Shum
+//!    2004). These are sparse systems of some hundred unknowns. They are solved once more, for the rotations nearest
+//!    to the gradients of the first solution (as rigid as possible: Sorkine, Alexa 2007), with compressed tets stiffer.
+//! 3. Each node carries an affine map: its displacement and half its gradient. A vertex gets the weighted mean of those
+//!    of its four nodes: exact for motions of second order, and without the kinks that linear weights have where tets of
+//!    the graph meet.
 //!
-//! All of it starts from the first place of the mesh: a step depends on where the boundary is, not on how it came there.
+//! All of it starts from the reference: a step depends on where the boundary is, not on how it got there.
 
 mod helpers;
 mod lift;
@@ -29,38 +33,41 @@ use crate::motion::update::{Displacements, Update};
 
 pub(crate) use helpers::{Helpers, choose};
 
-/// A step is solved to this residual: far below what cells see.
+/// The tolerance of a step, far below what affects cells.
 const SOLVED: Tolerance = Tolerance { residual: 1e-9, iterations: 10_000 };
-/// Small tets are stiff, for displacements by edge length to this power. Tried 2 to 3.5 on a sphere that shifts and turns and on a flap that bends: below 2.25 the flap's tip inverts cells,
-/// above 2.5 the shifted sphere does.
+/// Small tets are stiff: the power of the edge length in the stiffness for displacements. Powers of -2 to
+/// -3.5 were tried on a sphere that shifts and turns and on a flap that bends: below 2.25 the flap's tip
+/// inverts cells, above 2.5 the shifted sphere does.
 const STIFF: f64 = -2.25;
-/// And for rotations. With -2 the turned sphere leaves a tenth more bad tets.
+/// The power of the edge length in the stiffness for rotations. With -2 the rotated sphere leaves a tenth
+/// more bad tets.
 const STIFF_TO_TURN: f64 = -1.0;
-/// A tet of the graph counts from this volume on, as a part of its longest edge cubed: gradients of flatter ones mean nothing.
+/// Tets of the graph count from this volume on, relative to the cube of their longest edge: gradients of
+/// flatter ones are meaningless.
 const FLAT: f64 = 1e-9;
 
 const NO_ROW: u32 = u32::MAX;
 
-/// A graph whose nodes turn.
+/// A graph whose nodes rotate.
 #[derive(Debug)]
 pub(crate) struct Guided {
-    /// The vertex of each node that is given.
+    /// The vertex of each given node.
     vertices: Vec<VertexId>,
-    /// For each node of the graph that is given its place among all nodes; helpers come after them.
+    /// For each given node of the graph, its index among all nodes; helpers come after them.
     of_graph: Vec<u32>,
-    /// For each node that is not given its row in the system; [`NO_ROW`] where all its tets are flat.
+    /// For each node that is not given, its row in the system; [`NO_ROW`] where all its tets are flat.
     row_of: Vec<u32>,
-    /// Those without a row, each with the nodes that it shares flat tets with and goes along with.
+    /// Nodes without a row, each with the nodes of its flat tets, whose mean displacement it takes.
     flat: Vec<(u32, Vec<u32>)>,
     places: Vec<Point>,
-    /// The facets whose rotation counts, and the node of the graph for each of their vertices.
+    /// The facets whose rotation counts, and the graph node of each of their vertices.
     wall: Wall,
     wall_nodes: Vec<u32>,
     /// Nodes of the graph that are on no facet: their rotation is harmonic.
     off_wall: Vec<u32>,
     on_wall: Vec<u32>,
     tets: Vec<GraphTet>,
-    /// Those of them that have a helper, and the numbers of their nodes in the system.
+    /// The tets that have a helper, and the numbers of their nodes in the system.
     inner: Vec<u32>,
     inner_numbers: Vec<[u32; 4]>,
     turn: System<f64>,
@@ -75,12 +82,13 @@ struct GraphTet {
     gradients: [Point; 4],
     /// Volume times conductivity.
     stiffness: f64,
-    /// Its part in the gradient at its nodes: volume over the cube of the longest edge.
+    /// Its weight in the gradient at its nodes: volume over the cube of the longest edge.
     weight: f64,
 }
 
 impl Guided {
-    /// The nodes of the graph are those that are given, the helpers, and others that it needed; `update` says on which each vertex hangs.
+    /// Sets up a graph whose nodes are the given ones, the helpers, and others that it needed; `update` holds
+    /// the nodes and weights of each vertex.
     ///
     /// # Errors
     /// When a system cannot be set up.
@@ -124,7 +132,8 @@ impl Guided {
             (facets.triangles()).filter_map(|t| Some([local(t[0])?, local(t[1])?, local(t[2])?])).collect();
         let wall_points: Vec<Point> = corners.iter().map(|v| points[v.index()]).collect();
         let wall_nodes: Vec<u32> = corners.iter().map(|v| node_of[v.index()].unwrap_or(u32::MAX)).collect();
-        // What is in no tet has no say: nodes in the place of another, and those that the graph needed in a flat wall.
+        // Nodes in no tet have no influence: those in the place of another, and those that the graph needed
+        // in a flat wall.
         let mut is_on_wall = vec![true; all];
         kept.iter().flat_map(|t| t.nodes).for_each(|n| is_on_wall[n as usize] = false);
         let (without, rows): (Vec<u32>, Vec<u32>) =
@@ -172,10 +181,10 @@ impl Guided {
         })
     }
 
-    /// Moves all vertices from where they are; iterations that it took.
+    /// Moves all vertices from their positions `from`; returns the number of iterations.
     ///
     /// # Errors
-    /// When a system is not solved to the tolerance.
+    /// When a system cannot be solved to the tolerance.
     pub(crate) fn apply(
         &self,
         from: &[Point],
@@ -195,12 +204,12 @@ impl Guided {
             .collect();
         let mut inner = vec![[0.0; 3]; self.row_of.len() - self.flat.len()];
         let n_given = moved.len();
-        // Those without a row have no part in the system, but a place in it.
+        // Nodes without a row are numbered as given ones, but no tet couples them.
         let mut given = moved.clone();
         given.resize(n_given + self.flat.len(), [0.0; 3]);
         let first = self.solve(&self.place, &guides, &given, &mut inner, threads)?;
         self.extend(&mut moved, &inner);
-        // Once more: to the rotations that came of it, and what is squeezed made stiffer.
+        // Once more: towards the resulting rotations, and with compressed tets stiffer.
         let guides = threads.map(guides.len(), |i| {
             let tet = &self.tets[self.inner[i] as usize];
             let gradient = deformation(tet, &moved);
@@ -224,7 +233,7 @@ impl Guided {
         Ok(iterations + first + second)
     }
 
-    /// The displacements of nodes that are not given, behind those that are.
+    /// Appends the displacements of the other nodes to those of the given ones.
     fn extend(&self, moved: &mut Vec<Point>, inner: &[Point]) {
         moved.extend(self.row_of.iter().map(|&row| inner.get(row as usize).copied().unwrap_or([0.0; 3])));
         for (node, near) in &self.flat {
@@ -233,7 +242,8 @@ impl Guided {
         }
     }
 
-    /// Where helpers go so that gradients are nearest to the guides; `inner` holds a guess before. Iterations.
+    /// Moves helpers so that gradients are nearest to the guides; `inner` holds a guess on entry. Returns the
+    /// number of iterations.
     fn solve(
         &self,
         system: &System<f64>,
@@ -258,7 +268,7 @@ impl Guided {
         Ok(solved.iterations)
     }
 
-    /// The rotation vector of every node, and iterations.
+    /// The rotation vector of every node, and the number of iterations.
     fn turns(&self, moved: &[Point], threads: &Threads) -> Result<(Vec<Point>, usize)> {
         let of_wall = |v: u32| {
             let node = self.wall_nodes[v as usize];
@@ -298,7 +308,7 @@ impl Guided {
     }
 }
 
-/// Some nodes, each with those that it shares tets with and that are none of them.
+/// Each of `nodes` with the other nodes that it shares tets with.
 fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
     let of = |&node: &u32| {
         let tets = tets.iter().filter(|tet| tet.contains(&node));
@@ -311,7 +321,7 @@ fn companions(nodes: &[u32], tets: &[[u32; 4]]) -> Vec<(u32, Vec<u32>)> {
     nodes.iter().map(of).collect()
 }
 
-/// Nodes of which no length is known have the mean of those that they share tets with.
+/// The length at every node: a node of unknown length gets the mean of those that it shares tets with.
 fn with_others(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
     lengths.resize(n, 0.0);
     let is_known: Vec<bool> = lengths.iter().map(|&length| length > 0.0).collect();
@@ -334,7 +344,7 @@ fn with_others(mut lengths: Vec<f64>, tets: &[[u32; 4]], n: usize) -> Vec<f64> {
     lengths
 }
 
-/// Its axis times its angle, from 0 to pi.
+/// The rotation vector of a quaternion: its axis times its angle, from 0 to pi.
 fn rotation_vector([w, x, y, z]: Quaternion) -> Point {
     let side = if w < 0.0 { -1.0 } else { 1.0 };
     let sine = norm([x, y, z]);
@@ -344,13 +354,13 @@ fn rotation_vector([w, x, y, z]: Quaternion) -> Point {
     scale([x, y, z], side * 2.0 * sine.atan2(w * side) / sine)
 }
 
-/// What a tet of the graph is to do.
+/// The rotation that a tet of the graph is to take, and its stiffness.
 struct Guide {
     rotation: Matrix,
     stiffness: f64,
 }
 
-/// Three columns.
+/// A matrix as three columns.
 type Matrix = [Point; 3];
 
 fn times(matrix: Matrix, v: Point) -> Point {
@@ -358,7 +368,7 @@ fn times(matrix: Matrix, v: Point) -> Point {
     add(add(scale(a, v[0]), scale(b, v[1])), scale(c, v[2]))
 }
 
-/// By its vector (Rodrigues 1840).
+/// The rotation matrix of a rotation vector (Rodrigues 1840).
 fn rotation(vector: Point) -> Matrix {
     let angle = norm(vector);
     let half = 0.5 * angle;
@@ -374,7 +384,7 @@ fn rotation(vector: Point) -> Matrix {
 
 const AXES: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The gradient of the motion in a tet of the graph: images of the axes.
+/// The gradient of the motion in a tet of the graph: the images of the axes.
 fn deformation(tet: &GraphTet, moved: &[Point]) -> Matrix {
     let mut columns = AXES;
     for (&n, g) in tet.nodes.iter().zip(tet.gradients) {
@@ -383,7 +393,8 @@ fn deformation(tet: &GraphTet, moved: &[Point]) -> Matrix {
     columns
 }
 
-/// The rotation nearest to a matrix, from one that is near (Mueller, Bender, Chentanez, Macklin 2016); also that of an inverted one is proper.
+/// The rotation nearest to a matrix, from one that is near (Mueller, Bender, Chentanez, Macklin 2016); it is
+/// proper even for an inverted matrix.
 fn nearest_rotation(matrix: Matrix, mut from: Matrix) -> Matrix {
     const ROUNDS: usize = 5;
     for _ in 0..ROUNDS {
@@ -395,7 +406,8 @@ fn nearest_rotation(matrix: Matrix, mut from: Matrix) -> Matrix {
     from
 }
 
-/// By how much stiffer a tet gets: the mean stretch of the inverse, 1 for one that keeps its shape; at least 1, at most 20.
+/// The factor by which a tet becomes stiffer: the mean stretch of the inverse, 1 for a tet that keeps its
+/// shape; at least 1, at most 20.
 fn squeezed([a, b, c]: Matrix) -> f64 {
     let cofactors = [cross(b, c), cross(c, a), cross(a, b)];
     let size = (cofactors.iter().map(|v| dot(*v, *v)).sum::<f64>() / 3.0).sqrt();
